@@ -1,0 +1,41 @@
+# boxtree_add_library(NAME SOURCES...) and boxtree_set_target(NAME): the settings every target of
+# this project shares, in one place, so that no target can miss the ones that the bytes depend on.
+
+# Sources are included as <boxtree/FOLDER/file.h>, in the tree as after installation. One link a
+# folder gives the tree that shape without a second copy of a header.
+set(BOXTREE_INCLUDE_DIR ${CMAKE_CURRENT_BINARY_DIR}/include)
+file(MAKE_DIRECTORY ${BOXTREE_INCLUDE_DIR}/boxtree)
+foreach(folder format runtime cooker)
+  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${BOXTREE_INCLUDE_DIR}/boxtree/${folder}
+       SYMBOLIC)
+endforeach()
+
+function(boxtree_set_target target)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
+  # Same bytes and same answers everywhere: no fused multiply-add that the source does not ask for.
+  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
+                                           -Wconversion -Wsign-conversion -Wno-missing-field-initializers)
+  if(BOXTREE_WERROR)
+    target_compile_options(${target} PRIVATE -Werror)
+  endif()
+  if(NOT BOXTREE_SIMD)
+    target_compile_options(${target} PRIVATE -fno-tree-vectorize -fno-tree-slp-vectorize)
+    target_compile_definitions(${target} PRIVATE EIGEN_DONT_VECTORIZE)
+  endif()
+  if(BOXTREE_SANITIZE)
+    target_compile_options(${target} PRIVATE -fsanitize=${BOXTREE_SANITIZE}
+                                             -fno-sanitize-recover=all -fno-omit-frame-pointer)
+    target_link_options(${target} PUBLIC -fsanitize=${BOXTREE_SANITIZE})
+  endif()
+endfunction()
+
+# A library `boxtree_NAME`, known to users as boxtree::NAME.
+function(boxtree_add_library name)
+  add_library(boxtree_${name} STATIC ${ARGN})
+  add_library(boxtree::${name} ALIAS boxtree_${name})
+  set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
+  target_include_directories(boxtree_${name} PUBLIC $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
+                                                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  boxtree_set_target(boxtree_${name})
+endfunction()

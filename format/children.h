@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// The answer to the one question every codec answers: given a node and its decoded box, what are
+// the children and their decoded boxes?
+#pragma once
+
+#include <boxtree/format/box.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace boxtree {
+
+/// Names a subtree or a leaf inside one tree. For a leaf: its first face and how many faces. For a
+/// subtree the two numbers belong to the codec; they are only ever handed back to it.
+struct NodeRef {
+  std::uint32_t first;
+  std::uint32_t second;
+
+  friend bool operator==(const NodeRef&, const NodeRef&) = default;
+};
+
+/// Up to Width children as structure of arrays, so that one vector test serves them all.
+/// Entries at and above `count` are unspecified.
+template <std::size_t Width, class S>
+struct ChildSet {
+  static constexpr std::size_t kWidth = Width;
+  using Scalar = S;
+
+  std::uint32_t count;
+  std::uint32_t leaf_mask;  // bit i: child i is a leaf
+  std::array<std::array<S, Width>, 3> low;
+  std::array<std::array<S, Width>, 3> high;
+  std::array<NodeRef, Width> ref;
+
+  [[nodiscard]] bool is_leaf(std::uint32_t child) const noexcept {
+    return ((leaf_mask >> child) & 1u) != 0;
+  }
+  [[nodiscard]] Box<S> box(std::uint32_t child) const noexcept {
+    return {{low[0][child], low[1][child], low[2][child]},
+            {high[0][child], high[1][child], high[2][child]}};
+  }
+};
+
+}  // namespace boxtree

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// The registry of node codecs and geometry stores: pinned numbers and the names users type.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+namespace boxtree {
+
+/// How nodes are stored. Numbers are pinned.
+enum class CodecId : std::uint16_t {
+  kPlainF32 = 1,
+  kPlainF16 = 2,
+};
+
+/// How vertices and corners are stored. Numbers are pinned.
+enum class GeometryId : std::uint16_t {
+  kExternal = 1,  // not in the file; the application gives its arrays when binding
+  kExact = 2,     // f32 or f64 positions bit for bit, corners as 16 or 32-bit vertex numbers
+};
+
+struct CodecInfo {
+  CodecId id;
+  std::string_view name;
+};
+
+/// All codecs; adding one starts with a line here.
+inline constexpr std::array kCodecs = {
+    CodecInfo{CodecId::kPlainF32, "plain-f32"},
+    CodecInfo{CodecId::kPlainF16, "plain-f16"},
+};
+
+[[nodiscard]] constexpr std::string_view codec_name(CodecId id) noexcept {
+  for (const CodecInfo& info : kCodecs) {
+    if (info.id == id) return info.name;
+  }
+  return "unknown";
+}
+
+[[nodiscard]] constexpr std::optional<CodecId> find_codec(std::string_view name) noexcept {
+  for (const CodecInfo& info : kCodecs) {
+    if (info.name == name) return info.id;
+  }
+  return std::nullopt;
+}
+
+[[nodiscard]] constexpr std::string_view geometry_name(GeometryId id) noexcept {
+  switch (id) {
+    case GeometryId::kExternal: return "external";
+    case GeometryId::kExact: return "exact";
+  }
+  return "unknown";
+}
+
+}  // namespace boxtree

@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Container checks. Every offset and size of a file passes through here before anything reads by it.
+#include <boxtree/format/container.h>
+
+#include <algorithm>
+#include <string>
+
+namespace boxtree {
+namespace {
+
+std::string describe(std::size_t index, const SectionEntry& entry) {
+  return "section " + std::to_string(index) + " (" +
+         std::string(section_name(static_cast<SectionKind>(entry.kind))) + ")";
+}
+
+bool is_known(std::uint32_t kind) {
+  return kind >= static_cast<std::uint32_t>(SectionKind::kTrees) &&
+         kind <= static_cast<std::uint32_t>(SectionKind::kCookRecord);
+}
+
+Status check_header(const FileHeader& header, std::uint64_t file_size) {
+  if (header.magic != kMagic) return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
+  if (header.version_major != kVersionMajor) {
+    return Error{Errc::kVersionUnsupported,
+                 "file has format version " + std::to_string(header.version_major) + "." +
+                     std::to_string(header.version_minor) + ", this reader knows " +
+                     std::to_string(kVersionMajor) + "." + std::to_string(kVersionMinor)};
+  }
+  if ((header.incompatible_features & ~kKnownIncompatibleFeatures) != 0) {
+    return Error{Errc::kFeatureUnsupported,
+                 "incompatible feature bits " + std::to_string(header.incompatible_features)};
+  }
+  if (header.header_bytes != sizeof(FileHeader) || header.reserved0 != 0 || header.reserved1 != 0) {
+    return Error{Errc::kHeaderCorrupt, "header size or reserved fields are not as specified"};
+  }
+  if (header.file_bytes != file_size) {
+    return Error{Errc::kTruncated, "header states " + std::to_string(header.file_bytes) +
+                                       " bytes, the file has " + std::to_string(file_size)};
+  }
+  if (header.section_count > kMaxSections) {
+    return Error{Errc::kTooManySections, std::to_string(header.section_count) +
+                                             " sections, limit " + std::to_string(kMaxSections)};
+  }
+  return {};
+}
+
+// `free_from` is the end of what precedes the section; it moves to the section's end.
+Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t file_size,
+                     std::uint64_t& free_from) {
+  if (!is_known(entry.kind) && (entry.flags & kSectionRequired) != 0) {
+    return Error{Errc::kSectionUnknown, describe(index, entry) + ": kind " +
+                                            std::to_string(entry.kind) + " is required"};
+  }
+  if ((entry.flags & ~kSectionRequired) != 0 || entry.reserved != 0) {
+    return Error{Errc::kHeaderCorrupt, describe(index, entry) + ": reserved bits are set"};
+  }
+  if (entry.offset % kSectionAlignment != 0) {
+    return Error{Errc::kSectionMisaligned, describe(index, entry) + ": offset " +
+                                               std::to_string(entry.offset) +
+                                               " is not a multiple of 64"};
+  }
+  if (entry.offset < free_from || entry.offset - free_from > kMaxSectionGap) {
+    return Error{Errc::kSectionOverlap, describe(index, entry) + ": offset " +
+                                            std::to_string(entry.offset) + ", expected at least " +
+                                            std::to_string(free_from) + " and at most " +
+                                            std::to_string(kMaxSectionGap) + " above"};
+  }
+  if (!in_range(entry.offset, entry.size, file_size)) {
+    return Error{Errc::kSectionOutOfRange,
+                 describe(index, entry) + ": offset " + std::to_string(entry.offset) + " + " +
+                     std::to_string(entry.size) + " ends past file size " +
+                     std::to_string(file_size)};
+  }
+  free_from = entry.offset + entry.size;
+  return {};
+}
+
+Status check_duplicates(const std::vector<SectionEntry>& sections) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(sections.size());
+  for (const SectionEntry& entry : sections) {
+    keys.push_back(std::uint64_t{entry.kind} << 32 | entry.owner);
+  }
+  std::sort(keys.begin(), keys.end());
+  const auto twice = std::adjacent_find(keys.begin(), keys.end());
+  if (twice == keys.end()) return {};
+  const auto kind = static_cast<SectionKind>(*twice >> 32);
+  return Error{Errc::kSectionDuplicate, std::string(section_name(kind)) + " of owner " +
+                                            std::to_string(*twice & 0xffffffffu) + " occurs twice"};
+}
+
+}  // namespace
+
+std::string_view section_name(SectionKind kind) noexcept {
+  switch (kind) {
+    case SectionKind::kTrees: return "trees";
+    case SectionKind::kNodes: return "nodes";
+    case SectionKind::kVertices: return "vertices";
+    case SectionKind::kCorners: return "corners";
+    case SectionKind::kFaceIds: return "face_ids";
+    case SectionKind::kCertificate: return "certificate";
+    case SectionKind::kNames: return "names";
+    case SectionKind::kCookRecord: return "cook_record";
+  }
+  return "unknown";
+}
+
+const SectionEntry* Container::find(SectionKind kind, std::uint32_t owner) const noexcept {
+  for (const SectionEntry& entry : sections) {
+    if (entry.kind == static_cast<std::uint32_t>(kind) && entry.owner == owner) return &entry;
+  }
+  return nullptr;
+}
+
+Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
+  if (file.size() < sizeof(FileHeader)) {
+    return Error{Errc::kTruncated, "the file has " + std::to_string(file.size()) +
+                                       " bytes, a header alone has " +
+                                       std::to_string(sizeof(FileHeader))};
+  }
+  Container container{load<FileHeader>(file.data()), {}};
+  const FileHeader& header = container.header;
+  if (Status status = check_header(header, file.size()); !status) return status.error();
+
+  const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(SectionEntry);
+  if (!in_range(sizeof(FileHeader), table_bytes, file.size())) {
+    return Error{Errc::kTruncated, "the section table ends past the file"};
+  }
+  const Bytes table = file.subspan(sizeof(FileHeader), table_bytes);
+  if (checksum(file.first(offsetof(FileHeader, checksum)), table) != header.checksum) {
+    return Error{Errc::kHeaderCorrupt, "checksum of header and section table differs"};
+  }
+
+  container.sections.reserve(header.section_count);
+  std::uint64_t free_from = sizeof(FileHeader) + table_bytes;
+  for (std::size_t i = 0; i < header.section_count; ++i) {
+    const auto entry = load<SectionEntry>(table.data(), i);
+    if (Status status = check_section(i, entry, file.size(), free_from); !status) {
+      return status.error();
+    }
+    container.sections.push_back(entry);
+  }
+  if (file.size() - free_from >= kSectionAlignment) {
+    return Error{Errc::kSectionOutOfRange, "bytes after the last section belong to none"};
+  }
+  if (Status status = check_duplicates(container.sections); !status) return status.error();
+  return container;
+}
+
+Status check_padding(Bytes file, const Container& container) {
+  std::uint64_t begin = sizeof(FileHeader) + container.sections.size() * sizeof(SectionEntry);
+  const auto check_gap = [&](std::uint64_t end) -> Status {
+    const Bytes gap = file.subspan(begin, end - begin);
+    const auto stain = std::find_if(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte{0}; });
+    if (stain == gap.end()) return {};
+    return Error{Errc::kPaddingNotZero, "byte " + std::to_string(begin + static_cast<std::uint64_t>(
+                                                                           stain - gap.begin())) +
+                                            " is padding and not zero"};
+  };
+  for (const SectionEntry& entry : container.sections) {
+    if (Status status = check_gap(entry.offset); !status) return status;
+    begin = entry.offset + entry.size;
+  }
+  return check_gap(file.size());
+}
+
+}  // namespace boxtree

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: MIT
+// The error table: one row a code, so that names, meanings and exit statuses cannot drift apart.
+#include <boxtree/format/error.h>
+
+#include <algorithm>
+#include <array>
+
+namespace boxtree {
+namespace {
+
+// Exit statuses of the command line (docs/GUIDE.md): 2 input/output, 3 bad input, 4 internal,
+// 5 unsupported; 1 is a question that makes no sense.
+constexpr std::array kTable = {
+    ErrcInfo{Errc::kOk, "ok", "no error", 0},
+    ErrcInfo{Errc::kBadMagic, "bad_magic", "not a .bxt file", 3},
+    ErrcInfo{Errc::kTruncated, "truncated", "the file ends before its own stated size", 3},
+    ErrcInfo{Errc::kVersionUnsupported, "version_unsupported",
+             "written by a newer format than this reader knows", 5},
+    ErrcInfo{Errc::kFeatureUnsupported, "feature_unsupported",
+             "uses a feature that a reader must know and this one does not", 5},
+    ErrcInfo{Errc::kHeaderCorrupt, "header_corrupt", "header or section table is damaged", 3},
+    ErrcInfo{Errc::kTooManySections, "too_many_sections", "more sections than the limit", 3},
+    ErrcInfo{Errc::kSectionOutOfRange, "section_out_of_range", "a section leaves the file", 3},
+    ErrcInfo{Errc::kSectionMisaligned, "section_misaligned", "a section is not aligned", 3},
+    ErrcInfo{Errc::kSectionOverlap, "section_overlap", "sections overlap or are out of order", 3},
+    ErrcInfo{Errc::kSectionDuplicate, "section_duplicate", "a section occurs twice", 3},
+    ErrcInfo{Errc::kSectionMissing, "section_missing", "a section that the tree needs is absent",
+             3},
+    ErrcInfo{Errc::kSectionSize, "section_size", "a section's size contradicts its records", 3},
+    ErrcInfo{Errc::kSectionUnknown, "section_unknown",
+             "a section that a reader must know and this one does not", 5},
+    ErrcInfo{Errc::kPaddingNotZero, "padding_not_zero", "padding or reserved bytes are not zero",
+             3},
+    ErrcInfo{Errc::kChecksumMismatch, "checksum_mismatch", "a section's bytes have changed", 3},
+    ErrcInfo{Errc::kCodecUnsupported, "codec_unsupported", "unknown node codec", 5},
+    ErrcInfo{Errc::kGeometryUnsupported, "geometry_unsupported", "unknown geometry store", 5},
+    ErrcInfo{Errc::kRecordInvalid, "record_invalid", "a tree record contradicts itself", 3},
+    ErrcInfo{Errc::kNodeCorrupt, "node_corrupt", "a node points outside its own subtree", 3},
+    ErrcInfo{Errc::kDepthExceeded, "depth_exceeded", "the tree is deeper than it states", 3},
+    ErrcInfo{Errc::kFaceOutOfRange, "face_out_of_range", "a leaf names a face that is not there",
+             3},
+    ErrcInfo{Errc::kVertexOutOfRange, "vertex_out_of_range",
+             "a face names a vertex that is not there", 3},
+    ErrcInfo{Errc::kCertificateMismatch, "certificate_mismatch",
+             "the certificate does not hold for this tree", 3},
+    ErrcInfo{Errc::kBoxEscape, "box_escape", "a triangle sticks out of a box above it", 3},
+    ErrcInfo{Errc::kFaceUnreachable, "face_unreachable", "no leaf holds this face", 3},
+    ErrcInfo{Errc::kFaceRepeated, "face_repeated", "more than one leaf holds this face", 3},
+    ErrcInfo{Errc::kVertexNotFinite, "vertex_not_finite", "a stored vertex is NaN or infinite", 3},
+    ErrcInfo{Errc::kInvalidQuery, "invalid_query", "NaN, infinite or empty query", 1},
+    ErrcInfo{Errc::kInvalidPose, "invalid_pose", "pose is not finite or not invertible", 1},
+    ErrcInfo{Errc::kPartLeftOut, "part_left_out", "the query needs a part that was left out", 5},
+    ErrcInfo{Errc::kExternalMeshNeeded, "external_mesh_needed",
+             "the tree was cooked without geometry; give the mesh when binding", 1},
+    ErrcInfo{Errc::kExternalMeshMismatch, "external_mesh_mismatch",
+             "the mesh given is not the one the tree was cooked from", 3},
+    ErrcInfo{Errc::kTreeIndex, "tree_index", "no tree with this number in the file", 1},
+    ErrcInfo{Errc::kFileNotFound, "file_not_found", "no such file", 2},
+    ErrcInfo{Errc::kFileUnreadable, "file_unreadable", "the file cannot be read", 2},
+    ErrcInfo{Errc::kMapFailed, "map_failed", "the file cannot be mapped", 2},
+    ErrcInfo{Errc::kWriteFailed, "write_failed", "the file cannot be written", 2},
+    ErrcInfo{Errc::kImportFailed, "import_failed", "the mesh cannot be read", 3},
+    ErrcInfo{Errc::kNoFaces, "no_faces", "the mesh has no faces", 3},
+    ErrcInfo{Errc::kMeshNotFinite, "mesh_not_finite", "a vertex is NaN or infinite", 3},
+    ErrcInfo{Errc::kMeshIndexOutOfRange, "mesh_index_out_of_range",
+             "a face names a vertex that is not there", 3},
+    ErrcInfo{Errc::kMeshTooLarge, "mesh_too_large", "more faces or vertices than the format holds",
+             5},
+    ErrcInfo{Errc::kMeshUnsupported, "mesh_unsupported",
+             "the mesh cannot be stored in the way asked for", 5},
+    ErrcInfo{Errc::kInternal, "internal", "a defect in boxtree itself; please report it", 4},
+};
+
+static_assert(std::is_sorted(kTable.begin(), kTable.end(),
+                             [](const ErrcInfo& a, const ErrcInfo& b) { return a.code < b.code; }));
+
+}  // namespace
+
+std::span<const ErrcInfo> error_table() noexcept { return kTable; }
+
+const ErrcInfo& error_info(Errc code) noexcept {
+  const auto row = std::find_if(kTable.begin(), kTable.end(),
+                                [code](const ErrcInfo& info) { return info.code == code; });
+  return row != kTable.end() ? *row : kTable.back();
+}
+
+}  // namespace boxtree

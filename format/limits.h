@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// The bounds that every file keeps and every reader may rely on. They are part of the format:
+// stacks and loops are sized by them, so raising one is a new format version.
+#pragma once
+
+#include <cstdint>
+
+namespace boxtree {
+
+/// Sections in one file. Bounds the work of open().
+inline constexpr std::uint32_t kMaxSections = 1u << 16;
+
+/// Trees in one file.
+inline constexpr std::uint32_t kMaxTrees = 1u << 12;
+
+/// Inner nodes on the longest path of a tree; traversal stacks are sized by it.
+/// 2^31 faces need 31 levels of halving; the rest is room for uneven splits and shrink nodes.
+inline constexpr std::uint32_t kMaxDepth = 96;
+
+/// Faces, vertices and nodes of one tree: a child is a 32-bit number and one value marks "none".
+inline constexpr std::uint32_t kMaxFaces = 0x7fffffffu;
+inline constexpr std::uint32_t kMaxVertices = 0x7fffffffu;
+inline constexpr std::uint32_t kMaxNodes = 0xfffffffeu;
+
+/// Bound of |TreeRecord::scale_exponent|: 2^e and 2^-e are both normal doubles.
+inline constexpr std::int32_t kMaxScaleExponent = 1010;
+
+/// Triangles in one leaf, so that a leaf fits one batch of a vector test.
+inline constexpr std::uint32_t kMaxLeafTriangles = 8;
+
+/// Every section starts at a multiple of this many bytes: a cache line.
+inline constexpr std::uint64_t kSectionAlignment = 64;
+
+/// Largest gap between two sections: a writer may align a section to a page.
+inline constexpr std::uint64_t kMaxSectionGap = 4096;
+
+}  // namespace boxtree

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: MIT
+// Checks of one tree record: after them, counts and boxes may be used in arithmetic without care.
+#include <boxtree/format/tree_record.h>
+
+#include <boxtree/format/limits.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace boxtree {
+namespace {
+
+
+bool counts_fit(const TreeRecord& record) {
+  const std::uint64_t faces = record.face_count;
+  return faces <= kMaxFaces && record.vertex_count <= kMaxVertices &&
+         record.node_count <= kMaxNodes && record.depth <= kMaxDepth &&
+         record.triangle_count >= faces && record.triangle_count <= 2 * faces;
+}
+
+bool root_fits(const TreeRecord& record) {
+  switch (record.root) {
+    case RootKind::kEmpty: return record.face_count == 0 && record.node_count == 0;
+    case RootKind::kLeaf: return record.face_count > 0 && record.node_count == 0;
+    case RootKind::kSubtree: return record.face_count > 0 && record.node_count > 0;
+  }
+  return false;
+}
+
+bool frame_fits(const TreeRecord& record) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!std::isfinite(record.origin[k]) || !std::isfinite(record.root_low[k]) ||
+        !std::isfinite(record.root_high[k]) || record.root_low[k] > record.root_high[k]) {
+      return false;
+    }
+  }
+  return std::abs(record.scale_exponent) <= kMaxScaleExponent;
+}
+
+bool geometry_fits(const TreeRecord& record) {
+  const bool width_known = record.face_id_bytes == 0 || record.face_id_bytes == 1 ||
+                           record.face_id_bytes == 2 || record.face_id_bytes == 4;
+  const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
+  if (!width_known || (in_source_order && record.face_id_bytes != 0)) return false;
+  if (record.geometry == GeometryId::kExternal) {
+    return in_source_order && record.corner_bytes == 0 && record.corners_per_face == 0;
+  }
+  return (record.corner_bytes == 2 || record.corner_bytes == 4) &&
+         (record.corners_per_face == 3 || record.corners_per_face == 4);
+}
+
+bool reserve_is_zero(const TreeRecord& record) {
+  return record.reserved0 == 0 && (record.flags & ~kTreeKnownFlags) == 0 &&
+         std::all_of(record.reserved1.begin(), record.reserved1.end(),
+                     [](std::uint64_t word) { return word == 0; });
+}
+
+}  // namespace
+
+Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
+  const std::string place = "tree " + std::to_string(tree) + ": ";
+  if (codec_name(record.codec) == "unknown") {
+    return Error{Errc::kCodecUnsupported,
+                 place + "codec " + std::to_string(static_cast<unsigned>(record.codec))};
+  }
+  if (geometry_name(record.geometry) == "unknown") {
+    return Error{Errc::kGeometryUnsupported,
+                 place + "geometry " + std::to_string(static_cast<unsigned>(record.geometry))};
+  }
+  const auto invalid = [&](const char* what) { return Error{Errc::kRecordInvalid, place + what}; };
+  if (!counts_fit(record)) return invalid("counts contradict each other or exceed the limits");
+  if (!root_fits(record)) return invalid("kind of root contradicts the counts");
+  if (!frame_fits(record)) return invalid("origin, scale or root box is not finite and ordered");
+  if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
+  if (!reserve_is_zero(record)) return invalid("reserved bits are set");
+  return {};
+}
+
+}  // namespace boxtree

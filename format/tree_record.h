@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// The fixed-width records that describe one tree: where it lies, how it is stored, what was proven.
+#pragma once
+
+#include <boxtree/format/codec.h>
+#include <boxtree/format/result.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+namespace boxtree {
+
+/// What the root is.
+enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
+
+/// TreeRecord::flags: leaves name faces by their number in the source, so that no face_ids section
+/// is needed to translate. Otherwise faces are in tree order.
+inline constexpr std::uint32_t kTreeFacesInSourceOrder = 1u;
+/// TreeRecord::flags: positions are f64, otherwise f32.
+inline constexpr std::uint32_t kTreePositionsF64 = 2u;
+inline constexpr std::uint32_t kTreeKnownFlags = 3u;
+
+/// One tree of the file. Coordinates of three spaces occur:
+///   object space  the coordinates of the source mesh, as the application knows them;
+///   tree space    (object - origin) * 2^-scale_exponent, computed in double: where boxes live.
+/// The scale is a power of two and therefore exact; it brings the largest extent into
+/// [2^14, 2^15), where cuts of every codec resolve well, whatever the unit of the mesh.
+struct TreeRecord {
+  CodecId codec;
+  GeometryId geometry;
+  std::uint32_t flags;
+  std::uint32_t face_count;
+  std::uint32_t triangle_count;  // a quad counts as two
+  std::uint32_t vertex_count;
+  std::uint32_t node_count;
+  RootKind root;
+  std::uint32_t depth;             // inner nodes on the longest path; at most kMaxDepth
+  std::uint8_t corner_bytes;       // 2 or 4; 0 when corners are external
+  std::uint8_t corners_per_face;   // 3, or 4 when the mesh has quads; 0 when external
+  std::uint8_t face_id_bytes;      // 1, 2 or 4; 0 without a face_ids section
+  std::uint8_t reserved0;
+  std::int32_t scale_exponent;
+  std::uint32_t name_offset;  // into the names section
+  std::uint32_t name_bytes;
+  std::array<double, 3> origin;     // object space
+  std::array<double, 3> root_low;   // tree space
+  std::array<double, 3> root_high;  // tree space
+  std::uint64_t geometry_hash;  // XXH3-64 of the faces' corner positions; docs/FORMAT.md
+  std::array<std::uint64_t, 8> reserved1;
+};
+static_assert(sizeof(TreeRecord) == 192 && std::is_trivially_copyable_v<TreeRecord>);
+static_assert(offsetof(TreeRecord, origin) == 48 && offsetof(TreeRecord, root_high) == 96);
+static_assert(offsetof(TreeRecord, geometry_hash) == 120);
+
+/// What the cooker proved about the tree after it had written it; `boxtree verify` proves it again.
+struct CertificateRecord {
+  double max_vertex_error;        // largest distance of a stored from a source vertex, object space
+  std::uint32_t depth;            // equals TreeRecord::depth
+  std::uint32_t node_count;       // nodes reached from the root
+  std::uint32_t leaf_count;       // leaves reached
+  std::uint32_t face_count;       // faces reached, each exactly once
+  std::uint32_t shrink_count;     // nodes with one child
+  std::uint32_t degenerate_count;  // triangles without area, kept
+  std::array<std::uint64_t, 4> reserved;
+};
+static_assert(sizeof(CertificateRecord) == 64 && std::is_trivially_copyable_v<CertificateRecord>);
+static_assert(offsetof(CertificateRecord, degenerate_count) == 28);
+
+/// Checks everything about a record that can be checked without its sections: known codec and
+/// geometry, counts within limits, finite ordered root box, consistent root kind, zero reserve.
+/// `tree` is the record's number, for the message.
+Status check_tree_record(const TreeRecord& record, std::uint32_t tree);
+
+}  // namespace boxtree
