@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// XXH3-64, the checksum of header and sections. It detects accidents, not attacks: memory safety
+// never depends on it.
+#pragma once
+
+#include <boxtree/format/bytes.h>
+
+#include <cstdint>
+
+namespace boxtree {
+
+/// XXH3-64 (seed 0) of `head` followed by `tail`. Pure; never allocates.
+[[nodiscard]] std::uint64_t checksum(Bytes head, Bytes tail = {}) noexcept;
+
+}  // namespace boxtree

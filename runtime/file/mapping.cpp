@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// File to memory by POSIX mmap. A copy is an anonymous mapping too, so that release is one path.
+#include <boxtree/runtime/file/mapping.h>
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace boxtree {
+namespace {
+
+class Descriptor {
+ public:
+  explicit Descriptor(const std::filesystem::path& path)
+      : value_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+  }
+  [[nodiscard]] int value() const { return value_; }
+
+ private:
+  int value_;
+};
+
+Error system_error(Errc code, const std::filesystem::path& path, int number) {
+  return Error{code, path.string() + ": " + std::strerror(number)};
+}
+
+// Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
+Result<std::size_t> regular_file_size(const Descriptor& file, const std::filesystem::path& path) {
+  if (file.value() < 0) {
+    return system_error(errno == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable, path, errno);
+  }
+  struct stat info {};
+  if (::fstat(file.value(), &info) != 0) return system_error(Errc::kFileUnreadable, path, errno);
+  if (!S_ISREG(info.st_mode)) {
+    return Error{Errc::kFileUnreadable, path.string() + ": not a regular file"};
+  }
+  return static_cast<std::size_t>(info.st_size);
+}
+
+}  // namespace
+
+Mapping::Mapping(Mapping&& other) noexcept
+    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+
+Mapping& Mapping::operator=(Mapping&& other) noexcept {
+  std::swap(data_, other.data_);
+  std::swap(size_, other.size_);
+  return *this;
+}
+
+Mapping::~Mapping() {
+  // munmap takes void*; the bytes were never writable through this object.
+  if (data_ != nullptr) ::munmap(const_cast<std::byte*>(data_), size_);
+}
+
+Result<Mapping> Mapping::map(const std::filesystem::path& path) {
+  const Descriptor file(path);
+  const Result<std::size_t> size = regular_file_size(file, path);
+  if (!size) return size.error();
+  if (*size == 0) return Mapping();
+  void* data = ::mmap(nullptr, *size, PROT_READ, MAP_PRIVATE, file.value(), 0);
+  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, path, errno);
+  return Mapping(static_cast<const std::byte*>(data), *size);
+}
+
+Result<Mapping> Mapping::copy(const std::filesystem::path& path) {
+  const Descriptor file(path);
+  const Result<std::size_t> size = regular_file_size(file, path);
+  if (!size) return size.error();
+  if (*size == 0) return Mapping();
+  void* data =
+      ::mmap(nullptr, *size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, path, errno);
+  Mapping copied(static_cast<const std::byte*>(data), *size);
+  for (std::size_t done = 0; done < *size;) {
+    const ssize_t got = ::pread(file.value(), static_cast<std::byte*>(data) + done, *size - done,
+                                static_cast<off_t>(done));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) return system_error(Errc::kFileUnreadable, path, errno);
+    if (got == 0) return Error{Errc::kFileUnreadable, path.string() + ": shrank while being read"};
+    done += static_cast<std::size_t>(got);
+  }
+  return copied;
+}
+
+}  // namespace boxtree

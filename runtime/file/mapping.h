@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// A whole file as read-only memory, mapped or copied.
+#pragma once
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/result.h>
+
+#include <filesystem>
+
+namespace boxtree {
+
+/// Read-only bytes of one file, released on destruction. Move-only.
+class Mapping {
+ public:
+  Mapping() = default;
+  Mapping(Mapping&& other) noexcept;
+  Mapping& operator=(Mapping&& other) noexcept;
+  Mapping(const Mapping&) = delete;
+  Mapping& operator=(const Mapping&) = delete;
+  ~Mapping();
+
+  /// Maps `path`; size and bytes come from one open descriptor, so a rename cannot mix two files.
+  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed. An empty file gives empty bytes.
+  ///
+  /// While it is mapped the file must not be truncated in place: replace files by rename, as the
+  /// cooker does. Use copy() for files that others may modify.
+  static Result<Mapping> map(const std::filesystem::path& path);
+
+  /// Reads `path` into memory of its own: immune to later changes of the file.
+  static Result<Mapping> copy(const std::filesystem::path& path);
+
+  [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
+
+ private:
+  Mapping(const std::byte* data, std::size_t size) noexcept : data_(data), size_(size) {}
+
+  const std::byte* data_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+}  // namespace boxtree

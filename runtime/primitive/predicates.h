@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: MIT
+// The leaf predicates: what a query asks of one triangle. All sets are closed (touching counts),
+// all functions are pure, never allocate, and accept degenerate triangles. Coordinates must be
+// finite and of magnitude at most 2^200, so that no product overflows.
+#pragma once
+
+#include <boxtree/runtime/primitive/closest_point.h>
+#include <boxtree/runtime/primitive/orientation.h>
+#include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/runtime/primitive/triangle_box.h>
+#include <boxtree/runtime/primitive/triangle_ray.h>
+#include <boxtree/runtime/primitive/triangle_triangle.h>

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Watertight intersection of rays and triangles (Woop, Benthin, Wald, "Watertight Ray/Triangle
+// Intersection", JCGT 2013), with exact signs.
+#pragma once
+
+#include <optional>
+
+#include <boxtree/runtime/primitive/triangle.h>
+
+namespace boxtree {
+
+/// A ray prepared for tests against many triangles: the shear that turns the direction into an
+/// axis.
+struct RayShear {
+  /// Precondition: direction is finite and not zero.
+  RayShear(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) noexcept;
+
+  Eigen::Vector3d origin;
+  int axis_x, axis_y, axis_z;        // axis_z: largest component of the direction
+  double shear_x, shear_y, shear_z;  // direction x/z, y/z, 1/z
+};
+
+/// Parameter along the ray (in units of its direction) and barycentric weights of corners 1 and 2.
+struct RayTriangleHit {
+  double t;
+  double u;
+  double v;
+};
+
+/// A corner in the ray's own axes: the ray is the line x = y = 0. Depends on the corner and the ray
+/// alone, so triangles that share the corner see the same numbers.
+struct ShearedCorner {
+  double x, y, z;
+};
+
+/// Twice the signed areas that the ray spans with the edges opposite corners 0, 1 and 2.
+struct RayEdges {
+  double opposite0, opposite1, opposite2;
+
+  [[nodiscard]] bool has_mixed_signs() const noexcept {
+    return (opposite0 < 0 || opposite1 < 0 || opposite2 < 0) &&
+           (opposite0 > 0 || opposite1 > 0 || opposite2 > 0);
+  }
+  [[nodiscard]] bool has_zero() const noexcept {
+    return opposite0 == 0 || opposite1 == 0 || opposite2 == 0;
+  }
+};
+
+/// The same areas, scaled by a common power of two, with exact signs and a relative error of an
+/// ulp.
+[[nodiscard]] RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
+                                       const ShearedCorner& c) noexcept;
+
+/// Where the line of the ray meets the triangle, from either side, at any t (the caller bounds it);
+/// nothing when it misses or the triangle is degenerate or edge-on. Two triangles that share an
+/// edge or corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are
+/// in [0, 1].
+///
+/// Why there is no gap. An area is fl(fl(x1 y2) - fl(x2 y1)). Rounding is monotone, so its sign is
+/// exact or it is zero; zeros are computed again in exact arithmetic. So all signs are exact for
+/// the sheared corners, which neighbours share: in the ray's plane they are a mesh without gaps,
+/// exactly. The zero edge belongs to both its triangles. Exact values are needed, not just exact
+/// signs: were all three areas of a triangle false zeros, it would count as edge-on and be the
+/// leak. A triangle that truly is edge-on adds nothing to the plane; its neighbours cover its line.
+[[nodiscard]] inline std::optional<RayTriangleHit> intersect_ray_triangle(
+    const RayShear& ray, const Triangle& triangle) noexcept {
+  const auto shear = [&ray](const Eigen::Vector3d& corner) -> ShearedCorner {
+    const double z = corner[ray.axis_z] - ray.origin[ray.axis_z];
+    return {(corner[ray.axis_x] - ray.origin[ray.axis_x]) - ray.shear_x * z,
+            (corner[ray.axis_y] - ray.origin[ray.axis_y]) - ray.shear_y * z, z};
+  };
+  const ShearedCorner a = shear(triangle.corner[0]);
+  const ShearedCorner b = shear(triangle.corner[1]);
+  const ShearedCorner c = shear(triangle.corner[2]);
+  RayEdges edges{c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x};
+  if (edges.has_mixed_signs()) return std::nullopt;
+  if (edges.has_zero()) [[unlikely]] {
+    edges = exact_ray_edges(a, b, c);
+    if (edges.has_mixed_signs()) return std::nullopt;
+  }
+  const double area = (edges.opposite0 + edges.opposite1) + edges.opposite2;
+  if (area == 0) return std::nullopt;
+  // All signs agree, so each quotient is in [0, 1] and t a mean of the corners' own parameters.
+  const double weight0 = edges.opposite0 / area;
+  const double weight1 = edges.opposite1 / area;
+  const double weight2 = edges.opposite2 / area;
+  const double depth = (weight0 * a.z + weight1 * b.z) + weight2 * c.z;
+  return RayTriangleHit{depth * ray.shear_z, weight1, weight2};
+}
+
+}  // namespace boxtree

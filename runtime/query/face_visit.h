@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// What box and sphere queries share: walk the boxes that overlap, report each face that touches.
+#pragma once
+
+#include <boxtree/runtime/query/traversal.h>
+
+namespace boxtree {
+
+/// The query of traverse_overlap for a shape.
+/// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap asks.
+/// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
+template <class Shape>
+struct FaceWalk {
+  const Tree& tree;
+  const Shape& shape;
+  FaceVisitor visitor;
+  Errc error = Errc::kOk;
+  bool stopped = false;
+  TriangleBatch batch;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return shape.overlaps(box);
+  }
+
+  [[nodiscard]] bool leaf(NodeRef ref) {
+    error = tree.leaves().read(ref.first, ref.second, batch);
+    if (error != Errc::kOk) return false;
+    std::uint32_t reported = kNoFaceId;
+    for (std::uint32_t i = 0; i < batch.count && !stopped; ++i) {
+      if (batch.face[i] == reported) continue;  // the other half of the quad has touched already
+      const Triangle triangle = batch.triangle(i);
+      if (!shape.overlaps(bounds_of(triangle)) || !shape.touches(triangle)) continue;
+      reported = batch.face[i];
+      stopped = !visitor(face_ref(tree, reported));
+    }
+    return !stopped;
+  }
+};
+
+/// Visits each face once of which some triangle touches the shape.
+template <class Shape>
+Result<Visit> visit_faces(const Tree& tree, const Shape& shape, FaceVisitor visitor) {
+  FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
+  const Errc walked =
+      with_codec(tree, [&](const auto& codec) { return traverse_overlap(tree, codec, walk); });
+  if (walked != Errc::kOk) return walked;
+  if (walk.error != Errc::kOk) return walk.error;
+  return walk.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Sphere query: the faces that come within a radius of a point.
+#pragma once
+
+#include <boxtree/runtime/query/types.h>
+
+namespace boxtree {
+
+/// Visits every face whose distance from `center` is at most `radius` (object space), each once, in
+/// no promised order. Errors: kInvalidQuery (NaN, infinite, negative radius) and the codes of
+/// corrupt bytes as for closest_hit. Never allocates.
+Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
+                             FaceVisitor visitor);
+
+}  // namespace boxtree

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: MIT
+// Object space and tree space: a shift and an exact power-of-two scale (see TreeRecord).
+#pragma once
+
+#include <boxtree/format/tree_record.h>
+
+#include <cmath>
+
+#include <Eigen/Core>
+
+namespace boxtree {
+
+/// Converts between the coordinates of the source mesh and those in which boxes are stored. The
+/// conversion to tree space is monotone on each axis (one rounded subtraction, one exact scaling),
+/// so a point inside an object-space box stays inside its image.
+struct Frame {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  double scale = 1;          // tree to object, a power of two
+  double inverse_scale = 1;  // object to tree, a power of two
+
+  Frame() = default;
+  Frame(const Eigen::Vector3d& frame_origin, int scale_exponent)
+      : origin(frame_origin),
+        scale(std::ldexp(1.0, scale_exponent)),
+        inverse_scale(std::ldexp(1.0, -scale_exponent)) {}
+  explicit Frame(const TreeRecord& record)
+      : Frame(Eigen::Vector3d(record.origin[0], record.origin[1], record.origin[2]),
+              record.scale_exponent) {}
+
+  [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& object) const noexcept {
+    return (object - origin) * inverse_scale;
+  }
+  [[nodiscard]] Eigen::Vector3d to_object(const Eigen::Vector3d& tree) const noexcept {
+    return tree * scale + origin;
+  }
+};
+
+}  // namespace boxtree

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// Leaf geometry: corner numbers to positions to tree space, every number checked before it is used.
+#include <boxtree/runtime/tree/geometry.h>
+
+#define XXH_INLINE_ALL
+#include <xxhash.h>
+
+#include <string>
+
+namespace boxtree {
+
+std::array<std::uint32_t, 4> MeshArrays::face(std::uint32_t face) const noexcept {
+  std::array<std::uint32_t, 4> corner;
+  corner[3] = kMissingCorner;
+  const std::size_t first = std::size_t{face} * corners_per_face;
+  for (std::size_t i = 0; i < corners_per_face; ++i) {
+    corner[i] = corner_bytes == 2 ? load<std::uint16_t>(corners, first + i)
+                                  : load<std::uint32_t>(corners, first + i);
+  }
+  if (corner_bytes == 2 && corner[3] == 0xffffu) corner[3] = kMissingCorner;
+  return corner;
+}
+
+Eigen::Vector3d MeshArrays::position(std::uint32_t vertex) const noexcept {
+  const std::byte* place = positions + std::size_t{vertex} * position_stride;
+  if (positions_f64) {
+    const auto p = load<std::array<double, 3>>(place);
+    return {p[0], p[1], p[2]};
+  }
+  const auto p = load<std::array<float, 3>>(place);
+  return {p[0], p[1], p[2]};
+}
+
+Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
+  XXH3_state_t state;
+  XXH3_64bits_reset(&state);
+  const std::size_t position_bytes = 3 * (mesh.positions_f64 ? sizeof(double) : sizeof(float));
+  for (std::uint32_t f = 0; f < mesh.face_count; ++f) {
+    const std::array<std::uint32_t, 4> corner = mesh.face(f);
+    const std::uint32_t count = corner[3] == kMissingCorner ? 3 : 4;
+    XXH3_64bits_update(&state, &count, sizeof(count));
+    for (std::size_t i = 0; i < count; ++i) {
+      if (corner[i] >= mesh.vertex_count) {
+        return Error{Errc::kVertexOutOfRange, "face " + std::to_string(f) + " names vertex " +
+                                                  std::to_string(corner[i]) + " of " +
+                                                  std::to_string(mesh.vertex_count)};
+      }
+      XXH3_64bits_update(&state, mesh.positions + std::size_t{corner[i]} * mesh.position_stride,
+                         position_bytes);
+    }
+  }
+  return static_cast<std::uint64_t>(XXH3_64bits_digest(&state));
+}
+
+Errc LeafReader::read(std::uint32_t first, std::uint32_t count,
+                      TriangleBatch& out) const noexcept {
+  out.count = 0;
+  if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
+  for (std::uint32_t f = first; f < first + count; ++f) {
+    const std::array<std::uint32_t, 4> corner = mesh_.face(f);
+    const std::uint32_t corner_count = corner[3] == kMissingCorner ? 3 : 4;
+    if (out.count + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
+    std::array<Eigen::Vector3d, 4> position;
+    for (std::size_t i = 0; i < corner_count; ++i) {
+      if (corner[i] >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
+      position[i] = frame_.to_tree(mesh_.position(corner[i]));
+    }
+    for (std::size_t second = 1; second + 1 < corner_count; ++second) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        const auto k = static_cast<Eigen::Index>(axis);
+        out.coordinate[0][axis][out.count] = position[0][k];
+        out.coordinate[1][axis][out.count] = position[second][k];
+        out.coordinate[2][axis][out.count] = position[second + 1][k];
+      }
+      out.face[out.count++] = f;
+    }
+  }
+  return Errc::kOk;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: MIT
+// The answer to the one question every geometry store answers: the triangles of this leaf.
+#pragma once
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/format/result.h>
+#include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/runtime/tree/frame.h>
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace boxtree {
+
+/// Marks the missing fourth corner of a triangle in 32-bit corner arrays with four corners a face;
+/// 16-bit arrays use 0xffff.
+inline constexpr std::uint32_t kMissingCorner = 0xffffffffu;
+
+/// Where positions and corners lie, in the file or in the application's memory. A face has
+/// `corners_per_face` corner numbers, 3 or 4; with 4, the last may be the missing corner.
+struct MeshArrays {
+  const std::byte* positions = nullptr;
+  std::size_t position_stride = 0;  // bytes from one vertex to the next
+  bool positions_f64 = false;       // three doubles a vertex, otherwise three floats
+  std::uint32_t vertex_count = 0;
+  const std::byte* corners = nullptr;
+  std::uint32_t corner_bytes = 0;  // 2 or 4
+  std::uint32_t corners_per_face = 3;
+  std::uint32_t face_count = 0;
+
+  /// The vertex numbers of a face. Precondition: face < face_count.
+  [[nodiscard]] std::array<std::uint32_t, 4> face(std::uint32_t face) const noexcept;
+  /// A position in object space. Precondition: vertex < vertex_count.
+  [[nodiscard]] Eigen::Vector3d position(std::uint32_t vertex) const noexcept;
+};
+
+/// Describes an application's own arrays for a tree that was cooked with external geometry. They
+/// must be the arrays of the source mesh (same faces, same order, same positions), must outlive the
+/// tree and must not change.
+[[nodiscard]] inline MeshArrays external_mesh(const float* positions, std::uint32_t vertex_count,
+                                              const std::uint32_t* corners,
+                                              std::uint32_t face_count,
+                                              std::uint32_t corners_per_face = 3) noexcept {
+  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(float), false, vertex_count,
+          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),  corners_per_face,
+          face_count};
+}
+[[nodiscard]] inline MeshArrays external_mesh(const float* positions, std::uint32_t vertex_count,
+                                              const std::uint16_t* corners,
+                                              std::uint32_t face_count,
+                                              std::uint32_t corners_per_face = 3) noexcept {
+  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(float), false, vertex_count,
+          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),  corners_per_face,
+          face_count};
+}
+[[nodiscard]] inline MeshArrays external_mesh(const double* positions, std::uint32_t vertex_count,
+                                              const std::uint32_t* corners,
+                                              std::uint32_t face_count,
+                                              std::uint32_t corners_per_face = 3) noexcept {
+  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(double), true, vertex_count,
+          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),   corners_per_face,
+          face_count};
+}
+
+/// XXH3-64 over the corner positions of all faces in order, each face preceded by its corner count:
+/// the same for every way to index the same faces. kVertexOutOfRange for a bad corner number.
+Result<std::uint64_t> geometry_hash(const MeshArrays& mesh);
+
+/// The triangles of one leaf in tree space, as arrays over the triangles. Entries at and above
+/// `count` are unspecified.
+struct TriangleBatch {
+  std::uint32_t count = 0;
+  // coordinate[corner][axis][triangle]
+  std::array<std::array<std::array<double, kMaxLeafTriangles>, 3>, 3> coordinate;
+  std::array<std::uint32_t, kMaxLeafTriangles> face;  // position of the face in the tree's order
+
+  [[nodiscard]] Triangle triangle(std::uint32_t i) const noexcept {
+    Triangle result;
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      result.corner[corner] = {coordinate[corner][0][i], coordinate[corner][1][i],
+                               coordinate[corner][2][i]};
+    }
+    return result;
+  }
+};
+
+/// Reads leaves of one tree. A quad gives the triangles (0,1,2) and (0,2,3) of the same face.
+class LeafReader {
+ public:
+  LeafReader() = default;
+  LeafReader(const MeshArrays& mesh, const Frame& frame) noexcept : mesh_(mesh), frame_(frame) {}
+
+  [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
+
+  /// Triangles of faces [first, first + count). kFaceOutOfRange or kVertexOutOfRange on corrupt
+  /// numbers or when the leaf holds more than kMaxLeafTriangles.
+  [[nodiscard]] Errc read(std::uint32_t first, std::uint32_t count,
+                          TriangleBatch& out) const noexcept;
+
+ private:
+  MeshArrays mesh_;
+  Frame frame_;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// A tree of an open file, ready to be asked: binding checks the record and its sections once, after
+// which every query reads straight from the mapped bytes.
+#pragma once
+
+#include <boxtree/format/children.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/file/file.h>
+#include <boxtree/runtime/tree/geometry.h>
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
+#include <Eigen/Geometry>
+
+namespace boxtree {
+
+/// Stands for the id of a face in trees that were cooked without ids.
+inline constexpr std::uint32_t kNoFaceId = 0xffffffffu;
+
+struct BindOptions {
+  /// The application's arrays, for trees with external geometry; ignored otherwise.
+  std::optional<MeshArrays> mesh;
+  /// Compare the arrays' content with the hash in the file [default false]: reads all of them.
+  bool verify_mesh = false;
+  /// Refuse a tree without face ids [default false] rather than report kNoFaceId later.
+  bool require_face_ids = false;
+};
+
+/// A leaf or a subtree together with its decoded box, as a traversal carries it.
+struct Node {
+  Box<double> box;  // tree space
+  NodeRef ref;
+  bool is_leaf;
+};
+
+/// Children of one node; at most 8 whatever the codec.
+struct NodeChildren {
+  std::uint32_t count = 0;
+  std::array<Node, 8> child;
+};
+
+/// One tree. Points into the bytes of its File and, with external geometry, into the application's
+/// arrays; cheap to copy; immutable, so safe to query from many threads at once.
+class Tree {
+ public:
+  /// Checks record and section sizes of tree `index` and prepares it for queries; cost does not
+  /// depend on its size, except with BindOptions::verify_mesh.
+  /// Errors: kTreeIndex, codes 30..32, kSectionMissing, kSectionSize, kPartLeftOut,
+  /// kExternalMeshNeeded, kExternalMeshMismatch.
+  static Result<Tree> bind(const File& file, std::uint32_t index = 0,
+                           const BindOptions& options = {});
+
+  [[nodiscard]] std::string_view name() const noexcept { return name_; }
+  [[nodiscard]] CodecId codec() const noexcept { return record_.codec; }
+  [[nodiscard]] const TreeRecord& record() const noexcept { return record_; }
+  [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
+  [[nodiscard]] bool empty() const noexcept { return record_.root == RootKind::kEmpty; }
+  [[nodiscard]] bool has_face_ids() const noexcept;
+
+  /// The root with its stored box. Precondition: !empty().
+  [[nodiscard]] Node root() const noexcept;
+
+  /// Decodes one node: its children and their boxes. Precondition: `node` came from root() or
+  /// expand() of this tree and is not a leaf. kNodeCorrupt when its bytes contradict themselves.
+  [[nodiscard]] Errc expand(const Node& node, NodeChildren& out) const noexcept;
+
+  /// Triangles of a leaf, in tree space; TriangleBatch::face counts faces in this tree's order.
+  /// kFaceOutOfRange or kVertexOutOfRange when its bytes are corrupt.
+  [[nodiscard]] Errc leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept;
+
+  /// The source face number of a face in this tree's order; kNoFaceId without ids.
+  /// Precondition: face < record().face_count.
+  [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
+
+  /// A box of tree space in object space, rounded outward.
+  [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
+
+  // What the query templates read.
+  [[nodiscard]] const std::byte* nodes() const noexcept { return nodes_; }
+  [[nodiscard]] const LeafReader& leaves() const noexcept { return leaves_; }
+  /// The root's reference: the whole range of nodes, or the only leaf.
+  [[nodiscard]] NodeRef root_ref() const noexcept;
+
+ private:
+  Tree() = default;
+  Status bind_nodes(const File& file, std::uint32_t index);
+  Status bind_geometry(const File& file, std::uint32_t index, const BindOptions& options);
+  Status bind_face_ids(const File& file, std::uint32_t index, const BindOptions& options);
+
+  TreeRecord record_{};
+  Frame frame_;
+  std::string_view name_;
+  const std::byte* nodes_ = nullptr;
+  const std::byte* face_ids_ = nullptr;
+  LeafReader leaves_;
+};
+
+}  // namespace boxtree
