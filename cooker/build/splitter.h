@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What the two builders share: a split rule is a function from a set of faces to two smaller sets.
+#pragma once
+
+#include <boxtree/cooker/build/build_tree.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+
+namespace boxtree::cooker {
+
+/// A box that contains nothing; grows by expand().
+[[nodiscard]] inline Box<float> empty_box() {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+}
+
+inline void expand(Box<float>& box, const Box<float>& by) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.low[k] = std::min(box.low[k], by.low[k]);
+    box.high[k] = std::max(box.high[k], by.high[k]);
+  }
+}
+
+/// Half the surface of a box, in double so that thin boxes do not round to nothing.
+[[nodiscard]] inline double half_area(const Box<float>& box) {
+  const double x = double{box.high[0]} - box.low[0];
+  const double y = double{box.high[1]} - box.low[1];
+  const double z = double{box.high[2]} - box.low[2];
+  return x * y + y * z + z * x;
+}
+
+/// Where a set was divided: faces [0, left_count) go left. Both sides are not empty.
+struct Split {
+  std::size_t left_count;
+  std::uint32_t axis;
+};
+
+/// Reorders `faces` and divides them. The two resulting sets must depend on the set of faces alone,
+/// not on their order, so that the tree does not depend on how an earlier partition shuffled them.
+/// Nothing when the rule sees no difference between the faces.
+using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<float>& bounds);
+
+[[nodiscard]] std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& bounds);
+[[nodiscard]] std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds);
+
+/// Halves the set by box centre along the widest axis, ties by face number: always succeeds, and
+/// bounds the depth. Precondition: at least two faces.
+[[nodiscard]] Split split_median(std::span<FaceBox> faces, const Box<float>& bounds);
+
+}  // namespace boxtree::cooker

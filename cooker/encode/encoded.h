@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// What encoders produce: the bytes of sections, and what is known of them.
+#pragma once
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/format/tree_record.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+namespace boxtree::cooker {
+
+/// Nodes visited, expected over all queries of a kind that reach the root box, by the decoded
+/// boxes alone: the same on every machine.
+///   ray   a uniformly distributed line: sum of areas over the root's area
+///   box   a box with an edge of 5 % of the root's diagonal: sum of volumes, each box grown by it
+///   pair  a body of half the root's size: likewise
+struct ExpectedVisits {
+  double ray = 0;
+  double box = 0;
+  double pair = 0;
+};
+
+/// The nodes of one tree in one codec.
+struct EncodedNodes {
+  CodecId codec{};
+  std::vector<std::byte> bytes;
+  RootKind root = RootKind::kEmpty;
+  Box<double> root_box{};  // tree space
+  std::uint32_t node_count = 0;
+  std::uint32_t leaf_count = 0;
+  std::uint32_t shrink_count = 0;
+  std::uint32_t depth = 0;
+  ExpectedVisits visits;
+};
+
+/// Number that a leaf stores for a face: its position in tree order, or in the source.
+enum class FaceOrder : std::uint8_t { kTree, kSource };
+
+/// Encodes with codec `codec`. Conservative: every decoded box contains the build bounds below it.
+[[nodiscard]] EncodedNodes encode_nodes(const BuildTree& tree, CodecId codec, FaceOrder order);
+
+/// Vertices, corners and ids in the form of their sections. Empty for geometry left external.
+struct EncodedGeometry {
+  GeometryId geometry = GeometryId::kExact;
+  std::vector<std::byte> vertices;
+  std::vector<std::byte> corners;
+  std::vector<std::byte> face_ids;
+  std::uint32_t vertex_count = 0;
+  std::uint8_t corner_bytes = 0;
+  std::uint8_t corners_per_face = 0;
+  std::uint8_t face_id_bytes = 0;
+  std::uint64_t hash = 0;  // geometry_hash of the source mesh
+};
+
+/// Faces in tree order, vertices in order of first use by them, positions bit for bit.
+[[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const BuildTree& tree,
+                                                    bool face_ids);
+
+/// Nothing but the hash that recognises the mesh again.
+[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh);
+
+}  // namespace boxtree::cooker

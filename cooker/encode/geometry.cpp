@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Geometry stores "exact" and "external" (reader: runtime/tree/geometry.h).
+#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/runtime/tree/geometry.h>
+
+#include <algorithm>
+#include <cstring>
+
+namespace boxtree::cooker {
+namespace {
+
+// The source mesh in the shape that the runtime hashes. Faces are four corners each, kNoCorner being
+// the runtime's missing corner.
+MeshArrays arrays_of(const SourceMesh& mesh) {
+  static_assert(sizeof(Face) == 4 * sizeof(std::uint32_t) && kNoCorner == kMissingCorner);
+  const bool f64 = mesh.positions.precision == Precision::kF64;
+  MeshArrays arrays;
+  arrays.positions = f64 ? reinterpret_cast<const std::byte*>(mesh.positions.f64.data())
+                         : reinterpret_cast<const std::byte*>(mesh.positions.f32.data());
+  arrays.position_stride = 3 * (f64 ? sizeof(double) : sizeof(float));
+  arrays.positions_f64 = f64;
+  arrays.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+  arrays.corners = reinterpret_cast<const std::byte*>(mesh.faces.data());
+  arrays.corner_bytes = 4;
+  arrays.corners_per_face = 4;
+  arrays.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  return arrays;
+}
+
+std::uint64_t hash_of(const SourceMesh& mesh) {
+  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+  return hash ? *hash : 0;  // import has checked every corner
+}
+
+template <class T>
+void append(std::vector<std::byte>& out, T value) {
+  const std::size_t end = out.size();
+  out.resize(end + sizeof(T));
+  std::memcpy(out.data() + end, &value, sizeof(T));
+}
+
+// Writes numbers of 1, 2 or 4 bytes.
+void append_number(std::vector<std::byte>& out, std::uint32_t value, std::uint8_t bytes) {
+  if (bytes == 1) append(out, static_cast<std::uint8_t>(value));
+  if (bytes == 2) append(out, static_cast<std::uint16_t>(value));
+  if (bytes == 4) append(out, value);
+}
+
+void append_position(const Positions& positions, std::size_t vertex, std::vector<std::byte>& out) {
+  const auto copy = [&](const auto* first) {
+    const std::size_t end = out.size();
+    out.resize(end + 3 * sizeof(*first));
+    std::memcpy(out.data() + end, first, 3 * sizeof(*first));
+  };
+  if (positions.precision == Precision::kF32) {
+    copy(positions.f32.data() + 3 * vertex);
+  } else {
+    copy(positions.f64.data() + 3 * vertex);
+  }
+}
+
+std::uint8_t bytes_for(std::uint32_t largest) {
+  if (largest <= 0xff) return 1;
+  return largest <= 0xffff ? 2 : 4;
+}
+
+std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
+  std::vector<std::uint32_t> order;
+  order.reserve((tree.nodes.size() + 1) / 2);
+  for (const BuildNode& node : tree.nodes) {
+    if (node.is_leaf()) order.push_back(node.face());
+  }
+  return order;
+}
+
+void encode_face_ids(const SourceMesh& mesh, const std::vector<std::uint32_t>& order,
+                     EncodedGeometry& out) {
+  std::uint32_t largest = 0;
+  for (const std::uint32_t face : order) largest = std::max(largest, mesh.face_id(face));
+  out.face_id_bytes = bytes_for(largest);
+  out.face_ids.reserve(order.size() * out.face_id_bytes);
+  for (const std::uint32_t face : order) {
+    append_number(out.face_ids, mesh.face_id(face), out.face_id_bytes);
+  }
+}
+
+}  // namespace
+
+EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const BuildTree& tree,
+                                      bool face_ids) {
+  EncodedGeometry out;
+  out.geometry = GeometryId::kExact;
+  out.hash = hash_of(mesh);
+  const std::vector<std::uint32_t> order = faces_in_tree_order(tree);
+  const bool quads =
+      std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
+  out.corners_per_face = quads ? 4 : 3;
+  // 16 bits hold 65 535 vertices: the last number marks a missing corner.
+  out.corner_bytes = mesh.positions.size() <= 0xffff ? 2 : 4;
+  out.corners.reserve(order.size() * out.corners_per_face * out.corner_bytes);
+
+  std::vector<std::uint32_t> renumbered(mesh.positions.size(), kNoCorner);
+  for (const std::uint32_t face : order) {
+    for (std::size_t i = 0; i < out.corners_per_face; ++i) {
+      const std::uint32_t corner = mesh.faces[face].corner[i];
+      if (corner == kNoCorner) {
+        append_number(out.corners, kNoCorner, out.corner_bytes);
+        continue;
+      }
+      if (renumbered[corner] == kNoCorner) {
+        renumbered[corner] = out.vertex_count++;
+        append_position(mesh.positions, corner, out.vertices);
+      }
+      append_number(out.corners, renumbered[corner], out.corner_bytes);
+    }
+  }
+  if (face_ids && !order.empty()) encode_face_ids(mesh, order, out);
+  return out;
+}
+
+EncodedGeometry encode_external_geometry(const SourceMesh& mesh) {
+  EncodedGeometry out;
+  out.geometry = GeometryId::kExternal;
+  out.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+  out.hash = hash_of(mesh);
+  return out;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,474 @@
+// SPDX-License-Identifier: MIT
+// Flattening: walks the node tree, applies transforms in double, welds, splits, counts.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+#include <type_traits>
+
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/flatten.h>
+#include <boxtree/cooker/import/polygon_split.h>
+#include <boxtree/cooker/import/weld.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t kMaxFaces = 0x7fffffffu;
+constexpr std::size_t kMaxMarkers = std::size_t{1} << 24;  // integers that a float holds
+
+// What remap_ says of a vertex before it has a number.
+constexpr std::uint32_t kUnused = 0xffffffffu;
+constexpr std::uint32_t kNotFinite = 0xfffffffeu;
+constexpr std::uint32_t kUsed = 0xfffffffdu;
+
+// An affine map in double; assimp's matrices are rows of floats.
+struct Transform {
+  std::array<std::array<double, 4>, 3> row = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
+
+  static Transform from(const aiMatrix4x4& m) {
+    return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
+  }
+  [[nodiscard]] Transform operator*(const Transform& inner) const {
+    Transform product;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        product.row[i][j] = row[i][0] * inner.row[0][j] + row[i][1] * inner.row[1][j] +
+                            row[i][2] * inner.row[2][j] + (j == 3 ? row[i][3] : 0.0);
+      }
+    }
+    return product;
+  }
+  [[nodiscard]] Vector3d operator*(const aiVector3D& v) const {
+    const auto along = [&v](const std::array<double, 4>& r) {
+      return r[0] * v.x + r[1] * v.y + r[2] * v.z + r[3];
+    };
+    return {along(row[0]), along(row[1]), along(row[2])};
+  }
+  [[nodiscard]] bool is_identity() const { return row == Transform().row; }
+  [[nodiscard]] bool mirrors() const {
+    const auto& [x, y, z] = row;
+    return x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) +
+               x[2] * (y[0] * z[1] - y[1] * z[0]) <
+           0;
+  }
+};
+
+struct Instance {
+  unsigned mesh;
+  Transform transform;
+};
+
+// At most a unit in the last place of `value`, or of the smallest normal number below that. One
+// rounding makes half of that; assimp's reader of decimal numbers makes two (the integer part, then
+// its sum with the fraction), and a file may have been rounded when written.
+template <class T>
+double rounding_of(double value) {
+  return std::max(std::abs(value), double{std::numeric_limits<T>::min()}) *
+         double{std::numeric_limits<T>::epsilon()};
+}
+
+// Instances in node order, depth first, with an explicit stack: a file may nest as deep as it
+// likes.
+std::vector<Instance> find_instances(const aiScene& scene) {
+  struct Visit {
+    const aiNode* node;
+    Transform parent;
+  };
+  std::vector<Instance> instances;
+  std::vector<Visit> stack;
+  if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Transform()});
+  while (!stack.empty()) {
+    const Visit visit = stack.back();
+    stack.pop_back();
+    // A product with the identity would turn -0 into +0; nothing else depends on this.
+    const Transform own = Transform::from(visit.node->mTransformation);
+    const Transform transform = own.is_identity() ? visit.parent : visit.parent * own;
+    for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
+      const unsigned mesh = visit.node->mMeshes[i];
+      if (mesh < scene.mNumMeshes && scene.mMeshes[mesh] != nullptr) {
+        instances.push_back({mesh, transform});
+      }
+    }
+    for (unsigned i = visit.node->mNumChildren; i-- > 0;) {
+      if (visit.node->mChildren[i] != nullptr) {
+        stack.push_back({visit.node->mChildren[i], transform});
+      }
+    }
+  }
+  return instances;
+}
+
+// Meshes that no node places come last, as they are: some of assimp's readers (RAW with several
+// groups) lose the nodes of meshes that the file does hold. Returns how many there are.
+std::size_t add_unplaced(const aiScene& scene, std::vector<Instance>& instances) {
+  std::vector<bool> placed(scene.mNumMeshes, false);
+  for (const Instance& instance : instances) placed[instance.mesh] = true;
+  const std::size_t before = instances.size();
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    if (!placed[i] && scene.mMeshes[i] != nullptr) instances.push_back({i, Transform()});
+  }
+  return instances.size() - before;
+}
+
+// Normals, colours and the like can be larger than all that is kept.
+void free_attributes(aiMesh& mesh) {
+  const auto drop = [](auto*& array) {
+    delete[] array;
+    array = nullptr;
+  };
+  drop(mesh.mNormals);
+  drop(mesh.mTangents);
+  drop(mesh.mBitangents);
+  for (auto*& colors : mesh.mColors) drop(colors);
+  for (auto*& coordinates : mesh.mTextureCoords) drop(coordinates);
+}
+
+// Takes over one instance after the other. T is the type of the positions.
+template <class T>
+class Flattener {
+ public:
+  Flattener(const ImportOptions& options, const std::string& file, const KnownFaults& known,
+            std::vector<T>& positions, Imported& out)
+      : options_(options),
+        file_(file),
+        known_(known),
+        positions_(positions),
+        mesh_(out.mesh),
+        report_(out.report),
+        welder_(positions) {}
+
+  Status add(const aiMesh& mesh, const Transform& transform);
+
+ private:
+  std::array<T, 3> place(const aiVector3D& source) const;
+  void check_vertices();
+  Status mark_used();
+  void weld_used();
+  void add_face(const aiFace& face);
+  void add_quad(const aiFace& face);
+  void add_polygon();
+  void push(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = kNoCorner);
+  [[nodiscard]] std::optional<FaceFault> fault_of(const aiFace& face) const;
+  [[nodiscard]] std::string name_of_vertex(unsigned vertex) const;
+  [[nodiscard]] RoundedCorner rounded_corner(unsigned vertex) const;
+  [[nodiscard]] Vector3d position(std::uint32_t vertex) const;
+  [[nodiscard]] bool has_no_area(const Face& face) const;
+
+  const ImportOptions& options_;
+  const std::string& file_;
+  const KnownFaults& known_;
+  std::vector<T>& positions_;
+  SourceMesh& mesh_;
+  ImportReport& report_;
+  Welder<T> welder_;
+  PolygonSplitter splitter_;
+  std::vector<std::uint32_t> remap_;    // for each vertex of the instance: state or number
+  std::vector<std::uint32_t> corners_;  // of the face at hand, as numbers in positions_
+  std::vector<Vector3d> points_;        // their positions, for the splitter
+  std::uint32_t next_face_id_ = 0;
+
+  // The instance at hand.
+  const aiMesh* source_ = nullptr;
+  Transform transform_;
+  bool is_identity_ = true;
+  bool mirrors_ = false;
+};
+
+template <class T>
+Status Flattener<T>::add(const aiMesh& mesh, const Transform& transform) {
+  source_ = &mesh;
+  transform_ = transform;
+  is_identity_ = transform.is_identity();
+  mirrors_ = transform.mirrors();
+  ++report_.meshes;
+  report_.source_vertices += mesh.mNumVertices;
+  if (mesh.mNumFaces == 0) report_.points_skipped += mesh.mNumVertices;
+  check_vertices();
+  const std::uint32_t first_face_id = next_face_id_;
+  if (Status status = mark_used(); !status.ok()) return status;
+  weld_used();
+  next_face_id_ = first_face_id;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    if (mesh.mFaces[i].mNumIndices >= 3) add_face(mesh.mFaces[i]);
+  }
+  return {};
+}
+
+template <class T>
+std::array<T, 3> Flattener<T>::place(const aiVector3D& source) const {
+  if (is_identity_) return {T{source.x}, T{source.y}, T{source.z}};
+  const Vector3d placed = transform_ * source;
+  return {static_cast<T>(placed[0]), static_cast<T>(placed[1]), static_cast<T>(placed[2])};
+}
+
+template <class T>
+void Flattener<T>::check_vertices() {
+  remap_.assign(source_->mNumVertices, kUnused);
+  for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
+    const std::array<T, 3> placed = place(source_->mVertices[vertex]);
+    if (!std::isfinite(placed[0]) || !std::isfinite(placed[1]) || !std::isfinite(placed[2])) {
+      remap_[vertex] = kNotFinite;
+    }
+  }
+}
+
+// Numbers the faces, counts what is skipped, and marks the vertices that the rest uses.
+template <class T>
+Status Flattener<T>::mark_used() {
+  for (unsigned i = 0; i < source_->mNumFaces; ++i) {
+    const aiFace& face = source_->mFaces[i];
+    if (face.mNumIndices < 3) {
+      if (face.mNumIndices == 0) ++report_.empty_skipped;
+      if (face.mNumIndices == 1) ++report_.points_skipped;
+      if (face.mNumIndices == 2) ++report_.lines_skipped;
+      continue;
+    }
+    const std::uint32_t face_id = next_face_id_++;
+    ++report_.source_faces;
+    if (std::optional<FaceFault> fault = fault_of(face)) {
+      if (!options_.skip_bad) {
+        return Error{fault->code, fmt::format("{}: face {}: {}", file_, face_id, fault->reason)};
+      }
+      report_.skipped.push_back({face_id, std::move(fault->reason)});
+      continue;
+    }
+    for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+      remap_[face.mIndices[corner]] = kUsed;
+    }
+  }
+  return {};
+}
+
+// Why a face cannot be taken over, if so. Says the same before and after weld_used: that leaves
+// kNotFinite alone.
+template <class T>
+std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
+  for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+    const unsigned vertex = face.mIndices[corner];
+    if (vertex >= source_->mNumVertices) {
+      return FaceFault{Errc::kMeshIndexOutOfRange,
+                       fmt::format("corner {} names {}, but there are {} vertices", corner,
+                                   name_of_vertex(vertex), source_->mNumVertices)};
+    }
+    if (remap_[vertex] != kNotFinite) continue;
+    const aiVector3D& source = source_->mVertices[vertex];
+    if (const FaceFault* known = known_.find(source)) return *known;
+    const std::array<T, 3> placed = place(source);
+    return FaceFault{Errc::kMeshNotFinite,
+                     fmt::format("{} is not finite: ({}, {}, {})", name_of_vertex(vertex),
+                                 placed[0], placed[1], placed[2])};
+  }
+  return std::nullopt;
+}
+
+template <class T>
+std::string Flattener<T>::name_of_vertex(unsigned vertex) const {
+  std::string name = fmt::format("vertex {}", vertex);
+  if (source_->mName.length > 0) name += fmt::format(" of mesh '{}'", source_->mName.C_Str());
+  return name;
+}
+
+template <class T>
+void Flattener<T>::weld_used() {
+  const auto used = static_cast<std::size_t>(std::count(remap_.begin(), remap_.end(), kUsed));
+  report_.vertices_unused += remap_.size() - used;
+  // Formats without shared vertices hold three a face; a closed surface needs half of one.
+  welder_.reserve(std::min<std::size_t>(used, source_->mNumFaces));
+  const std::size_t before = positions_.size() / 3;
+  for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
+    if (remap_[vertex] == kUsed) remap_[vertex] = welder_.add(place(source_->mVertices[vertex]));
+  }
+  report_.vertices_welded += used - (positions_.size() / 3 - before);
+}
+
+template <class T>
+void Flattener<T>::add_face(const aiFace& face) {
+  const std::uint32_t face_id = next_face_id_++;
+  for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+    const unsigned vertex = face.mIndices[corner];
+    if (vertex >= source_->mNumVertices || remap_[vertex] == kNotFinite) return;
+  }
+  const std::size_t first = mesh_.faces.size();
+  corners_.clear();
+  for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
+    // A mirrored face would show its back: walk it the other way round, from the same corner.
+    const unsigned from = mirrors_ && corner != 0 ? face.mNumIndices - corner : corner;
+    corners_.push_back(remap_[face.mIndices[from]]);
+  }
+  if (corners_.size() == 3) {
+    push(corners_[0], corners_[1], corners_[2]);
+  } else if (corners_.size() == 4) {
+    add_quad(face);
+  } else {
+    ++report_.ngons_split;
+    add_polygon();
+  }
+  bool no_area = true;
+  for (std::size_t i = first; i < mesh_.faces.size(); ++i) {
+    no_area = no_area && has_no_area(mesh_.faces[i]);
+  }
+  if (no_area) ++report_.degenerate_faces;
+  // Ids are written down only once they differ from the position of the face.
+  const std::size_t last = mesh_.faces.size();
+  if (mesh_.face_ids.empty() && face_id == first && last == first + 1) return;
+  if (mesh_.face_ids.empty()) {
+    mesh_.face_ids.reserve(mesh_.faces.capacity());
+    mesh_.face_ids.resize(first);
+    std::iota(mesh_.face_ids.begin(), mesh_.face_ids.end(), 0u);
+  }
+  mesh_.face_ids.resize(last, face_id);
+}
+
+template <class T>
+void Flattener<T>::add_quad(const aiFace& face) {
+  const std::array<RoundedCorner, 4> corners = {
+      rounded_corner(face.mIndices[0]), rounded_corner(face.mIndices[1]),
+      rounded_corner(face.mIndices[2]), rounded_corner(face.mIndices[3])};
+  if (is_planar_convex_quad(corners)) {
+    ++report_.quads_kept;
+    push(corners_[0], corners_[1], corners_[2], corners_[3]);
+  } else {
+    ++report_.quads_split;
+    add_polygon();
+  }
+}
+
+template <class T>
+void Flattener<T>::add_polygon() {
+  points_.clear();
+  for (const std::uint32_t corner : corners_) points_.push_back(position(corner));
+  for (const PolygonSplitter::Triangle& triangle : splitter_.split(points_)) {
+    push(corners_[triangle[0]], corners_[triangle[1]], corners_[triangle[2]]);
+  }
+}
+
+template <class T>
+void Flattener<T>::push(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
+  mesh_.faces.push_back(Face{{a, b, c, d}});
+}
+
+// A coordinate was rounded to f32 when the file was written or read, then carried through the
+// transform, and rounded again to T. The arithmetic of the transform adds four roundings.
+template <class T>
+RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
+  const aiVector3D& source = source_->mVertices[vertex];
+  const Vector3d before(rounding_of<float>(source.x), rounding_of<float>(source.y),
+                        rounding_of<float>(source.z));
+  const Vector3d after = position(remap_[vertex]);
+  if (is_identity_) return {after, before};
+  Vector3d rounding;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::array<double, 4>& row = transform_.row[static_cast<std::size_t>(axis)];
+    double carried = 0, terms = std::abs(row[3]);
+    for (int from = 0; from < 3; ++from) {
+      const double factor = std::abs(row[static_cast<std::size_t>(from)]);
+      carried += factor * before[from];
+      terms += factor * std::abs(double{source[static_cast<unsigned>(from)]});
+    }
+    rounding[axis] = carried + rounding_of<T>(after[axis]) + 4 * rounding_of<double>(terms);
+  }
+  return {after, rounding};
+}
+
+template <class T>
+Vector3d Flattener<T>::position(std::uint32_t vertex) const {
+  const T* p = &positions_[std::size_t{3} * vertex];
+  return {double{p[0]}, double{p[1]}, double{p[2]}};
+}
+
+template <class T>
+bool Flattener<T>::has_no_area(const Face& face) const {
+  const auto flat = [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+    return a == b || b == c || c == a || is_collinear(position(a), position(b), position(c));
+  };
+  const auto& [a, b, c, d] = face.corner;
+  return flat(a, b, c) && (!face.is_quad() || flat(a, c, d));
+}
+
+// Faces that the instances will give, or more than kMaxFaces.
+std::uint64_t count_faces(const aiScene& scene, const std::vector<Instance>& instances) {
+  std::uint64_t triangles = 0;
+  for (const Instance& instance : instances) triangles += scene.mMeshes[instance.mesh]->mNumFaces;
+  return triangles;
+}
+
+template <class T>
+Status flatten(aiScene& scene, const std::vector<Instance>& instances, Flattener<T>& flattener) {
+  std::vector<unsigned> uses(scene.mNumMeshes, 0);
+  for (const Instance& instance : instances) ++uses[instance.mesh];
+  for (const Instance& instance : instances) {
+    aiMesh*& mesh = scene.mMeshes[instance.mesh];
+    if (Status status = flattener.add(*mesh, instance.transform); !status.ok()) return status;
+    if (--uses[instance.mesh] > 0) continue;
+    delete mesh;
+    mesh = nullptr;
+  }
+  return {};
+}
+
+Error no_faces(const std::string& file, const ImportReport& report) {
+  std::string why = "no faces";
+  if (!report.skipped.empty()) why = fmt::format("all {} faces are bad", report.source_faces);
+  std::string also;
+  const auto add = [&also](std::size_t count, const char* what) {
+    if (count > 0) also += fmt::format("{}{} {}", also.empty() ? " (" : ", ", count, what);
+  };
+  add(report.points_skipped, "points");
+  add(report.lines_skipped, "lines");
+  add(report.empty_skipped, "faces without corners");
+  if (!also.empty()) also += ")";
+  return Error{Errc::kNoFaces, fmt::format("{}: {}{}", file, why, also)};
+}
+
+}  // namespace
+
+aiVector3D KnownFaults::marker(std::size_t fault) {
+  return {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
+          static_cast<float>(std::min(fault, kMaxMarkers))};
+}
+
+const FaceFault* KnownFaults::find(const aiVector3D& position) const {
+  if (faults.empty() || !std::isnan(position.x) || !std::isinf(position.y)) return nullptr;
+  if (!(position.z >= 0 && position.z <= static_cast<float>(kMaxMarkers))) return nullptr;
+  return &faults[std::min(static_cast<std::size_t>(position.z), faults.size() - 1)];
+}
+
+Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::string& file,
+                     const KnownFaults& known, Imported& out) {
+  std::vector<Instance> instances = find_instances(scene);
+  out.report.meshes_unplaced = add_unplaced(scene, instances);
+  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
+    if (scene.mMeshes[i] != nullptr) free_attributes(*scene.mMeshes[i]);
+  }
+  const std::uint64_t faces = count_faces(scene, instances);
+  if (faces > kMaxFaces) {
+    return Error{Errc::kMeshTooLarge,
+                 fmt::format("{}: {} faces, more than {}", file, faces, kMaxFaces)};
+  }
+  out.mesh.faces.reserve(faces);
+  out.mesh.positions.precision = options.precision;
+  Status status;
+  if (options.precision == Precision::kF32) {
+    Flattener<float> flattener(options, file, known, out.mesh.positions.f32, out);
+    status = flatten(scene, instances, flattener);
+  } else {
+    Flattener<double> flattener(options, file, known, out.mesh.positions.f64, out);
+    status = flatten(scene, instances, flattener);
+  }
+  if (!status.ok()) return status;
+  if (out.mesh.faces.empty()) return no_faces(file, out.report);
+  if (out.mesh.faces.size() > kMaxFaces) {
+    return Error{Errc::kMeshTooLarge, fmt::format("{}: {} faces after splitting, more than {}",
+                                                  file, out.mesh.faces.size(), kMaxFaces)};
+  }
+  return {};
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Mesh files in: the only door through which source meshes enter, built on assimp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+struct ImportOptions {
+  /// [false] Drop faces with a NaN or infinite vertex, or with a vertex number out of range, and
+  /// report their numbers, instead of refusing the file.
+  bool skip_bad = false;
+  /// [kF32] Hold positions as f32, or as f64 so that node transforms are not rounded to f32.
+  Precision precision = Precision::kF32;
+};
+
+/// A face that was not taken over, and why. Nothing is dropped without one of these.
+struct SkippedFace {
+  std::uint32_t face_id;
+  std::string reason;
+};
+
+/// What import did to the source, so that nothing happens silently.
+struct ImportReport {
+  std::size_t meshes = 0;           // mesh instances flattened into the result
+  std::size_t meshes_unplaced = 0;  // of those, meshes that no node places: taken over as they are
+  std::size_t source_faces = 0;     // polygons with three corners or more, as in the file
+  std::size_t source_vertices = 0;  // as assimp holds them, before welding
+  std::size_t points_skipped = 0;
+  std::size_t lines_skipped = 0;
+  std::size_t empty_skipped = 0;  // faces without any corner
+  std::size_t quads_kept = 0;
+  std::size_t quads_split = 0;                    // not planar or not convex
+  std::size_t ngons_split = 0;                    // five corners or more
+  std::size_t vertices_unused = 0;                // belong to no face that was taken over; removed
+  std::size_t vertices_welded = 0;                // bit-equal duplicates removed
+  std::size_t degenerate_faces = 0;               // zero area; kept
+  std::vector<SkippedFace> skipped;               // only with ImportOptions::skip_bad
+  std::vector<std::filesystem::path> files_read;  // the file itself and every file it refers to
+  std::uint64_t content_hash = 0;  // XXH3 over the bytes of files_read, in order of first read
+};
+
+struct Imported {
+  SourceMesh mesh;
+  ImportReport report;
+};
+
+/// Reads `path` with assimp and flattens all its mesh instances into one mesh: instances in node
+/// order (depth first), faces in source order within each; face ids count polygons of three corners
+/// or more in that order. Node transforms (a file's up axis is one) are applied in double and
+/// rounded once; the identity leaves every bit alone; a mirroring one turns the winding round, so
+/// that faces still show their front. Vertices that are equal bit for bit are merged, unused ones
+/// dropped, the others keep their order. A quad stays a quad if it is convex and as planar as its
+/// rounded coordinates can tell; other polygons are split into triangles that share a face id.
+/// Degenerate faces stay.
+///
+/// Errors name the file and the face or vertex: kFileNotFound, kFileUnreadable (a directory, a
+/// pipe, no permission), kImportFailed (empty, or not what its format asks for: assimp's own
+/// message), kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1 faces,
+/// or out of memory). No exception leaves it, nothing is printed by it, it reads and writes no
+/// global state: safe to call from several threads, in any locale.
+///
+/// What assimp decides: Debian's build holds positions as f32, so f64 keeps node transforms exact
+/// but adds no digits to the coordinates of a file; decimal coordinates can be a unit in the last
+/// place off the nearest f32. Where a reader of assimp repairs silently, we look first ourselves:
+/// OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out of range is refused even with
+/// skip_bad, and named by its mesh: assimp has dropped the faces and their numbers with them. Its
+/// other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
+Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
+
+}  // namespace boxtree::cooker

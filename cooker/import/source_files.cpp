@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// Checking, recording and hashing of source files.
+#define XXH_INLINE_ALL
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <locale.h>
+#include <system_error>
+#include <type_traits>
+
+#include <assimp/MemoryIOWrapper.h>
+#include <xxhash.h>
+
+#include <boxtree/cooker/import/source_files.h>
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { std::fclose(file); }
+};
+using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
+
+Error unreadable(const fs::path& path, const std::string& why) {
+  return Error{Errc::kFileUnreadable, path.string() + ": " + why};
+}
+
+std::string system_message(int error) {
+  return std::generic_category().message(error);
+}
+
+// Hands the bytes of `path` to `sink` in chunks.
+template <class Sink>
+Status read_chunks(const fs::path& path, const Sink& sink) {
+  const FileHandle file(std::fopen(path.c_str(), "rb"));
+  if (!file) return unreadable(path, system_message(errno));
+  std::vector<char> chunk(kChunkBytes);
+  for (;;) {
+    const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get());
+    sink(chunk.data(), got);
+    if (got == chunk.size()) continue;
+    return std::ferror(file.get()) != 0 ? Status(unreadable(path, system_message(errno)))
+                                        : Status();
+  }
+}
+
+}  // namespace
+
+Status check_source_file(const fs::path& path) {
+  std::error_code error;
+  const fs::file_status status = fs::status(path, error);
+  if (status.type() == fs::file_type::not_found) {
+    return Error{Errc::kFileNotFound, path.string() + ": no such file"};
+  }
+  if (status.type() == fs::file_type::none) return unreadable(path, error.message());
+  if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
+  // A pipe or a device cannot be read twice, and assimp reads most files more than once.
+  if (!fs::is_regular_file(status)) return unreadable(path, "is not a regular file");
+  const FileHandle file(std::fopen(path.c_str(), "rb"));
+  if (!file) return unreadable(path, system_message(errno));
+  if (std::fgetc(file.get()) != EOF) return {};
+  if (std::ferror(file.get()) != 0) return unreadable(path, system_message(errno));
+  return Error{Errc::kImportFailed, path.string() + ": the file is empty"};
+}
+
+Result<std::string> read_source_file(const fs::path& path) {
+  std::string text;
+  const Status status = read_chunks(
+      path, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); });
+  if (!status.ok()) return status.error();
+  return text;
+}
+
+Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
+  struct FreeState {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+  };
+  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
+  if (!state) return Error{Errc::kInternal, "no memory for a hash"};
+  XXH3_64bits_reset(state.get());
+  for (const fs::path& file : files) {
+    const Status status = read_chunks(file, [&state](const char* bytes, std::size_t count) {
+      XXH3_64bits_update(state.get(), bytes, count);
+    });
+    if (!status.ok()) return status.error();
+  }
+  return XXH3_64bits_digest(state.get());
+}
+
+void RecordingIo::replace(const std::string& name, const std::string& text, const fs::path& file) {
+  replaced_name_ = name;
+  replaced_file_ = file;
+  replacement_ = &text;
+}
+
+bool RecordingIo::Exists(const char* path) const {
+  if (replacement_ != nullptr && replaced_name_ == path) return true;
+  std::error_code error;
+  return fs::is_regular_file(path, error) && DefaultIOSystem::Exists(path);
+}
+
+Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
+  if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
+  if (replacement_ != nullptr && replaced_name_ == path) {
+    note(replaced_file_);
+    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(replacement_->data()),
+                                      replacement_->size());
+  }
+  // fopen opens directories too; a pipe would block.
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return nullptr;
+  Assimp::IOStream* stream = DefaultIOSystem::Open(path, mode);
+  if (stream != nullptr) note(path);
+  return stream;
+}
+
+void RecordingIo::note(const fs::path& file) {
+  fs::path normal = file.lexically_normal();
+  if (std::find(files_.begin(), files_.end(), normal) == files_.end()) {
+    files_.push_back(std::move(normal));
+  }
+}
+
+static_assert(std::is_pointer_v<locale_t>);
+
+CLocaleScope::CLocaleScope() : locale_(newlocale(LC_ALL_MASK, "C", locale_t{})), previous_() {
+  if (locale_ != nullptr) previous_ = uselocale(static_cast<locale_t>(locale_));
+}
+
+CLocaleScope::~CLocaleScope() {
+  if (locale_ == nullptr) return;
+  uselocale(static_cast<locale_t>(previous_));
+  freelocale(static_cast<locale_t>(locale_));
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// The files behind one import: checked before, recorded while assimp reads, hashed after.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <assimp/DefaultIOSystem.h>
+
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+/// Whether `path` is a regular file that can be opened and holds at least one byte.
+Status check_source_file(const std::filesystem::path& path);
+
+/// The whole file as text.
+Result<std::string> read_source_file(const std::filesystem::path& path);
+
+/// XXH3 (64 bits) over the bytes of the files, one after the other. Does not depend on their paths.
+Result<std::uint64_t> hash_source_files(std::span<const std::filesystem::path> files);
+
+/// Lets assimp read but not write, and notes each file that it really opens, in order of the first
+/// time. A file that is only looked for is not noted.
+class RecordingIo final : public Assimp::DefaultIOSystem {
+ public:
+  /// Notes go to `files`, which must outlive this object (assimp's Importer owns that).
+  explicit RecordingIo(std::vector<std::filesystem::path>& files) : files_(files) {}
+
+  /// From now on `text`, which must outlive this object, is what assimp reads as `name`, and counts
+  /// as reading `file`.
+  void replace(const std::string& name, const std::string& text, const std::filesystem::path& file);
+
+  bool Exists(const char* path) const override;
+  Assimp::IOStream* Open(const char* path, const char* mode = "rb") override;
+  bool CreateDirectory(const std::string&) override { return false; }
+  bool ChangeDirectory(const std::string&) override { return false; }
+  bool DeleteFile(const std::string&) override { return false; }
+
+ private:
+  std::vector<std::filesystem::path>& files_;
+  void note(const std::filesystem::path& file);
+
+  std::string replaced_name_;
+  std::filesystem::path replaced_file_;
+  const std::string* replacement_ = nullptr;
+};
+
+/// While it lives, numbers are read in the "C" locale on this thread, whatever the process has set:
+/// some of assimp's readers use strtod, which would take "1,5" for one and a half.
+class CLocaleScope {
+ public:
+  CLocaleScope();
+  ~CLocaleScope();
+  CLocaleScope(const CLocaleScope&) = delete;
+  CLocaleScope& operator=(const CLocaleScope&) = delete;
+
+ private:
+  void* locale_;
+  void* previous_;
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: MIT
+// The mesh as it enters the pipeline: everything later stages know of the input file.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace boxtree::cooker {
+
+/// How vertex positions are held. f32 unless the caller asks for f64: most sources are f32.
+enum class Precision : std::uint8_t { kF32, kF64 };
+
+/// Positions of all vertices, three numbers each, in object space (the units of the source).
+/// Exactly one of the two arrays is filled, as `precision` says.
+struct Positions {
+  Precision precision = Precision::kF32;
+  std::vector<float> f32;   // x0 y0 z0 x1 ...
+  std::vector<double> f64;  // x0 y0 z0 x1 ...
+
+  [[nodiscard]] std::size_t size() const {
+    return (precision == Precision::kF32 ? f32.size() : f64.size()) / 3;
+  }
+  /// Position of vertex `i`; f32 values convert without change. Precondition: i < size().
+  [[nodiscard]] Eigen::Vector3d operator[](std::size_t i) const {
+    return precision == Precision::kF32
+               ? Eigen::Vector3d(f32[3 * i], f32[3 * i + 1], f32[3 * i + 2])
+               : Eigen::Vector3d(f64[3 * i], f64[3 * i + 1], f64[3 * i + 2]);
+  }
+};
+
+/// Marks the missing fourth corner of a triangle.
+inline constexpr std::uint32_t kNoCorner = 0xffffffffu;
+
+/// A triangle (corner[3] == kNoCorner) or a planar convex quad, as vertex numbers in source
+/// winding. A quad stands for the triangles (0,1,2) and (0,2,3).
+struct Face {
+  std::array<std::uint32_t, 4> corner;
+
+  [[nodiscard]] bool is_quad() const { return corner[3] != kNoCorner; }
+};
+
+/// One mesh in the making. Invariant after import: every corner < positions.size(), every position
+/// finite, face_ids either empty (face i has id i) or as long as faces.
+struct SourceMesh {
+  std::string name;
+  Positions positions;
+  std::vector<Face> faces;
+  std::vector<std::uint32_t> face_ids;  // number of the face in the source; n-gon pieces share one
+
+  [[nodiscard]] std::uint32_t face_id(std::size_t face) const {
+    return face_ids.empty() ? static_cast<std::uint32_t>(face) : face_ids[face];
+  }
+  [[nodiscard]] std::size_t triangle_count() const {
+    std::size_t count = faces.size();
+    for (const Face& face : faces) count += face.is_quad() ? 1u : 0u;
+    return count;
+  }
+};
+
+}  // namespace boxtree::cooker

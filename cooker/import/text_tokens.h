@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Small pieces that the readers of text formats share.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace boxtree::cooker {
+
+using Tokens = std::vector<std::string_view>;
+
+/// The words of `text`, between spaces, tabs, line ends and backslashes.
+void split_tokens(std::string_view text, Tokens& tokens);
+
+/// The number at the beginning of `token`, exactly as assimp reads it; nothing if it reads none.
+[[nodiscard]] std::optional<float> read_number(std::string_view token);
+
+/// The OBJ vertex that stands for a fault (flatten.h), as a line.
+[[nodiscard]] std::string marker_line(std::size_t fault);
+
+/// Whether `path` ends in a dot and `extension` (lower case), in any case.
+[[nodiscard]] bool has_extension(const std::filesystem::path& path, std::string_view extension);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: MIT
+// What import refuses, and that the error says where; what skip_bad drops instead.
+#include <sys/stat.h>
+
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using ImportErrorTest = ImportTest;
+
+constexpr std::string_view kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST_F(ImportErrorTest, FilesThatCannotBeRead) {
+  const Result<Imported> missing = import_mesh(folder_ / "none.obj");
+  EXPECT_EQ(missing.code(), Errc::kFileNotFound);
+  EXPECT_TRUE(has(missing.error().detail, "none.obj"));
+
+  const Result<Imported> folder = import_mesh(folder_);
+  EXPECT_EQ(folder.code(), Errc::kFileUnreadable);
+  EXPECT_TRUE(has(folder.error().detail, "directory"));
+
+  const std::filesystem::path pipe = folder_ / "pipe.obj";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(import_mesh(pipe).code(), Errc::kFileUnreadable) << "and does not wait for a writer";
+
+  const std::filesystem::path locked = write("locked.obj", "v 0 0 0\n");
+  chmod(locked.c_str(), 0);
+  if (geteuid() != 0) {
+    EXPECT_EQ(import_mesh(locked).code(), Errc::kFileUnreadable);
+  }
+
+  EXPECT_EQ(import_mesh("").code(), Errc::kFileNotFound);
+}
+
+TEST_F(ImportErrorTest, FilesThatAreNoMesh) {
+  const Error empty = fail("empty.obj", "");
+  EXPECT_EQ(empty.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(empty.detail, "empty"));
+  EXPECT_EQ(fail("a.xyz", "what is this").code, Errc::kImportFailed);
+  EXPECT_EQ(fail("a.fbx", "Kaydara nonsense").code, Errc::kImportFailed);
+  EXPECT_EQ(fail("a.stl", std::string(84, '\xff')).code, Errc::kImportFailed);
+  EXPECT_EQ(fail("a.gltf", "{").code, Errc::kImportFailed);
+  const Error token = fail("a.obj", "v 0 0 0\nv zero 0 0 0\nv 0 0 1\nf 1 1 1\n");
+  EXPECT_EQ(token.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(token.detail, "line 2: 'zero' is no number"));
+  // Assimp would leave the vertex out and give its number to the next.
+  const Error two = fail("a.obj", "v 0 0 0\nv 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\n");
+  EXPECT_EQ(two.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(two.detail, "line 2: a vertex of 2 numbers"));
+}
+
+TEST_F(ImportErrorTest, NoFaces) {
+  EXPECT_EQ(fail("a.obj", "# nothing at all, but long enough\n").code, Errc::kNoFaces);
+  const Error points = fail("points.obj", kTriangle);
+  EXPECT_EQ(points.code, Errc::kNoFaces);
+  EXPECT_TRUE(has(points.detail, "3 points"));
+  const Error lines = fail("lines.obj", std::string(kTriangle) + "l 1 2 3\n");
+  EXPECT_EQ(lines.code, Errc::kNoFaces);
+  EXPECT_TRUE(has(lines.detail, "2 lines"));
+  EXPECT_EQ(fail("points.ply",
+                 "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n"
+                 "property float y\nproperty float z\nend_header\n1 2 3\n")
+                .code,
+            Errc::kNoFaces);
+}
+
+std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
+                int face_count) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+         std::string(vertices) + std::string(faces);
+}
+
+TEST_F(ImportErrorTest, NotFiniteNamesVertexAndFace) {
+  const std::string mesh = ply("0 0 0\n1 0 0\n0 1 0\nnan 0 0\n", "3 0 1 2\n3 0 3 2\n", 4, 2);
+  const Error error = fail("a.ply", mesh);
+  EXPECT_EQ(error.code, Errc::kMeshNotFinite);
+  EXPECT_TRUE(has(error.detail, "face 1: vertex 3 is not finite: (nan, 0, 0)"));
+
+  const Imported rest = load("a.ply", mesh, {.skip_bad = true});
+  expect_invariants(rest);
+  EXPECT_EQ(rest.report.source_faces, 2u);
+  ASSERT_EQ(rest.report.skipped.size(), 1u);
+  EXPECT_EQ(rest.report.skipped[0].face_id, 1u);
+  EXPECT_TRUE(has(rest.report.skipped[0].reason, "vertex 3"));
+}
+
+TEST_F(ImportErrorTest, NotFiniteVertexThatNoFaceUsesIsHarmless) {
+  const Imported got = load("a.ply", ply("inf nan 0\n0 0 0\n1 0 0\n0 1 0\n", "3 1 2 3\n", 4, 1));
+  EXPECT_EQ(got.report.vertices_unused, 1u);
+  EXPECT_EQ(got.mesh.positions.size(), 3u);
+}
+
+TEST_F(ImportErrorTest, OverflowIsNotFinite) {
+  EXPECT_EQ(fail("a.obj", "v 1e39 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").code, Errc::kMeshNotFinite);
+}
+
+TEST_F(ImportErrorTest, IndexOutOfRangeInPly) {
+  const std::string mesh = ply("0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n3 0 1 3\n3 0 1 -1\n", 3, 3);
+  const Error error = fail("a.ply", mesh);
+  EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
+  EXPECT_TRUE(has(error.detail, "face 1: corner 2 names vertex 3, but there are 3 vertices"));
+  const Imported rest = load("a.ply", mesh, {.skip_bad = true});
+  ASSERT_EQ(rest.report.skipped.size(), 2u);
+  EXPECT_EQ(rest.report.skipped[1].face_id, 2u);
+}
+
+// Assimp refuses such OBJ files without a place, and numbers the vertices of OBJ files anew.
+TEST_F(ImportErrorTest, ObjFaultsAreNamedAsInTheFile) {
+  const std::string obj = std::string(kTriangle) +
+                          "v 0 0 nan\n"       // 4, line 4
+                          "f 1 2 3\n"         // 0
+                          "f 1/1/1 2 9/1\n"   // 1, line 6
+                          "f 1 2 3 # text\n"  // 2
+                          "f -2 -3 -5\n"      // 3, line 8
+                          "f 0 1 2\n"         // 4, line 9
+                          "f 1 2 \\\n 4\n"    // 5, two lines
+                          "f -2 -3 -4\n"      // 6
+                          "v 5 5 5\n";
+  const Error error = fail("a.obj", obj);
+  EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
+  EXPECT_TRUE(
+      has(error.detail, "face 1: corner 2 (line 6) names vertex 9, but there are 5 vertices"));
+
+  const Imported rest = load("a.obj", obj, {.skip_bad = true});
+  expect_invariants(rest);
+  EXPECT_EQ(rest.report.source_faces, 7u);
+  EXPECT_EQ(rest.mesh.face_ids, (std::vector<std::uint32_t>{0, 2, 6}));
+  ASSERT_EQ(rest.report.skipped.size(), 4u);
+  EXPECT_EQ(rest.report.skipped[1].face_id, 3u);
+  EXPECT_TRUE(has(rest.report.skipped[1].reason, "(line 8) names vertex -5"));
+  EXPECT_TRUE(has(rest.report.skipped[2].reason, "numbered from 1"));
+  EXPECT_EQ(rest.report.skipped[3].face_id, 5u);
+  EXPECT_TRUE(has(rest.report.skipped[3].reason, "vertex 4 (line 4) is not finite"));
+  EXPECT_EQ(rest.report.files_read.size(), 1u);
+}
+
+TEST_F(ImportErrorTest, NothingLeftIsNoFaces) {
+  const Error error =
+      fail("a.obj", std::string(kTriangle) + "f 1 2 4\nf 1 2 5\n", {.skip_bad = true});
+  EXPECT_EQ(error.code, Errc::kNoFaces);
+  EXPECT_TRUE(has(error.detail, "all 2 faces are bad"));
+}
+
+// Assimp would move the corner to the last vertex, drop the face of ten corners, and allocate.
+TEST_F(ImportErrorTest, OffFaults) {
+  const Error error = fail("a.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n3 0 1 7\n");
+  EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
+  EXPECT_TRUE(has(error.detail, "face 1: corner 2 (line 7) names vertex 7"));
+  EXPECT_EQ(fail("b.off", "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n").code, Errc::kImportFailed);
+  EXPECT_EQ(fail("c.off", "OFF\n4000000000 6 0\n0 0 0\n").code, Errc::kImportFailed);
+  const Error infinite = fail("d.off", "OFF\n3 1 0\n0 0 inf\n1 0 0\n0 1 0\n3 0 1 2\n");
+  EXPECT_EQ(infinite.code, Errc::kMeshNotFinite);
+  EXPECT_TRUE(has(infinite.detail, "vertex 0 (line 3)"));
+}
+
+TEST_F(ImportErrorTest, PlyThatAssimpWouldMisread) {
+  const Error huge = fail("a.ply", ply("0 0 0\n", "", 2'000'000'000, 0));
+  EXPECT_EQ(huge.code, Errc::kImportFailed);
+  const Error strips = fail("b.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\n"
+                            "property float y\nproperty float z\nelement tristrips 1\n"
+                            "property list int int vertex_indices\nend_header\n"
+                            "0 0 0\n1 0 0\n0 1 0\n1 1 0\n4 0 1 2 3\n");
+  EXPECT_EQ(strips.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(strips.detail, "strips"));
+}
+
+// Assimp drops faces with bad vertex numbers from glTF files: here one of two.
+TEST_F(ImportErrorTest, GltfFacesThatAssimpDropsAreMissed) {
+  const auto gltf = [](const std::string& indices) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+           R"("meshes":[{"name":"tri","primitives":[{"attributes":{"POSITION":0},"indices":1}]}],)"
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3",)"
+           R"("min":[0,0,0],"max":[1,1,0]},)"
+           R"({"bufferView":1,"componentType":5121,"count":6,"type":"SCALAR"}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":36},{"buffer":1,"byteLength":6}],)"
+           R"("buffers":[{"byteLength":36,"uri":"data:application/octet-stream;base64,)"
+           R"(AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"},{"byteLength":6,)"
+           R"("uri":"data:application/octet-stream;base64,)" +
+           indices + R"("}]})";
+  };
+  EXPECT_EQ(load("good.gltf", gltf("AAECAAIB")).report.source_faces, 2u);  // 0 1 2  0 2 1
+  const Error error = fail("bad.gltf", gltf("AAECAAIJ"));                  // 0 1 2  0 2 9
+  EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
+  EXPECT_TRUE(has(error.detail, "tri"));
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

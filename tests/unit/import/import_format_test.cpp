@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// The same tetrahedron in the formats that people use most.
+#include <cstring>
+
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using ImportFormatTest = ImportTest;
+
+constexpr std::array<std::array<float, 3>, 4> kVertices = {
+    {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1.5f}}};
+constexpr std::array<std::array<int, 3>, 4> kFaces = {{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
+
+void expect_tetrahedron(const Imported& got) {
+  expect_invariants(got);
+  ASSERT_EQ(got.mesh.positions.size(), 4u);
+  ASSERT_EQ(got.mesh.faces.size(), 4u);
+  EXPECT_TRUE(got.mesh.face_ids.empty());
+  for (std::size_t face = 0; face < 4; ++face) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Eigen::Vector3d position = got.mesh.positions[got.mesh.faces[face].corner[corner]];
+      const auto& expected = kVertices[static_cast<std::size_t>(kFaces[face][corner])];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(position[static_cast<int>(axis)], double{expected[axis]});
+      }
+    }
+  }
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+TEST_F(ImportFormatTest, Obj) {
+  expect_tetrahedron(load("a.obj",
+                          "v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\nv 0 0 1.5\r\no x\r\nf 1 3 2\r\n"
+                          "f 1 2 4\r\ng y\r\nf -3 -2 -1\r\nf 3 1 4"));
+}
+
+// Weights, colours, colours with opacity, comments: assimp leaves the last two kinds out, and with
+// them every number after.
+TEST_F(ImportFormatTest, ObjVertexForms) {
+  expect_tetrahedron(load("a.obj",
+                          "v 0 0 0 0.1 0.2 0.3 1\nv 2 0 0 2\nv 0 1 0 0.5 0.5 0.5\n"
+                          "v 0 0 1.5 # a comment of 2 numbers, 3\n"
+                          "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"));
+}
+
+TEST_F(ImportFormatTest, OffWithColoursAndComments) {
+  expect_tetrahedron(load("a.off",
+                          "OFF # a comment\n\n4 4 6\n0 0 0\n1 0 0\n0 1 0\n0 0 1.5\n3 0 2 1\n"
+                          "3 0 1 3 255 0 0\n3 1 2 3\n3 2 0 3\n"));
+  expect_tetrahedron(load("b.off",
+                          "COFF 4 4 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n"
+                          "0 0 1.5 1 1 1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 2 0 3\n"));
+  expect_tetrahedron(load("c.off",
+                          "4OFF\n4 4 0\n0 0 0 1\n2 0 0 2\n0 1 0 1\n0 0 3 2\n3 0 2 1\n3 0 1 3\n"
+                          "3 1 2 3\n3 2 0 3\n"));
+}
+
+TEST_F(ImportFormatTest, OffFaceOfTwelveCorners) {
+  std::string off = "OFF\n12 1 0\n";
+  for (int i = 0; i < 12; ++i) {
+    off += std::to_string(i) + " " + std::to_string(i * i) + " 0\n";
+  }
+  off += "12 0 1 2 3 4 5 6 7 8 9 10 11\n";
+  const Imported got = load("a.off", off);
+  EXPECT_EQ(got.mesh.faces.size(), 10u);
+  EXPECT_EQ(got.report.ngons_split, 1u);
+}
+
+TEST_F(ImportFormatTest, PlyAsciiAndBinary) {
+  const std::string head =
+      "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 4\n"
+      "property list uchar int vertex_indices\nend_header\n";
+  expect_tetrahedron(load("a.ply", "ply\nformat ascii 1.0\n" + head +
+                                       "0 0 0\n1 0 0\n0 1 0\n0 0 1.5\n3 0 2 1\n3 0 1 3\n3 1 2 3\n"
+                                       "3 2 0 3\n"));
+  std::string binary = "ply\nformat binary_little_endian 1.0\n" + head;
+  for (const auto& vertex : kVertices) {
+    for (const float coordinate : vertex) append(binary, coordinate);
+  }
+  for (const auto& face : kFaces) {
+    binary += '\3';
+    for (const int corner : face) append(binary, corner);
+  }
+  expect_tetrahedron(load("b.ply", binary));
+}
+
+TEST_F(ImportFormatTest, StlAsciiAndBinary) {
+  std::string ascii = "solid a\n", binary(80, ' ');
+  append(binary, std::uint32_t{4});
+  for (const auto& face : kFaces) {
+    ascii += "facet normal 0 0 0\nouter loop\n";
+    for (int i = 0; i < 3; ++i) append(binary, 0.0f);
+    for (const int corner : face) {
+      ascii += "vertex";
+      for (const float coordinate : kVertices[static_cast<std::size_t>(corner)]) {
+        ascii += ' ' + std::to_string(coordinate);
+        append(binary, coordinate);
+      }
+      ascii += '\n';
+    }
+    ascii += "endloop\nendfacet\n";
+    append(binary, std::uint16_t{0});
+  }
+  expect_tetrahedron(load("a.stl", ascii + "endsolid a\n"));
+  expect_tetrahedron(load("b.stl", binary));
+}
+
+// Collada is turned by its up axis: a node transform like any other.
+TEST_F(ImportFormatTest, ColladaUpAxisIsApplied) {
+  const auto dae = [](const std::string& up) {
+    return "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
+           "version=\"1.4.1\"><asset><up_axis>" +
+           up +
+           "</up_axis></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+           "<float_array id=\"f\" count=\"9\">0 0 0 1 0 0 0 2 0</float_array><technique_common>"
+           "<accessor source=\"#f\" count=\"3\" stride=\"3\"><param name=\"X\" type=\"float\"/>"
+           "<param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor>"
+           "</technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+           "source=\"#p\"/></vertices><triangles count=\"1\"><input semantic=\"VERTEX\" "
+           "source=\"#v\" offset=\"0\"/><p>0 1 2</p></triangles></mesh></geometry>"
+           "</library_geometries><library_visual_scenes><visual_scene id=\"s\"><node>"
+           "<instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes><scene>"
+           "<instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+  };
+  const Imported y_up = load("y.dae", dae("Y_UP")), z_up = load("z.dae", dae("Z_UP"));
+  EXPECT_EQ(y_up.mesh.positions[2], Eigen::Vector3d(0, 2, 0));
+  EXPECT_EQ(z_up.mesh.positions[2], Eigen::Vector3d(0, 0, -2));
+}
+
+// Assimp's RAW reader loses the nodes of all groups but the last; their faces are taken over
+// anyway.
+TEST_F(ImportFormatTest, RawGroups) {
+  const Imported got = load("a.raw", "first\n0 0 0 1 0 0 0 1 0\nsecond\n0 0 1 1 0 1 0 1 1\n");
+  EXPECT_EQ(got.report.source_faces, 2u);
+}
+
+TEST_F(ImportFormatTest, Base64AndExternalBuffers) {
+  const auto gltf = [](const std::string& uri) {
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":")" +
+           uri + R"("}]})";
+  };
+  std::string bytes;
+  for (const float value : {0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) append(bytes, value);
+  write("a.bin", bytes);
+  const Imported outside = load("a.gltf", gltf("a.bin"));
+  const Imported inside = load(
+      "b.gltf",
+      gltf(
+          "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"));
+  EXPECT_EQ(outside.mesh.positions.f32, inside.mesh.positions.f32);
+  ASSERT_EQ(outside.report.files_read.size(), 2u);
+  EXPECT_EQ(outside.report.files_read[1], folder_ / "a.bin");
+  EXPECT_EQ(inside.report.files_read.size(), 1u);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <set>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/import/polygon_split.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Eigen::Vector3d;
+using Polygon = std::vector<Vector3d>;
+
+bool keeps(const std::array<Vector3d, 4>& corners) {
+  std::array<RoundedCorner, 4> rounded;
+  for (std::size_t i = 0; i < 4; ++i) {
+    rounded[i] = {corners[i], corners[i].cwiseAbs() * 0x1p-24};
+  }
+  return is_planar_convex_quad(rounded);
+}
+
+Vector3d as_float(const Vector3d& v) {
+  return v.cast<float>().cast<double>();
+}
+
+double area_of(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  return (b - a).cross(c - a).norm() / 2;
+}
+
+double newell_area(const Polygon& polygon) {
+  Vector3d sum = Vector3d::Zero();
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    sum += polygon[i].cross(polygon[(i + 1) % polygon.size()]);
+  }
+  return sum.norm() / 2;
+}
+
+// What holds for every polygon: n - 2 triangles, every edge of the outline once and every inner
+// edge twice, in opposite directions.
+void expect_whole(const Polygon& polygon, std::span<const PolygonSplitter::Triangle> triangles) {
+  ASSERT_EQ(triangles.size(), polygon.size() - 2);
+  std::multiset<std::pair<std::uint32_t, std::uint32_t>> edges;
+  for (const auto& t : triangles) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      ASSERT_LT(t[i], polygon.size());
+      edges.insert({t[i], t[(i + 1) % 3]});
+    }
+  }
+  const auto count = static_cast<std::uint32_t>(polygon.size());
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const auto edge = edges.find({i, (i + 1) % count});
+    ASSERT_NE(edge, edges.end()) << "outline edge " << i;
+    edges.erase(edge);
+  }
+  for (const auto& [from, to] : edges) ASSERT_EQ(edges.count({to, from}), edges.count({from, to}));
+}
+
+double split_area(const Polygon& polygon) {
+  PolygonSplitter splitter;
+  const auto triangles = splitter.split(polygon);
+  expect_whole(polygon, triangles);
+  double area = 0;
+  for (const auto& t : triangles) area += area_of(polygon[t[0]], polygon[t[1]], polygon[t[2]]);
+  return area;
+}
+
+// A simple polygon: the triangles overlap nowhere, so their areas add up to its own.
+void expect_covered(const Polygon& polygon) {
+  EXPECT_NEAR(split_area(polygon), newell_area(polygon), 1e-12 * newell_area(polygon));
+}
+
+TEST(QuadTest, PlanarConvexStays) {
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {0, 1, 0}, {1, 1, 0}, {1, 0, 0}})) << "clockwise";
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {2, 0, 0}, {1, 1, 0}, {0, 2, 0}})) << "flat corner";
+}
+
+TEST(QuadTest, ConcaveAndCrossedDoNot) {
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 0), {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}}));
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 0), {1, 1, 0}, {1, 0, 0}, {0, 1, 0}})) << "bow tie, no area";
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 0), {3, 1, 0}, {1, 0, 0}, {0, 1, 0}})) << "bow tie";
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 0), {2, 0, 0}, {1, 0, 0}, {1, 1, 0}})) << "spike";
+}
+
+TEST(QuadTest, BentIsNotPlanarHoweverLittle) {
+  // 2^-20 of the size is 16 times what rounding to f32 explains.
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0x1p-20}, {0, 1, 0}}));
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}));
+  // Far from the origin the grid of f32 is coarser: half a unit at 1024 is 2^-14.
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 1024), {1, 0, 1024}, {1, 1, 1024 + 0x1p-13}, {0, 1, 1024}}));
+  EXPECT_FALSE(keeps({Vector3d(0, 0, 1024), {1, 0, 1024}, {1, 1, 1024 + 0x1p-9}, {0, 1, 1024}}));
+}
+
+TEST(QuadTest, DegenerateStays) {
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {1, 0, 0}, {1, 0, 0}, {0, 1, 0}})) << "repeated corner";
+  EXPECT_TRUE(keeps({Vector3d(1, 1, 1), {1, 1, 1}, {1, 1, 1}, {1, 1, 1}})) << "point";
+  EXPECT_TRUE(keeps({Vector3d(0, 0, 0), {3, 3, 3}, {1, 1, 1}, {2, 2, 2}})) << "segment";
+}
+
+// Planar quads stay planar through any rotation, size and place once rounded to f32; the same quads
+// bent by 64 times the rounding do not.
+TEST(QuadTest, RoundingIsExplainedAndNoMore) {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 20'000; ++i) {
+    const double size = std::exp(8 * unit(random));
+    const Vector3d center = 4 * size * Vector3d(unit(random), unit(random), unit(random));
+    const Vector3d u = Vector3d(unit(random), unit(random), unit(random)).normalized();
+    const Vector3d v = u.cross(Vector3d(unit(random), unit(random), unit(random))).normalized();
+    std::array<Vector3d, 4> quad;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const double angle = std::numbers::pi / 2 * (static_cast<double>(k) + 0.3 * unit(random));
+      quad[k] = center + size * (std::cos(angle) * u + std::sin(angle) * v);
+    }
+    std::array<Vector3d, 4> rounded = quad;
+    for (Vector3d& corner : rounded) corner = as_float(corner);
+    ASSERT_TRUE(keeps(rounded)) << "case " << i;
+    quad[2] += u.cross(v) * size * 0x1p-24 * 64 * 5;
+    for (Vector3d& corner : quad) corner = as_float(corner);
+    ASSERT_FALSE(keeps(quad)) << "case " << i;
+  }
+}
+
+TEST(QuadTest, AnySizeOfDoubles) {
+  for (const double size : {1e-300, 1e-150, 1.0, 1e150, 1e300}) {
+    const auto is_kept = [size](double bend) {
+      std::array<RoundedCorner, 4> quad = {{{{0, 0, 0}, {0, 0, 0}},
+                                            {{size, 0, 0}, {0, 0, 0}},
+                                            {{size, size, bend * size}, {0, 0, 0}},
+                                            {{0, size, 0}, {0, 0, 0}}}};
+      return is_planar_convex_quad(quad);
+    };
+    EXPECT_TRUE(is_kept(0)) << size;
+    EXPECT_FALSE(is_kept(1e-6)) << size;
+    EXPECT_FALSE(is_collinear({0, 0, 0}, {size, 0, 0}, {0, size, 0})) << size;
+    EXPECT_TRUE(is_collinear({0, 0, 0}, {size, size, size}, {size / 2, size / 2, size / 2}));
+  }
+}
+
+TEST(PolygonSplit, Quads) {
+  PolygonSplitter splitter;
+  const auto split = [&splitter](const Polygon& polygon) {
+    const auto triangles = splitter.split(polygon);
+    return std::vector<PolygonSplitter::Triangle>(triangles.begin(), triangles.end());
+  };
+  using Triangles = std::vector<PolygonSplitter::Triangle>;
+  EXPECT_EQ(split({{0, 0, 0}, {1, 0, 0}, {1, 1, 0.5}, {0, 1, 0}}),
+            (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  // The diagonal starts at the reflex corner.
+  const Polygon dart = {{0, 0, 0}, {2, 0, 0}, {0.5, 0.5, 0}, {0, 2, 0}};
+  EXPECT_EQ(split(dart), (Triangles{{0, 1, 2}, {0, 2, 3}}));
+  EXPECT_EQ(split({dart[1], dart[2], dart[3], dart[0]}), (Triangles{{1, 2, 3}, {0, 1, 3}}));
+}
+
+TEST(PolygonSplit, ConvexConcaveAndCollinear) {
+  Polygon circle, star, comb;
+  for (int i = 0; i < 40; ++i) {
+    const double angle = i * std::numbers::pi / 20, radius = i % 2 == 0 ? 1 : 0.3;
+    circle.push_back({std::cos(angle), 2, std::sin(angle)});
+    star.push_back({radius * std::cos(angle), radius * std::sin(angle), radius * std::cos(angle)});
+  }
+  for (int i = 0; i < 10; ++i) {
+    comb.push_back({2.0 * i, 0, 1});
+    comb.push_back({2.0 * i, 5, 1});
+    comb.push_back({2.0 * i + 1, 5, 1});
+    comb.push_back({2.0 * i + 1, 0, 1});
+  }
+  comb.push_back({19, -1, 1});
+  comb.push_back({0, -1, 1});
+  expect_covered(circle);
+  expect_covered(star);
+  expect_covered(comb);
+  std::reverse(comb.begin(), comb.end());
+  expect_covered(comb);
+  expect_covered(
+      {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}, {0, 2, 0}, {0, 1, 0}});
+  expect_covered({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}, {2, 3, 0}});
+}
+
+TEST(PolygonSplit, HoleOnABridge) {
+  // A square with a square hole, joined by a bridge that is walked twice.
+  expect_covered({{0, 0, 0},
+                  {4, 0, 0},
+                  {4, 4, 0},
+                  {0, 4, 0},
+                  {0, 0, 0},
+                  {1, 1, 0},
+                  {1, 3, 0},
+                  {3, 3, 0},
+                  {3, 1, 0},
+                  {1, 1, 0}});
+  // The hole touches the outline at a corner that is the tip of a would-be ear.
+  expect_covered({{0, 0, 0}, {4, 0, 0}, {4, 4, 0}, {0, 4, 0}, {0, 0, 0}, {1, 2, 0}, {2, 1, 0}});
+}
+
+TEST(PolygonSplit, DegenerateStillCoversEveryEdge) {
+  split_area({{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {0, 0, 0}});
+  split_area({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {5, 5, 5}, {3, 3, 3}});
+  split_area({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 0, 0}, {1, 0, 0}, {1, 1, 0}});
+  Polygon pentagram;
+  for (int i = 0; i < 5; ++i) {
+    const double angle = i * 4 * std::numbers::pi / 5;
+    pentagram.push_back({std::cos(angle), std::sin(angle), 0});
+  }
+  split_area(pentagram);
+}
+
+// Star-shaped polygons with random radii, in random planes, with corners repeated and put on edges.
+TEST(PolygonSplit, RandomSimplePolygons) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> unit(0, 1);
+  for (int i = 0; i < 3000; ++i) {
+    const auto any = [&] { return Vector3d(unit(random), unit(random), unit(random) - 0.5); };
+    const Vector3d u = any().normalized();
+    const Vector3d v = u.cross(any()).normalized();
+    const int count = 5 + static_cast<int>(random() % 40);
+    Polygon polygon;
+    for (int k = 0; k < count; ++k) {
+      const double angle = 2 * std::numbers::pi * k / count, radius = 0.1 + unit(random);
+      polygon.push_back(radius * (std::cos(angle) * u + std::sin(angle) * v));
+      if (random() % 8 == 0) polygon.push_back(polygon.back());
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_covered(polygon)) << "case " << i;
+  }
+}
+
+// Random closed walks: crossing, touching, doubling back. Only what holds for all is asked.
+TEST(PolygonSplit, RandomWalksOnAGrid) {
+  std::mt19937 random(13);
+  for (int i = 0; i < 5000; ++i) {
+    Polygon polygon(5 + random() % 12);
+    for (Vector3d& corner : polygon) {
+      corner = {static_cast<double>(random() % 4), static_cast<double>(random() % 4), 0};
+    }
+    ASSERT_NO_FATAL_FAILURE(split_area(polygon)) << "case " << i;
+  }
+}
+
+TEST(PolygonSplit, ManyCornersEnd) {
+  Polygon comb;
+  constexpr int kTeeth = 5000;
+  for (int i = 0; i < kTeeth; ++i) {
+    comb.push_back({2.0 * i, 0, 0});
+    comb.push_back({2.0 * i + 1, 100, 0});
+  }
+  comb.push_back({2.0 * kTeeth, -1, 0});
+  comb.push_back({0, -1, 0});
+  const auto start = std::chrono::steady_clock::now();
+  expect_covered(comb);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// orient3d and orient2d against 128-bit integers, on points that lie on or next to the plane.
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <tests/unit/primitive/exact_simplex.h>
+#include <tests/unit/primitive/triangle_cases.h>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/runtime/primitive/expansion.h>
+#include <boxtree/runtime/primitive/orientation.h>
+
+namespace boxtree {
+namespace {
+
+constexpr int kCases = 20000;
+
+test::IntVector difference(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const test::IntVector p = test::to_integer(a), q = test::to_integer(b);
+  return {p.x - q.x, p.y - q.y, p.z - q.z};
+}
+
+// A lattice point on the plane through a, b, c, moved by at most one unit.
+Eigen::Vector3d near_plane(test::TriangleCases& cases, const Triangle& t) {
+  const auto weight = [&cases] { return static_cast<double>(cases.integer(-3, 3)); };
+  const auto& c = t.corner;
+  Eigen::Vector3d on = c[0] + weight() * (c[1] - c[0]);
+  on += weight() * (c[2] - c[0]);
+  return cases.integer(0, 2) == 0 ? on : Eigen::Vector3d(on + cases.point(1));
+}
+
+TEST(Orient3d, SignMatchesItsDescription) {
+  const Eigen::Vector3d a(0, 0, 0), b(1, 0, 0), c(0, 1, 0);  // counter-clockwise from above
+  EXPECT_EQ(orient3d(a, b, c, {0.25, 0.25, -1}), 1);
+  EXPECT_EQ(orient3d(a, b, c, {0.25, 0.25, 1}), -1);
+  EXPECT_EQ(orient3d(a, b, c, {7, -9, 0}), 0);
+  EXPECT_EQ(orient2d({0, 0}, {1, 0}, {0, 1}), 1);
+  EXPECT_EQ(orient2d({0, 0}, {0, 1}, {1, 0}), -1);
+  EXPECT_EQ(orient2d({0, 0}, {1, 1}, {3, 3}), 0);
+}
+
+TEST(Orient3d, AgreesWithIntegersNextToThePlane) {
+  for (const int bits : {6, 12, 24, 36}) {
+    test::TriangleCases cases(0x0a1e, 64);
+    std::array<int, 3> seen{};
+    for (int i = 0; i < kCases; ++i) {
+      const Triangle t = cases.triangle(std::int64_t{1} << bits);
+      const Eigen::Vector3d d = near_plane(cases, t);
+      const auto& c = t.corner;
+      const int expected =
+          test::determinant_sign(difference(c[0], d), difference(c[1], d), difference(c[2], d));
+      ++seen[static_cast<std::size_t>(expected + 1)];
+      ASSERT_EQ(orient3d(c[0], c[1], c[2], d), expected) << bits << " bits, case " << i;
+      ASSERT_EQ(orient3d_exact(c[0], c[1], c[2], d), expected) << bits << " bits, case " << i;
+    }
+    for (const int count : seen) EXPECT_GT(count, kCases / 10);
+  }
+}
+
+TEST(Orient3d, IsAntisymmetricAndScales) {
+  test::TriangleCases cases(0xa5, 64);
+  for (int i = 0; i < kCases; ++i) {
+    Triangle t = cases.triangle(std::int64_t{1} << 40);
+    Eigen::Vector3d d = near_plane(cases, t);
+    const int sign = orient3d(t.corner[0], t.corner[1], t.corner[2], d);
+    const double scale = std::ldexp(1.0, static_cast<int>(cases.integer(-1074, 150)));
+    for (auto& c : t.corner) c *= scale;
+    d *= scale;
+    const auto& [a, b, c] = t.corner;
+    ASSERT_EQ(orient3d(a, b, c, d), sign) << i;
+    ASSERT_EQ(orient3d(b, a, c, d), -sign) << i;
+    ASSERT_EQ(orient3d(a, c, b, d), -sign) << i;
+    ASSERT_EQ(orient3d(a, b, d, c), -sign) << i;
+    ASSERT_EQ(orient3d(d, b, c, a), -sign) << i;
+    ASSERT_EQ(orient3d(d, c, b, a), sign) << i;
+  }
+}
+
+// Differences that need two doubles: the part that a subtraction rounds away decides.
+TEST(Orient3d, KeepsTheTailsOfDifferences) {
+  const double far = 0x1p60;
+  for (const double height : {0x1p-60, -0x1p-60, 0.0}) {
+    const Eigen::Vector3d a(0, 0, 0), b(far, 1, 0), c(1, far, 0), d(far, far, height);
+    EXPECT_EQ(orient3d(a, b, c, d), height > 0 ? -1 : (height < 0 ? 1 : 0));
+  }
+}
+
+TEST(Orient2d, AgreesWithIntegersNextToTheLine) {
+  for (const int bits : {8, 24, 50}) {
+    test::TriangleCases cases(0x2d, 64);
+    for (int i = 0; i < kCases; ++i) {
+      const std::int64_t range = std::int64_t{1} << (bits - 3);
+      const Eigen::Vector3d a = cases.point(range), step = cases.point(range);
+      const Eigen::Vector3d b = a + static_cast<double>(cases.integer(-3, 3)) * step;
+      Eigen::Vector3d c = a + static_cast<double>(cases.integer(-3, 3)) * step;
+      if (cases.integer(0, 2) != 0) c += cases.point(1);
+      const test::IntVector p = difference(a, c), q = difference(b, c);
+      const int expected = test::sign_of(test::Int128(p.x) * q.y - test::Int128(p.y) * q.x);
+      ASSERT_EQ(orient2d(a.head<2>(), b.head<2>(), c.head<2>()), expected) << i;
+    }
+  }
+}
+
+TEST(Expansion, SumsAndProductsAreExact) {
+  test::TriangleCases cases(0xe, 64);
+  const std::int64_t range = std::int64_t{1} << 53;
+  for (int i = 0; i < kCases; ++i) {
+    const std::int64_t a = cases.integer(-range, range), b = cases.integer(-range, range);
+    const auto x = static_cast<double>(a), y = static_cast<double>(b);
+    const Rounded product = two_product(x, y);
+    ASSERT_EQ(test::Int128(product.value) + test::Int128(product.error), test::Int128(a) * b);
+    const Rounded sum = two_sum(x, y);
+    ASSERT_EQ(test::Int128(sum.value) + test::Int128(sum.error), test::Int128(a) + b);
+    const auto zero = exact_product(x, y) - exact_product(y, x);
+    ASSERT_EQ(zero.size, 0u);
+    // (x + y) (x - y) - x x + y y = 0, through every operation there is.
+    const auto square = exact_product(x, x) - exact_product(y, y);
+    const auto factored = exact_difference(x, -y) * exact_difference(x, y);
+    ASSERT_EQ((factored - square).sign(), 0);
+    ASSERT_EQ((factored - square + exact_product(1, 1)).sign(), 1);
+  }
+}
+
+}  // namespace
+}  // namespace boxtree
