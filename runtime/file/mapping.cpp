@@ -35,12 +35,12 @@ Error system_error(Errc code, const std::filesystem::path& path, int number) {
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
-Result<std::size_t> regular_file_size(const Descriptor& file, const std::filesystem::path& path) {
-  if (file.value() < 0) {
+Result<std::size_t> regular_file_size(int file, const std::filesystem::path& path) {
+  if (file < 0) {
     return system_error(errno == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable, path, errno);
   }
   struct stat info {};
-  if (::fstat(file.value(), &info) != 0) return system_error(Errc::kFileUnreadable, path, errno);
+  if (::fstat(file, &info) != 0) return system_error(Errc::kFileUnreadable, path, errno);
   if (!S_ISREG(info.st_mode)) {
     return Error{Errc::kFileUnreadable, path.string() + ": not a regular file"};
   }
@@ -65,17 +65,21 @@ Mapping::~Mapping() {
 
 Result<Mapping> Mapping::map(const std::filesystem::path& path) {
   const Descriptor file(path);
-  const Result<std::size_t> size = regular_file_size(file, path);
+  return map(file.value(), path);
+}
+
+Result<Mapping> Mapping::map(int descriptor, const std::filesystem::path& name) {
+  const Result<std::size_t> size = regular_file_size(descriptor, name);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  void* data = ::mmap(nullptr, *size, PROT_READ, MAP_PRIVATE, file.value(), 0);
-  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, path, errno);
+  void* data = ::mmap(nullptr, *size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, name, errno);
   return Mapping(static_cast<const std::byte*>(data), *size);
 }
 
 Result<Mapping> Mapping::copy(const std::filesystem::path& path) {
   const Descriptor file(path);
-  const Result<std::size_t> size = regular_file_size(file, path);
+  const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   void* data =

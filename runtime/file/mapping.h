@@ -26,6 +26,9 @@ class Mapping {
   /// cooker does. Use copy() for files that others may modify.
   static Result<Mapping> map(const std::filesystem::path& path);
 
+  /// Maps a file that is open already; `name` is for messages. The descriptor stays the caller's.
+  static Result<Mapping> map(int descriptor, const std::filesystem::path& name);
+
   /// Reads `path` into memory of its own: immune to later changes of the file.
   static Result<Mapping> copy(const std::filesystem::path& path);
 

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// One number a candidate, the smallest wins.
+#include <boxtree/cooker/choose/choose.h>
+
+#include <cmath>
+
+namespace boxtree::cooker {
+namespace {
+
+double score(const Candidate& candidate, Goal goal) {
+  const auto bytes = static_cast<double>(candidate.tree_bytes + candidate.geometry_bytes);
+  // Geometric mean of the three kinds, so that none is drowned by the units of another.
+  const double visits =
+      std::cbrt(candidate.cost.ray) * std::cbrt(candidate.cost.box) * std::cbrt(candidate.cost.pair);
+  switch (goal) {
+    case Goal::kMemory: return bytes;
+    case Goal::kSpeed: return visits;
+    case Goal::kBalance: break;
+  }
+  return bytes * visits;
+}
+
+const char* reason(Goal goal) {
+  switch (goal) {
+    case Goal::kMemory: return "more bytes";
+    case Goal::kSpeed: return "more expected visits";
+    case Goal::kBalance: break;
+  }
+  return "larger product of bytes and expected visits";
+}
+
+}  // namespace
+
+std::size_t choose(std::span<Candidate> candidates, Goal goal) {
+  std::size_t best = 0;
+  for (std::size_t i = 1; i < candidates.size(); ++i) {
+    if (score(candidates[i], goal) < score(candidates[best], goal)) best = i;
+  }
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    candidates[i].rejected = i == best ? "" : reason(goal);
+  }
+  return best;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: MIT
+// `boxtree cook`: meshes in, one .bxt file out.
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/cook.h>
+
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+
+#include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+struct Arguments {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  std::string codec = "auto";
+  std::filesystem::path depfile;
+  CookOptions options;
+  bool exact = false;
+  bool external = false;
+  bool no_face_ids = false;
+  bool strip = false;
+  bool f64 = false;
+  bool json = false;
+  bool quiet = false;
+  int jobs = tbb::task_arena::automatic;
+};
+
+// Steps on a terminal only, and only once the work has taken half a second.
+class StepPrinter {
+ public:
+  explicit StepPrinter(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
+  StepPrinter(const StepPrinter&) = delete;
+  StepPrinter& operator=(const StepPrinter&) = delete;
+  ~StepPrinter() {
+    if (printed_) fmt::print(stderr, "\r\033[K");
+  }
+  void operator()(const std::string& step) {
+    if (!enabled_ || Clock::now() - start_ < std::chrono::milliseconds(500)) return;
+    fmt::print(stderr, "\r\033[K{} ...", step);
+    std::fflush(stderr);
+    printed_ = true;
+  }
+
+ private:
+  bool enabled_;
+  bool printed_ = false;
+  Clock::time_point start_ = Clock::now();
+};
+
+// Make syntax: spaces, '#' and '$' in names are escaped, as gcc -MD does.
+std::string make_name(const std::filesystem::path& path) {
+  std::string out;
+  for (const char c : path.string()) {
+    if (c == ' ' || c == '#' || c == '\\') out += '\\';
+    if (c == '$') out += '$';
+    out += c;
+  }
+  return out;
+}
+
+Status write_depfile(const Arguments& arguments, const CookReport& report) {
+  std::string text = make_name(arguments.output) + ":";
+  for (const ImportReport& import : report.imports) {
+    for (const std::filesystem::path& file : import.files_read) text += " \\\n  " + make_name(file);
+  }
+  text += "\n";
+  Result<AtomicFile> file = AtomicFile::create(arguments.depfile);
+  if (!file) return file.error();
+  if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
+  return file->commit();
+}
+
+double per_triangle(std::uint64_t bytes, const EncodedTree& tree) {
+  return tree.triangle_count == 0 ? 0
+                                  : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
+}
+
+Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
+  Json json;
+  json["codec"] = codec_name(candidate.codec);
+  json["geometry"] = geometry_name(tree.geometry.geometry);
+  json["bytes_per_triangle"] = {
+      {"tree", per_triangle(candidate.tree_bytes, tree)},
+      {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
+  json["cost"] = {{"ray", candidate.cost.ray},
+                  {"box", candidate.cost.box},
+                  {"pair", candidate.cost.pair}};
+  json["error"] = {{"max_vertex_error", 0.0}};  // both stores keep every bit of a position
+  json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
+  if (candidate.rejected.empty()) {
+    // write_file() has proven the written file, or there would be no report.
+    json["gates"] = {{"missed", 0}, {"escapes", 0}, {"certificate", true}};
+  }
+  return json;
+}
+
+Json import_json(const ImportReport& report) {
+  Json json = {{"meshes", report.meshes},
+               {"source_faces", report.source_faces},
+               {"points_skipped", report.points_skipped},
+               {"lines_skipped", report.lines_skipped},
+               {"quads_kept", report.quads_kept},
+               {"quads_split", report.quads_split},
+               {"ngons_split", report.ngons_split},
+               {"vertices_welded", report.vertices_welded},
+               {"degenerate_faces", report.degenerate_faces}};
+  json["skipped"] = Json::array();
+  for (const SkippedFace& face : report.skipped) {
+    json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
+  }
+  return json;
+}
+
+Json report_json(const Arguments& arguments, const CookReport& report, double seconds) {
+  Json json;
+  json["output"] = arguments.output.string();
+  json["trees"] = Json::array();
+  for (std::size_t i = 0; i < report.trees.size(); ++i) {
+    const CookedTree& cooked = report.trees[i];
+    Json tree = {{"name", cooked.tree.name},
+                 {"triangles", cooked.tree.triangle_count},
+                 {"chosen", codec_name(cooked.tree.nodes.codec)}};
+    tree["candidates"] = Json::array();
+    for (const Candidate& candidate : cooked.candidates) {
+      tree["candidates"].push_back(candidate_json(candidate, cooked.tree));
+    }
+    tree["left_out"] = Json::array();
+    for (const LeftOut& part : cooked.left_out) {
+      tree["left_out"].push_back({{"what", part.what}, {"bytes", part.bytes}, {"why", part.why}});
+    }
+    tree["import"] = import_json(report.imports[i]);
+    json["trees"].push_back(tree);
+  }
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  json["seconds"] = seconds;
+  json["peak_bytes"] = usage.ru_maxrss * 1024;  // Linux counts kilobytes
+  return json;
+}
+
+void print_report(const Arguments& arguments, const CookReport& report, double seconds) {
+  for (std::size_t i = 0; i < report.trees.size(); ++i) {
+    const CookedTree& cooked = report.trees[i];
+    const ImportReport& import = report.imports[i];
+    fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
+    for (const Candidate& candidate : cooked.candidates) {
+      fmt::print("  {} {:<10} {:6.2f} B/tri tree, {:6.2f} with geometry{}{}\n",
+                 candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
+                 per_triangle(candidate.tree_bytes, cooked.tree),
+                 per_triangle(candidate.tree_bytes + candidate.geometry_bytes, cooked.tree),
+                 candidate.rejected.empty() ? "" : "; not chosen: ", candidate.rejected);
+    }
+    if (import.points_skipped + import.lines_skipped > 0) {
+      fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
+                 import.lines_skipped);
+    }
+    if (import.degenerate_faces > 0) {
+      fmt::print("  kept {} faces without area\n", import.degenerate_faces);
+    }
+    for (const SkippedFace& face : import.skipped) {
+      fmt::print("  skipped face {}: {}\n", face.face_id, face.reason);
+    }
+  }
+  fmt::print("wrote {} in {:.2f} s; every triangle proven inside every box above it\n",
+             arguments.output.string(), seconds);
+}
+
+int run(Arguments& arguments) {
+  CookOptions& options = arguments.options;
+  if (arguments.codec != "auto") options.codec = find_codec(arguments.codec);
+  if (arguments.external) options.geometry = GeometryId::kExternal;
+  if (arguments.f64) options.import.precision = Precision::kF64;
+  options.face_ids = !arguments.no_face_ids;
+  options.cook_record = !arguments.strip;
+
+  const Clock::time_point start = Clock::now();
+  Result<CookReport> report = Errc::kInternal;
+  {
+    StepPrinter steps(!arguments.quiet);
+    tbb::task_arena arena(arguments.jobs);
+    arena.execute([&] {
+      report = cook(arguments.inputs, arguments.output, options,
+                    [&steps](const std::string& step) { steps(step); });
+    });
+  }
+  if (!report) return fail(report.error());
+  if (!arguments.depfile.empty()) {
+    if (Status status = write_depfile(arguments, *report); !status) return fail(status.error());
+  }
+  const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  if (arguments.json) {
+    print(report_json(arguments, *report, seconds));
+  } else if (!arguments.quiet) {
+    print_report(arguments, *report, seconds);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_cook_command(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *app.add_subcommand("cook", "Cook meshes into one .bxt file");
+  std::vector<std::string> codecs{"auto"};
+  for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
+
+  command.add_option("inputs", arguments->inputs, "Mesh files, one tree each")->required();
+  command.add_option("-o,--output", arguments->output, "The file to write")->required();
+  command.add_option("--codec", arguments->codec, "How nodes are stored")
+      ->check(CLI::IsMember(codecs))
+      ->capture_default_str();
+  command
+      .add_option("--for", arguments->options.goal, "What `auto` minimises: memory, speed or balance")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Goal>{
+          {"memory", Goal::kMemory}, {"speed", Goal::kSpeed}, {"balance", Goal::kBalance}}));
+  command.add_option("--builder", arguments->options.builder, "Split rule: sah or paper")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Builder>{{"sah", Builder::kSah}, {"paper", Builder::kPaper}}));
+  CLI::Option* exact = command.add_flag(
+      "--exact", arguments->exact, "Keep every bit of every position (what is done by default)");
+  command
+      .add_flag("--external", arguments->external,
+                "Leave positions and corners to the application, which binds its own arrays")
+      ->excludes(exact);
+  command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
+  command.add_flag("--strip", arguments->strip, "Leave the cook record out");
+  command.add_flag("--f64", arguments->f64, "Hold positions as f64: node transforms stay exact");
+  command.add_flag("--skip-bad", arguments->options.import.skip_bad,
+                   "Drop faces with NaN, infinite or missing vertices, and report their numbers");
+  command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it")
+      ->check(CLI::Range(1, 1024));
+  command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax");
+  command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command.callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace boxtree::cooker

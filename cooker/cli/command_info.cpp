@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// `boxtree info`: what a file holds and what each part costs.
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/runtime/boxtree.h>
+
+#include <filesystem>
+#include <memory>
+
+#include <fmt/format.h>
+
+namespace boxtree::cooker {
+namespace {
+
+struct Arguments {
+  std::filesystem::path file;
+  bool json = false;
+};
+
+struct TreeBytes {
+  std::uint64_t tree = 0;
+  std::uint64_t geometry = 0;
+  std::uint64_t face_ids = 0;
+  std::uint64_t other = 0;
+};
+
+TreeBytes bytes_of(const File& file, std::uint32_t index) {
+  const auto size = [&](SectionKind kind) { return file.section(kind, index).size(); };
+  return {size(SectionKind::kNodes), size(SectionKind::kVertices) + size(SectionKind::kCorners),
+          size(SectionKind::kFaceIds), size(SectionKind::kCertificate) + sizeof(TreeRecord)};
+}
+
+double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
+  return record.triangle_count == 0
+             ? 0
+             : static_cast<double>(bytes) / static_cast<double>(record.triangle_count);
+}
+
+Json vector_json(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+
+Json tree_json(const File& file, std::uint32_t index) {
+  const TreeRecord record = file.tree_record(index);
+  const TreeBytes bytes = bytes_of(file, index);
+  Json json = {{"name", file.tree_name(index)},
+               {"codec", codec_name(record.codec)},
+               {"geometry", geometry_name(record.geometry)},
+               {"triangles", record.triangle_count},
+               {"faces", record.face_count},
+               {"vertices", record.vertex_count},
+               {"nodes", record.node_count},
+               {"depth", record.depth}};
+  json["bytes"] = {{"tree", bytes.tree},
+                   {"geometry", bytes.geometry},
+                   {"face_ids", bytes.face_ids},
+                   {"other", bytes.other}};
+  json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
+                                {"total", per_triangle(bytes.tree + bytes.geometry, record)},
+                                {"face_ids", per_triangle(bytes.face_ids, record)}};
+  const Bytes certificate = file.section(SectionKind::kCertificate, index);
+  json["max_vertex_error"] = certificate.size() == sizeof(CertificateRecord)
+                                 ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
+                                 : Json(nullptr);
+  const Frame frame(record);
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+  for (std::size_t k = 0; k < 3; ++k) {
+    low[static_cast<Eigen::Index>(k)] = record.root_low[k];
+    high[static_cast<Eigen::Index>(k)] = record.root_high[k];
+  }
+  json["bounds"] = {{"min", vector_json(frame.to_object(low))},
+                    {"max", vector_json(frame.to_object(high))}};
+  return json;
+}
+
+Json file_json(const File& file) {
+  const FileHeader& header = file.container().header;
+  Json json = {{"version", fmt::format("{}.{}", header.version_major, header.version_minor)},
+               {"file_bytes", header.file_bytes}};
+  json["trees"] = Json::array();
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) json["trees"].push_back(tree_json(file, i));
+  json["sections"] = Json::array();
+  for (const SectionEntry& entry : file.container().sections) {
+    json["sections"].push_back(
+        {{"kind", section_name(static_cast<SectionKind>(entry.kind))},
+         {"tree", entry.owner == kNoOwner ? Json(nullptr) : Json(entry.owner)},
+         {"offset", entry.offset},
+         {"bytes", entry.size}});
+  }
+  return json;
+}
+
+void print_file(const Json& json) {
+  fmt::print("format {}, {} bytes\n", json["version"].get<std::string>(),
+             json["file_bytes"].get<std::uint64_t>());
+  for (const Json& tree : json["trees"]) {
+    fmt::print("{}: {} triangles, {}, geometry {}, {} nodes, depth {}\n",
+               tree["name"].get<std::string>(), tree["triangles"].get<std::uint32_t>(),
+               tree["codec"].get<std::string>(), tree["geometry"].get<std::string>(),
+               tree["nodes"].get<std::uint32_t>(), tree["depth"].get<std::uint32_t>());
+    fmt::print("  bytes per triangle: tree {:.2f}, with geometry {:.2f}, face ids {:.2f}\n",
+               tree["bytes_per_triangle"]["tree"].get<double>(),
+               tree["bytes_per_triangle"]["total"].get<double>(),
+               tree["bytes_per_triangle"]["face_ids"].get<double>());
+    fmt::print("  bounds {} to {}\n", tree["bounds"]["min"].dump(), tree["bounds"]["max"].dump());
+  }
+}
+
+int run(const Arguments& arguments) {
+  const Result<File> file = File::open(arguments.file);
+  if (!file) return fail(file.error());
+  for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
+    if (Status status = check_tree_record(file->tree_record(i), i); !status) {
+      return fail(status.error());
+    }
+  }
+  const Json json = file_json(*file);
+  if (arguments.json) {
+    print(json);
+  } else {
+    print_file(json);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_info_command(CLI::App& app, int& status) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& command = *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
+  command.add_option("file", arguments->file, "A .bxt file")->required();
+  command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// The command line `boxtree`: one sub-command a file.
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/version.h>
+
+#include <cstdio>
+#include <exception>
+#include <new>
+
+#include <fmt/format.h>
+
+int main(int argc, char** argv) {
+  using namespace boxtree;
+  int status = 0;
+  try {
+    CLI::App app{"Cooks meshes into small collision trees and asks them.", "boxtree"};
+    app.set_version_flag("--version", fmt::format("boxtree {}", cooker::kVersion));
+    app.set_help_all_flag("--help-all", "Help of every command");
+    app.require_subcommand(1);
+    app.footer(
+        "Exit status: 0 ok, 1 usage, 2 input/output, 3 bad input, 4 internal, 5 unsupported.");
+    cooker::add_cook_command(app, status);
+    cooker::add_info_command(app, status);
+    cooker::add_verify_command(app, status);
+    cooker::add_query_command(app, status);
+    try {
+      app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+      return app.exit(error) == 0 ? 0 : cooker::kExitUsage;
+    }
+  } catch (const std::bad_alloc&) {
+    fmt::print(stderr, "boxtree: out of memory\n");
+    return cooker::kExitInternal;
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "boxtree: internal: {}\n", error.what());
+    return cooker::kExitInternal;
+  }
+  return std::fflush(stdout) == 0 ? status : cooker::kExitInputOutput;
+}

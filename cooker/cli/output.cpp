@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Output conventions of the command line.
+#include <boxtree/cooker/cli/output.h>
+
+#include <array>
+#include <charconv>
+#include <cstdio>
+#include <string_view>
+
+#include <fmt/format.h>
+
+namespace boxtree::cooker {
+namespace {
+
+bool parse_vector(const std::string& text, Eigen::Vector3d& out) {
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return false;
+    const auto [next, error] = std::from_chars(at, end, out[i]);  // locale-independent
+    if (error != std::errc()) return false;
+    at = next;
+  }
+  return at == end;
+}
+
+}  // namespace
+
+int fail(const Error& error) {
+  fmt::print(stderr, "boxtree: {}\n", error.message());
+  return error_info(error.code).exit_status;
+}
+
+void print(const Json& document) {
+  fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+void VectorOption::add_to(CLI::App& command, const std::string& name, const std::string& help,
+                          bool required) {
+  CLI::Option* option = command.add_option_function<std::string>(
+      name,
+      [this, name](const std::string& text) {
+        if (!parse_vector(text, value)) {
+          throw CLI::ValidationError(name, "expected X,Y,Z, found \"" + text + "\"");
+        }
+      },
+      help);
+  option->type_name("X,Y,Z");
+  if (required) option->required();
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// What all commands share: exit statuses, errors on standard error, parsing of vectors.
+#pragma once
+
+#include <boxtree/format/result.h>
+#include <boxtree/runtime/tree/geometry.h>
+
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+namespace boxtree::cooker {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr int kExitUsage = 1;
+inline constexpr int kExitInputOutput = 2;
+inline constexpr int kExitBadInput = 3;
+inline constexpr int kExitInternal = 4;
+
+/// Prints "boxtree: CODE: DETAIL" to standard error and returns the exit status of the code.
+int fail(const Error& error);
+
+/// Prints one JSON document to standard output.
+void print(const Json& document);
+
+/// "1,-2.5,3e4" as a vector; reports a bad one as CLI11 reports bad options.
+struct VectorOption {
+  Eigen::Vector3d value = Eigen::Vector3d::Zero();
+
+  void add_to(CLI::App& command, const std::string& name, const std::string& help, bool required);
+};
+
+/// Each command adds itself to `app` and stores its exit status in `status` when it has run.
+void add_cook_command(CLI::App& app, int& status);
+void add_info_command(CLI::App& app, int& status);
+void add_verify_command(CLI::App& app, int& status);
+void add_query_command(CLI::App& app, int& status);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: MIT
+// The stages in the order the data flows.
+#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/version.h>
+#include <boxtree/format/limits.h>
+
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace boxtree::cooker {
+namespace {
+
+std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
+  std::uint32_t count = 0;
+  for (const Face& face : mesh.faces) {
+    const std::size_t corners = face.is_quad() ? 4 : 3;
+    const Eigen::Vector3d a = frame.to_tree(mesh.positions[face.corner[0]]);
+    for (std::size_t i = 1; i + 1 < corners; ++i) {
+      const Eigen::Vector3d b = frame.to_tree(mesh.positions[face.corner[i]]);
+      const Eigen::Vector3d c = frame.to_tree(mesh.positions[face.corner[i + 1]]);
+      count += (b - a).cross(c - a).isZero(0) ? 1 : 0;
+    }
+  }
+  return count;
+}
+
+Status check_limits(const SourceMesh& mesh, const CookOptions& options) {
+  if (mesh.faces.size() > kMaxFaces || mesh.positions.size() > kMaxVertices) {
+    return Error{Errc::kMeshTooLarge, fmt::format("{}: {} faces, {} vertices, limit {}", mesh.name,
+                                                  mesh.faces.size(), mesh.positions.size(),
+                                                  kMaxFaces)};
+  }
+  if (options.geometry != GeometryId::kExternal) return {};
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    if (mesh.face_id(i) == i) continue;
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}: geometry cannot stay external: face {} is split or follows a "
+                             "split or skipped face, so the application's faces are not the tree's",
+                             mesh.name, mesh.face_id(i))};
+  }
+  return {};
+}
+
+void encode_candidates(const BuildTree& build, const CookOptions& options, CookedTree& cooked) {
+  const EncodedGeometry& geometry = cooked.tree.geometry;
+  const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
+  std::vector<EncodedNodes> encoded;
+  for (const CodecInfo& codec : kCodecs) {
+    if (options.codec && *options.codec != codec.id) continue;
+    EncodedNodes nodes = encode_nodes(build, codec.id, order);
+    cooked.candidates.push_back({codec.id, nodes.bytes.size(),
+                                 geometry.vertices.size() + geometry.corners.size(), nodes.visits,
+                                 {}});
+    encoded.push_back(std::move(nodes));
+  }
+  cooked.tree.nodes = std::move(encoded[choose(cooked.candidates, options.goal)]);
+}
+
+std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
+                        const std::vector<ImportReport>& imports) {
+  nlohmann::ordered_json record;
+  record["tool"] = fmt::format("boxtree {}", kVersion);
+  record["options"] = {
+      {"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
+      {"for", options.goal == Goal::kMemory ? "memory"
+              : options.goal == Goal::kSpeed ? "speed"
+                                             : "balance"},
+      {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
+      {"geometry", geometry_name(options.geometry)},
+      {"face_ids", options.face_ids},
+      {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
+      {"skip_bad", options.import.skip_bad}};
+  record["sources"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < imports.size(); ++i) {
+    record["sources"].push_back({{"name", trees[i].tree.name},
+                                 {"xxh3", fmt::format("{:016x}", imports[i].content_hash)},
+                                 {"faces", imports[i].source_faces}});
+  }
+  return record.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+// Keeps what the report tells of a tree and gives its bytes back.
+void release(CookedTree& cooked) {
+  cooked.tree.nodes.bytes = {};
+  cooked.tree.geometry.vertices = {};
+  cooked.tree.geometry.corners = {};
+  cooked.tree.geometry.face_ids = {};
+}
+
+}  // namespace
+
+Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options) {
+  if (Status status = check_limits(mesh, options); !status) return status.error();
+  const BuildTree build = build_tree(mesh, options.builder);
+  CookedTree cooked;
+  EncodedTree& tree = cooked.tree;
+  tree.name = mesh.name;
+  tree.origin = build.origin;
+  tree.scale_exponent = build.scale_exponent;
+  tree.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  tree.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
+  tree.degenerate_count = count_degenerate(mesh, build.frame());
+  tree.positions_f64 = mesh.positions.precision == Precision::kF64;
+  tree.faces_in_source_order = options.geometry == GeometryId::kExternal;
+  tree.geometry = tree.faces_in_source_order
+                      ? encode_external_geometry(mesh)
+                      : encode_exact_geometry(mesh, build, options.face_ids);
+  if (!options.face_ids) {
+    cooked.left_out.push_back({"face_ids", std::uint64_t{tree.face_count} * 4, "--no-face-ids"});
+  }
+  encode_candidates(build, options, cooked);
+  return cooked;
+}
+
+Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
+                        const std::filesystem::path& output, const CookOptions& options,
+                        const Progress& progress) {
+  const auto step = [&](const std::string& what) {
+    if (progress) progress(what);
+  };
+  CookReport report;
+  std::vector<EncodedTree> trees;
+  for (const std::filesystem::path& input : inputs) {
+    const std::string name = input.filename().string();
+    step("import " + name);
+    Result<Imported> imported = import_mesh(input, options.import);
+    if (!imported) return imported.error();
+    imported->mesh.name = input.stem().string();
+    step("build " + name);
+    Result<CookedTree> cooked = cook_mesh(imported->mesh, options);
+    if (!cooked) return cooked.error();
+    trees.push_back(std::move(cooked->tree));
+    cooked->tree.name = trees.back().name;
+    report.trees.push_back(std::move(*cooked));
+    report.imports.push_back(std::move(imported->report));
+  }
+  step("write " + output.filename().string());
+  const std::string record =
+      options.cook_record ? cook_record(options, report.trees, report.imports) : std::string();
+  if (Status status = write_file(output, trees, record); !status) return status.error();
+  for (std::size_t i = 0; i < trees.size(); ++i) {
+    report.trees[i].tree = std::move(trees[i]);
+    release(report.trees[i]);
+  }
+  return report;
+}
+
+}  // namespace boxtree::cooker

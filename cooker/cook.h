@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: MIT
+// The pipeline as one call: import -> build -> encode -> choose -> write.
+#pragma once
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/choose/choose.h>
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/write/file_writer.h>
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace boxtree::cooker {
+
+struct CookOptions {
+  std::optional<CodecId> codec;  // nothing: the best of all [default]
+  Goal goal = Goal::kBalance;
+  Builder builder = Builder::kSah;
+  GeometryId geometry = GeometryId::kExact;
+  bool face_ids = true;
+  bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
+  ImportOptions import;
+};
+
+/// A part that the options left out of the file.
+struct LeftOut {
+  std::string what;
+  std::uint64_t bytes;
+  std::string why;
+};
+
+struct CookedTree {
+  EncodedTree tree;
+  std::vector<Candidate> candidates;
+  std::vector<LeftOut> left_out;
+};
+
+/// Builds a mesh, encodes it by every codec asked for and keeps the best. Deterministic.
+/// Precondition: what import promises of a mesh. Errors: kMeshTooLarge; kMeshUnsupported when faces
+/// of an n-gon would have to stay external.
+Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options);
+
+struct CookReport {
+  std::vector<CookedTree> trees;  // bytes of nodes and geometry already released
+  std::vector<ImportReport> imports;
+};
+
+/// Told of every step ("import bunny.obj"); may be empty.
+using Progress = std::function<void(const std::string& step)>;
+
+/// Cooks each input into one tree named after its file, and writes and proves the file. On any error
+/// nothing of `output` changes. Runs on the threads of the enclosing oneTBB arena; the bytes written
+/// do not depend on their number, nor on where the inputs lie.
+Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
+                        const std::filesystem::path& output, const CookOptions& options,
+                        const Progress& progress = {});
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: MIT
+// The version of the tool, as it stands in cook records and in --version.
+#pragma once
+
+#include <string_view>
+
+namespace boxtree::cooker {
+
+inline constexpr std::string_view kVersion = "0.1.0";
+
+}  // namespace boxtree::cooker

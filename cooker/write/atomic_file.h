@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// A file that appears whole or not at all: nothing under its name changes before commit().
+#pragma once
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/result.h>
+
+#include <filesystem>
+#include <string>
+
+namespace boxtree::cooker {
+
+/// Collects bytes beside the target and puts them in its place by rename. Where the file system
+/// allows (O_TMPFILE) the bytes have no name until they are complete, so that even a killed process
+/// leaves nothing behind; elsewhere the next AtomicFile for the same target sweeps what a killed one
+/// left. Not for use by several threads at once.
+class AtomicFile {
+ public:
+  /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.
+  static Result<AtomicFile> create(const std::filesystem::path& target);
+
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&&) = delete;
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  /// Without commit(), everything written is discarded.
+  ~AtomicFile();
+
+  Status write(Bytes bytes);
+
+  /// The descriptor, for reading back what was written before it is committed.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
+
+  /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
+  Status commit();
+
+ private:
+  AtomicFile() = default;
+  Status link_anonymous();
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;  // the name before the rename
+  bool named_ = false;               // whether `temporary_` exists
+  int descriptor_ = -1;
+};
+
+}  // namespace boxtree::cooker

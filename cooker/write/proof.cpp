@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// Proof by walking the file that was written, not the tree that was meant.
+#include <boxtree/cooker/write/proof.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/query/traversal.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace boxtree::cooker {
+namespace {
+
+class Proof {
+ public:
+  Proof(const Tree& tree, bool with_geometry, CertificateRecord& certificate, Findings& findings)
+      : tree_(tree),
+        with_geometry_(with_geometry),
+        certificate_(certificate),
+        findings_(findings),
+        limit_(findings.size() + kMaxFindings) {}
+
+  void run() {
+    certificate_ = {};
+    if (!tree_.empty()) {
+      reached_.resize(tree_.record().face_count, false);
+      walk(tree_.root(), 0);
+      report_unreached();
+    }
+    const TreeRecord& record = tree_.record();
+    compare("depth", certificate_.depth, record.depth);
+    compare("nodes", certificate_.node_count, record.node_count);
+    compare("faces", certificate_.face_count, record.face_count);
+    if (with_geometry_) compare("triangles", triangles_, record.triangle_count);
+  }
+
+ private:
+  void add(Errc code, const std::string& what) {
+    if (findings_.size() < limit_) findings_.push_back({code, what});
+  }
+
+  void compare(const char* what, std::uint32_t found, std::uint32_t stated) {
+    if (found == stated) return;
+    add(Errc::kRecordInvalid, "the record states " + std::to_string(stated) + " " + what +
+                                  ", the tree has " + std::to_string(found));
+  }
+
+  // Bounds of all triangles below. A box that contains them contains each triangle; so comparing
+  // every box with the bounds below it is the whole proof. Recursion is at most kMaxDepth deep.
+  Box<double> walk(const Node& node, std::uint32_t depth) {
+    Box<double> content = node.is_leaf ? visit_leaf(node) : visit_node(node, depth);
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (content.low[k] >= node.box.low[k] && content.high[k] <= node.box.high[k]) continue;
+      if (content.low[k] > content.high[k]) break;  // nothing below, already reported
+      add(Errc::kBoxEscape, std::string(node.is_leaf ? "leaf at face " : "node ") +
+                                std::to_string(node.ref.first) + ", axis " + std::to_string(k) +
+                                ": triangles reach [" + std::to_string(content.low[k]) + ", " +
+                                std::to_string(content.high[k]) + "], the box [" +
+                                std::to_string(node.box.low[k]) + ", " +
+                                std::to_string(node.box.high[k]) + "]");
+      break;
+    }
+    return content;
+  }
+
+  Box<double> visit_node(const Node& node, std::uint32_t depth) {
+    Box<double> content = nothing();
+    if (depth == kMaxDepth) {
+      add(Errc::kDepthExceeded, "node " + std::to_string(node.ref.first) + " is below depth " +
+                                    std::to_string(kMaxDepth));
+      return content;
+    }
+    NodeChildren children;
+    if (const Errc error = tree_.expand(node, children); error != Errc::kOk) {
+      add(error, "node " + std::to_string(node.ref.first) + " contradicts itself");
+      return content;
+    }
+    ++certificate_.node_count;
+    certificate_.depth = std::max(certificate_.depth, depth + 1);
+    if (children.count == 1) ++certificate_.shrink_count;
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      grow(content, walk(children.child[i], depth + 1));
+    }
+    return content;
+  }
+
+  Box<double> visit_leaf(const Node& leaf) {
+    ++certificate_.leaf_count;
+    Box<double> content = nothing();
+    if (!in_range(leaf.ref.first, leaf.ref.second, reached_.size())) {
+      add(Errc::kFaceOutOfRange, "a leaf names face " + std::to_string(leaf.ref.first) + " of " +
+                                     std::to_string(reached_.size()));
+      return content;
+    }
+    for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
+      if (reached_[f]) add(Errc::kFaceRepeated, "face " + std::to_string(f) + " is in two leaves");
+      if (!reached_[f]) ++certificate_.face_count;
+      reached_[f] = true;
+    }
+    if (!with_geometry_) return content;
+    TriangleBatch batch;
+    if (const Errc error = tree_.leaf_triangles(leaf, batch); error != Errc::kOk) {
+      add(error, "leaf at face " + std::to_string(leaf.ref.first) + " cannot be read");
+      return content;
+    }
+    for (std::uint32_t i = 0; i < batch.count; ++i) visit_triangle(batch.triangle(i), batch.face[i], content);
+    return content;
+  }
+
+  void visit_triangle(const Triangle& triangle, std::uint32_t face, Box<double>& content) {
+    ++triangles_;
+    for (const Eigen::Vector3d& corner : triangle.corner) {
+      if (corner.allFinite()) continue;
+      add(Errc::kVertexNotFinite, "face " + std::to_string(face) + " has a corner that is not finite");
+      return;
+    }
+    const Eigen::Vector3d normal = (triangle.corner[1] - triangle.corner[0])
+                                       .cross(triangle.corner[2] - triangle.corner[0]);
+    if (normal.isZero(0)) ++certificate_.degenerate_count;
+    grow(content, bounds_of(triangle));
+  }
+
+  void report_unreached() {
+    for (std::size_t f = 0; f < reached_.size() && findings_.size() < limit_; ++f) {
+      if (!reached_[f]) add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
+    }
+  }
+
+  static Box<double> nothing() {
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+  }
+
+  static void grow(Box<double>& box, const Box<double>& by) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      box.low[k] = std::min(box.low[k], by.low[k]);
+      box.high[k] = std::max(box.high[k], by.high[k]);
+    }
+  }
+
+  const Tree& tree_;
+  bool with_geometry_;
+  CertificateRecord& certificate_;
+  Findings& findings_;
+  std::size_t limit_;
+  std::vector<bool> reached_;
+  std::uint32_t triangles_ = 0;
+};
+
+void verify_certificate(const File& file, std::uint32_t index, bool with_geometry,
+                        const CertificateRecord& found, Findings& findings) {
+  const Bytes bytes = file.section(SectionKind::kCertificate, index);
+  if (bytes.size() != sizeof(CertificateRecord)) {
+    findings.push_back({Errc::kSectionSize, "certificate of " + std::to_string(bytes.size()) +
+                                                " bytes, expected " +
+                                                std::to_string(sizeof(CertificateRecord))});
+    return;
+  }
+  const auto stated = load<CertificateRecord>(bytes.data());
+  const bool counts_hold =
+      stated.depth == found.depth && stated.node_count == found.node_count &&
+      stated.leaf_count == found.leaf_count && stated.face_count == found.face_count &&
+      stated.shrink_count == found.shrink_count &&
+      (!with_geometry || stated.degenerate_count == found.degenerate_count);
+  const bool well_formed = std::isfinite(stated.max_vertex_error) && stated.max_vertex_error >= 0 &&
+                           stated.reserved == decltype(stated.reserved){};
+  if (!counts_hold || !well_formed) {
+    findings.push_back({Errc::kCertificateMismatch, "the certificate's figures are not the tree's"});
+  }
+}
+
+// Binds for a structural check only: leaves of external geometry are never read.
+Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
+                            const std::optional<MeshArrays>& mesh) {
+  BindOptions options;
+  options.mesh = mesh;
+  options.verify_mesh = mesh.has_value();
+  if (!mesh) {
+    const TreeRecord record = file.tree_record(index);
+    MeshArrays absent;
+    absent.face_count = record.face_count;
+    absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
+    options.mesh = absent;
+  }
+  return Tree::bind(file, index, options);
+}
+
+}  // namespace
+
+void prove_tree(const Tree& tree, bool with_geometry, CertificateRecord& certificate,
+                Findings& findings) {
+  Proof(tree, with_geometry, certificate, findings).run();
+}
+
+Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
+  Findings findings;
+  if (Status status = check_padding(file.bytes(), file.container()); !status) {
+    findings.push_back(status.error());
+  }
+  if (Status status = verify_checksums(file); !status) findings.push_back(status.error());
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    const std::size_t before = findings.size();
+    const Result<Tree> tree = bind_for_proof(file, i, mesh);
+    if (!tree) {
+      findings.push_back(tree.error());
+      continue;
+    }
+    const bool with_geometry = tree->record().geometry != GeometryId::kExternal || mesh.has_value();
+    CertificateRecord found;
+    prove_tree(*tree, with_geometry, found, findings);
+    verify_certificate(file, i, with_geometry, found, findings);
+    for (std::size_t f = before; f < findings.size(); ++f) {
+      findings[f].detail = "tree " + std::to_string(i) + ": " + findings[f].detail;
+    }
+  }
+  return findings;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The proof behind the certificate: every triangle lies inside every decoded box above it, every
+// face is reached exactly once, and the counts are as stated.
+#pragma once
+
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/file/file.h>
+#include <boxtree/runtime/tree/tree.h>
+
+#include <optional>
+#include <vector>
+
+namespace boxtree::cooker {
+
+/// Findings of one check, in order of discovery. Empty means: it holds.
+using Findings = std::vector<Error>;
+
+/// At most this many findings are kept of one tree; a damaged tree has millions of them.
+inline constexpr std::size_t kMaxFindings = 100;
+
+/// Walks the whole tree as a reader would and appends what does not hold. `certificate` receives
+/// the counts found. With `with_geometry` false, leaves are counted but triangles not looked at
+/// (external geometry whose mesh is not at hand). Safe on any bytes.
+void prove_tree(const Tree& tree, bool with_geometry, CertificateRecord& certificate,
+                Findings& findings);
+
+/// Everything that can be checked of an open file: padding, section checksums, records, names, each
+/// tree by prove_tree and against its certificate. `mesh` serves trees with external geometry;
+/// without it their triangles are not looked at.
+[[nodiscard]] Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh = {});
+
+}  // namespace boxtree::cooker
