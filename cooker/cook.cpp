@@ -3,6 +3,7 @@
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/version.h>
 #include <boxtree/format/limits.h>
+#include <boxtree/runtime/primitive/triangle.h>
 
 #include <utility>
 
@@ -16,11 +17,9 @@ std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
   std::uint32_t count = 0;
   for (const Face& face : mesh.faces) {
     const std::size_t corners = face.is_quad() ? 4 : 3;
-    const Eigen::Vector3d a = frame.to_tree(mesh.positions[face.corner[0]]);
+    const auto corner = [&](std::size_t i) { return frame.to_tree(mesh.positions[face.corner[i]]); };
     for (std::size_t i = 1; i + 1 < corners; ++i) {
-      const Eigen::Vector3d b = frame.to_tree(mesh.positions[face.corner[i]]);
-      const Eigen::Vector3d c = frame.to_tree(mesh.positions[face.corner[i + 1]]);
-      count += (b - a).cross(c - a).isZero(0) ? 1 : 0;
+      if (is_degenerate({{corner(0), corner(i), corner(i + 1)}})) ++count;
     }
   }
   return count;

@@ -114,9 +114,7 @@ class Proof {
       add(Errc::kVertexNotFinite, "face " + std::to_string(face) + " has a corner that is not finite");
       return;
     }
-    const Eigen::Vector3d normal = (triangle.corner[1] - triangle.corner[0])
-                                       .cross(triangle.corner[2] - triangle.corner[0]);
-    if (normal.isZero(0)) ++certificate_.degenerate_count;
+    if (is_degenerate(triangle)) ++certificate_.degenerate_count;
     grow(content, bounds_of(triangle));
   }
 

@@ -5,6 +5,7 @@
 #include <array>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace boxtree {
 
@@ -13,5 +14,13 @@ namespace boxtree {
 struct Triangle {
   std::array<Eigen::Vector3d, 3> corner;
 };
+
+/// Whether the triangle's normal, computed in double, is zero: a segment, a point, or too thin to
+/// have an area that double resolves.
+[[nodiscard]] inline bool is_degenerate(const Triangle& triangle) noexcept {
+  return (triangle.corner[1] - triangle.corner[0])
+      .cross(triangle.corner[2] - triangle.corner[0])
+      .isZero(0);
+}
 
 }  // namespace boxtree

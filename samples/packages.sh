@@ -1,0 +1,24 @@
+# SPDX-License-Identifier: MIT
+# Debian 12 packages, and the one function that installs what of them is missing. Sourced by
+# samples/quickstart.sh and tests/run.sh.
+
+BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
+  zlib1g-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev"
+SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
+TEST_PACKAGES="libgtest-dev libcgal-dev jq"
+
+# install_missing PACKAGE...: asks the package manager only for what is not there.
+install_missing() {
+  local missing=() package
+  for package in "$@"; do
+    dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q '^install ok installed$' ||
+      missing+=("$package")
+  done
+  [ ${#missing[@]} -eq 0 ] && return 0
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  echo "installing: ${missing[*]}" >&2
+  "${as_root[@]}" apt-get update -qq >&2
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+    apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+}

@@ -1,0 +1,96 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The command line: outputs, errors, exit statuses, same bytes, old file kept on failure.
+set -euo pipefail
+boxtree=$1
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# expect STATUS COMMAND...: runs it, output in ./out and ./err.
+expect() {
+  local want=$1 got=0
+  shift
+  "$@" >out 2>err || got=$?
+  if [ "$got" -ne "$want" ]; then
+    echo "expected exit $want, got $got: $*"
+    cat out err
+    exit 1
+  fi
+}
+same() { [ "$1" = "$2" ] || { echo "expected '$2', found '$1'"; exit 1; }; }
+
+cat >cube.obj <<'OBJ'
+v 0 0 0
+v 1 0 0
+v 0 1 0
+v 1 1 0
+v 0 0 1
+v 1 0 1
+v 0 1 1
+v 1 1 1
+f 1 3 4 2
+f 5 6 8 7
+f 1 2 6 5
+f 3 7 8 4
+f 1 5 7 3
+f 2 4 8 6
+OBJ
+
+expect 0 "$boxtree" cook cube.obj -o cube.bxt --json --depfile cube.d
+same "$(jq -r '.trees[0].triangles' out)" 12
+same "$(jq -r '.trees[0].import.quads_kept' out)" 6
+same "$(jq -r '[.trees[0].candidates[] | select(.rejected == null)] | length' out)" 1
+grep -q '^cube.bxt:' cube.d && grep -q 'cube.obj' cube.d
+expect 0 "$boxtree" verify cube.bxt
+expect 0 "$boxtree" info cube.bxt --json
+same "$(jq -c '.trees[0].bounds' out)" '{"min":[0,0,0],"max":[1,1,1]}'
+same "$(jq -r '.trees[0].name' out)" cube
+
+expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
+same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
+expect 0 "$boxtree" query cube.bxt ray --origin 3,0.5,5 --direction 0,0,-1 --json
+same "$(jq -c '.hit' out)" false
+expect 0 "$boxtree" query cube.bxt box --min=0.9,0.4,0.4 --max 1.5,0.6,0.6 --json
+same "$(jq -c '.faces' out)" '[5]'
+expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,1.5 --radius 0.5 --json
+same "$(jq -c '.faces' out)" '[1]'
+expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --json
+same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25 --json
+same "$(jq -c '.hit' out)" true
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1.001,0.25,0.25 --json
+same "$(jq -c '.hit' out)" false
+
+# Same bytes from another folder and with other thread counts.
+mkdir elsewhere && cp cube.obj elsewhere/
+(cd elsewhere && "$boxtree" cook cube.obj -o cube.bxt --jobs 1 -q)
+cmp cube.bxt elsewhere/cube.bxt
+
+# Errors name the file and the place, and leave the old file alone.
+cp cube.bxt before.bxt
+printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >bad.obj
+expect 3 "$boxtree" cook bad.obj -o cube.bxt
+grep -q 'bad.obj' err
+cmp cube.bxt before.bxt
+expect 2 "$boxtree" cook missing.obj -o cube.bxt
+expect 2 "$boxtree" cook cube.obj -o no/such/folder/out.bxt
+expect 1 "$boxtree" cook cube.obj
+expect 1 "$boxtree" query cube.bxt ray --origin 0,0 --direction 0,0,1
+expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0 --direction 0,0,0
+expect 2 "$boxtree" info missing.bxt
+expect 3 "$boxtree" info cube.obj
+head -c 200 cube.bxt >short.bxt
+expect 3 "$boxtree" verify short.bxt
+cp cube.bxt damaged.bxt
+printf '\377' | dd of=damaged.bxt bs=1 seek=700 conv=notrunc status=none
+expect 3 "$boxtree" verify damaged.bxt
+expect 0 "$boxtree" --help
+expect 0 "$boxtree" --version
+same "$(find . -name '*.cooking' | wc -l)" 0
+
+# External geometry: recognised, and refused without its mesh.
+expect 0 "$boxtree" cook cube.obj -o external.bxt --external
+expect 0 "$boxtree" verify external.bxt
+expect 1 "$boxtree" query external.bxt point --at 0,0,0
+echo "command line: all as expected"

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// Hostile bytes: every truncation and every flipped bit of a small file is refused with a code or
+// answered, with checksums repaired too, so that the checks behind them are reached.
+#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/write/proof.h>
+#include <boxtree/runtime/boxtree.h>
+#include <boxtree/runtime/file/checksum.h>
+
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/meshes.h"
+
+namespace boxtree {
+namespace {
+
+std::vector<std::byte> small_file(CodecId codec) {
+  cooker::CookOptions options;
+  options.codec = codec;
+  Result<cooker::CookedTree> cooked = cooker::cook_mesh(test::city(2, 1), options);
+  return cooker::serialize(std::span(&cooked->tree, 1), "{}\n");
+}
+
+// Opens, proves and asks everything; whatever comes back, it must come back.
+void exercise(Bytes bytes) {
+  const Result<File> file = File::open(bytes);
+  if (!file) return;
+  static_cast<void>(cooker::verify_file(*file));
+  const Result<Tree> tree = Tree::bind(*file);
+  if (!tree) return;
+  static_cast<void>(closest_hit(*tree, {{0.3, 0.4, 9}, {0.01, 0.02, -1}}));
+  static_cast<void>(closest_point(*tree, {3, 2, 1}));
+  const auto all = [](const auto&) { return true; };
+  static_cast<void>(overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}, all));
+  static_cast<void>(overlap_sphere(*tree, {0, 0, 0}, 4, all));
+  static_cast<void>(overlap_pairs(*tree, Pose::Identity(), *tree, Pose::Identity(), all));
+}
+
+// Makes header and section checksums right again after a change.
+void repair(std::vector<std::byte>& bytes) {
+  const auto count = load<FileHeader>(bytes.data()).section_count;
+  const std::size_t table = sizeof(FileHeader);
+  if (!in_range(table, std::uint64_t{count} * sizeof(SectionEntry), bytes.size())) return;
+  for (std::size_t i = 0; i < count; ++i) {
+    auto entry = load<SectionEntry>(bytes.data() + table, i);
+    if (!in_range(entry.offset, entry.size, bytes.size())) continue;
+    entry.checksum = checksum(Bytes(bytes).subspan(entry.offset, entry.size));
+    std::memcpy(bytes.data() + table + i * sizeof(SectionEntry), &entry, sizeof(entry));
+  }
+  const std::uint64_t sum = checksum(Bytes(bytes).first(offsetof(FileHeader, checksum)),
+                                     Bytes(bytes).subspan(table, count * sizeof(SectionEntry)));
+  std::memcpy(bytes.data() + offsetof(FileHeader, checksum), &sum, sizeof(sum));
+}
+
+class Mutation : public testing::TestWithParam<CodecId> {};
+
+TEST_P(Mutation, EveryTruncationIsRefused) {
+  const std::vector<std::byte> whole = small_file(GetParam());
+  ASSERT_TRUE(File::open(whole).ok());
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    ASSERT_FALSE(File::open(cut).ok()) << size;
+  }
+}
+
+TEST_P(Mutation, EveryFlippedBitIsFoundByVerify) {
+  std::vector<std::byte> bytes = small_file(GetParam());
+  ASSERT_TRUE(cooker::verify_file(*File::open(bytes)).empty());
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+    exercise(bytes);
+    const Result<File> file = File::open(bytes);
+    ASSERT_TRUE(!file.ok() || !cooker::verify_file(*file).empty()) << "bit " << bit;
+    bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+  }
+}
+
+TEST_P(Mutation, EveryFlippedBitWithGoodChecksumsIsAnsweredOrRefused) {
+  const std::vector<std::byte> whole = small_file(GetParam());
+  for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
+    std::vector<std::byte> bytes = whole;
+    bytes[bit / 8] ^= std::byte{1} << (bit % 8);
+    repair(bytes);
+    exercise(bytes);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, Mutation, testing::Values(CodecId::kPlainF32, CodecId::kPlainF16),
+                         [](const auto& info) {
+                           return info.param == CodecId::kPlainF32 ? "PlainF32" : "PlainF16";
+                         });
+
+}  // namespace
+}  // namespace boxtree

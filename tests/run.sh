@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Installs what is missing, builds and runs every test. The last line counts them.
+#   tests/run.sh [--all]   --all: also the debug, scalar and sanitizer builds
+set -euo pipefail
+cd "$(dirname "$0")/.."
+# shellcheck source=samples/packages.sh
+. samples/packages.sh
+# shellcheck disable=SC2086 # lists of words
+install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES $TEST_PACKAGES
+
+passed=0 failed=0 skipped=0
+
+# run_preset NAME: configures, builds and tests one preset and adds up its tests.
+run_preset() {
+  local junit=$PWD/build/junit-$1.xml status=0
+  cmake --preset "$1" -DBOXTREE_BUILD_TESTS=ON >/dev/null
+  cmake --build --preset "$1"
+  ctest --preset "$1" --output-on-failure --output-junit "$junit" || status=$?
+  local tests failures skips
+  tests=$(sed -n 's/.*<testsuite.* tests="\([0-9]*\)".*/\1/p;s/^[[:space:]]*tests="\([0-9]*\)".*/\1/p' "$junit" | head -1)
+  failures=$(grep -c 'status="fail"' "$junit" || true)
+  skips=$(grep -cE 'status="(notrun|disabled)"' "$junit" || true)
+  failed=$((failed + failures))
+  skipped=$((skipped + skips))
+  passed=$((passed + tests - failures - skips))
+  # A test run that broke down without naming a failed test is a failure all the same.
+  if [ "$status" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
+}
+
+mkdir -p build
+run_preset release
+if [ "${1:-}" = --all ]; then
+  for preset in debug scalar asan-ubsan tsan; do run_preset "$preset"; done
+fi
+echo "$passed passed, $failed failed, $skipped skipped"
+[ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
