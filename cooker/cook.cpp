@@ -45,16 +45,17 @@ Status check_limits(const SourceMesh& mesh, const CookOptions& options) {
 void encode_candidates(const BuildTree& build, const CookOptions& options, CookedTree& cooked) {
   const EncodedGeometry& geometry = cooked.tree.geometry;
   const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
-  std::vector<EncodedNodes> encoded;
   for (const CodecInfo& codec : kCodecs) {
     if (options.codec && *options.codec != codec.id) continue;
     EncodedNodes nodes = encode_nodes(build, codec.id, order);
     cooked.candidates.push_back({codec.id, nodes.bytes.size(),
                                  geometry.vertices.size() + geometry.corners.size(), nodes.visits,
                                  {}});
-    encoded.push_back(std::move(nodes));
+    // Only the best so far is kept: memory, not time, is what candidates cost.
+    if (choose(cooked.candidates, options.goal) + 1 == cooked.candidates.size()) {
+      cooked.tree.nodes = std::move(nodes);
+    }
   }
-  cooked.tree.nodes = std::move(encoded[choose(cooked.candidates, options.goal)]);
 }
 
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
@@ -130,6 +131,7 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
     step("build " + name);
     Result<CookedTree> cooked = cook_mesh(imported->mesh, options);
     if (!cooked) return cooked.error();
+    imported->mesh = {};
     trees.push_back(std::move(cooked->tree));
     cooked->tree.name = trees.back().name;
     report.trees.push_back(std::move(*cooked));

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <utility>
 
 namespace boxtree::cooker {
 namespace {
@@ -55,12 +56,13 @@ class PlainEncoder {
       leaf_count_ = 1;
     } else {
       out.root = RootKind::kSubtree;
-      nodes_.reserve(tree_.nodes.size() * 3 / 4);
+      // A little more than the two nodes a face that trees with many shrink nodes have; pages that
+      // are not used never become resident.
+      bytes_.reserve((tree_.nodes.size() + 1) / 2 * 9 / 4 * sizeof(Node));
       add_subtree(0, root, 0);
     }
-    out.bytes.resize(nodes_.size() * sizeof(Node));
-    if (!nodes_.empty()) std::memcpy(out.bytes.data(), nodes_.data(), out.bytes.size());
-    out.node_count = static_cast<std::uint32_t>(nodes_.size());
+    out.node_count = node_count();
+    out.bytes = std::move(bytes_);
     out.leaf_count = leaf_count_;
     out.shrink_count = shrink_count_;
     out.depth = depth_;
@@ -82,15 +84,26 @@ class PlainEncoder {
     const std::uint32_t axis = build.axis();
     const std::uint32_t left = source + 1;
     const std::uint32_t right = build.right;
-    const std::size_t place = nodes_.size();
-    nodes_.emplace_back();
+    const std::uint32_t place = append({});  // filled when the children's places are known
     Node node{};
     store_cut(largest_cut_down(box.high[axis], tree_.nodes[left].bounds.high[axis]), node.cut[0]);
     store_cut(largest_cut_up(box.low[axis], tree_.nodes[right].bounds.low[axis]), node.cut[1]);
     node.cutplane = plain_cutplane(axis, kind_of(left), kind_of(right));
     node.child[0] = add_child(left, below_cut(box, node, 0), depth);
     node.child[1] = add_child(right, below_cut(box, node, 1), depth);
-    nodes_[place] = node;
+    std::memcpy(bytes_.data() + std::size_t{place} * sizeof(Node), &node, sizeof(Node));
+  }
+
+  [[nodiscard]] std::uint32_t node_count() const {
+    return static_cast<std::uint32_t>(bytes_.size() / sizeof(Node));
+  }
+
+  // Returns the number of the new node.
+  std::uint32_t append(const Node& node) {
+    const std::uint32_t place = node_count();
+    bytes_.resize(bytes_.size() + sizeof(Node));
+    std::memcpy(bytes_.data() + std::size_t{place} * sizeof(Node), &node, sizeof(Node));
+    return place;
   }
 
   std::uint32_t add_child(std::uint32_t source, const Box<float>& box, std::uint32_t depth) {
@@ -99,7 +112,7 @@ class PlainEncoder {
       const std::uint32_t position = leaf_count_++;
       return order_ == FaceOrder::kTree ? position : build.face();
     }
-    const auto place = static_cast<std::uint32_t>(nodes_.size());
+    const std::uint32_t place = node_count();
     add_subtree(source, box, depth + 1);
     return place;
   }
@@ -144,10 +157,9 @@ class PlainEncoder {
     const Box<float> child = below_cut(box, node, slab.side);
     if (child == box) return false;
 
-    const std::size_t place = nodes_.size();
-    node.child[slab.side] = static_cast<std::uint32_t>(place + 1);
+    node.child[slab.side] = node_count() + 1;
     node.child[1 - slab.side] = kPlainNoChild;
-    nodes_.push_back(node);
+    append(node);
     ++shrink_count_;
     add_subtree(source, child, depth + 1);
     return true;
@@ -172,7 +184,7 @@ class PlainEncoder {
 
   const BuildTree& tree_;
   FaceOrder order_;
-  std::vector<Node> nodes_;
+  std::vector<std::byte> bytes_;
   VisitCost cost_;
   std::uint32_t leaf_count_ = 0;
   std::uint32_t shrink_count_ = 0;

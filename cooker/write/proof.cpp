@@ -103,17 +103,12 @@ class Proof {
       add(error, "leaf at face " + std::to_string(leaf.ref.first) + " cannot be read");
       return content;
     }
-    for (std::uint32_t i = 0; i < batch.count; ++i) visit_triangle(batch.triangle(i), batch.face[i], content);
+    for (std::uint32_t i = 0; i < batch.count; ++i) visit_triangle(batch.triangle(i), content);
     return content;
   }
 
-  void visit_triangle(const Triangle& triangle, std::uint32_t face, Box<double>& content) {
+  void visit_triangle(const Triangle& triangle, Box<double>& content) {
     ++triangles_;
-    for (const Eigen::Vector3d& corner : triangle.corner) {
-      if (corner.allFinite()) continue;
-      add(Errc::kVertexNotFinite, "face " + std::to_string(face) + " has a corner that is not finite");
-      return;
-    }
     if (is_degenerate(triangle)) ++certificate_.degenerate_count;
     grow(content, bounds_of(triangle));
   }

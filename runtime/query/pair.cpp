@@ -126,6 +126,9 @@ class PairWalk {
       const Triangle triangle = second_batch_.triangle(j);
       for (std::size_t c = 0; c < 3; ++c) {
         moved[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
+        if (is_within_reach(moved[j].corner[c])) continue;
+        error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
+        return;
       }
     }
     for (std::uint32_t i = 0; i < first_batch_.count; ++i) {

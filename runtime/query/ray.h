@@ -30,7 +30,8 @@ struct RayHit {
 /// plane of a face does not hit it.
 /// Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
 /// interval, an origin more than 2^180 mesh extents away), and
-/// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange on corrupt bytes. Never
+/// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
+/// bytes. Never
 /// allocates.
 Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray);
 

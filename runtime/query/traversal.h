@@ -49,14 +49,6 @@ namespace boxtree {
   return triangle > 0 && batch.face[triangle - 1] == batch.face[triangle] ? 1 : 0;
 }
 
-/// Tree-space coordinates beyond this have no use in a query (every box lies far inside) and would
-/// overflow in the predicates: queries there are refused or clamped.
-inline constexpr double kReach = 0x1p200;
-
-[[nodiscard]] inline bool is_within_reach(const Eigen::Vector3d& point) noexcept {
-  return (point.cwiseAbs().array() <= kReach).all();  // false for NaN
-}
-
 /// Squared distance from a point to a closed box; monotone in the box, zero inside.
 template <class S>
 [[nodiscard]] double squared_distance(const Eigen::Vector3d& point, const Box<S>& box) noexcept {

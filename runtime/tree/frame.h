@@ -35,4 +35,12 @@ struct Frame {
   }
 };
 
+/// Tree-space coordinates beyond this would overflow in the predicates. Every honest box lies far
+/// inside: queries beyond are refused or clamped, stored vertices beyond are corrupt.
+inline constexpr double kReach = 0x1p200;
+
+[[nodiscard]] inline bool is_within_reach(const Eigen::Vector3d& point) noexcept {
+  return (point.cwiseAbs().array() <= kReach).all();  // false for NaN
+}
+
 }  // namespace boxtree

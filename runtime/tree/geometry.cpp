@@ -64,6 +64,7 @@ Errc LeafReader::read(std::uint32_t first, std::uint32_t count,
     for (std::size_t i = 0; i < corner_count; ++i) {
       if (corner[i] >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
       position[i] = frame_.to_tree(mesh_.position(corner[i]));
+      if (!is_within_reach(position[i])) return Errc::kVertexNotFinite;
     }
     for (std::size_t second = 1; second + 1 < corner_count; ++second) {
       for (std::size_t axis = 0; axis < 3; ++axis) {

@@ -94,8 +94,8 @@ class LeafReader {
 
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
 
-  /// Triangles of faces [first, first + count). kFaceOutOfRange or kVertexOutOfRange on corrupt
-  /// numbers or when the leaf holds more than kMaxLeafTriangles.
+  /// Triangles of faces [first, first + count). On corrupt bytes kFaceOutOfRange (also when the
+  /// leaf holds more than kMaxLeafTriangles), kVertexOutOfRange or kVertexNotFinite.
   [[nodiscard]] Errc read(std::uint32_t first, std::uint32_t count,
                           TriangleBatch& out) const noexcept;
 

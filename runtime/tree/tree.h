@@ -68,7 +68,7 @@ class Tree {
   [[nodiscard]] Errc expand(const Node& node, NodeChildren& out) const noexcept;
 
   /// Triangles of a leaf, in tree space; TriangleBatch::face counts faces in this tree's order.
-  /// kFaceOutOfRange or kVertexOutOfRange when its bytes are corrupt.
+  /// kFaceOutOfRange, kVertexOutOfRange or kVertexNotFinite when its bytes are corrupt.
   [[nodiscard]] Errc leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept;
 
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
