@@ -1,0 +1,25 @@
+# Installation: find_package(boxtree CONFIG) gives boxtree::format and boxtree::runtime, the program
+# boxtree::cli, and boxtree_add_cooked_assets().
+include(CMakePackageConfigHelpers)
+
+set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
+install(TARGETS boxtree_format boxtree_runtime EXPORT boxtreeTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+foreach(folder format runtime)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/
+          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree/${folder}
+          FILES_MATCHING PATTERN "*.h")
+endforeach()
+if(BOXTREE_BUILD_COOKER)
+  install(TARGETS boxtree_cli EXPORT boxtreeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+endif()
+install(EXPORT boxtreeTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
+configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/boxtreeConfig.cmake.in
+                              ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
+                              INSTALL_DESTINATION ${BOXTREE_CONFIG_DIR})
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
+                                 COMPATIBILITY SameMajorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
+              ${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
+              ${PROJECT_SOURCE_DIR}/cmake/BoxtreeCookedAssets.cmake
+        DESTINATION ${BOXTREE_CONFIG_DIR})

@@ -2,7 +2,7 @@
 # Debian 12 packages, and the one function that installs what of them is missing. Sourced by
 # samples/quickstart.sh and tests/run.sh.
 
-BUILD_PACKAGES="g++ cmake ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
+BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
   zlib1g-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
 TEST_PACKAGES="libgtest-dev libcgal-dev jq"
