@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The stages in the order the data flows.
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/version.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/primitive/triangle.h>
-
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/version.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/primitive/triangle.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -17,7 +17,9 @@ std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
   std::uint32_t count = 0;
   for (const Face& face : mesh.faces) {
     const std::size_t corners = face.is_quad() ? 4 : 3;
-    const auto corner = [&](std::size_t i) { return frame.to_tree(mesh.positions[face.corner[i]]); };
+    const auto corner = [&](std::size_t i) {
+      return frame.to_tree(mesh.positions[face.corner[i]]);
+    };
     for (std::size_t i = 1; i + 1 < corners; ++i) {
       if (is_degenerate({{corner(0), corner(i), corner(i + 1)}})) ++count;
     }
@@ -27,9 +29,9 @@ std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
 
 Status check_limits(const SourceMesh& mesh, const CookOptions& options) {
   if (mesh.faces.size() > kMaxFaces || mesh.positions.size() > kMaxVertices) {
-    return Error{Errc::kMeshTooLarge, fmt::format("{}: {} faces, {} vertices, limit {}", mesh.name,
-                                                  mesh.faces.size(), mesh.positions.size(),
-                                                  kMaxFaces)};
+    return Error{Errc::kMeshTooLarge,
+                 fmt::format("{}: {} faces, {} vertices, limit {}", mesh.name, mesh.faces.size(),
+                             mesh.positions.size(), kMaxFaces)};
   }
   if (options.geometry != GeometryId::kExternal) return {};
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
@@ -48,8 +50,10 @@ void encode_candidates(const BuildTree& build, const CookOptions& options, Cooke
   for (const CodecInfo& codec : kCodecs) {
     if (options.codec && *options.codec != codec.id) continue;
     EncodedNodes nodes = encode_nodes(build, codec.id, order);
-    cooked.candidates.push_back({codec.id, nodes.bytes.size(),
-                                 geometry.vertices.size() + geometry.corners.size(), nodes.visits,
+    cooked.candidates.push_back({codec.id,
+                                 nodes.bytes.size(),
+                                 geometry.vertices.size() + geometry.corners.size(),
+                                 nodes.visits,
                                  {}});
     // Only the best so far is kept: memory, not time, is what candidates cost.
     if (choose(cooked.candidates, options.goal) + 1 == cooked.candidates.size()) {
@@ -62,16 +66,15 @@ std::string cook_record(const CookOptions& options, const std::vector<CookedTree
                         const std::vector<ImportReport>& imports) {
   nlohmann::ordered_json record;
   record["tool"] = fmt::format("boxtree {}", kVersion);
-  record["options"] = {
-      {"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
-      {"for", options.goal == Goal::kMemory ? "memory"
-              : options.goal == Goal::kSpeed ? "speed"
-                                             : "balance"},
-      {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
-      {"geometry", geometry_name(options.geometry)},
-      {"face_ids", options.face_ids},
-      {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
-      {"skip_bad", options.import.skip_bad}};
+  record["options"] = {{"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
+                       {"for", options.goal == Goal::kMemory  ? "memory"
+                               : options.goal == Goal::kSpeed ? "speed"
+                                                              : "balance"},
+                       {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
+                       {"geometry", geometry_name(options.geometry)},
+                       {"face_ids", options.face_ids},
+                       {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
+                       {"skip_bad", options.import.skip_bad}};
   record["sources"] = nlohmann::ordered_json::array();
   for (std::size_t i = 0; i < imports.size(); ++i) {
     record["sources"].push_back({{"name", trees[i].tree.name},
@@ -104,9 +107,8 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options)
   tree.degenerate_count = count_degenerate(mesh, build.frame());
   tree.positions_f64 = mesh.positions.precision == Precision::kF64;
   tree.faces_in_source_order = options.geometry == GeometryId::kExternal;
-  tree.geometry = tree.faces_in_source_order
-                      ? encode_external_geometry(mesh)
-                      : encode_exact_geometry(mesh, build, options.face_ids);
+  tree.geometry = tree.faces_in_source_order ? encode_external_geometry(mesh)
+                                             : encode_exact_geometry(mesh, build, options.face_ids);
   if (!options.face_ids) {
     cooked.left_out.push_back({"face_ids", std::uint64_t{tree.face_count} * 4, "--no-face-ids"});
   }

@@ -2,16 +2,16 @@
 // The pipeline as one call: import -> build -> encode -> choose -> write.
 #pragma once
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/choose/choose.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/write/file_writer.h>
-
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/choose/choose.h>
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/write/file_writer.h>
 
 namespace boxtree::cooker {
 
@@ -51,9 +51,9 @@ struct CookReport {
 /// Told of every step ("import bunny.obj"); may be empty.
 using Progress = std::function<void(const std::string& step)>;
 
-/// Cooks each input into one tree named after its file, and writes and proves the file. On any error
-/// nothing of `output` changes. Runs on the threads of the enclosing oneTBB arena; the bytes written
-/// do not depend on their number, nor on where the inputs lie.
+/// Cooks each input into one tree named after its file, and writes and proves the file. On any
+/// error nothing of `output` changes. Runs on the threads of the enclosing oneTBB arena; the bytes
+/// written do not depend on their number, nor on where the inputs lie.
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress = {});

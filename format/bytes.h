@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Reading fixed-width values out of mapped bytes, and the one range test that all offsets go through.
+// Reading fixed-width values out of mapped bytes, and the one range test that all offsets go
+// through.
 #pragma once
 
 #include <bit>

@@ -3,11 +3,11 @@
 // the children and their decoded boxes?
 #pragma once
 
-#include <boxtree/format/box.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
+
+#include <boxtree/format/box.h>
 
 namespace boxtree {
 

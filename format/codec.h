@@ -48,8 +48,10 @@ inline constexpr std::array kCodecs = {
 
 [[nodiscard]] constexpr std::string_view geometry_name(GeometryId id) noexcept {
   switch (id) {
-    case GeometryId::kExternal: return "external";
-    case GeometryId::kExact: return "exact";
+    case GeometryId::kExternal:
+      return "external";
+    case GeometryId::kExact:
+      return "exact";
   }
   return "unknown";
 }

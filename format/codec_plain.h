@@ -3,12 +3,12 @@
 // merged into their parents, children are 32-bit numbers, a node is 20 or 16 bytes.
 #pragma once
 
+#include <cstdint>
+#include <type_traits>
+
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/children.h>
 #include <boxtree/format/half.h>
-
-#include <cstdint>
-#include <type_traits>
 
 namespace boxtree {
 
@@ -47,13 +47,15 @@ static_assert(sizeof(PlainNodeF16) == 16 && std::is_trivially_copyable_v<PlainNo
   return axis | static_cast<std::uint32_t>(left) << 2 | static_cast<std::uint32_t>(right) << 4;
 }
 
-[[nodiscard]] constexpr float plain_cut_value(float cut) noexcept { return cut; }
+[[nodiscard]] constexpr float plain_cut_value(float cut) noexcept {
+  return cut;
+}
 [[nodiscard]] constexpr float plain_cut_value(std::uint16_t cut) noexcept {
   return half_to_float(cut);
 }
 
-/// Decodes nodes of one tree. A NodeRef of this codec is the range [first, second) of nodes that the
-/// subtree occupies; its root is `first`.
+/// Decodes nodes of one tree. A NodeRef of this codec is the range [first, second) of nodes that
+/// the subtree occupies; its root is `first`.
 template <class Cut>
 struct PlainCodec {
   using Node = PlainNode<Cut>;

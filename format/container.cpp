@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Container checks. Every offset and size of a file passes through here before anything reads by it.
-#include <boxtree/format/container.h>
-
+// Container checks. Every offset and size of a file passes through here before anything reads by
+// it.
 #include <algorithm>
 #include <string>
+
+#include <boxtree/format/container.h>
 
 namespace boxtree {
 namespace {
@@ -19,7 +20,8 @@ bool is_known(std::uint32_t kind) {
 }
 
 Status check_header(const FileHeader& header, std::uint64_t file_size) {
-  if (header.magic != kMagic) return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
+  if (header.magic != kMagic)
+    return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
   if (header.version_major != kVersionMajor) {
     return Error{Errc::kVersionUnsupported,
                  "file has format version " + std::to_string(header.version_major) + "." +
@@ -48,8 +50,8 @@ Status check_header(const FileHeader& header, std::uint64_t file_size) {
 Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t file_size,
                      std::uint64_t& free_from) {
   if (!is_known(entry.kind) && (entry.flags & kSectionRequired) != 0) {
-    return Error{Errc::kSectionUnknown, describe(index, entry) + ": kind " +
-                                            std::to_string(entry.kind) + " is required"};
+    return Error{Errc::kSectionUnknown,
+                 describe(index, entry) + ": kind " + std::to_string(entry.kind) + " is required"};
   }
   if ((entry.flags & ~kSectionRequired) != 0 || entry.reserved != 0) {
     return Error{Errc::kHeaderCorrupt, describe(index, entry) + ": reserved bits are set"};
@@ -66,10 +68,10 @@ Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t
                                             std::to_string(kMaxSectionGap) + " above"};
   }
   if (!in_range(entry.offset, entry.size, file_size)) {
-    return Error{Errc::kSectionOutOfRange,
-                 describe(index, entry) + ": offset " + std::to_string(entry.offset) + " + " +
-                     std::to_string(entry.size) + " ends past file size " +
-                     std::to_string(file_size)};
+    return Error{Errc::kSectionOutOfRange, describe(index, entry) + ": offset " +
+                                               std::to_string(entry.offset) + " + " +
+                                               std::to_string(entry.size) +
+                                               " ends past file size " + std::to_string(file_size)};
   }
   free_from = entry.offset + entry.size;
   return {};
@@ -93,14 +95,22 @@ Status check_duplicates(const std::vector<SectionEntry>& sections) {
 
 std::string_view section_name(SectionKind kind) noexcept {
   switch (kind) {
-    case SectionKind::kTrees: return "trees";
-    case SectionKind::kNodes: return "nodes";
-    case SectionKind::kVertices: return "vertices";
-    case SectionKind::kCorners: return "corners";
-    case SectionKind::kFaceIds: return "face_ids";
-    case SectionKind::kCertificate: return "certificate";
-    case SectionKind::kNames: return "names";
-    case SectionKind::kCookRecord: return "cook_record";
+    case SectionKind::kTrees:
+      return "trees";
+    case SectionKind::kNodes:
+      return "nodes";
+    case SectionKind::kVertices:
+      return "vertices";
+    case SectionKind::kCorners:
+      return "corners";
+    case SectionKind::kFaceIds:
+      return "face_ids";
+    case SectionKind::kCertificate:
+      return "certificate";
+    case SectionKind::kNames:
+      return "names";
+    case SectionKind::kCookRecord:
+      return "cook_record";
   }
   return "unknown";
 }
@@ -151,11 +161,12 @@ Status check_padding(Bytes file, const Container& container) {
   std::uint64_t begin = sizeof(FileHeader) + container.sections.size() * sizeof(SectionEntry);
   const auto check_gap = [&](std::uint64_t end) -> Status {
     const Bytes gap = file.subspan(begin, end - begin);
-    const auto stain = std::find_if(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte{0}; });
+    const auto stain =
+        std::find_if(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte{0}; });
     if (stain == gap.end()) return {};
-    return Error{Errc::kPaddingNotZero, "byte " + std::to_string(begin + static_cast<std::uint64_t>(
-                                                                           stain - gap.begin())) +
-                                            " is padding and not zero"};
+    return Error{Errc::kPaddingNotZero,
+                 "byte " + std::to_string(begin + static_cast<std::uint64_t>(stain - gap.begin())) +
+                     " is padding and not zero"};
   };
   for (const SectionEntry& entry : container.sections) {
     if (Status status = check_gap(entry.offset); !status) return status;

@@ -4,16 +4,16 @@
 //   1.0  header, section table, codecs plain-f32 and plain-f16, geometry exact and external
 #pragma once
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/result.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string_view>
 #include <type_traits>
 #include <vector>
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/format/result.h>
 
 namespace boxtree {
 

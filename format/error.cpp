@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The error table: one row a code, so that names, meanings and exit statuses cannot drift apart.
-#include <boxtree/format/error.h>
-
 #include <algorithm>
 #include <array>
+
+#include <boxtree/format/error.h>
 
 namespace boxtree {
 namespace {
@@ -76,7 +76,9 @@ static_assert(std::is_sorted(kTable.begin(), kTable.end(),
 
 }  // namespace
 
-std::span<const ErrcInfo> error_table() noexcept { return kTable; }
+std::span<const ErrcInfo> error_table() noexcept {
+  return kTable;
+}
 
 const ErrcInfo& error_info(Errc code) noexcept {
   const auto row = std::find_if(kTable.begin(), kTable.end(),

@@ -69,7 +69,8 @@ enum class Errc : std::uint16_t {
   kInternal = 90,
 };
 
-/// One row of the error table: pinned number, stable name, meaning, exit status of the command line.
+/// One row of the error table: pinned number, stable name, meaning, exit status of the command
+/// line.
 struct ErrcInfo {
   Errc code;
   std::string_view name;

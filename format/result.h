@@ -2,12 +2,12 @@
 // A value or the first error that prevented it. Stands in for std::expected, which C++20 lacks.
 #pragma once
 
-#include <boxtree/format/error.h>
-
 #include <cassert>
 #include <string>
 #include <utility>
 #include <variant>
+
+#include <boxtree/format/error.h>
 
 namespace boxtree {
 
@@ -57,7 +57,9 @@ class [[nodiscard]] Result {
     assert(!ok());
     return *std::get_if<1>(&state_);
   }
-  [[nodiscard]] Errc code() const noexcept { return ok() ? Errc::kOk : std::get_if<1>(&state_)->code; }
+  [[nodiscard]] Errc code() const noexcept {
+    return ok() ? Errc::kOk : std::get_if<1>(&state_)->code;
+  }
 
  private:
   std::variant<T, Error> state_;

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Checks of one tree record: after them, counts and boxes may be used in arithmetic without care.
-#include <boxtree/format/tree_record.h>
-
-#include <boxtree/format/limits.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
 
+#include <boxtree/format/limits.h>
+#include <boxtree/format/tree_record.h>
+
 namespace boxtree {
 namespace {
-
 
 bool counts_fit(const TreeRecord& record) {
   const std::uint64_t faces = record.face_count;
@@ -21,9 +19,12 @@ bool counts_fit(const TreeRecord& record) {
 
 bool root_fits(const TreeRecord& record) {
   switch (record.root) {
-    case RootKind::kEmpty: return record.face_count == 0 && record.node_count == 0;
-    case RootKind::kLeaf: return record.face_count > 0 && record.node_count == 0;
-    case RootKind::kSubtree: return record.face_count > 0 && record.node_count > 0;
+    case RootKind::kEmpty:
+      return record.face_count == 0 && record.node_count == 0;
+    case RootKind::kLeaf:
+      return record.face_count > 0 && record.node_count == 0;
+    case RootKind::kSubtree:
+      return record.face_count > 0 && record.node_count > 0;
   }
   return false;
 }

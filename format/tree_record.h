@@ -2,13 +2,13 @@
 // The fixed-width records that describe one tree: where it lies, how it is stored, what was proven.
 #pragma once
 
-#include <boxtree/format/codec.h>
-#include <boxtree/format/result.h>
-
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
+
+#include <boxtree/format/codec.h>
+#include <boxtree/format/result.h>
 
 namespace boxtree {
 
@@ -36,10 +36,10 @@ struct TreeRecord {
   std::uint32_t vertex_count;
   std::uint32_t node_count;
   RootKind root;
-  std::uint32_t depth;             // inner nodes on the longest path; at most kMaxDepth
-  std::uint8_t corner_bytes;       // 2 or 4; 0 when corners are external
-  std::uint8_t corners_per_face;   // 3, or 4 when the mesh has quads; 0 when external
-  std::uint8_t face_id_bytes;      // 1, 2 or 4; 0 without a face_ids section
+  std::uint32_t depth;            // inner nodes on the longest path; at most kMaxDepth
+  std::uint8_t corner_bytes;      // 2 or 4; 0 when corners are external
+  std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
+  std::uint8_t face_id_bytes;     // 1, 2 or 4; 0 without a face_ids section
   std::uint8_t reserved0;
   std::int32_t scale_exponent;
   std::uint32_t name_offset;  // into the names section
@@ -47,7 +47,7 @@ struct TreeRecord {
   std::array<double, 3> origin;     // object space
   std::array<double, 3> root_low;   // tree space
   std::array<double, 3> root_high;  // tree space
-  std::uint64_t geometry_hash;  // XXH3-64 of the faces' corner positions; docs/FORMAT.md
+  std::uint64_t geometry_hash;      // XXH3-64 of the faces' corner positions; docs/FORMAT.md
   std::array<std::uint64_t, 8> reserved1;
 };
 static_assert(sizeof(TreeRecord) == 192 && std::is_trivially_copyable_v<TreeRecord>);
@@ -56,12 +56,12 @@ static_assert(offsetof(TreeRecord, geometry_hash) == 120);
 
 /// What the cooker proved about the tree after it had written it; `boxtree verify` proves it again.
 struct CertificateRecord {
-  double max_vertex_error;        // largest distance of a stored from a source vertex, object space
-  std::uint32_t depth;            // equals TreeRecord::depth
-  std::uint32_t node_count;       // nodes reached from the root
-  std::uint32_t leaf_count;       // leaves reached
-  std::uint32_t face_count;       // faces reached, each exactly once
-  std::uint32_t shrink_count;     // nodes with one child
+  double max_vertex_error;     // largest distance of a stored from a source vertex, object space
+  std::uint32_t depth;         // equals TreeRecord::depth
+  std::uint32_t node_count;    // nodes reached from the root
+  std::uint32_t leaf_count;    // leaves reached
+  std::uint32_t face_count;    // faces reached, each exactly once
+  std::uint32_t shrink_count;  // nodes with one child
   std::uint32_t degenerate_count;  // triangles without area, kept
   std::array<std::uint64_t, 4> reserved;
 };

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // The recursion around a split rule: frame, face boxes, preorder nodes, guards on depth.
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/build/splitter.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -12,6 +9,8 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/parallel_invoke.h>
 
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/build/splitter.h>
 #include <boxtree/format/limits.h>
 
 namespace boxtree::cooker {
@@ -31,7 +30,9 @@ float round_down(double value) {
              : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
 }
 
-float round_up(double value) { return -round_down(-value); }
+float round_up(double value) {
+  return -round_down(-value);
+}
 
 struct Bounds {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -68,8 +69,8 @@ void choose_frame(const Positions& positions, BuildTree& tree) {
     halved = 0;
   }
   if (size == 0) return;
-  tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent,
-                                   -kMaxScaleExponent, kMaxScaleExponent);
+  tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,
+                                   kMaxScaleExponent);
 }
 
 Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
@@ -97,7 +98,8 @@ class Recursion {
 
   // Builds faces [first, last) into the nodes from `node` on: n faces fill exactly 2n - 1 of them,
   // so that subtrees know their places in advance and threads never meet. Returns the bounds.
-  Box<float> build(std::size_t first, std::size_t last, std::size_t node, std::uint32_t depth_left) {
+  Box<float> build(std::size_t first, std::size_t last, std::size_t node,
+                   std::uint32_t depth_left) {
     BuildNode& here = nodes_[node];
     const std::size_t count = last - first;
     if (count == 1) {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// The binary tree before it is encoded: splits and exact bounds, one face a leaf, no codec in sight.
+// The binary tree before it is encoded: splits and exact bounds, one face a leaf, no codec in
+// sight.
 #pragma once
-
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/format/box.h>
-#include <boxtree/runtime/tree/frame.h>
 
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/format/box.h>
+#include <boxtree/runtime/tree/frame.h>
 
 namespace boxtree::cooker {
 

@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
-// The paper's split: sort by box minima on each axis, sweep, and take the division with the smallest
-// faces-times-volume (Zachmann's BoxTree builder; kept so that the paper's tables can be redrawn).
-#include <boxtree/cooker/build/splitter.h>
-
+// The paper's split: sort by box minima on each axis, sweep, and take the division with the
+// smallest faces-times-volume (Zachmann's BoxTree builder; kept so that the paper's tables can be
+// redrawn).
 #include <vector>
+
+#include <boxtree/cooker/build/splitter.h>
 
 namespace boxtree::cooker {
 namespace {
 
 void sort_by_minimum(std::span<FaceBox> faces, std::size_t axis) {
   std::sort(faces.begin(), faces.end(), [axis](const FaceBox& a, const FaceBox& b) {
-    return a.box.low[axis] != b.box.low[axis] ? a.box.low[axis] < b.box.low[axis]
-                                              : a.face < b.face;
+    return a.box.low[axis] != b.box.low[axis] ? a.box.low[axis] < b.box.low[axis] : a.face < b.face;
   });
 }
 
 }  // namespace
 
 // cost = (nL lenL + nR lenR) * area of the two other sides. The paper skips axes shorter than an
-// absolute 1e-5; an axis without extent is the only one that cannot be split, so only it is skipped.
+// absolute 1e-5; an axis without extent is the only one that cannot be split, so only it is
+// skipped.
 std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds) {
   const std::size_t n = faces.size();
   std::vector<double> right_length(n);
@@ -32,8 +33,8 @@ std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bou
     sorted_axis = k;
     const std::size_t i1 = (k + 1) % 3;
     const std::size_t i2 = (k + 2) % 3;
-    const double area = (double{bounds.high[i1]} - bounds.low[i1]) *
-                        (double{bounds.high[i2]} - bounds.low[i2]);
+    const double area =
+        (double{bounds.high[i1]} - bounds.low[i1]) * (double{bounds.high[i2]} - bounds.low[i2]);
     float high = faces[n - 1].box.high[k];
     for (std::size_t i = n; i-- > 1;) {
       high = std::max(high, faces[i].box.high[k]);
@@ -43,8 +44,9 @@ std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bou
     for (std::size_t i = 1; i < n; ++i) {
       high = std::max(high, faces[i - 1].box.high[k]);
       const double left_length = double{high} - faces[0].box.low[k];
-      const double cost = (static_cast<double>(i) * left_length +
-                           static_cast<double>(n - i) * right_length[i]) * area;
+      const double cost =
+          (static_cast<double>(i) * left_length + static_cast<double>(n - i) * right_length[i]) *
+          area;
       const std::size_t imbalance = i > n - i ? 2 * i - n : n - 2 * i;
       if (cost < best_cost || (cost == best_cost && imbalance < best_imbalance)) {
         best_cost = cost;

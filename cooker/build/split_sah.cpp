@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Surface-area heuristic: bins for large sets (Wald, "On fast Construction of SAH-based Bounding
 // Volume Hierarchies", 2007), a full sweep for small ones.
-#include <boxtree/cooker/build/splitter.h>
-
 #include <array>
 #include <cmath>
+
+#include <boxtree/cooker/build/splitter.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -2,13 +2,13 @@
 // What the two builders share: a split rule is a function from a set of faces to two smaller sets.
 #pragma once
 
-#include <boxtree/cooker/build/build_tree.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
+
+#include <boxtree/cooker/build/build_tree.h>
 
 namespace boxtree::cooker {
 

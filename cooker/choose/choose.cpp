@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One number a candidate, the smallest wins.
-#include <boxtree/cooker/choose/choose.h>
-
 #include <cmath>
+
+#include <boxtree/cooker/choose/choose.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -10,21 +10,27 @@ namespace {
 double score(const Candidate& candidate, Goal goal) {
   const auto bytes = static_cast<double>(candidate.tree_bytes + candidate.geometry_bytes);
   // Geometric mean of the three kinds, so that none is drowned by the units of another.
-  const double visits =
-      std::cbrt(candidate.cost.ray) * std::cbrt(candidate.cost.box) * std::cbrt(candidate.cost.pair);
+  const double visits = std::cbrt(candidate.cost.ray) * std::cbrt(candidate.cost.box) *
+                        std::cbrt(candidate.cost.pair);
   switch (goal) {
-    case Goal::kMemory: return bytes;
-    case Goal::kSpeed: return visits;
-    case Goal::kBalance: break;
+    case Goal::kMemory:
+      return bytes;
+    case Goal::kSpeed:
+      return visits;
+    case Goal::kBalance:
+      break;
   }
   return bytes * visits;
 }
 
 const char* reason(Goal goal) {
   switch (goal) {
-    case Goal::kMemory: return "more bytes";
-    case Goal::kSpeed: return "more expected visits";
-    case Goal::kBalance: break;
+    case Goal::kMemory:
+      return "more bytes";
+    case Goal::kSpeed:
+      return "more expected visits";
+    case Goal::kBalance:
+      break;
   }
   return "larger product of bytes and expected visits";
 }

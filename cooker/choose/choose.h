@@ -2,11 +2,11 @@
 // Choosing among encodings of the same tree, by bytes and by expected work, never by a clock.
 #pragma once
 
-#include <boxtree/cooker/encode/encoded.h>
-
 #include <cstddef>
 #include <span>
 #include <string>
+
+#include <boxtree/cooker/encode/encoded.h>
 
 namespace boxtree::cooker {
 
@@ -22,9 +22,9 @@ struct Candidate {
   std::string rejected;  // why it was not chosen; empty for the chosen one
 };
 
-/// Number of the best candidate: fewest bytes, fewest expected visits over ray, box and pair, or the
-/// smallest product of both. Ties go to the earlier one. Fills Candidate::rejected of the others.
-/// Precondition: candidates is not empty.
+/// Number of the best candidate: fewest bytes, fewest expected visits over ray, box and pair, or
+/// the smallest product of both. Ties go to the earlier one. Fills Candidate::rejected of the
+/// others. Precondition: candidates is not empty.
 std::size_t choose(std::span<Candidate> candidates, Goal goal);
 
 }  // namespace boxtree::cooker

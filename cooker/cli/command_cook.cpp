@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/cook.h>
-
 #include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
-#include <sys/resource.h>
-#include <unistd.h>
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/cook.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -81,8 +81,9 @@ Status write_depfile(const Arguments& arguments, const CookReport& report) {
 }
 
 double per_triangle(std::uint64_t bytes, const EncodedTree& tree) {
-  return tree.triangle_count == 0 ? 0
-                                  : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
+  return tree.triangle_count == 0
+             ? 0
+             : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
 }
 
 Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
@@ -92,9 +93,8 @@ Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
   json["bytes_per_triangle"] = {
       {"tree", per_triangle(candidate.tree_bytes, tree)},
       {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
-  json["cost"] = {{"ray", candidate.cost.ray},
-                  {"box", candidate.cost.box},
-                  {"pair", candidate.cost.pair}};
+  json["cost"] = {
+      {"ray", candidate.cost.ray}, {"box", candidate.cost.box}, {"pair", candidate.cost.pair}};
   json["error"] = {{"max_vertex_error", 0.0}};  // both stores keep every bit of a position
   json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
   if (candidate.rejected.empty()) {
@@ -220,7 +220,8 @@ void add_cook_command(CLI::App& app, int& status) {
       ->check(CLI::IsMember(codecs))
       ->capture_default_str();
   command
-      .add_option("--for", arguments->options.goal, "What `auto` minimises: memory, speed or balance")
+      .add_option("--for", arguments->options.goal,
+                  "What `auto` minimises: memory, speed or balance")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Goal>{
           {"memory", Goal::kMemory}, {"speed", Goal::kSpeed}, {"balance", Goal::kBalance}}));
   command.add_option("--builder", arguments->options.builder, "Split rule: sah or paper")

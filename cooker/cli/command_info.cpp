@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // `boxtree info`: what a file holds and what each part costs.
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/runtime/boxtree.h>
-
 #include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/runtime/boxtree.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -35,7 +35,9 @@ double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
              : static_cast<double>(bytes) / static_cast<double>(record.triangle_count);
 }
 
-Json vector_json(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+Json vector_json(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
 
 Json tree_json(const File& file, std::uint32_t index) {
   const TreeRecord record = file.tree_record(index);
@@ -56,9 +58,10 @@ Json tree_json(const File& file, std::uint32_t index) {
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)}};
   const Bytes certificate = file.section(SectionKind::kCertificate, index);
-  json["max_vertex_error"] = certificate.size() == sizeof(CertificateRecord)
-                                 ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
-                                 : Json(nullptr);
+  json["max_vertex_error"] =
+      certificate.size() == sizeof(CertificateRecord)
+          ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
+          : Json(nullptr);
   const Frame frame(record);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -125,7 +128,8 @@ int run(const Arguments& arguments) {
 
 void add_info_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
+  CLI::App& command =
+      *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
   command.add_option("file", arguments->file, "A .bxt file")->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.callback([arguments, &status] { status = run(*arguments); });

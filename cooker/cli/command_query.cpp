@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // `boxtree query`: asks one tree of a mapped file, or two trees against each other.
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/runtime/boxtree.h>
-
 #include <charconv>
 #include <filesystem>
 #include <limits>
@@ -10,6 +7,9 @@
 #include <optional>
 
 #include <fmt/format.h>
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/runtime/boxtree.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -50,7 +50,9 @@ Result<Opened> open_tree(const std::filesystem::path& path, const std::string& w
   return Opened{std::move(*file), std::move(*tree)};
 }
 
-Json vector_json(const Eigen::Vector3d& v) { return {v[0], v[1], v[2]}; }
+Json vector_json(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
 
 Json face_json(const FaceRef& face) {
   return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
@@ -155,8 +157,8 @@ int ask_pair(const Arguments& arguments) {
   if (!second) return fail(second.error());
   Json pairs = Json::array();
   std::size_t count = 0;
-  const Result<Visit> visit = overlap_pairs(
-      first->tree, Pose::Identity(), second->tree, *pose, [&](const FacePair& pair) {
+  const Result<Visit> visit =
+      overlap_pairs(first->tree, Pose::Identity(), second->tree, *pose, [&](const FacePair& pair) {
         ++count;
         pairs.push_back({face_json(pair.first), face_json(pair.second)});
         return !arguments.first_only;

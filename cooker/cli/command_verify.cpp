@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `boxtree verify`: proves a file again, as the cooker did before it released it.
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/write/proof.h>
-#include <boxtree/runtime/file/file.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <memory>
 
 #include <fmt/format.h>
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/write/proof.h>
+#include <boxtree/runtime/file/file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -63,7 +63,8 @@ int run(const Arguments& arguments) {
 
 void add_verify_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
+  CLI::App& command =
+      *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
   command.add_option("file", arguments->file, "A .bxt file")->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.callback([arguments, &status] { status = run(*arguments); });

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The command line `boxtree`: one sub-command a file.
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/version.h>
-
 #include <cstdio>
 #include <exception>
 #include <new>
 
 #include <fmt/format.h>
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/version.h>
 
 int main(int argc, char** argv) {
   using namespace boxtree;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Output conventions of the command line.
-#include <boxtree/cooker/cli/output.h>
-
 #include <array>
 #include <charconv>
 #include <cstdio>
 #include <string_view>
 
 #include <fmt/format.h>
+
+#include <boxtree/cooker/cli/output.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -2,14 +2,14 @@
 // What all commands share: exit statuses, errors on standard error, parsing of vectors.
 #pragma once
 
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/tree/geometry.h>
-
 #include <string>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
+
+#include <boxtree/format/result.h>
+#include <boxtree/runtime/tree/geometry.h>
 
 namespace boxtree::cooker {
 

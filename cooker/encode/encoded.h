@@ -2,12 +2,12 @@
 // What encoders produce: the bytes of sections, and what is known of them.
 #pragma once
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/format/tree_record.h>
-
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/format/tree_record.h>
 
 namespace boxtree::cooker {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Geometry stores "exact" and "external" (reader: runtime/tree/geometry.h).
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/runtime/tree/geometry.h>
-
 #include <algorithm>
 #include <cstring>
+
+#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/runtime/tree/geometry.h>
 
 namespace boxtree::cooker {
 namespace {
 
-// The source mesh in the shape that the runtime hashes. Faces are four corners each, kNoCorner being
-// the runtime's missing corner.
+// The source mesh in the shape that the runtime hashes. Faces are four corners each, kNoCorner
+// being the runtime's missing corner.
 MeshArrays arrays_of(const SourceMesh& mesh) {
   static_assert(sizeof(Face) == 4 * sizeof(std::uint32_t) && kNoCorner == kMissingCorner);
   const bool f64 = mesh.positions.precision == Precision::kF64;

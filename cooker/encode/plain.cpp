@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Encoder of plain-f32 and plain-f16 (decoder: format/codec_plain.h). Walks the build tree with the
 // decoded box that a reader will see and cuts only as far as that box allows.
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/cooker/encode/visit_cost.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/limits.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <utility>
+
+#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/encode/visit_cost.h>
+#include <boxtree/format/codec_plain.h>
+#include <boxtree/format/limits.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -18,8 +18,8 @@ namespace {
 // The paper's threshold: an empty slab is cut off when it holds at least this share of the box.
 constexpr double kShrinkShare = 0.15;
 
-// The largest f32 cut for which the reader's plane, fl(plane - cut), is not below `bound`. The first
-// guess is off by rounding only; cut 0 always satisfies, so the loop ends.
+// The largest f32 cut for which the reader's plane, fl(plane - cut), is not below `bound`. The
+// first guess is off by rounding only; cut 0 always satisfies, so the loop ends.
 float largest_cut_down(float plane, float bound) {
   float cut = plane - bound;
   while (plane - cut < bound) cut = std::nextafter(cut, 0.0f);
@@ -34,8 +34,12 @@ float largest_cut_up(float plane, float bound) {
 }
 
 // A smaller cut moves a plane less, so rounding toward zero stays on the safe side.
-void store_cut(float cut, float& out) { out = cut; }
-void store_cut(float cut, std::uint16_t& out) { out = half_toward_zero(cut); }
+void store_cut(float cut, float& out) {
+  out = cut;
+}
+void store_cut(float cut, std::uint16_t& out) {
+  out = half_toward_zero(cut);
+}
 
 template <class Cut>
 class PlainEncoder {
@@ -151,9 +155,8 @@ class PlainEncoder {
     store_cut(slab.side == 0 ? largest_cut_down(box.high[axis], build.bounds.high[axis])
                              : largest_cut_up(box.low[axis], build.bounds.low[axis]),
               node.cut[slab.side]);
-    node.cutplane = slab.side == 0
-                        ? plain_cutplane(axis, PlainChild::kSubtree, PlainChild::kNone)
-                        : plain_cutplane(axis, PlainChild::kNone, PlainChild::kSubtree);
+    node.cutplane = slab.side == 0 ? plain_cutplane(axis, PlainChild::kSubtree, PlainChild::kNone)
+                                   : plain_cutplane(axis, PlainChild::kNone, PlainChild::kSubtree);
     const Box<float> child = below_cut(box, node, slab.side);
     if (child == box) return false;
 

@@ -2,11 +2,11 @@
 // Adds up the expected visits of a tree while it is encoded.
 #pragma once
 
-#include <boxtree/cooker/encode/encoded.h>
-
 #include <array>
 #include <cmath>
 #include <cstddef>
+
+#include <boxtree/cooker/encode/encoded.h>
 
 namespace boxtree::cooker {
 

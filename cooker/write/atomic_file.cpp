@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Write, fsync, rename, fsync of the directory.
-#include <boxtree/cooker/write/atomic_file.h>
-
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <string_view>
-#include <utility>
-
 #include <fcntl.h>
+#include <string_view>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
+
+#include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -29,7 +28,9 @@ fs::path directory_of(const fs::path& target) {
 }
 
 // ".NAME.PID.cooking": hidden, and tells whether its writer still runs.
-std::string prefix_of(const fs::path& target) { return "." + target.filename().string() + "."; }
+std::string prefix_of(const fs::path& target) {
+  return "." + target.filename().string() + ".";
+}
 
 // Removes what killed writers of the same target left. A pid that was given to another process
 // keeps its litter until that one ends; nothing is ever taken from a living writer.
@@ -72,8 +73,7 @@ Result<AtomicFile> AtomicFile::create(const fs::path& target) {
   file.target_ = target;
   file.temporary_ = directory_of(target) /
                     (prefix_of(target) + std::to_string(::getpid()) + std::string(kSuffix));
-  file.descriptor_ =
-      ::open(directory_of(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+  file.descriptor_ = ::open(directory_of(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
   if (file.descriptor_ < 0) {
     ::unlink(file.temporary_.c_str());  // of an earlier process with our pid
     file.descriptor_ =

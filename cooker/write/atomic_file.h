@@ -2,18 +2,18 @@
 // A file that appears whole or not at all: nothing under its name changes before commit().
 #pragma once
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
-
 #include <filesystem>
 #include <string>
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/result.h>
 
 namespace boxtree::cooker {
 
 /// Collects bytes beside the target and puts them in its place by rename. Where the file system
 /// allows (O_TMPFILE) the bytes have no name until they are complete, so that even a killed process
-/// leaves nothing behind; elsewhere the next AtomicFile for the same target sweeps what a killed one
-/// left. Not for use by several threads at once.
+/// leaves nothing behind; elsewhere the next AtomicFile for the same target sweeps what a killed
+/// one left. Not for use by several threads at once.
 class AtomicFile {
  public:
   /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.

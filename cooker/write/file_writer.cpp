@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Lays sections out one after the other and writes them with the header that describes them.
+#include <algorithm>
+#include <cstring>
+
 #include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/cooker/write/proof.h>
 #include <boxtree/format/container.h>
 #include <boxtree/runtime/file/checksum.h>
 #include <boxtree/runtime/file/file.h>
-
-#include <algorithm>
-#include <cstring>
 
 namespace boxtree::cooker {
 namespace {
@@ -19,7 +19,9 @@ struct Section {
   Bytes bytes;
 };
 
-Bytes bytes_of(const auto& container) { return std::as_bytes(std::span(container)); }
+Bytes bytes_of(const auto& container) {
+  return std::as_bytes(std::span(container));
+}
 
 TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
   TreeRecord record{};
@@ -70,7 +72,8 @@ class Layout {
     sections_.push_back({SectionKind::kTrees, kNoOwner, bytes_of(records_)});
     add(SectionKind::kNames, kNoOwner, bytes_of(names_));
     for (std::uint32_t i = 0; i < trees.size(); ++i) {
-      sections_.push_back({SectionKind::kCertificate, i, bytes_of(std::span(certificates_).subspan(i, 1))});
+      sections_.push_back(
+          {SectionKind::kCertificate, i, bytes_of(std::span(certificates_).subspan(i, 1))});
       add(SectionKind::kNodes, i, trees[i].nodes.bytes);
       add(SectionKind::kVertices, i, trees[i].geometry.vertices);
       add(SectionKind::kCorners, i, trees[i].geometry.corners);
@@ -129,8 +132,9 @@ class Layout {
     header_.header_bytes = sizeof(FileHeader);
     header_.file_bytes = align_up(at, kSectionAlignment);
     header_.section_count = static_cast<std::uint32_t>(table_.size());
-    header_.checksum = checksum(
-        std::as_bytes(std::span(&header_, 1)).first(offsetof(FileHeader, checksum)), bytes_of(table_));
+    header_.checksum =
+        checksum(std::as_bytes(std::span(&header_, 1)).first(offsetof(FileHeader, checksum)),
+                 bytes_of(table_));
   }
 
   std::vector<TreeRecord> records_;

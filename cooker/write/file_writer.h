@@ -2,13 +2,13 @@
 // Encoded trees to the bytes of a .bxt file.
 #pragma once
 
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/cooker/write/atomic_file.h>
-
 #include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
+
+#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Proof by walking the file that was written, not the tree that was meant.
-#include <boxtree/cooker/write/proof.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/traversal.h>
-
 #include <algorithm>
 #include <cmath>
 #include <string>
+
+#include <boxtree/cooker/write/proof.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -150,15 +150,16 @@ void verify_certificate(const File& file, std::uint32_t index, bool with_geometr
     return;
   }
   const auto stated = load<CertificateRecord>(bytes.data());
-  const bool counts_hold =
-      stated.depth == found.depth && stated.node_count == found.node_count &&
-      stated.leaf_count == found.leaf_count && stated.face_count == found.face_count &&
-      stated.shrink_count == found.shrink_count &&
-      (!with_geometry || stated.degenerate_count == found.degenerate_count);
+  const bool counts_hold = stated.depth == found.depth && stated.node_count == found.node_count &&
+                           stated.leaf_count == found.leaf_count &&
+                           stated.face_count == found.face_count &&
+                           stated.shrink_count == found.shrink_count &&
+                           (!with_geometry || stated.degenerate_count == found.degenerate_count);
   const bool well_formed = std::isfinite(stated.max_vertex_error) && stated.max_vertex_error >= 0 &&
                            stated.reserved == decltype(stated.reserved){};
   if (!counts_hold || !well_formed) {
-    findings.push_back({Errc::kCertificateMismatch, "the certificate's figures are not the tree's"});
+    findings.push_back(
+        {Errc::kCertificateMismatch, "the certificate's figures are not the tree's"});
   }
 }
 

@@ -3,12 +3,12 @@
 // face is reached exactly once, and the counts are as stated.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include <boxtree/format/tree_record.h>
 #include <boxtree/runtime/file/file.h>
 #include <boxtree/runtime/tree/tree.h>
-
-#include <optional>
-#include <vector>
 
 namespace boxtree::cooker {
 

@@ -3,9 +3,9 @@
 // never depends on it.
 #pragma once
 
-#include <boxtree/format/bytes.h>
-
 #include <cstdint>
+
+#include <boxtree/format/bytes.h>
 
 namespace boxtree {
 

@@ -1,15 +1,17 @@
 // SPDX-License-Identifier: MIT
 // Opening: everything that can be known of a file without reading what it holds.
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/file.h>
-
 #include <string>
 #include <utility>
+
+#include <boxtree/runtime/file/checksum.h>
+#include <boxtree/runtime/file/file.h>
 
 namespace boxtree {
 namespace {
 
-std::uint64_t header_checksum(Bytes head, Bytes tail) { return checksum(head, tail); }
+std::uint64_t header_checksum(Bytes head, Bytes tail) {
+  return checksum(head, tail);
+}
 
 }  // namespace
 

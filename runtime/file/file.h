@@ -2,13 +2,13 @@
 // An open .bxt file: checked header and section table over mapped bytes.
 #pragma once
 
-#include <boxtree/format/container.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/file/mapping.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <string_view>
+
+#include <boxtree/format/container.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/file/mapping.h>
 
 namespace boxtree {
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
 // File to memory by POSIX mmap. A copy is an anonymous mapping too, so that release is one path.
-#include <boxtree/runtime/file/mapping.h>
-
 #include <cerrno>
 #include <cstring>
-#include <string>
-#include <utility>
-
 #include <fcntl.h>
+#include <string>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <utility>
+
+#include <boxtree/runtime/file/mapping.h>
 
 namespace boxtree {
 namespace {
@@ -82,8 +81,7 @@ Result<Mapping> Mapping::copy(const std::filesystem::path& path) {
   const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  void* data =
-      ::mmap(nullptr, *size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  void* data = ::mmap(nullptr, *size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (data == MAP_FAILED) return system_error(Errc::kMapFailed, path, errno);
   Mapping copied(static_cast<const std::byte*>(data), *size);
   for (std::size_t done = 0; done < *size;) {

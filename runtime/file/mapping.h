@@ -2,10 +2,10 @@
 // A whole file as read-only memory, mapped or copied.
 #pragma once
 
+#include <filesystem>
+
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/result.h>
-
-#include <filesystem>
 
 namespace boxtree {
 

@@ -46,9 +46,8 @@ class PairWalk {
                      second_.root_ref(),
                      first_.record().root == RootKind::kLeaf,
                      second_.record().root == RootKind::kLeaf};
-    const bool apart =
-        !boxes_overlap(root.first_box, pose_.hull_in_first(root.second_box)) ||
-        !boxes_overlap(pose_.hull_in_second(root.first_box), root.second_box);
+    const bool apart = !boxes_overlap(root.first_box, pose_.hull_in_first(root.second_box)) ||
+                       !boxes_overlap(pose_.hull_in_second(root.first_box), root.second_box);
     if (!apart && (root.first_leaf && root.second_leaf)) {
       test_leaves(root.first, root.second);
     } else if (!apart) {
@@ -136,7 +135,8 @@ class PairWalk {
       for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
         if (was_reported(i, j) || !triangles_intersect(triangle, moved[j])) continue;
         reported_ = {first_batch_.face[i], second_batch_.face[j]};
-        stopped_ = !visitor_({face_ref(first_, reported_.first), face_ref(second_, reported_.second)});
+        stopped_ =
+            !visitor_({face_ref(first_, reported_.first), face_ref(second_, reported_.second)});
         if (stopped_) return;
       }
     }

@@ -2,9 +2,9 @@
 // Tree against tree: the pairs of faces that share a point, each tree with a pose of its own.
 #pragma once
 
-#include <boxtree/runtime/query/types.h>
-
 #include <optional>
+
+#include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Closest-point queries over any codec.
+#include <algorithm>
+#include <cmath>
+
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/query/traversal.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace boxtree {
 namespace {

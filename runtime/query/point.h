@@ -2,10 +2,10 @@
 // Closest point: the point of the surface nearest to a given one.
 #pragma once
 
-#include <boxtree/runtime/query/types.h>
-
 #include <limits>
 #include <optional>
+
+#include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ray queries over any codec.
+#include <algorithm>
+#include <cmath>
+
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/ray.h>
 #include <boxtree/runtime/query/ray_slab.h>
 #include <boxtree/runtime/query/traversal.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace boxtree {
 namespace {

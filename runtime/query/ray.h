@@ -2,10 +2,10 @@
 // Rays: the closest hit, and whether there is any.
 #pragma once
 
-#include <boxtree/runtime/query/types.h>
-
 #include <limits>
 #include <optional>
+
+#include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
 

@@ -49,12 +49,12 @@ std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& fi
   constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
   constexpr double kGamma16 = 16 * kUnitRoundoff / (1 - 16 * kUnitRoundoff);
   const Eigen::Vector3d y = reach_of(second);
-  const Eigen::Vector3d x = relative.to_first_.linear.cwiseAbs() * y +
-                            relative.to_first_.translation.cwiseAbs();
+  const Eigen::Vector3d x =
+      relative.to_first_.linear.cwiseAbs() * y + relative.to_first_.translation.cwiseAbs();
   const Eigen::Matrix3d residual =
       (inverse * relative.to_first_.linear - Eigen::Matrix3d::Identity()).cwiseAbs();
-  const Eigen::Vector3d offset = (inverse * relative.to_first_.translation +
-                                  relative.to_second_.translation).cwiseAbs();
+  const Eigen::Vector3d offset =
+      (inverse * relative.to_first_.translation + relative.to_second_.translation).cwiseAbs();
   relative.margin_ =
       residual * y + offset +
       kGamma16 * (inverse.cwiseAbs() * x + relative.to_second_.translation.cwiseAbs() + y);

@@ -3,9 +3,6 @@
 // are compared, not the nine edge products: those save fewer box visits than they cost.
 #pragma once
 
-#include <boxtree/format/box.h>
-#include <boxtree/runtime/query/types.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,9 +13,13 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include <boxtree/format/box.h>
+#include <boxtree/runtime/query/types.h>
+
 namespace boxtree {
 
-/// x -> linear * x + translation, evaluated in one fixed order so that points and boxes round alike.
+/// x -> linear * x + translation, evaluated in one fixed order so that points and boxes round
+/// alike.
 struct AffineMap {
   Eigen::Matrix3d linear;
   Eigen::Vector3d translation;

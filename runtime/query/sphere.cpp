@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Sphere queries over any codec.
+#include <algorithm>
+#include <cmath>
+
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/face_visit.h>
 #include <boxtree/runtime/query/sphere.h>
-
-#include <algorithm>
-#include <cmath>
 
 namespace boxtree {
 namespace {

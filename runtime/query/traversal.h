@@ -8,14 +8,14 @@
 // above it, whatever the rounding.
 #pragma once
 
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/types.h>
-#include <boxtree/runtime/tree/dispatch.h>
-
 #include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
+
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
 
@@ -64,7 +64,7 @@ template <class S>
 /// Entries that a depth-first walk of one tree can have pending: all but one child of each node on
 /// a path, and the root.
 template <Codec C>
-inline constexpr std::size_t kStackSize = kMaxDepth * (C::Children::kWidth - 1) + 1;
+inline constexpr std::size_t kStackSize = kMaxDepth*(C::Children::kWidth - 1) + 1;
 
 /// Visits every leaf whose box passes, in no promised order.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.

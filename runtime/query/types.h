@@ -2,15 +2,15 @@
 // What all queries share: how faces are named in answers, poses, and how visitors are passed.
 #pragma once
 
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/tree/tree.h>
-
 #include <cstdint>
 #include <memory>
 #include <type_traits>
 #include <utility>
 
 #include <Eigen/Geometry>
+
+#include <boxtree/format/result.h>
+#include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree {
 
@@ -30,9 +30,9 @@ template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:
   template <class F>
-    requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
-             std::is_invocable_r_v<R, F&, Args...>)
-  FunctionRef(F&& callable) noexcept
+  requires(!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
+           std::is_invocable_r_v<R, F&, Args...>) FunctionRef(F&& callable)
+  noexcept
       : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
         call_([](void* object, Args... args) -> R {
           return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);

@@ -2,10 +2,10 @@
 // From a tree's codec number to the codec's type: once, at the entry of a query, never per node.
 #pragma once
 
+#include <concepts>
+
 #include <boxtree/format/codec_plain.h>
 #include <boxtree/runtime/tree/tree.h>
-
-#include <concepts>
 
 namespace boxtree {
 
@@ -14,7 +14,8 @@ namespace boxtree {
 template <class C>
 concept Codec = requires(const C& codec, NodeRef ref, const Box<typename C::Scalar>& box,
                          typename C::Children& out) {
-  { codec.expand(ref, box, out) } noexcept -> std::same_as<bool>;
+  { codec.expand(ref, box, out) }
+  noexcept->std::same_as<bool>;
 };
 static_assert(Codec<PlainCodec<float>> && Codec<PlainCodec<std::uint16_t>>);
 
@@ -22,8 +23,10 @@ static_assert(Codec<PlainCodec<float>> && Codec<PlainCodec<std::uint16_t>>);
 template <class Visitor>
 decltype(auto) with_codec(const Tree& tree, Visitor&& visitor) {
   switch (tree.codec()) {
-    case CodecId::kPlainF16: return visitor(PlainCodec<std::uint16_t>{tree.nodes()});
-    case CodecId::kPlainF32: break;
+    case CodecId::kPlainF16:
+      return visitor(PlainCodec<std::uint16_t>{tree.nodes()});
+    case CodecId::kPlainF32:
+      break;
   }
   return visitor(PlainCodec<float>{tree.nodes()});
 }

@@ -2,11 +2,11 @@
 // Object space and tree space: a shift and an exact power-of-two scale (see TreeRecord).
 #pragma once
 
-#include <boxtree/format/tree_record.h>
-
 #include <cmath>
 
 #include <Eigen/Core>
+
+#include <boxtree/format/tree_record.h>
 
 namespace boxtree {
 

@@ -3,9 +3,9 @@
 #include <boxtree/runtime/tree/geometry.h>
 
 #define XXH_INLINE_ALL
-#include <xxhash.h>
-
 #include <string>
+
+#include <xxhash.h>
 
 namespace boxtree {
 
@@ -52,8 +52,7 @@ Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
   return static_cast<std::uint64_t>(XXH3_64bits_digest(&state));
 }
 
-Errc LeafReader::read(std::uint32_t first, std::uint32_t count,
-                      TriangleBatch& out) const noexcept {
+Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
   for (std::uint32_t f = first; f < first + count; ++f) {

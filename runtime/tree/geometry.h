@@ -2,15 +2,15 @@
 // The answer to the one question every geometry store answers: the triangles of this leaf.
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/format/result.h>
 #include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/tree/frame.h>
-
-#include <array>
-#include <cstddef>
-#include <cstdint>
 
 namespace boxtree {
 
@@ -43,24 +43,39 @@ struct MeshArrays {
                                               const std::uint32_t* corners,
                                               std::uint32_t face_count,
                                               std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(float), false, vertex_count,
-          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),  corners_per_face,
+  return {reinterpret_cast<const std::byte*>(positions),
+          3 * sizeof(float),
+          false,
+          vertex_count,
+          reinterpret_cast<const std::byte*>(corners),
+          sizeof(*corners),
+          corners_per_face,
           face_count};
 }
 [[nodiscard]] inline MeshArrays external_mesh(const float* positions, std::uint32_t vertex_count,
                                               const std::uint16_t* corners,
                                               std::uint32_t face_count,
                                               std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(float), false, vertex_count,
-          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),  corners_per_face,
+  return {reinterpret_cast<const std::byte*>(positions),
+          3 * sizeof(float),
+          false,
+          vertex_count,
+          reinterpret_cast<const std::byte*>(corners),
+          sizeof(*corners),
+          corners_per_face,
           face_count};
 }
 [[nodiscard]] inline MeshArrays external_mesh(const double* positions, std::uint32_t vertex_count,
                                               const std::uint32_t* corners,
                                               std::uint32_t face_count,
                                               std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions), 3 * sizeof(double), true, vertex_count,
-          reinterpret_cast<const std::byte*>(corners),   sizeof(*corners),   corners_per_face,
+  return {reinterpret_cast<const std::byte*>(positions),
+          3 * sizeof(double),
+          true,
+          vertex_count,
+          reinterpret_cast<const std::byte*>(corners),
+          sizeof(*corners),
+          corners_per_face,
           face_count};
 }
 

@@ -1,19 +1,21 @@
 // SPDX-License-Identifier: MIT
 // Binding: the checks that let queries trust counts and section sizes, and nothing else.
-#include <boxtree/runtime/tree/dispatch.h>
-#include <boxtree/runtime/tree/tree.h>
-
 #include <cmath>
 #include <limits>
 #include <string>
+
+#include <boxtree/runtime/tree/dispatch.h>
+#include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree {
 namespace {
 
 std::size_t node_bytes(CodecId codec) {
   switch (codec) {
-    case CodecId::kPlainF32: return sizeof(PlainNodeF32);
-    case CodecId::kPlainF16: return sizeof(PlainNodeF16);
+    case CodecId::kPlainF32:
+      return sizeof(PlainNodeF32);
+    case CodecId::kPlainF16:
+      return sizeof(PlainNodeF16);
   }
   return 0;
 }
@@ -39,8 +41,8 @@ Result<Bytes> sized_section(const File& file, SectionKind kind, std::uint32_t tr
 
 Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions& options) {
   if (index >= file.tree_count()) {
-    return Error{Errc::kTreeIndex, "tree " + std::to_string(index) + " of " +
-                                       std::to_string(file.tree_count())};
+    return Error{Errc::kTreeIndex,
+                 "tree " + std::to_string(index) + " of " + std::to_string(file.tree_count())};
   }
   Tree tree;
   tree.record_ = file.tree_record(index);
@@ -92,10 +94,14 @@ Status Tree::bind_geometry(const File& file, std::uint32_t index, const BindOpti
         sized_section(file, SectionKind::kCorners, index, record_.face_count,
                       std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
     if (!corners) return corners.error();
-    mesh = {positions->data(),    stride,
-            positions_f64,        record_.vertex_count,
-            corners->data(),      record_.corner_bytes,
-            record_.corners_per_face, record_.face_count};
+    mesh = {positions->data(),
+            stride,
+            positions_f64,
+            record_.vertex_count,
+            corners->data(),
+            record_.corner_bytes,
+            record_.corners_per_face,
+            record_.face_count};
   }
   leaves_ = LeafReader(mesh, frame_);
   return {};
@@ -161,9 +167,12 @@ std::uint32_t Tree::face_id(std::uint32_t face) const noexcept {
   if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
   if (face_ids_ == nullptr) return kNoFaceId;
   switch (record_.face_id_bytes) {
-    case 1: return load<std::uint8_t>(face_ids_, face);
-    case 2: return load<std::uint16_t>(face_ids_, face);
-    default: return load<std::uint32_t>(face_ids_, face);
+    case 1:
+      return load<std::uint8_t>(face_ids_, face);
+    case 2:
+      return load<std::uint16_t>(face_ids_, face);
+    default:
+      return load<std::uint32_t>(face_ids_, face);
   }
 }
 

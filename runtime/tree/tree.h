@@ -3,17 +3,17 @@
 // which every query reads straight from the mapped bytes.
 #pragma once
 
-#include <boxtree/format/children.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/file/file.h>
-#include <boxtree/runtime/tree/geometry.h>
-
 #include <array>
 #include <cstdint>
 #include <optional>
 #include <string_view>
 
 #include <Eigen/Geometry>
+
+#include <boxtree/format/children.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/file/file.h>
+#include <boxtree/runtime/tree/geometry.h>
 
 namespace boxtree {
 

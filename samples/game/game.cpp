@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Maps the cooked level and crate: where is the ground, and does the crate touch the stairs?
-#include <boxtree/runtime/boxtree.h>
-
 #include <cstdio>
+
+#include <boxtree/runtime/boxtree.h>
 
 namespace {
 
@@ -25,14 +25,12 @@ int main() {
 
   const auto ground = boxtree::closest_hit(*level, {{2.5, 0, 10}, {0, 0, -1}});
   if (!ground || !*ground) return 1;
-  std::printf("ground under (2.5, 0): height %g, face %u\n", 10 - (*ground)->t,
-              (*ground)->face.id);
+  std::printf("ground under (2.5, 0): height %g, face %u\n", 10 - (*ground)->t, (*ground)->face.id);
 
   boxtree::Pose pose = boxtree::Pose::Identity();
   for (const double height : {0.6, 0.5, 0.4}) {
     pose.translation() = Eigen::Vector3d(2.5, 0, height);
-    const auto contact =
-        boxtree::first_contact(*level, boxtree::Pose::Identity(), *crate, pose);
+    const auto contact = boxtree::first_contact(*level, boxtree::Pose::Identity(), *crate, pose);
     if (!contact) return 1;
     std::printf("crate at height %g: %s\n", height, *contact ? "touches" : "free");
   }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Hostile bytes: every truncation and every flipped bit of a small file is refused with a code or
 // answered, with checksums repaired too, so that the checks behind them are reached.
+#include <cstring>
+
+#include <gtest/gtest.h>
+
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/write/proof.h>
 #include <boxtree/runtime/boxtree.h>
 #include <boxtree/runtime/file/checksum.h>
-
-#include <cstring>
-
-#include <gtest/gtest.h>
 
 #include "tests/support/meshes.h"
 
@@ -59,7 +59,8 @@ TEST_P(Mutation, EveryTruncationIsRefused) {
   const std::vector<std::byte> whole = small_file(GetParam());
   ASSERT_TRUE(File::open(whole).ok());
   for (std::size_t size = 0; size < whole.size(); ++size) {
-    const std::vector<std::byte> cut(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(size));
+    const std::vector<std::byte> cut(whole.begin(),
+                                     whole.begin() + static_cast<std::ptrdiff_t>(size));
     ASSERT_FALSE(File::open(cut).ok()) << size;
   }
 }

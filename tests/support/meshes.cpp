@@ -50,7 +50,8 @@ SourceMesh sphere(unsigned rings, unsigned segments) {
   mesh.name = "sphere";
   const std::uint32_t north = add_vertex(mesh, 0, 0, 1);
   for (unsigned i = 1; i < rings; ++i) {
-    const float theta = std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
+    const float theta =
+        std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
     for (unsigned j = 0; j < segments; ++j) {
       const float phi =
           2 * std::numbers::pi_v<float> * static_cast<float>(j) / static_cast<float>(segments);
@@ -73,7 +74,8 @@ SourceMesh sphere(unsigned rings, unsigned segments) {
 
 SourceMesh torus(unsigned rings, unsigned segments) {
   return closed_grid("torus", rings, segments, [&](SourceMesh& mesh, unsigned i, unsigned j) {
-    const float u = 2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
+    const float u =
+        2 * std::numbers::pi_v<float> * static_cast<float>(i) / static_cast<float>(rings);
     const float v =
         2 * std::numbers::pi_v<float> * static_cast<float>(j) / static_cast<float>(segments);
     const float radius = 1 + 0.4f * std::cos(v);
@@ -183,9 +185,8 @@ SourceMesh huge_among_tiny(unsigned tiny, unsigned seed) {
 }
 
 std::vector<SourceMesh> all_kinds() {
-  return {sphere(16, 24), torus(20, 12),      terrain(16, 1),  city(24, 2),
-          soup(400, 3),   slivers(200, 4),    duplicates(100), huge_among_tiny(200, 5),
-          duplicates(1),  duplicates(2)};
+  return {sphere(16, 24),  torus(20, 12),   terrain(16, 1),          city(24, 2),   soup(400, 3),
+          slivers(200, 4), duplicates(100), huge_among_tiny(200, 5), duplicates(1), duplicates(2)};
 }
 
 }  // namespace boxtree::test

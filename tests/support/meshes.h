@@ -2,10 +2,10 @@
 // Generated meshes of the kinds that tests ask for. Seeded; the same on every machine.
 #pragma once
 
-#include <boxtree/cooker/import/source_mesh.h>
-
 #include <string>
 #include <vector>
+
+#include <boxtree/cooker/import/source_mesh.h>
 
 namespace boxtree::test {
 

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Builders: every face a leaf, bounded depth, the paper's node ratio, the same for any thread count.
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
-
+// Builders: every face a leaf, bounded depth, the paper's node ratio, the same for any thread
+// count.
 #include <cstring>
 #include <limits>
 #include <set>
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/task_arena.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/boxtree.h>
 
 #include "tests/support/meshes.h"
 
@@ -54,8 +55,10 @@ TEST_P(Builders, SameBytesForAnyThreadCount) {
   options.builder = GetParam();
   std::vector<std::byte> one;
   std::vector<std::byte> four;
-  tbb::task_arena(1).execute([&] { one = serialize(std::span(&cook_mesh(mesh, options)->tree, 1)); });
-  tbb::task_arena(4).execute([&] { four = serialize(std::span(&cook_mesh(mesh, options)->tree, 1)); });
+  tbb::task_arena(1).execute(
+      [&] { one = serialize(std::span(&cook_mesh(mesh, options)->tree, 1)); });
+  tbb::task_arena(4).execute(
+      [&] { four = serialize(std::span(&cook_mesh(mesh, options)->tree, 1)); });
   EXPECT_EQ(one, four);
 }
 
@@ -64,7 +67,8 @@ TEST(PaperBuilder, MergedNodeRatioIsThePapers) {
   for (const SourceMesh& mesh : {test::torus(80, 60), test::sphere(60, 80)}) {
     const EncodedNodes nodes =
         encode_nodes(build_tree(mesh, Builder::kPaper), CodecId::kPlainF32, FaceOrder::kTree);
-    const double ratio = nodes.node_count / static_cast<double>(nodes.node_count + nodes.leaf_count);
+    const double ratio =
+        nodes.node_count / static_cast<double>(nodes.node_count + nodes.leaf_count);
     EXPECT_GT(ratio, 0.60) << mesh.name;
     EXPECT_LT(ratio, 0.68) << mesh.name;
   }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // No query allocates: operator new of this program counts.
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <new>
 
 #include <gtest/gtest.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/boxtree.h>
 
 #include "tests/support/meshes.h"
 
@@ -20,8 +20,12 @@ void* operator new(std::size_t size) {
   if (void* place = std::malloc(size)) return place;
   throw std::bad_alloc();
 }
-void operator delete(void* place) noexcept { std::free(place); }
-void operator delete(void* place, std::size_t) noexcept { std::free(place); }
+void operator delete(void* place) noexcept {
+  std::free(place);
+}
+void operator delete(void* place, std::size_t) noexcept {
+  std::free(place);
+}
 
 namespace boxtree {
 namespace {
@@ -42,7 +46,8 @@ TEST(Allocation, QueriesNeverAllocate) {
   const bool hit = (*closest_hit(*tree, {{1, 0, 9}, {0, 0, -1}})).has_value();
   const bool any = (*any_hit(*tree, {{1, 0, 9}, {0, 0, -1}})).has_value();
   const bool near = (*closest_point(*tree, {3, 1, 2})).has_value();
-  const bool box = overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, count).ok();
+  const bool box =
+      overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, count).ok();
   const bool sphere = overlap_sphere(*tree, {1, 0, 0}, 1, count).ok();
   const bool pairs = overlap_pairs(*tree, Pose::Identity(), *tree, pose, count).ok();
   const bool refused = closest_point(*tree, {NAN, 0, 0}).ok();

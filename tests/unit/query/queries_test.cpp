@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Every query on every codec against brute force over the source mesh, by the leaf predicates alone.
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/primitive/predicates.h>
-
+// Every query on every codec against brute force over the source mesh, by the leaf predicates
+// alone.
 #include <algorithm>
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/boxtree.h>
+#include <boxtree/runtime/primitive/predicates.h>
 
 #include "tests/support/meshes.h"
 
@@ -107,9 +108,8 @@ TEST_P(Queries, BoxEqualsBruteForce) {
       std::multiset<std::uint32_t> expected;
       for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
         const auto triangles = triangles_of(mesh, f);
-        if (std::any_of(triangles.begin(), triangles.end(), [&](const Triangle& t) {
-              return triangle_intersects_box(t, low, high);
-            })) {
+        if (std::any_of(triangles.begin(), triangles.end(),
+                        [&](const Triangle& t) { return triangle_intersects_box(t, low, high); })) {
           expected.insert(f);
         }
       }
@@ -185,11 +185,11 @@ TEST_P(Queries, PairsEqualBruteForce) {
           pose.translation() = Eigen::Vector3d(i % 2, i % 4 - 1, 0);
         }
         std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
-        ASSERT_TRUE(overlap_pairs(*tree_a, Pose::Identity(), *tree_b, pose,
-                                  [&](const FacePair& pair) {
-                                    found.insert({pair.first.id, pair.second.id});
-                                    return true;
-                                  }).ok());
+        ASSERT_TRUE(
+            overlap_pairs(*tree_a, Pose::Identity(), *tree_b, pose, [&](const FacePair& pair) {
+              found.insert({pair.first.id, pair.second.id});
+              return true;
+            }).ok());
         std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected;
         for (std::uint32_t f = 0; f < a.faces.size(); ++f) {
           for (std::uint32_t g = 0; g < b.faces.size(); ++g) {
