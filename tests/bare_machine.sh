@@ -1,0 +1,24 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Shows that the two commands of the README work on a bare Debian 12: makes one with debootstrap
+# (a shell, git and apt), clones the committed state into it and runs both there.
+#   tests/bare_machine.sh DIRECTORY     needs root, debootstrap, a network, 3 GB and some 20 minutes
+set -euo pipefail
+root=${1:?usage: tests/bare_machine.sh DIRECTORY}
+source=$(cd "$(dirname "$0")/.." && pwd)
+[ "$(id -u)" -eq 0 ] || { echo "needs root: it makes and enters a Debian folder" >&2; exit 1; }
+[ -e "$root" ] && { echo "$root exists: name a folder that does not" >&2; exit 1; }
+
+debootstrap --variant=minbase --include=git bookworm "$root" >/dev/null
+mount -t proc proc "$root/proc"
+trap 'umount "$root/proc"' EXIT
+cp /etc/resolv.conf /etc/hosts "$root/etc/"
+git clone --quiet "$source" "$root/boxtree"
+
+run() {
+  echo "== $*"
+  chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C "$@"
+}
+run /boxtree/samples/quickstart.sh
+run /boxtree/tests/run.sh
+echo "both commands work on a bare Debian 12"
