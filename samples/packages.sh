@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034 # read by the scripts that source it
 # SPDX-License-Identifier: MIT
 # Debian 12 packages, and the one function that installs what of them is missing. Sourced by
 # samples/quickstart.sh and tests/run.sh.
