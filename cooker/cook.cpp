@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/version.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/primitive/triangle.h>
@@ -44,22 +45,26 @@ Status check_limits(const SourceMesh& mesh, const CookOptions& options) {
   return {};
 }
 
-void encode_candidates(const BuildTree& build, const CookOptions& options, CookedTree& cooked) {
+// Fills the candidates and leaves the nodes of the best in `cooked.tree`. Only the best so far is
+// kept: memory, not time, is what candidates cost.
+Status encode_candidates(const BuildTree& build, const SourceMesh& mesh, const CookOptions& options,
+                         CookedTree& cooked) {
   const EncodedGeometry& geometry = cooked.tree.geometry;
   const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
   for (const CodecInfo& codec : kCodecs) {
     if (options.codec && *options.codec != codec.id) continue;
-    EncodedNodes nodes = encode_nodes(build, codec.id, order);
+    EncodedNodes best = std::exchange(cooked.tree.nodes, encode_nodes(build, codec.id, order));
     cooked.candidates.push_back({codec.id,
-                                 nodes.bytes.size(),
+                                 cooked.tree.nodes.bytes.size(),
                                  geometry.vertices.size() + geometry.corners.size(),
-                                 nodes.visits,
+                                 cooked.tree.nodes.visits,
+                                 check_gates(cooked.tree, arrays_of(mesh)),
                                  {}});
-    // Only the best so far is kept: memory, not time, is what candidates cost.
-    if (choose(cooked.candidates, options.goal) + 1 == cooked.candidates.size()) {
-      cooked.tree.nodes = std::move(nodes);
-    }
+    const bool is_best = choose(cooked.candidates, options.goal) == cooked.candidates.size() - 1;
+    if (!is_best) cooked.tree.nodes = std::move(best);
   }
+  if (choose(cooked.candidates, options.goal)) return {};
+  return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
 }
 
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
@@ -112,7 +117,9 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options)
   if (!options.face_ids) {
     cooked.left_out.push_back({"face_ids", std::uint64_t{tree.face_count} * 4, "--no-face-ids"});
   }
-  encode_candidates(build, options, cooked);
+  if (Status status = encode_candidates(build, mesh, options, cooked); !status) {
+    return status.error();
+  }
   return cooked;
 }
 

@@ -38,9 +38,9 @@ struct CookedTree {
   std::vector<LeftOut> left_out;
 };
 
-/// Builds a mesh, encodes it by every codec asked for and keeps the best. Deterministic.
-/// Precondition: what import promises of a mesh. Errors: kMeshTooLarge; kMeshUnsupported when faces
-/// of an n-gon would have to stay external.
+/// Builds a mesh, encodes it by every codec asked for, proves each and keeps the best.
+/// Deterministic. Precondition: what import promises of a mesh. Errors: kMeshTooLarge;
+/// kMeshUnsupported when faces of an n-gon would have to stay external.
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options);
 
 struct CookReport {

@@ -9,6 +9,7 @@
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/children.h>
 #include <boxtree/format/half.h>
+#include <boxtree/format/tree_record.h>
 
 namespace boxtree {
 
@@ -62,7 +63,19 @@ struct PlainCodec {
   using Scalar = float;
   using Children = ChildSet<2, float>;
 
-  const std::byte* nodes;
+  const std::byte* nodes = nullptr;
+
+  /// Reads nodes of `record` out of its section. Error: kSectionSize.
+  static Result<PlainCodec> bind(const TreeRecord& record, Bytes section) {
+    const std::uint64_t expected = std::uint64_t{record.node_count} * sizeof(Node);
+    if (section.size() != expected) return section_size_error(section.size(), expected);
+    return PlainCodec{section.data()};
+  }
+
+  /// The whole tree: all nodes.
+  [[nodiscard]] static NodeRef root(const TreeRecord& record) noexcept {
+    return {0, record.node_count};
+  }
 
   /// The children of the subtree `ref`, whose decoded box is `box`. The plane that a cut gives is
   /// the f32 difference or sum, rounded to nearest; encoders choose cuts by this very arithmetic.

@@ -2,6 +2,7 @@
 // Container checks. Every offset and size of a file passes through here before anything reads by
 // it.
 #include <algorithm>
+#include <numeric>
 #include <string>
 
 #include <boxtree/format/container.h>
@@ -77,18 +78,29 @@ Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t
   return {};
 }
 
-Status check_duplicates(const std::vector<SectionEntry>& sections) {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(sections.size());
-  for (const SectionEntry& entry : sections) {
-    keys.push_back(std::uint64_t{entry.kind} << 32 | entry.owner);
-  }
-  std::sort(keys.begin(), keys.end());
-  const auto twice = std::adjacent_find(keys.begin(), keys.end());
-  if (twice == keys.end()) return {};
-  const auto kind = static_cast<SectionKind>(*twice >> 32);
-  return Error{Errc::kSectionDuplicate, std::string(section_name(kind)) + " of owner " +
-                                            std::to_string(*twice & 0xffffffffu) + " occurs twice"};
+std::uint64_t key_of(std::uint32_t kind, std::uint32_t owner) {
+  return std::uint64_t{kind} << 32 | owner;
+}
+std::uint64_t key_of(const SectionEntry& entry) {
+  return key_of(entry.kind, entry.owner);
+}
+
+// Sorts the sections for find(), which needs each kind and owner to occur once.
+Status index_sections(Container& container) {
+  const std::vector<SectionEntry>& sections = container.sections;
+  std::vector<std::uint32_t>& order = container.by_kind_and_owner;
+  order.resize(sections.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return key_of(sections[a]) < key_of(sections[b]);
+  });
+  const auto twice = std::adjacent_find(
+      order.begin(), order.end(),
+      [&](std::uint32_t a, std::uint32_t b) { return key_of(sections[a]) == key_of(sections[b]); });
+  if (twice == order.end()) return {};
+  return Error{Errc::kSectionDuplicate, describe(*twice, sections[*twice]) + ": owner " +
+                                            std::to_string(sections[*twice].owner) +
+                                            " has it twice"};
 }
 
 }  // namespace
@@ -116,10 +128,12 @@ std::string_view section_name(SectionKind kind) noexcept {
 }
 
 const SectionEntry* Container::find(SectionKind kind, std::uint32_t owner) const noexcept {
-  for (const SectionEntry& entry : sections) {
-    if (entry.kind == static_cast<std::uint32_t>(kind) && entry.owner == owner) return &entry;
-  }
-  return nullptr;
+  const std::uint64_t key = key_of(static_cast<std::uint32_t>(kind), owner);
+  const auto place = std::lower_bound(
+      by_kind_and_owner.begin(), by_kind_and_owner.end(), key,
+      [this](std::uint32_t i, std::uint64_t k) { return key_of(sections[i]) < k; });
+  if (place == by_kind_and_owner.end() || key_of(sections[*place]) != key) return nullptr;
+  return &sections[*place];
 }
 
 Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
@@ -128,7 +142,7 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
                                        " bytes, a header alone has " +
                                        std::to_string(sizeof(FileHeader))};
   }
-  Container container{load<FileHeader>(file.data()), {}};
+  Container container{load<FileHeader>(file.data()), {}, {}};
   const FileHeader& header = container.header;
   if (Status status = check_header(header, file.size()); !status) return status.error();
 
@@ -153,7 +167,7 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
   if (file.size() - free_from >= kSectionAlignment) {
     return Error{Errc::kSectionOutOfRange, "bytes after the last section belong to none"};
   }
-  if (Status status = check_duplicates(container.sections); !status) return status.error();
+  if (Status status = index_sections(container); !status) return status.error();
   return container;
 }
 

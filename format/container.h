@@ -81,6 +81,7 @@ static_assert(offsetof(SectionEntry, offset) == 16 && offsetof(SectionEntry, che
 struct Container {
   FileHeader header;
   std::vector<SectionEntry> sections;
+  std::vector<std::uint32_t> by_kind_and_owner;  // numbers of sections, sorted
 
   /// The section of that kind and owner, or nullptr.
   [[nodiscard]] const SectionEntry* find(SectionKind kind, std::uint32_t owner) const noexcept;

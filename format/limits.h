@@ -25,6 +25,10 @@ inline constexpr std::uint32_t kMaxNodes = 0xfffffffeu;
 /// Bound of |TreeRecord::scale_exponent|: 2^e and 2^-e are both normal doubles.
 inline constexpr std::int32_t kMaxScaleExponent = 1010;
 
+/// Bound of the root box's coordinates, in tree space: finite in the scalar of every codec. Honest
+/// ones are below 2^41 (the largest extent is 2^15, and f32 tells positions 2^-24 apart).
+inline constexpr double kMaxRootCoordinate = 0x1p100;
+
 /// Triangles in one leaf, so that a leaf fits one batch of a vector test.
 inline constexpr std::uint32_t kMaxLeafTriangles = 8;
 

@@ -31,10 +31,10 @@ bool root_fits(const TreeRecord& record) {
 
 bool frame_fits(const TreeRecord& record) {
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!std::isfinite(record.origin[k]) || !std::isfinite(record.root_low[k]) ||
-        !std::isfinite(record.root_high[k]) || record.root_low[k] > record.root_high[k]) {
-      return false;
-    }
+    const double low = record.root_low[k];
+    const double high = record.root_high[k];
+    const bool ordered = -kMaxRootCoordinate <= low && low <= high && high <= kMaxRootCoordinate;
+    if (!std::isfinite(record.origin[k]) || !ordered) return false;  // NaN is not ordered
   }
   return std::abs(record.scale_exponent) <= kMaxScaleExponent;
 }
@@ -72,10 +72,16 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   const auto invalid = [&](const char* what) { return Error{Errc::kRecordInvalid, place + what}; };
   if (!counts_fit(record)) return invalid("counts contradict each other or exceed the limits");
   if (!root_fits(record)) return invalid("kind of root contradicts the counts");
-  if (!frame_fits(record)) return invalid("origin, scale or root box is not finite and ordered");
+  if (!frame_fits(record))
+    return invalid("origin, scale or root box is not finite, ordered and within limits");
   if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
   if (!reserve_is_zero(record)) return invalid("reserved bits are set");
   return {};
+}
+
+Error section_size_error(std::uint64_t found, std::uint64_t expected) {
+  return {Errc::kSectionSize,
+          std::to_string(found) + " bytes, its record asks for " + std::to_string(expected)};
 }
 
 }  // namespace boxtree

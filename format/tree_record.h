@@ -73,4 +73,7 @@ static_assert(offsetof(CertificateRecord, degenerate_count) == 28);
 /// `tree` is the record's number, for the message.
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree);
 
+/// kSectionSize with both sizes; the caller knows which section of which tree.
+[[nodiscard]] Error section_size_error(std::uint64_t found, std::uint64_t expected);
+
 }  // namespace boxtree

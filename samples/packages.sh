@@ -6,7 +6,7 @@
 BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
   zlib1g-dev libtbb-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
-TEST_PACKAGES="libgtest-dev libcgal-dev jq"
+TEST_PACKAGES="libgtest-dev libcgal-dev jq python3-xxhash"
 
 # install_missing PACKAGE...: asks the package manager only for what is not there.
 install_missing() {

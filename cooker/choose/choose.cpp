@@ -37,13 +37,19 @@ const char* reason(Goal goal) {
 
 }  // namespace
 
-std::size_t choose(std::span<Candidate> candidates, Goal goal) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i) {
-    if (score(candidates[i], goal) < score(candidates[best], goal)) best = i;
+std::optional<std::size_t> choose(std::span<Candidate> candidates, Goal goal) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!candidates[i].gates.pass()) continue;
+    if (!best || score(candidates[i], goal) < score(candidates[*best], goal)) best = i;
   }
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    candidates[i].rejected = i == best ? "" : reason(goal);
+    Candidate& candidate = candidates[i];
+    candidate.rejected = i == best ? "" : reason(goal);
+    if (candidate.gates.pass()) continue;
+    candidate.rejected = "fails its gates: " + std::to_string(candidate.gates.missed) +
+                         " faces missed, " + std::to_string(candidate.gates.escapes) +
+                         " boxes escaped";
   }
   return best;
 }

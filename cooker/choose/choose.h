@@ -3,10 +3,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <string>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/proof/gates.h>
 
 namespace boxtree::cooker {
 
@@ -19,12 +20,13 @@ struct Candidate {
   std::uint64_t tree_bytes = 0;
   std::uint64_t geometry_bytes = 0;
   ExpectedVisits cost;
+  Gates gates;
   std::string rejected;  // why it was not chosen; empty for the chosen one
 };
 
-/// Number of the best candidate: fewest bytes, fewest expected visits over ray, box and pair, or
-/// the smallest product of both. Ties go to the earlier one. Fills Candidate::rejected of the
-/// others. Precondition: candidates is not empty.
-std::size_t choose(std::span<Candidate> candidates, Goal goal);
+/// Number of the best candidate that passes its gates: fewest bytes, fewest expected visits over
+/// ray, box and pair, or the smallest product of both; ties go to the earlier one. Nothing when
+/// none passes. Fills Candidate::rejected of the others.
+std::optional<std::size_t> choose(std::span<Candidate> candidates, Goal goal);
 
 }  // namespace boxtree::cooker

@@ -3,7 +3,6 @@
 #include <chrono>
 #include <cstdio>
 #include <fstream>
-#include <map>
 #include <memory>
 #include <sys/resource.h>
 #include <unistd.h>
@@ -23,6 +22,8 @@ struct Arguments {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   std::string codec = "auto";
+  std::string goal = "balance";
+  std::string builder = "sah";
   std::filesystem::path depfile;
   CookOptions options;
   bool exact = false;
@@ -97,10 +98,9 @@ Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
       {"ray", candidate.cost.ray}, {"box", candidate.cost.box}, {"pair", candidate.cost.pair}};
   json["error"] = {{"max_vertex_error", 0.0}};  // both stores keep every bit of a position
   json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
-  if (candidate.rejected.empty()) {
-    // write_file() has proven the written file, or there would be no report.
-    json["gates"] = {{"missed", 0}, {"escapes", 0}, {"certificate", true}};
-  }
+  json["gates"] = {{"missed", candidate.gates.missed},
+                   {"escapes", candidate.gates.escapes},
+                   {"certificate", candidate.gates.certificate}};
   return json;
 }
 
@@ -178,6 +178,9 @@ void print_report(const Arguments& arguments, const CookReport& report, double s
 int run(Arguments& arguments) {
   CookOptions& options = arguments.options;
   if (arguments.codec != "auto") options.codec = find_codec(arguments.codec);
+  if (arguments.goal == "memory") options.goal = Goal::kMemory;
+  if (arguments.goal == "speed") options.goal = Goal::kSpeed;
+  if (arguments.builder == "paper") options.builder = Builder::kPaper;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
   options.face_ids = !arguments.no_face_ids;
@@ -219,28 +222,28 @@ void add_cook_command(CLI::App& app, int& status) {
   command.add_option("--codec", arguments->codec, "How nodes are stored")
       ->check(CLI::IsMember(codecs))
       ->capture_default_str();
-  command
-      .add_option("--for", arguments->options.goal,
-                  "What `auto` minimises: memory, speed or balance")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, Goal>{
-          {"memory", Goal::kMemory}, {"speed", Goal::kSpeed}, {"balance", Goal::kBalance}}));
-  command.add_option("--builder", arguments->options.builder, "Split rule: sah or paper")
-      ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Builder>{{"sah", Builder::kSah}, {"paper", Builder::kPaper}}));
+  command.add_option("--for", arguments->goal, "What auto minimises")
+      ->check(CLI::IsMember({"memory", "speed", "balance"}))
+      ->capture_default_str();
   CLI::Option* exact = command.add_flag(
       "--exact", arguments->exact, "Keep every bit of every position (what is done by default)");
-  command
-      .add_flag("--external", arguments->external,
-                "Leave positions and corners to the application, which binds its own arrays")
-      ->excludes(exact);
   command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
-  command.add_flag("--strip", arguments->strip, "Leave the cook record out");
-  command.add_flag("--f64", arguments->f64, "Hold positions as f64: node transforms stay exact");
   command.add_flag("--skip-bad", arguments->options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
   command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it")
       ->check(CLI::Range(1, 1024));
-  command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax");
+  const auto rare = [](CLI::Option* option) { return option->group(kRareOptions); };
+  rare(command.add_option("--builder", arguments->builder, "Split rule"))
+      ->check(CLI::IsMember({"sah", "paper"}))
+      ->capture_default_str();
+  rare(command.add_flag("--external", arguments->external,
+                        "Leave positions and corners to the application, which binds its own "
+                        "arrays"))
+      ->excludes(exact);
+  rare(command.add_flag("--f64", arguments->f64,
+                        "Hold positions as f64: node transforms stay exact"));
+  rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
+  rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.callback([arguments, &status] { status = run(*arguments); });

@@ -3,11 +3,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/write/proof.h>
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/proof/proof.h>
 #include <boxtree/runtime/file/file.h>
 
 namespace boxtree::cooker {
@@ -15,14 +19,22 @@ namespace {
 
 struct Arguments {
   std::filesystem::path file;
+  std::filesystem::path mesh;
   bool json = false;
 };
 
-bool any_external(const File& file) {
+template <class Property>
+bool any_tree(const File& file, Property property) {
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    if (file.tree_record(i).geometry == GeometryId::kExternal) return true;
+    if (property(file.tree_record(i))) return true;
   }
   return false;
+}
+bool any_external(const File& file) {
+  return any_tree(file, [](const TreeRecord& r) { return r.geometry == GeometryId::kExternal; });
+}
+bool any_f64(const File& file) {
+  return any_tree(file, [](const TreeRecord& r) { return (r.flags & kTreePositionsF64) != 0; });
 }
 
 void report(const Arguments& arguments, const Findings& findings, const std::string& summary) {
@@ -50,9 +62,19 @@ int run(const Arguments& arguments) {
     if (arguments.json) report(arguments, {file.error()}, {});
     return status;
   }
-  const Findings findings = verify_file(*file);
+  std::optional<MeshArrays> arrays;
+  Imported imported;
+  if (!arguments.mesh.empty()) {
+    ImportOptions options;
+    if (any_f64(*file)) options.precision = Precision::kF64;
+    Result<Imported> result = import_mesh(arguments.mesh, options);
+    if (!result) return fail(result.error());
+    imported = std::move(*result);
+    arrays = arrays_of(imported.mesh);
+  }
+  const Findings findings = verify_file(*file, arrays);
   report(arguments, findings,
-         any_external(*file)
+         any_external(*file) && !arrays
              ? "structure holds; triangles are external and were not looked at"
              : fmt::format("holds: {} trees, every triangle inside every box above it",
                            file->tree_count()));
@@ -67,6 +89,8 @@ void add_verify_command(CLI::App& app, int& status) {
       *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
   command.add_option("file", arguments->file, "A .bxt file")->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
+      ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

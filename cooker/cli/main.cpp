@@ -2,6 +2,7 @@
 // The command line `boxtree`: one sub-command a file.
 #include <cstdio>
 #include <exception>
+#include <memory>
 #include <new>
 
 #include <fmt/format.h>
@@ -15,7 +16,9 @@ int main(int argc, char** argv) {
   try {
     CLI::App app{"Cooks meshes into small collision trees and asks them.", "boxtree"};
     app.set_version_flag("--version", fmt::format("boxtree {}", cooker::kVersion));
-    app.set_help_all_flag("--help-all", "Help of every command");
+    app.formatter(std::make_shared<cooker::HelpFormatter>());
+    app.set_help_flag("-h,--help", "Print the common options");
+    app.set_help_all_flag("--help-all", "Print every option of every command");
     app.require_subcommand(1);
     app.footer(
         "Exit status: 0 ok, 1 usage, 2 input/output, 3 bad input, 4 internal, 5 unsupported.");

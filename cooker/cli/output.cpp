@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -35,18 +36,31 @@ void print(const Json& document) {
   fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
-void VectorOption::add_to(CLI::App& command, const std::string& name, const std::string& help,
-                          bool required) {
-  CLI::Option* option = command.add_option_function<std::string>(
-      name,
-      [this, name](const std::string& text) {
-        if (!parse_vector(text, value)) {
-          throw CLI::ValidationError(name, "expected X,Y,Z, found \"" + text + "\"");
-        }
-      },
-      help);
-  option->type_name("X,Y,Z");
-  if (required) option->required();
+std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
+                                     CLI::AppFormatMode mode) const {
+  all_ = mode == CLI::AppFormatMode::All;
+  return CLI::Formatter::make_help(app, std::move(name), mode);
+}
+
+std::string HelpFormatter::make_group(std::string group, bool is_positional,
+                                      std::vector<const CLI::Option*> options) const {
+  if (group == kRareOptions && !all_) return {};
+  return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
+}
+
+void VectorOption::add_to(CLI::App& command, const std::string& option, const std::string& help) {
+  name = option;
+  command
+      .add_option_function<std::string>(
+          option,
+          [this](const std::string& text) {
+            if (!parse_vector(text, value)) {
+              throw CLI::ValidationError(name, "expected X,Y,Z, found \"" + text + "\"");
+            }
+            given = true;
+          },
+          help)
+      ->type_name("X,Y,Z");
 }
 
 }  // namespace boxtree::cooker

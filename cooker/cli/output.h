@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
@@ -26,11 +27,28 @@ int fail(const Error& error);
 /// Prints one JSON document to standard output.
 void print(const Json& document);
 
+/// Group of options that `--help` leaves to `--help-all`.
+inline constexpr const char* kRareOptions = "Rarely needed";
+
+/// Help in the manner of zstd: `--help` shows the common options, `--help-all` the rest too.
+class HelpFormatter : public CLI::Formatter {
+ public:
+  std::string make_help(const CLI::App* app, std::string name,
+                        CLI::AppFormatMode mode) const override;
+  std::string make_group(std::string group, bool is_positional,
+                         std::vector<const CLI::Option*> options) const override;
+
+ private:
+  mutable bool all_ = false;  // make_group is not told the mode
+};
+
 /// "1,-2.5,3e4" as a vector; reports a bad one as CLI11 reports bad options.
 struct VectorOption {
+  std::string name;
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
+  bool given = false;
 
-  void add_to(CLI::App& command, const std::string& name, const std::string& help, bool required);
+  void add_to(CLI::App& command, const std::string& option, const std::string& help);
 };
 
 /// Each command adds itself to `app` and stores its exit status in `status` when it has run.

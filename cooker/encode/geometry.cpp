@@ -4,28 +4,10 @@
 #include <cstring>
 
 #include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/runtime/tree/geometry.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
 
 namespace boxtree::cooker {
 namespace {
-
-// The source mesh in the shape that the runtime hashes. Faces are four corners each, kNoCorner
-// being the runtime's missing corner.
-MeshArrays arrays_of(const SourceMesh& mesh) {
-  static_assert(sizeof(Face) == 4 * sizeof(std::uint32_t) && kNoCorner == kMissingCorner);
-  const bool f64 = mesh.positions.precision == Precision::kF64;
-  MeshArrays arrays;
-  arrays.positions = f64 ? reinterpret_cast<const std::byte*>(mesh.positions.f64.data())
-                         : reinterpret_cast<const std::byte*>(mesh.positions.f32.data());
-  arrays.position_stride = 3 * (f64 ? sizeof(double) : sizeof(float));
-  arrays.positions_f64 = f64;
-  arrays.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
-  arrays.corners = reinterpret_cast<const std::byte*>(mesh.faces.data());
-  arrays.corner_bytes = 4;
-  arrays.corners_per_face = 4;
-  arrays.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-  return arrays;
-}
 
 std::uint64_t hash_of(const SourceMesh& mesh) {
   const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));

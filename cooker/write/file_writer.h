@@ -7,30 +7,16 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/encode/encoded_tree.h>
 #include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
-
-/// One tree, ready to be written.
-struct EncodedTree {
-  std::string name;
-  std::array<double, 3> origin{};  // of the frame
-  int scale_exponent = 0;          // of the frame
-  EncodedNodes nodes;
-  EncodedGeometry geometry;
-  std::uint32_t face_count = 0;
-  std::uint32_t triangle_count = 0;
-  std::uint32_t degenerate_count = 0;
-  bool faces_in_source_order = false;
-  bool positions_f64 = false;
-};
 
 /// The whole file in memory: what write_file writes. `cook_record` is omitted when empty.
 [[nodiscard]] std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                                const std::string& cook_record = {});
 
-/// Writes the file, maps what was written, proves every tree of it (cooker/write/proof.h), and only
+/// Writes the file, maps what was written, proves every tree of it (cooker/proof/proof.h), and only
 /// then lets it take the place of `path`. On any error the old file is untouched.
 /// Errors: kWriteFailed; the first finding if the proof fails, which is a defect of ours.
 Status write_file(const std::filesystem::path& path, std::span<const EncodedTree> trees,

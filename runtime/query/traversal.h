@@ -6,6 +6,9 @@
 // contains the boxes and triangles below it, and each leaf predicate first puts the triangle's own
 // bounds through the same box test. So a triangle that the predicate accepts passes at every node
 // above it, whatever the rounding.
+//
+// Why it ends on any bytes: an honest walk expands each node at most once, so a walk that would
+// expand more nodes than the record states has met a node twice and stops with kNodeCorrupt.
 #pragma once
 
 #include <algorithm>
@@ -71,7 +74,7 @@ inline constexpr std::size_t kStackSize = kMaxDepth*(C::Children::kWidth - 1) + 
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
 /// Returns kNodeCorrupt or kDepthExceeded for corrupt nodes, else kOk.
 template <Codec C, class Query>
-Errc traverse_overlap(const Tree& tree, const C& codec, Query& query) {
+Errc traverse_overlap(const Tree& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   struct Entry {
     Box<S> box;
@@ -88,9 +91,12 @@ Errc traverse_overlap(const Tree& tree, const C& codec, Query& query) {
   std::size_t size = 0;
   stack[size++] = {root, tree.root_ref()};
   typename C::Children children;
+  std::uint64_t unexpanded = tree.record().node_count;
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
+    if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.box, children)) {
+      return Errc::kNodeCorrupt;
+    }
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const Box<S> box = children.box(i);
       if (!query.overlaps(box)) continue;
@@ -112,7 +118,7 @@ Errc traverse_overlap(const Tree& tree, const C& codec, Query& query) {
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
 template <Codec C, class Query>
-Errc traverse_nearest(const Tree& tree, const C& codec, Query& query) {
+Errc traverse_nearest(const Tree& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   constexpr std::size_t kWidth = C::Children::kWidth;
   struct Entry {
@@ -132,10 +138,13 @@ Errc traverse_nearest(const Tree& tree, const C& codec, Query& query) {
   std::size_t size = 0;
   stack[size++] = {root_key, root, tree.root_ref()};
   typename C::Children children;
+  std::uint64_t unexpanded = tree.record().node_count;
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.key > query.bound()) continue;
-    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
+    if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.box, children)) {
+      return Errc::kNodeCorrupt;
+    }
 
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that pass, nearest first

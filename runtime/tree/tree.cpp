@@ -10,31 +10,18 @@
 namespace boxtree {
 namespace {
 
-std::size_t node_bytes(CodecId codec) {
-  switch (codec) {
-    case CodecId::kPlainF32:
-      return sizeof(PlainNodeF32);
-    case CodecId::kPlainF16:
-      return sizeof(PlainNodeF16);
+// The bytes of a section if there are `count * element`, all that its record allows.
+Result<const std::byte*> sized(Bytes section, SectionKind kind, const std::string& place,
+                               std::uint64_t count, std::uint64_t element) {
+  const std::string where = place + "section " + std::string(section_name(kind));
+  if (section.empty() && count * element > 0) {
+    return Error{Errc::kSectionMissing, where + " is absent"};
   }
-  return 0;
-}
-
-// The section if its size is `count * element`, the only size that its record allows.
-Result<Bytes> sized_section(const File& file, SectionKind kind, std::uint32_t tree,
-                            std::uint64_t count, std::uint64_t element) {
-  const std::string place =
-      "tree " + std::to_string(tree) + ", section " + std::string(section_name(kind));
-  if (file.container().find(kind, tree) == nullptr) {
-    return Error{Errc::kSectionMissing, place + " is absent"};
+  if (section.size() != count * element) {
+    return Error{Errc::kSectionSize,
+                 where + ": " + section_size_error(section.size(), count * element).detail};
   }
-  const Bytes bytes = file.section(kind, tree);
-  if (bytes.size() != count * element) {
-    return Error{Errc::kSectionSize, place + " has " + std::to_string(bytes.size()) +
-                                         " bytes, its record asks for " + std::to_string(count) +
-                                         " x " + std::to_string(element)};
-  }
-  return bytes;
+  return section.data();
 }
 
 }  // namespace
@@ -44,79 +31,87 @@ Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions
     return Error{Errc::kTreeIndex,
                  "tree " + std::to_string(index) + " of " + std::to_string(file.tree_count())};
   }
+  return bind(
+      {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
+       file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
+       file.section(SectionKind::kFaceIds, index)},
+      index, options);
+}
+
+Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options) {
   Tree tree;
-  tree.record_ = file.tree_record(index);
+  tree.record_ = parts.record;
   if (Status status = check_tree_record(tree.record_, index); !status) return status.error();
   tree.frame_ = Frame(tree.record_);
-  tree.name_ = file.tree_name(index);
-  if (Status status = tree.bind_nodes(file, index); !status) return status.error();
-  if (Status status = tree.bind_geometry(file, index, options); !status) return status.error();
-  if (Status status = tree.bind_face_ids(file, index, options); !status) return status.error();
+  tree.name_ = parts.name;
+  const std::string place = "tree " + std::to_string(index) + ": ";
+  if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
+  const bool external = tree.record_.geometry == GeometryId::kExternal;
+  if (Status status = external ? tree.bind_external_geometry(place, options)
+                               : tree.bind_stored_geometry(parts, place);
+      !status) {
+    return status.error();
+  }
+  if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   return tree;
 }
 
-Status Tree::bind_nodes(const File& file, std::uint32_t index) {
+Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
-  const Result<Bytes> bytes = sized_section(file, SectionKind::kNodes, index, record_.node_count,
-                                            node_bytes(record_.codec));
-  if (!bytes) return bytes.error();
-  nodes_ = bytes->data();
+  const std::string where = place + "section nodes";
+  if (parts.nodes.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
+  Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
+  if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
+  codec_ = *codec;
   return {};
 }
 
-Status Tree::bind_geometry(const File& file, std::uint32_t index, const BindOptions& options) {
+Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
   const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
-  MeshArrays mesh;
-  if (record_.geometry == GeometryId::kExternal) {
-    const std::string place = "tree " + std::to_string(index) + ": ";
-    if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
-    mesh = *options.mesh;
-    if (mesh.face_count != record_.face_count || mesh.positions_f64 != positions_f64) {
-      return Error{Errc::kExternalMeshMismatch,
-                   place + "expected " + std::to_string(record_.face_count) + " faces of " +
-                       (positions_f64 ? "f64" : "f32") + " positions, given " +
-                       std::to_string(mesh.face_count) + " of " +
-                       (mesh.positions_f64 ? "f64" : "f32")};
+  const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
+  const auto positions =
+      sized(parts.vertices, SectionKind::kVertices, place, record_.vertex_count, stride);
+  if (!positions) return positions.error();
+  const auto corners = sized(parts.corners, SectionKind::kCorners, place, record_.face_count,
+                             std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
+  if (!corners) return corners.error();
+  leaves_ = LeafReader({*positions, stride, positions_f64, record_.vertex_count, *corners,
+                        record_.corner_bytes, record_.corners_per_face, record_.face_count},
+                       frame_);
+  return {};
+}
+
+Status Tree::bind_external_geometry(const std::string& place, const BindOptions& options) {
+  if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
+  const MeshArrays& mesh = *options.mesh;
+  const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
+  if (mesh.face_count != record_.face_count || mesh.positions_f64 != positions_f64) {
+    return Error{Errc::kExternalMeshMismatch,
+                 place + "expected " + std::to_string(record_.face_count) + " faces of " +
+                     (positions_f64 ? "f64" : "f32") + " positions, given " +
+                     std::to_string(mesh.face_count) + " of " +
+                     (mesh.positions_f64 ? "f64" : "f32")};
+  }
+  if (options.verify_mesh) {
+    const Result<std::uint64_t> hash = geometry_hash(mesh);
+    if (!hash) return hash.error();
+    if (*hash != record_.geometry_hash) {
+      return Error{Errc::kExternalMeshMismatch, place + "the mesh's content differs"};
     }
-    if (options.verify_mesh) {
-      const Result<std::uint64_t> hash = geometry_hash(mesh);
-      if (!hash) return hash.error();
-      if (*hash != record_.geometry_hash) {
-        return Error{Errc::kExternalMeshMismatch, place + "the mesh's content differs"};
-      }
-    }
-  } else if (record_.face_count > 0) {
-    const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
-    const Result<Bytes> positions =
-        sized_section(file, SectionKind::kVertices, index, record_.vertex_count, stride);
-    if (!positions) return positions.error();
-    const Result<Bytes> corners =
-        sized_section(file, SectionKind::kCorners, index, record_.face_count,
-                      std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
-    if (!corners) return corners.error();
-    mesh = {positions->data(),
-            stride,
-            positions_f64,
-            record_.vertex_count,
-            corners->data(),
-            record_.corner_bytes,
-            record_.corners_per_face,
-            record_.face_count};
   }
   leaves_ = LeafReader(mesh, frame_);
   return {};
 }
 
-Status Tree::bind_face_ids(const File& file, std::uint32_t index, const BindOptions& options) {
-  if (record_.face_id_bytes != 0) {
-    const Result<Bytes> ids = sized_section(file, SectionKind::kFaceIds, index, record_.face_count,
-                                            record_.face_id_bytes);
-    if (!ids) return ids.error();
-    face_ids_ = ids->data();
-  }
+Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
+                           const BindOptions& options) {
+  const auto ids =
+      sized(parts.face_ids, SectionKind::kFaceIds, place,
+            record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
+  if (!ids) return ids.error();
+  if (record_.face_id_bytes != 0) face_ids_ = *ids;
   if (options.require_face_ids && !has_face_ids() && !empty()) {
-    return Error{Errc::kPartLeftOut,
-                 "tree " + std::to_string(index) + ": face ids were left out when it was cooked"};
+    return Error{Errc::kPartLeftOut, place + "face ids were left out when it was cooked"};
   }
   return {};
 }
@@ -126,8 +121,8 @@ bool Tree::has_face_ids() const noexcept {
 }
 
 NodeRef Tree::root_ref() const noexcept {
-  return record_.root == RootKind::kLeaf ? NodeRef{0, record_.face_count}
-                                         : NodeRef{0, record_.node_count};
+  if (record_.root == RootKind::kLeaf) return {0, record_.face_count};
+  return std::visit([this](const auto& codec) { return codec.root(record_); }, codec_);
 }
 
 Node Tree::root() const noexcept {

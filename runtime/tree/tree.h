@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <string_view>
 
 #include <Eigen/Geometry>
@@ -13,6 +14,7 @@
 #include <boxtree/format/children.h>
 #include <boxtree/format/tree_record.h>
 #include <boxtree/runtime/file/file.h>
+#include <boxtree/runtime/tree/codecs.h>
 #include <boxtree/runtime/tree/geometry.h>
 
 namespace boxtree {
@@ -27,6 +29,16 @@ struct BindOptions {
   bool verify_mesh = false;
   /// Refuse a tree without face ids [default false] rather than report kNoFaceId later.
   bool require_face_ids = false;
+};
+
+/// The parts of one tree, wherever they lie; a part that is not there is empty.
+struct TreeParts {
+  TreeRecord record;
+  std::string_view name;
+  Bytes nodes;
+  Bytes vertices;
+  Bytes corners;
+  Bytes face_ids;
 };
 
 /// A leaf or a subtree together with its decoded box, as a traversal carries it.
@@ -52,6 +64,9 @@ class Tree {
   /// kExternalMeshNeeded, kExternalMeshMismatch.
   static Result<Tree> bind(const File& file, std::uint32_t index = 0,
                            const BindOptions& options = {});
+
+  /// The same for parts that are not in a file (yet). `index` only serves messages.
+  static Result<Tree> bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options);
 
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
   [[nodiscard]] CodecId codec() const noexcept { return record_.codec; }
@@ -79,21 +94,23 @@ class Tree {
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
 
   // What the query templates read.
-  [[nodiscard]] const std::byte* nodes() const noexcept { return nodes_; }
+  [[nodiscard]] const AnyCodec& codec_view() const noexcept { return codec_; }
   [[nodiscard]] const LeafReader& leaves() const noexcept { return leaves_; }
-  /// The root's reference: the whole range of nodes, or the only leaf.
+  /// The root's reference: all nodes in the terms of the codec, or the only leaf.
   [[nodiscard]] NodeRef root_ref() const noexcept;
 
  private:
   Tree() = default;
-  Status bind_nodes(const File& file, std::uint32_t index);
-  Status bind_geometry(const File& file, std::uint32_t index, const BindOptions& options);
-  Status bind_face_ids(const File& file, std::uint32_t index, const BindOptions& options);
+  Status bind_nodes(const TreeParts& parts, const std::string& place);
+  Status bind_stored_geometry(const TreeParts& parts, const std::string& place);
+  Status bind_external_geometry(const std::string& place, const BindOptions& options);
+  Status bind_face_ids(const TreeParts& parts, const std::string& place,
+                       const BindOptions& options);
 
   TreeRecord record_{};
   Frame frame_;
   std::string_view name_;
-  const std::byte* nodes_ = nullptr;
+  AnyCodec codec_;
   const std::byte* face_ids_ = nullptr;
   LeafReader leaves_;
 };

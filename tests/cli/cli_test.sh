@@ -89,8 +89,70 @@ expect 0 "$boxtree" --help
 expect 0 "$boxtree" --version
 same "$(find . -name '*.cooking' | wc -l)" 0
 
-# External geometry: recognised, and refused without its mesh.
+# External geometry: recognised, refused without its mesh or with another one.
 expect 0 "$boxtree" cook cube.obj -o external.bxt --external
 expect 0 "$boxtree" verify external.bxt
+grep -q 'not looked at' out
+expect 0 "$boxtree" verify external.bxt --mesh cube.obj
+grep -q 'every triangle inside' out
 expect 1 "$boxtree" query external.bxt point --at 0,0,0
+expect 0 "$boxtree" query external.bxt point --at 0.5,0.5,3 --mesh cube.obj --json
+same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
+sed 's/^v 1 1 1/v 1 1 2/' cube.obj >other.obj
+expect 3 "$boxtree" query external.bxt point --at 0,0,0 --mesh other.obj
+expect 0 "$boxtree" query cube.bxt pair external.bxt --mesh2 cube.obj --json
+same "$(jq -c '.hit' out)" true
+
+# Batches: JSON lines, or one document; a bad line gets an error in its place.
+cat >questions.jsonl <<'BATCH'
+{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1]}
+{"kind":"box","min":[0.9,0.4,0.4],"max":[1.5,0.6,0.6]}
+
+{"kind":"sphere","center":[0.5,0.5,1.5],"radius":0.5}
+{"kind":"point","at":[0.5,0.5,3]}
+{"kind":"pair","file":"cube.bxt","pose":"1,0.25,0.25","first":true}
+BATCH
+expect 0 "$boxtree" query cube.bxt --batch questions.jsonl
+same "$(wc -l <out)" 5
+same "$(jq -cs '[.[0].t,.[1].faces,.[2].count,.[3].distance,.[4].count]' out)" '[4,[5],1,2,1]'
+expect 0 "$boxtree" query cube.bxt --batch questions.jsonl --json
+same "$(jq -c '.answers | length' out)" 5
+expect 0 sh -c "echo '{\"at\":[0.5,0.5,3]}' | '$boxtree' query cube.bxt point --batch -"
+same "$(jq -c '.distance' out)" 2
+for bad in 'nonsense' '[1]' '{"kind":"cone"}' '{"kind":"point"}' '{"kind":"point","at":[1,2]}' \
+  '{"kind":"point","at":[0,0,0],"hat":1}' '{"kind":"ray","origin":[0,0,0],"direction":[0,0,0]}'; do
+  printf '{"kind":"point","at":[0.5,0.5,3]}\n%s\n' "$bad" >bad.jsonl
+  expect 1 "$boxtree" query cube.bxt --batch bad.jsonl
+  same "$(jq -cs '[.[0].distance,.[1].error]' out)" '[2,"invalid_query"]'
+  grep -q 'line 2' out
+done
+expect 1 "$boxtree" query cube.bxt
+expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
+grep -q -- '--direction is required' err
+expect 2 "$boxtree" query cube.bxt --batch missing.jsonl
+
+# Several inputs: one tree each, found by number and by name; bad faces dropped by number.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 4\nf 1 2 3\n' >flat.obj
+expect 3 "$boxtree" cook cube.obj flat.obj -o both.bxt
+expect 0 "$boxtree" cook cube.obj flat.obj -o both.bxt --skip-bad --json
+same "$(jq -c '[.trees[].name]' out)" '["cube","flat"]'
+same "$(jq -c '[.trees[1].import.skipped[].face]' out)" '[0]'
+same "$(jq -c '[.trees[].candidates[].gates] | unique' out)" \
+  '[{"missed":0,"escapes":0,"certificate":true}]'
+expect 0 "$boxtree" verify both.bxt
+for tree in 1 flat; do
+  expect 0 "$boxtree" query both.bxt point --at 0.2,0.2,1 --tree "$tree" --json
+  same "$(jq -c '[.distance,.face]' out)" '[1,1]'
+done
+expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree 2
+expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree nobody
+
+# Help: common options, all options. Output to a file or a pipe shows no progress.
+expect 0 "$boxtree" cook --help
+grep -q -- '--codec' out
+if grep -q -- '--depfile' out; then echo "--help shows rare options"; exit 1; fi
+expect 0 "$boxtree" cook --help-all
+grep -q -- '--depfile' out
+expect 0 "$boxtree" cook cube.obj -o cube.bxt
+same "$(wc -c <err)" 0
 echo "command line: all as expected"

@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Hostile bytes: every truncation and every flipped bit of a small file is refused with a code or
 // answered, with checksums repaired too, so that the checks behind them are reached.
-#include <cstring>
-
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/write/proof.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/file/checksum.h>
+#include <boxtree/cooker/proof/proof.h>
 
+#include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
 namespace boxtree {
@@ -35,22 +31,6 @@ void exercise(Bytes bytes) {
   static_cast<void>(overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}, all));
   static_cast<void>(overlap_sphere(*tree, {0, 0, 0}, 4, all));
   static_cast<void>(overlap_pairs(*tree, Pose::Identity(), *tree, Pose::Identity(), all));
-}
-
-// Makes header and section checksums right again after a change.
-void repair(std::vector<std::byte>& bytes) {
-  const auto count = load<FileHeader>(bytes.data()).section_count;
-  const std::size_t table = sizeof(FileHeader);
-  if (!in_range(table, std::uint64_t{count} * sizeof(SectionEntry), bytes.size())) return;
-  for (std::size_t i = 0; i < count; ++i) {
-    auto entry = load<SectionEntry>(bytes.data() + table, i);
-    if (!in_range(entry.offset, entry.size, bytes.size())) continue;
-    entry.checksum = checksum(Bytes(bytes).subspan(entry.offset, entry.size));
-    std::memcpy(bytes.data() + table + i * sizeof(SectionEntry), &entry, sizeof(entry));
-  }
-  const std::uint64_t sum = checksum(Bytes(bytes).first(offsetof(FileHeader, checksum)),
-                                     Bytes(bytes).subspan(table, count * sizeof(SectionEntry)));
-  std::memcpy(bytes.data() + offsetof(FileHeader, checksum), &sum, sizeof(sum));
 }
 
 class Mutation : public testing::TestWithParam<CodecId> {};
@@ -82,15 +62,12 @@ TEST_P(Mutation, EveryFlippedBitWithGoodChecksumsIsAnsweredOrRefused) {
   for (std::size_t bit = 0; bit < whole.size() * 8; ++bit) {
     std::vector<std::byte> bytes = whole;
     bytes[bit / 8] ^= std::byte{1} << (bit % 8);
-    repair(bytes);
+    test::repair_checksums(bytes);
     exercise(bytes);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, Mutation, testing::Values(CodecId::kPlainF32, CodecId::kPlainF16),
-                         [](const auto& info) {
-                           return info.param == CodecId::kPlainF32 ? "PlainF32" : "PlainF16";
-                         });
+INSTANTIATE_TEST_SUITE_P(Codecs, Mutation, testing::ValuesIn(test::all_codecs()), test::test_name);
 
 }  // namespace
 }  // namespace boxtree

@@ -7,26 +7,15 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
 #include <boxtree/runtime/primitive/predicates.h>
 
+#include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
 namespace boxtree {
 namespace {
 
 using cooker::SourceMesh;
-
-std::vector<std::byte> cook_bytes(const SourceMesh& mesh, CodecId codec,
-                                  cooker::Builder builder = cooker::Builder::kSah) {
-  cooker::CookOptions options;
-  options.codec = codec;
-  options.builder = builder;
-  Result<cooker::CookedTree> cooked = cooker::cook_mesh(mesh, options);
-  EXPECT_TRUE(cooked.ok());
-  return cooker::serialize(std::span(&cooked->tree, 1));
-}
 
 // Triangles of a face, in object space.
 std::vector<Triangle> triangles_of(const SourceMesh& mesh, std::size_t face) {
@@ -37,6 +26,10 @@ std::vector<Triangle> triangles_of(const SourceMesh& mesh, std::size_t face) {
   return result;
 }
 
+// Of each kind of query, for each of some ten meshes, two builders and every codec.
+constexpr int kRays = 400;
+constexpr int kPoints = 200;
+
 class Queries : public testing::TestWithParam<CodecId> {
  protected:
   // Calls body(mesh, tree) for every kind of mesh and both builders.
@@ -45,12 +38,10 @@ class Queries : public testing::TestWithParam<CodecId> {
     for (const SourceMesh& mesh : test::all_kinds()) {
       for (const auto builder : {cooker::Builder::kSah, cooker::Builder::kPaper}) {
         SCOPED_TRACE(mesh.name);
-        const std::vector<std::byte> bytes = cook_bytes(mesh, GetParam(), builder);
-        const Result<File> file = File::open(bytes);
-        ASSERT_TRUE(file.ok()) << file.error().message();
-        const Result<Tree> tree = Tree::bind(*file);
-        ASSERT_TRUE(tree.ok()) << tree.error().message();
-        body(mesh, *tree);
+        cooker::CookOptions options;
+        options.builder = builder;
+        const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
+        body(mesh, cooked.tree);
       }
     }
   }
@@ -71,7 +62,7 @@ class Queries : public testing::TestWithParam<CodecId> {
 TEST_P(Queries, ClosestHitEqualsBruteForce) {
   for_each_mesh([&](const SourceMesh& mesh, const Tree& tree) {
     std::size_t hits = 0;
-    for (int i = 0; i < 300; ++i) {
+    for (int i = 0; i < kRays; ++i) {
       const Ray ray{point_near(tree), point_near(tree) - point_near(tree)};
       const RayShear shear(ray.origin, ray.direction);
       double best = std::numeric_limits<double>::infinity();
@@ -100,7 +91,7 @@ TEST_P(Queries, ClosestHitEqualsBruteForce) {
 
 TEST_P(Queries, BoxEqualsBruteForce) {
   for_each_mesh([&](const SourceMesh& mesh, const Tree& tree) {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < kPoints; ++i) {
       const Eigen::Vector3d a = point_near(tree);
       const Eigen::Vector3d b = a + (point_near(tree) - a) * 0.3;
       const Eigen::Vector3d low = a.cwiseMin(b);
@@ -125,7 +116,7 @@ TEST_P(Queries, BoxEqualsBruteForce) {
 
 TEST_P(Queries, SphereAndClosestPointEqualBruteForce) {
   for_each_mesh([&](const SourceMesh& mesh, const Tree& tree) {
-    for (int i = 0; i < 100; ++i) {
+    for (int i = 0; i < kPoints; ++i) {
       const Eigen::Vector3d p = point_near(tree);
       std::vector<double> distance(mesh.faces.size(), std::numeric_limits<double>::infinity());
       for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -155,66 +146,116 @@ TEST_P(Queries, SphereAndClosestPointEqualBruteForce) {
   });
 }
 
-Pose random_pose(std::mt19937_64& random, double reach) {
+using FacePairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+
+// Every pair of faces by the leaf predicate, in the first mesh's space.
+FacePairs touching_pairs(const SourceMesh& a, const SourceMesh& b, const Pose& pose) {
+  FacePairs pairs;
+  for (std::uint32_t f = 0; f < a.faces.size(); ++f) {
+    for (std::uint32_t g = 0; g < b.faces.size(); ++g) {
+      bool touch = false;
+      for (const Triangle& s : triangles_of(a, f)) {
+        for (Triangle t : triangles_of(b, g)) {
+          for (Eigen::Vector3d& corner : t.corner) corner = pose * corner;
+          touch |= triangles_intersect(s, t);
+        }
+      }
+      if (touch) pairs.insert({f, g});
+    }
+  }
+  return pairs;
+}
+
+FacePairs found_pairs(const Tree& a, const Pose& pose_a, const Tree& b, const Pose& pose_b) {
+  FacePairs pairs;
+  EXPECT_TRUE(overlap_pairs(a, pose_a, b, pose_b, [&](const FacePair& pair) {
+                pairs.insert({pair.first.id, pair.second.id});
+                return true;
+              }).ok());
+  return pairs;
+}
+
+// The poses that users have, by turns: a shift by whole units (aligned, touching contact), a
+// rotation, a scale, a mirror, a shear.
+Pose random_pose(std::mt19937_64& random, int turn) {
   std::uniform_real_distribution<double> unit(-1, 1);
   Pose pose = Pose::Identity();
+  if (turn % 5 == 0) {
+    pose.translation() = Eigen::Vector3d(turn % 2, turn % 4 - 1, 0);
+    return pose;
+  }
   pose.linear() = Eigen::Quaterniond(unit(random), unit(random), unit(random), unit(random))
                       .normalized()
                       .toRotationMatrix();
-  pose.translation() = reach * Eigen::Vector3d(unit(random), unit(random), unit(random));
+  if (turn % 5 == 2) pose.scale(Eigen::Vector3d(0.5, 2, 1.25));
+  if (turn % 5 == 3) pose.scale(Eigen::Vector3d(-1, 1, 1));
+  if (turn % 5 == 4) {
+    Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
+    shear(0, 1) = 0.5;
+    shear(1, 2) = -0.75;
+    pose.linear() *= shear;
+  }
+  pose.translation() = 2 * Eigen::Vector3d(unit(random), unit(random), unit(random));
   return pose;
 }
 
 TEST_P(Queries, PairsEqualBruteForce) {
-  std::vector<SourceMesh> meshes{test::sphere(8, 12), test::city(9, 2), test::soup(120, 3),
-                                 test::duplicates(10)};
+  const std::vector<SourceMesh> meshes{test::sphere(8, 12), test::city(9, 2), test::soup(120, 3),
+                                       test::duplicates(10)};
   for (const SourceMesh& a : meshes) {
     for (const SourceMesh& b : meshes) {
       SCOPED_TRACE(a.name + " against " + b.name);
-      const auto bytes_a = cook_bytes(a, GetParam());
-      const auto bytes_b = cook_bytes(b, CodecId::kPlainF16);
-      const Result<File> file_a = File::open(bytes_a);
-      const Result<File> file_b = File::open(bytes_b);
-      const Result<Tree> tree_a = Tree::bind(*file_a);
-      const Result<Tree> tree_b = Tree::bind(*file_b);
-      for (int i = 0; i < 12; ++i) {
-        // Every third pose moves by whole units without turning: aligned, touching contact.
-        Pose pose = random_pose(random_, 2);
-        if (i % 3 == 0) {
-          pose = Pose::Identity();
-          pose.translation() = Eigen::Vector3d(i % 2, i % 4 - 1, 0);
-        }
-        std::multiset<std::pair<std::uint32_t, std::uint32_t>> found;
-        ASSERT_TRUE(
-            overlap_pairs(*tree_a, Pose::Identity(), *tree_b, pose, [&](const FacePair& pair) {
-              found.insert({pair.first.id, pair.second.id});
-              return true;
-            }).ok());
-        std::multiset<std::pair<std::uint32_t, std::uint32_t>> expected;
-        for (std::uint32_t f = 0; f < a.faces.size(); ++f) {
-          for (std::uint32_t g = 0; g < b.faces.size(); ++g) {
-            bool touch = false;
-            for (const Triangle& s : triangles_of(a, f)) {
-              for (Triangle t : triangles_of(b, g)) {
-                for (Eigen::Vector3d& corner : t.corner) corner = pose * corner;
-                touch |= triangles_intersect(s, t);
-              }
-            }
-            if (touch) expected.insert({f, g});
-          }
-        }
-        ASSERT_EQ(found, expected);
-        const auto contact = first_contact(*tree_a, Pose::Identity(), *tree_b, pose);
+      const test::CookedTree tree_a = test::cook_tree(a, GetParam());
+      const test::CookedTree tree_b = test::cook_tree(b, CodecId::kPlainF16);
+      for (int i = 0; i < 15; ++i) {
+        const Pose pose = random_pose(random_, i);
+        const FacePairs expected = touching_pairs(a, b, pose);
+        ASSERT_EQ(found_pairs(tree_a.tree, Pose::Identity(), tree_b.tree, pose), expected);
+        const auto contact = first_contact(tree_a.tree, Pose::Identity(), tree_b.tree, pose);
         ASSERT_EQ((*contact).has_value(), !expected.empty());
       }
     }
   }
 }
 
+// Both trees placed: only their relation counts, also a thousand kilometres away.
+TEST_P(Queries, PairsDependOnTheRelativePoseAlone) {
+  const SourceMesh mesh = test::sphere(8, 12);
+  const test::CookedTree a = test::cook_tree(mesh, GetParam());
+  const test::CookedTree b = test::cook_tree(mesh, GetParam());
+  Pose away = Pose::Identity();
+  away.translation() = Eigen::Vector3d(0x1p20, -0x1p20, 0x1p19);  // exact: a shift adds no rounding
+  for (int i = 0; i < 20; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(0.125 * i, 0.0625 * (i % 5), 0);
+    Pose there = pose;
+    there.translation() += away.translation();
+    ASSERT_EQ(found_pairs(a.tree, away, b.tree, there),
+              found_pairs(a.tree, Pose::Identity(), b.tree, pose));
+    ASSERT_EQ(found_pairs(a.tree, Pose::Identity(), b.tree, pose),
+              touching_pairs(mesh, mesh, pose));
+  }
+}
+
+// A visitor that stops is not asked again.
+TEST_P(Queries, VisitorsCanStop) {
+  const test::CookedTree cooked = test::cook_tree(test::city(9, 2), GetParam());
+  for (int limit = 1; limit < 4; ++limit) {
+    int pairs = 0;
+    const auto stop = [&](const auto&) { return ++pairs < limit; };
+    const auto visit =
+        overlap_pairs(cooked.tree, Pose::Identity(), cooked.tree, Pose::Identity(), stop);
+    ASSERT_EQ(*visit, Visit::kStopped);
+    ASSERT_EQ(pairs, limit);
+    pairs = 0;
+    ASSERT_EQ(*overlap_sphere(cooked.tree, {0, 0, 0}, 1e3, stop), Visit::kStopped);
+    ASSERT_EQ(pairs, limit);
+  }
+}
+
 TEST_P(Queries, InvalidQuestionsAreRefused) {
-  const auto bytes = cook_bytes(test::sphere(6, 8), GetParam());
-  const Result<File> file = File::open(bytes);
-  const Result<Tree> tree = Tree::bind(*file);
+  const test::CookedTree cooked = test::cook_tree(test::sphere(6, 8), GetParam());
+  const Tree* tree = &cooked.tree;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   EXPECT_EQ(closest_hit(*tree, {zero, zero}).code(), Errc::kInvalidQuery);
@@ -228,10 +269,7 @@ TEST_P(Queries, InvalidQuestionsAreRefused) {
   EXPECT_EQ(first_contact(*tree, flat, *tree, Pose::Identity()).code(), Errc::kInvalidPose);
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, Queries, testing::Values(CodecId::kPlainF32, CodecId::kPlainF16),
-                         [](const auto& info) {
-                           return info.param == CodecId::kPlainF32 ? "PlainF32" : "PlainF16";
-                         });
+INSTANTIATE_TEST_SUITE_P(Codecs, Queries, testing::ValuesIn(test::all_codecs()), test::test_name);
 
 }  // namespace
 }  // namespace boxtree

@@ -3,40 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
-#include <boxtree/cooker/write/proof.h>
+#include <boxtree/cooker/proof/proof.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree::cooker {
 namespace {
 
-class Proof {
+class Walk {
  public:
-  Proof(const Tree& tree, bool with_geometry, CertificateRecord& certificate, Findings& findings)
-      : tree_(tree),
-        with_geometry_(with_geometry),
-        certificate_(certificate),
-        findings_(findings),
-        limit_(findings.size() + kMaxFindings) {}
+  Walk(const Tree& tree, bool with_geometry, TreeProof& proof)
+      : tree_(tree), with_geometry_(with_geometry), proof_(proof) {}
 
   void run() {
-    certificate_ = {};
     if (!tree_.empty()) {
       reached_.resize(tree_.record().face_count, false);
       walk(tree_.root(), 0);
       report_unreached();
     }
     const TreeRecord& record = tree_.record();
-    compare("depth", certificate_.depth, record.depth);
-    compare("nodes", certificate_.node_count, record.node_count);
-    compare("faces", certificate_.face_count, record.face_count);
+    compare("depth", proof_.certificate.depth, record.depth);
+    compare("nodes", proof_.certificate.node_count, record.node_count);
+    compare("faces", proof_.certificate.face_count, record.face_count);
     if (with_geometry_) compare("triangles", triangles_, record.triangle_count);
   }
 
  private:
   void add(Errc code, const std::string& what) {
-    if (findings_.size() < limit_) findings_.push_back({code, what});
+    if (proof_.findings.size() < kMaxFindings) proof_.findings.push_back({code, what});
   }
 
   void compare(const char* what, std::uint32_t found, std::uint32_t stated) {
@@ -52,6 +48,7 @@ class Proof {
     for (std::size_t k = 0; k < 3; ++k) {
       if (content.low[k] >= node.box.low[k] && content.high[k] <= node.box.high[k]) continue;
       if (content.low[k] > content.high[k]) break;  // nothing below, already reported
+      ++proof_.escapes;
       add(Errc::kBoxEscape, std::string(node.is_leaf ? "leaf at face " : "node ") +
                                 std::to_string(node.ref.first) + ", axis " + std::to_string(k) +
                                 ": triangles reach [" + std::to_string(content.low[k]) + ", " +
@@ -75,9 +72,9 @@ class Proof {
       add(error, "node " + std::to_string(node.ref.first) + " contradicts itself");
       return content;
     }
-    ++certificate_.node_count;
-    certificate_.depth = std::max(certificate_.depth, depth + 1);
-    if (children.count == 1) ++certificate_.shrink_count;
+    ++proof_.certificate.node_count;
+    proof_.certificate.depth = std::max(proof_.certificate.depth, depth + 1);
+    if (children.count == 1) ++proof_.certificate.shrink_count;
     for (std::uint32_t i = 0; i < children.count; ++i) {
       grow(content, walk(children.child[i], depth + 1));
     }
@@ -85,7 +82,7 @@ class Proof {
   }
 
   Box<double> visit_leaf(const Node& leaf) {
-    ++certificate_.leaf_count;
+    ++proof_.certificate.leaf_count;
     Box<double> content = nothing();
     if (!in_range(leaf.ref.first, leaf.ref.second, reached_.size())) {
       add(Errc::kFaceOutOfRange, "a leaf names face " + std::to_string(leaf.ref.first) + " of " +
@@ -94,7 +91,7 @@ class Proof {
     }
     for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
       if (reached_[f]) add(Errc::kFaceRepeated, "face " + std::to_string(f) + " is in two leaves");
-      if (!reached_[f]) ++certificate_.face_count;
+      if (!reached_[f]) ++proof_.certificate.face_count;
       reached_[f] = true;
     }
     if (!with_geometry_) return content;
@@ -109,13 +106,15 @@ class Proof {
 
   void visit_triangle(const Triangle& triangle, Box<double>& content) {
     ++triangles_;
-    if (is_degenerate(triangle)) ++certificate_.degenerate_count;
+    if (is_degenerate(triangle)) ++proof_.certificate.degenerate_count;
     grow(content, bounds_of(triangle));
   }
 
   void report_unreached() {
-    for (std::size_t f = 0; f < reached_.size() && findings_.size() < limit_; ++f) {
-      if (!reached_[f]) add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
+    for (std::size_t f = 0; f < reached_.size(); ++f) {
+      if (reached_[f]) continue;
+      ++proof_.missed;
+      add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
     }
   }
 
@@ -133,34 +132,21 @@ class Proof {
 
   const Tree& tree_;
   bool with_geometry_;
-  CertificateRecord& certificate_;
-  Findings& findings_;
-  std::size_t limit_;
+  TreeProof& proof_;
   std::vector<bool> reached_;
   std::uint32_t triangles_ = 0;
 };
 
-void verify_certificate(const File& file, std::uint32_t index, bool with_geometry,
-                        const CertificateRecord& found, Findings& findings) {
+Status check_certificate(const File& file, std::uint32_t index, bool with_geometry,
+                         const CertificateRecord& found) {
   const Bytes bytes = file.section(SectionKind::kCertificate, index);
   if (bytes.size() != sizeof(CertificateRecord)) {
-    findings.push_back({Errc::kSectionSize, "certificate of " + std::to_string(bytes.size()) +
-                                                " bytes, expected " +
-                                                std::to_string(sizeof(CertificateRecord))});
-    return;
+    return Error{
+        Errc::kSectionSize,
+        "certificate: " + section_size_error(bytes.size(), sizeof(CertificateRecord)).detail};
   }
-  const auto stated = load<CertificateRecord>(bytes.data());
-  const bool counts_hold = stated.depth == found.depth && stated.node_count == found.node_count &&
-                           stated.leaf_count == found.leaf_count &&
-                           stated.face_count == found.face_count &&
-                           stated.shrink_count == found.shrink_count &&
-                           (!with_geometry || stated.degenerate_count == found.degenerate_count);
-  const bool well_formed = std::isfinite(stated.max_vertex_error) && stated.max_vertex_error >= 0 &&
-                           stated.reserved == decltype(stated.reserved){};
-  if (!counts_hold || !well_formed) {
-    findings.push_back(
-        {Errc::kCertificateMismatch, "the certificate's figures are not the tree's"});
-  }
+  if (certificate_holds(load<CertificateRecord>(bytes.data()), found, with_geometry)) return {};
+  return Error{Errc::kCertificateMismatch, "the certificate's figures are not the tree's"};
 }
 
 // Binds for a structural check only: leaves of external geometry are never read.
@@ -181,9 +167,22 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 
 }  // namespace
 
-void prove_tree(const Tree& tree, bool with_geometry, CertificateRecord& certificate,
-                Findings& findings) {
-  Proof(tree, with_geometry, certificate, findings).run();
+TreeProof prove_tree(const Tree& tree, bool with_geometry) {
+  TreeProof proof;
+  Walk(tree, with_geometry, proof).run();
+  return proof;
+}
+
+bool certificate_holds(const CertificateRecord& stated, const CertificateRecord& found,
+                       bool with_geometry) {
+  const bool counts_hold = stated.depth == found.depth && stated.node_count == found.node_count &&
+                           stated.leaf_count == found.leaf_count &&
+                           stated.face_count == found.face_count &&
+                           stated.shrink_count == found.shrink_count &&
+                           (!with_geometry || stated.degenerate_count == found.degenerate_count);
+  const bool well_formed = std::isfinite(stated.max_vertex_error) && stated.max_vertex_error >= 0 &&
+                           stated.reserved == decltype(stated.reserved){};
+  return counts_hold && well_formed;
 }
 
 Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
@@ -193,18 +192,19 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
   }
   if (Status status = verify_checksums(file); !status) findings.push_back(status.error());
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    const std::size_t before = findings.size();
     const Result<Tree> tree = bind_for_proof(file, i, mesh);
     if (!tree) {
       findings.push_back(tree.error());
       continue;
     }
     const bool with_geometry = tree->record().geometry != GeometryId::kExternal || mesh.has_value();
-    CertificateRecord found;
-    prove_tree(*tree, with_geometry, found, findings);
-    verify_certificate(file, i, with_geometry, found, findings);
-    for (std::size_t f = before; f < findings.size(); ++f) {
-      findings[f].detail = "tree " + std::to_string(i) + ": " + findings[f].detail;
+    TreeProof proof = prove_tree(*tree, with_geometry);
+    if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
+      proof.findings.push_back(status.error());
+    }
+    for (Error& finding : proof.findings) {
+      finding.detail = "tree " + std::to_string(i) + ": " + finding.detail;
+      findings.push_back(std::move(finding));
     }
   }
   return findings;

@@ -18,11 +18,21 @@ using Findings = std::vector<Error>;
 /// At most this many findings are kept of one tree; a damaged tree has millions of them.
 inline constexpr std::size_t kMaxFindings = 100;
 
-/// Walks the whole tree as a reader would and appends what does not hold. `certificate` receives
-/// the counts found. With `with_geometry` false, leaves are counted but triangles not looked at
-/// (external geometry whose mesh is not at hand). Safe on any bytes.
-void prove_tree(const Tree& tree, bool with_geometry, CertificateRecord& certificate,
-                Findings& findings);
+/// What a walk of one tree found.
+struct TreeProof {
+  CertificateRecord certificate{};  // the counts met
+  std::uint64_t missed = 0;         // faces in no leaf
+  std::uint64_t escapes = 0;        // boxes that do not hold what is below them
+  Findings findings;                // the first kMaxFindings of all that does not hold
+};
+
+/// Walks the whole tree as a reader would. With `with_geometry` false, leaves are counted but
+/// triangles not looked at (external geometry whose mesh is not at hand). Safe on any bytes.
+[[nodiscard]] TreeProof prove_tree(const Tree& tree, bool with_geometry);
+
+/// Whether a stated certificate is well formed and says what was found.
+[[nodiscard]] bool certificate_holds(const CertificateRecord& stated,
+                                     const CertificateRecord& found, bool with_geometry);
 
 /// Everything that can be checked of an open file: padding, section checksums, records, names, each
 /// tree by prove_tree and against its certificate. `mesh` serves trees with external geometry;

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: MIT
+// Parsing, asking, and the JSON of answers.
+#include <algorithm>
+#include <charconv>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/cli/question.h>
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
+
+namespace boxtree::cooker {
+namespace {
+
+Result<std::uint32_t> tree_index(const File& file, const std::string& which) {
+  std::uint32_t index = 0;
+  const char* const end = which.data() + which.size();
+  const auto [parsed, error] = std::from_chars(which.data(), end, index);
+  if (error == std::errc() && parsed == end) return index;
+  return file.find_tree(which);
+}
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+Json face_json(const FaceRef& face) {
+  return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
+}
+
+Result<Json> answer(const Tree& tree, const RayQuestion& question) {
+  const auto hit = question.any ? any_hit(tree, question.ray) : closest_hit(tree, question.ray);
+  if (!hit) return hit.error();
+  Json json = {{"hit", hit->has_value()}};
+  if (*hit) {
+    const RayHit& found = **hit;
+    json["t"] = found.t;
+    json["face"] = face_json(found.face);
+    json["triangle"] = found.triangle;
+    json["point"] = vector_json(question.ray.origin + found.t * question.ray.direction);
+    json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
+  }
+  return json;
+}
+
+template <class Overlap>
+Result<Json> answer_faces(Overlap overlap) {
+  Json faces = Json::array();
+  const Result<Visit> visit = overlap([&](const FaceRef& face) {
+    faces.push_back(face_json(face));
+    return true;
+  });
+  if (!visit) return visit.error();
+  return Json{{"count", faces.size()}, {"faces", faces}};
+}
+
+Result<Json> answer(const Tree& tree, const BoxQuestion& question) {
+  return answer_faces(
+      [&](FaceVisitor visitor) { return overlap_box(tree, question.box, visitor); });
+}
+
+Result<Json> answer(const Tree& tree, const SphereQuestion& question) {
+  return answer_faces([&](FaceVisitor visitor) {
+    return overlap_sphere(tree, question.center, question.radius, visitor);
+  });
+}
+
+Result<Json> answer(const Tree& tree, const PointQuestion& question) {
+  const auto closest = closest_point(tree, question.at, question.max_distance);
+  if (!closest) return closest.error();
+  Json json = {{"found", closest->has_value()}};
+  if (*closest) {
+    json["distance"] = (*closest)->distance;
+    json["point"] = vector_json((*closest)->point);
+    json["face"] = face_json((*closest)->face);
+    json["triangle"] = (*closest)->triangle;
+  }
+  return json;
+}
+
+Result<Json> answer_pair(const Tree& first, const Tree& second, const PairQuestion& question) {
+  Json pairs = Json::array();
+  const Result<Visit> visit =
+      overlap_pairs(first, Pose::Identity(), second, question.pose, [&](const FacePair& pair) {
+        pairs.push_back({face_json(pair.first), face_json(pair.second)});
+        return !question.first_only;
+      });
+  if (!visit) return visit.error();
+  return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
+}
+
+Error invalid(std::string what) {
+  return {Errc::kInvalidQuery, std::move(what)};
+}
+
+// Reads the keys of one question and remembers the first that is missing, wrong or unknown.
+class Fields {
+ public:
+  explicit Fields(const Json& json) : json_(json) {}
+
+  void read(const char* key, Eigen::Vector3d& out) {
+    const Json* value = require(key);
+    if (value == nullptr) return;
+    const bool three = value->is_array() && value->size() == 3;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!three || !(*value)[k].is_number()) return fail(key, "[X,Y,Z]");
+      out[static_cast<Eigen::Index>(k)] = (*value)[k].get<double>();
+    }
+  }
+  void read(const char* key, double& out) {
+    const Json* value = require(key);
+    if (value == nullptr) return;
+    if (!value->is_number()) return fail(key, "a number");
+    out = value->get<double>();
+  }
+  void read(const char* key, std::string& out) {
+    const Json* value = require(key);
+    if (value == nullptr) return;
+    if (!value->is_string()) return fail(key, "a text");
+    out = value->get<std::string>();
+  }
+  void read(const char* key, bool& out) {
+    const Json* value = require(key);
+    if (value == nullptr) return;
+    if (!value->is_boolean()) return fail(key, "true or false");
+    out = value->get<bool>();
+  }
+  // The same, but the key may be missing.
+  template <class T>
+  void read_if_given(const char* key, T& out) {
+    known_.emplace_back(key);
+    if (json_.contains(key)) read(key, out);
+  }
+  [[nodiscard]] Status finish(std::string_view kind) {
+    for (const auto& [key, value] : json_.items()) {
+      const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
+      if (!known && key != "kind") fail(key, fmt::format("no such key in \"{}\"", kind));
+    }
+    return error_.empty() ? Status() : Status(invalid(error_));
+  }
+  void fail(std::string_view key, std::string_view expected) {
+    if (error_.empty()) error_ = fmt::format("\"{}\": expected {}", key, expected);
+  }
+
+ private:
+  const Json* require(const char* key) {
+    known_.emplace_back(key);
+    const auto found = json_.find(key);
+    if (found != json_.end()) return &*found;
+    fail(key, "this key");
+    return nullptr;
+  }
+
+  const Json& json_;
+  std::vector<std::string> known_;
+  std::string error_;
+};
+
+Result<Question> question_of(std::string_view kind, Fields& fields) {
+  Question result;
+  if (kind == "ray") {
+    RayQuestion ray;
+    fields.read("origin", ray.ray.origin);
+    fields.read("direction", ray.ray.direction);
+    fields.read_if_given("t_max", ray.ray.t_max);
+    fields.read_if_given("any", ray.any);
+    result = ray;
+  } else if (kind == "box") {
+    BoxQuestion box;
+    fields.read("min", box.box.min());
+    fields.read("max", box.box.max());
+    result = box;
+  } else if (kind == "sphere") {
+    SphereQuestion sphere;
+    fields.read("center", sphere.center);
+    fields.read("radius", sphere.radius);
+    result = sphere;
+  } else if (kind == "point") {
+    PointQuestion point;
+    fields.read("at", point.at);
+    fields.read_if_given("max_distance", point.max_distance);
+    result = point;
+  } else if (kind == "pair") {
+    PairQuestion pair;
+    std::string file;
+    std::string mesh;
+    std::string pose = "0,0,0";
+    fields.read("file", file);
+    fields.read_if_given("tree", pair.tree);
+    fields.read_if_given("mesh", mesh);
+    fields.read_if_given("pose", pose);
+    fields.read_if_given("first", pair.first_only);
+    pair.file = file;
+    pair.mesh = mesh;
+    const std::optional<Pose> parsed = parse_pose(pose);
+    if (!parsed) fields.fail("pose", "\"X,Y,Z\" or 12 numbers");
+    pair.pose = parsed.value_or(Pose::Identity());
+    result = pair;
+  } else {
+    return invalid(fmt::format("kind \"{}\": expected ray, box, sphere, point or pair", kind));
+  }
+  if (Status status = fields.finish(kind); !status) return status.error();
+  return result;
+}
+
+}  // namespace
+
+Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
+                             const std::filesystem::path& mesh) {
+  Result<File> file = File::open(path);
+  if (!file) return file.error();
+  const Result<std::uint32_t> index = tree_index(*file, which);
+  if (!index) return index.error();
+  BindOptions options;
+  std::unique_ptr<SourceMesh> source;
+  if (!mesh.empty()) {
+    ImportOptions import;
+    const bool f64 =
+        *index < file->tree_count() && (file->tree_record(*index).flags & kTreePositionsF64) != 0;
+    if (f64) import.precision = Precision::kF64;
+    Result<Imported> imported = import_mesh(mesh, import);
+    if (!imported) return imported.error();
+    source = std::make_unique<SourceMesh>(std::move(imported->mesh));
+    options.mesh = arrays_of(*source);
+    options.verify_mesh = true;
+  }
+  Result<Tree> tree = Tree::bind(*file, *index, options);
+  if (!tree) return Error{tree.code(), path.string() + ": " + tree.error().detail};
+  return OpenedTree{std::move(*file), std::move(source), std::move(*tree)};
+}
+
+Result<const Tree*> TreeCache::get(const PairQuestion& question) {
+  std::unique_ptr<OpenedTree>& place = opened_[{question.file.string(), question.tree}];
+  if (place == nullptr) {
+    Result<OpenedTree> opened = open_tree(question.file, question.tree, question.mesh);
+    if (!opened) return opened.error();
+    place = std::make_unique<OpenedTree>(std::move(*opened));
+  }
+  return &place->tree;
+}
+
+std::optional<Pose> parse_pose(std::string_view text) {
+  std::array<double, 12> number{};
+  std::size_t count = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (true) {
+    if (count == number.size()) return std::nullopt;
+    const auto [next, error] = std::from_chars(at, end, number[count++]);
+    if (error != std::errc()) return std::nullopt;
+    at = next;
+    if (at == end) break;
+    if (*at++ != ',') return std::nullopt;
+  }
+  Pose pose = Pose::Identity();
+  if (count == 3) {
+    pose.translation() = Eigen::Vector3d(number[0], number[1], number[2]);
+    return pose;
+  }
+  if (count != 12) return std::nullopt;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      pose.matrix()(row, column) = number[static_cast<std::size_t>(4 * row + column)];
+    }
+  }
+  return pose;
+}
+
+Result<Question> parse_question(std::string_view line, std::string_view default_kind) {
+  const Json json = Json::parse(line, nullptr, false);
+  if (!json.is_object()) return invalid("expected one JSON object a line");
+  std::string kind(default_kind);
+  if (const auto given = json.find("kind"); given != json.end()) {
+    if (!given->is_string()) return invalid("\"kind\": expected a text");
+    kind = given->get<std::string>();
+  }
+  Fields fields(json);
+  return question_of(kind, fields);
+}
+
+Result<Json> ask(const Tree& tree, const Question& question, TreeCache& others) {
+  if (const auto* pair = std::get_if<PairQuestion>(&question)) {
+    const Result<const Tree*> second = others.get(*pair);
+    if (!second) return second.error();
+    return answer_pair(tree, **second, *pair);
+  }
+  return std::visit(
+      [&](const auto& q) -> Result<Json> {
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(q)>, PairQuestion>) {
+          return Errc::kInternal;  // answered above
+        } else {
+          return answer(tree, q);
+        }
+      },
+      question);
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Records from encoded parts.
+#include <boxtree/cooker/encode/encoded_tree.h>
+
+namespace boxtree::cooker {
+
+TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
+  TreeRecord record{};
+  record.codec = tree.nodes.codec;
+  record.geometry = tree.geometry.geometry;
+  record.flags = (tree.faces_in_source_order ? kTreeFacesInSourceOrder : 0) |
+                 (tree.positions_f64 ? kTreePositionsF64 : 0);
+  record.face_count = tree.face_count;
+  record.triangle_count = tree.triangle_count;
+  record.vertex_count = tree.geometry.vertex_count;
+  record.node_count = tree.nodes.node_count;
+  record.root = tree.nodes.root;
+  record.depth = tree.nodes.depth;
+  record.corner_bytes = tree.geometry.corner_bytes;
+  record.corners_per_face = tree.geometry.corners_per_face;
+  record.face_id_bytes = tree.geometry.face_id_bytes;
+  record.scale_exponent = tree.scale_exponent;
+  record.name_offset = name_offset;
+  record.name_bytes = static_cast<std::uint32_t>(tree.name.size());
+  record.origin = tree.origin;
+  record.root_low = tree.nodes.root_box.low;
+  record.root_high = tree.nodes.root_box.high;
+  record.geometry_hash = tree.geometry.hash;
+  return record;
+}
+
+CertificateRecord certificate_of(const EncodedTree& tree) {
+  CertificateRecord certificate{};
+  certificate.depth = tree.nodes.depth;
+  certificate.node_count = tree.nodes.node_count;
+  certificate.leaf_count = tree.nodes.leaf_count;
+  certificate.face_count = tree.face_count;
+  certificate.shrink_count = tree.nodes.shrink_count;
+  certificate.degenerate_count = tree.degenerate_count;
+  return certificate;
+}
+
+TreeParts parts_of(const EncodedTree& tree) {
+  return {record_of(tree, 0),    tree.name,
+          tree.nodes.bytes,      tree.geometry.vertices,
+          tree.geometry.corners, tree.geometry.face_ids};
+}
+
+}  // namespace boxtree::cooker

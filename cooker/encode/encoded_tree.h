@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: MIT
+// One tree with all its parts, and the records that describe it in a file.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/tree/tree.h>
+
+namespace boxtree::cooker {
+
+/// One tree, ready to be proven and written.
+struct EncodedTree {
+  std::string name;
+  std::array<double, 3> origin{};  // of the frame
+  int scale_exponent = 0;          // of the frame
+  EncodedNodes nodes;
+  EncodedGeometry geometry;
+  std::uint32_t face_count = 0;
+  std::uint32_t triangle_count = 0;
+  std::uint32_t degenerate_count = 0;
+  bool faces_in_source_order = false;
+  bool positions_f64 = false;
+};
+
+/// Its record; the name lies at `name_offset` of the names section.
+[[nodiscard]] TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset);
+
+/// What the encoder claims of it, for the proof to confirm.
+[[nodiscard]] CertificateRecord certificate_of(const EncodedTree& tree);
+
+/// Its parts as a reader binds them; they point into `tree`.
+[[nodiscard]] TreeParts parts_of(const EncodedTree& tree);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// A source mesh in the shape in which a runtime binds an application's arrays.
+#pragma once
+
+#include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/runtime/tree/geometry.h>
+
+namespace boxtree::cooker {
+
+/// Points into `mesh`. Faces are four corners each; kNoCorner is the runtime's missing corner.
+[[nodiscard]] inline MeshArrays arrays_of(const SourceMesh& mesh) {
+  static_assert(sizeof(Face) == 4 * sizeof(std::uint32_t) && kNoCorner == kMissingCorner);
+  const bool f64 = mesh.positions.precision == Precision::kF64;
+  MeshArrays arrays;
+  arrays.positions = f64 ? reinterpret_cast<const std::byte*>(mesh.positions.f64.data())
+                         : reinterpret_cast<const std::byte*>(mesh.positions.f32.data());
+  arrays.position_stride = 3 * (f64 ? sizeof(double) : sizeof(float));
+  arrays.positions_f64 = f64;
+  arrays.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
+  arrays.corners = reinterpret_cast<const std::byte*>(mesh.faces.data());
+  arrays.corner_bytes = 4;
+  arrays.corners_per_face = 4;
+  arrays.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  return arrays;
+}
+
+}  // namespace boxtree::cooker

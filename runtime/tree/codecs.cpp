@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// From a codec's number to its type.
+#include <boxtree/runtime/tree/codecs.h>
+
+namespace boxtree {
+namespace {
+
+template <Codec C>
+Result<AnyCodec> bind_as(const TreeRecord& record, Bytes nodes) {
+  Result<C> codec = C::bind(record, nodes);
+  if (!codec) return codec.error();
+  return AnyCodec(*codec);
+}
+
+}  // namespace
+
+Result<AnyCodec> bind_codec(const TreeRecord& record, Bytes nodes) {
+  switch (record.codec) {
+    case CodecId::kPlainF32:
+      return bind_as<PlainCodec<float>>(record, nodes);
+    case CodecId::kPlainF16:
+      return bind_as<PlainCodec<std::uint16_t>>(record, nodes);
+  }
+  return Errc::kCodecUnsupported;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The golden files: what the cooker writes for scene.obj, byte for byte, and that files of every
+// released version open for ever. The .hex files are the specification in the flesh: they are
+// added to, never regenerated.
+#include <cctype>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree {
+namespace {
+
+const std::filesystem::path kFolder = BOXTREE_GOLDEN_DIR;
+
+std::vector<std::byte> golden_bytes(CodecId codec) {
+  const std::string text =
+      test::read_text(kFolder / ("v1.0-" + std::string(codec_name(codec)) + ".hex"));
+  std::vector<std::byte> bytes;
+  unsigned digits = 0;
+  unsigned value = 0;
+  for (const char c : text) {
+    if (std::isxdigit(static_cast<unsigned char>(c)) == 0) continue;
+    value = value * 16 + static_cast<unsigned>(c <= '9' ? c - '0' : c - 'a' + 10);
+    if (++digits % 2 != 0) continue;
+    bytes.push_back(static_cast<std::byte>(value));
+    value = 0;
+  }
+  return bytes;
+}
+
+class Golden : public testing::TestWithParam<CodecId> {};
+
+TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
+  const std::vector<std::byte> golden = golden_bytes(GetParam());
+  ASSERT_FALSE(golden.empty()) << "no golden file";
+  Result<cooker::Imported> imported = cooker::import_mesh(kFolder / "scene.obj");
+  ASSERT_TRUE(imported.ok()) << imported.error().message();
+  imported->mesh.name = "scene";
+  const std::vector<std::byte> cooked = test::cook_bytes(imported->mesh, GetParam());
+  ASSERT_EQ(cooked.size(), golden.size());
+  for (std::size_t i = 0; i < golden.size(); ++i) ASSERT_EQ(cooked[i], golden[i]) << "byte " << i;
+}
+
+TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
+  const std::vector<std::byte> golden = golden_bytes(GetParam());
+  OpenOptions options;
+  options.verify_checksums = true;
+  const Result<File> file = File::open(Bytes(golden), options);
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  const Result<Tree> tree = Tree::bind(*file);
+  ASSERT_TRUE(tree.ok()) << tree.error().message();
+  EXPECT_EQ(tree->codec(), GetParam());
+  EXPECT_EQ(tree->name(), "scene");
+  EXPECT_EQ(tree->record().face_count, 8u);
+  EXPECT_EQ(tree->record().triangle_count, 9u);
+
+  const auto down = closest_hit(*tree, {{0.25, 0.25, 3}, {0, 0, -1}});
+  ASSERT_TRUE(down.ok() && down->has_value());
+  EXPECT_EQ((*down)->face.id, 0u);
+  EXPECT_EQ((*down)->t, 3);
+  // The quad and a piece of the pentagon share the plane: the smaller face id answers.
+  const auto shared = closest_hit(*tree, {{4.5, 0.5, 3}, {0, 0, -1}});
+  ASSERT_TRUE(shared.ok() && shared->has_value());
+  EXPECT_EQ((*shared)->face.id, 1u);
+  EXPECT_EQ((*shared)->t, 2.5);
+  const auto closest = closest_point(*tree, {0.4375, 9, 1});
+  ASSERT_TRUE(closest.ok() && closest->has_value());
+  EXPECT_EQ((*closest)->face.id, 4u);  // the face without area
+  EXPECT_EQ((*closest)->distance, 2);
+  std::vector<std::uint32_t> touched;
+  ASSERT_TRUE(overlap_box(*tree, {Eigen::Vector3d(12.0625, 2, -1), Eigen::Vector3d(13, 4, 1)},
+                          [&](const FaceRef& face) {
+                            touched.push_back(face.id);
+                            return true;
+                          })
+                  .ok());
+  EXPECT_EQ(touched, std::vector<std::uint32_t>{3});
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, Golden, testing::ValuesIn(test::all_codecs()), test::test_name);
+
+}  // namespace
+}  // namespace boxtree

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// Cooked files in memory, for tests that start from a mesh and end at a tree.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/boxtree.h>
+
+namespace boxtree::test {
+
+/// The bytes of a file with one tree, in one codec.
+[[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
+                                                cooker::CookOptions options = {});
+
+/// A tree together with the bytes it points into.
+struct CookedTree {
+  std::vector<std::byte> bytes;
+  File file;
+  Tree tree;
+};
+
+/// Cooks, opens and binds; a failure is a failed test and throws, as nothing can follow it.
+[[nodiscard]] CookedTree cook_tree(const cooker::SourceMesh& mesh, CodecId codec,
+                                   const cooker::CookOptions& options = {},
+                                   const BindOptions& bind = {});
+
+/// Every codec of the registry, for testing::ValuesIn.
+[[nodiscard]] std::vector<CodecId> all_codecs();
+
+/// "plain_f32" for "plain-f32": test names allow no dashes.
+[[nodiscard]] std::string test_name(const testing::TestParamInfo<CodecId>& info);
+
+/// Makes the checksums of header and sections right again after a change, so that the checks
+/// behind them are reached.
+void repair_checksums(std::vector<std::byte>& bytes);
+
+}  // namespace boxtree::test

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Opening by path: what is refused and how it is named, and what a copy is immune to.
+#include <sys/stat.h>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree {
+namespace {
+
+std::string cooked_text() {
+  const std::vector<std::byte> bytes = test::cook_bytes(test::torus(8, 6), CodecId::kPlainF16);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+TEST(FileOpen, NamesThePathOfWhatItRefuses) {
+  const test::TempFolder folder;
+  struct Case {
+    std::filesystem::path path;
+    Errc expected;
+  };
+  const std::string whole = cooked_text();
+  const Case cases[] = {
+      {folder.path() / "missing.bxt", Errc::kFileNotFound},
+      {folder.path(), Errc::kFileUnreadable},
+      {folder.write("empty.bxt", ""), Errc::kTruncated},
+      {folder.write("short.bxt", whole.substr(0, 63)), Errc::kTruncated},
+      {folder.write("cut.bxt", whole.substr(0, whole.size() - 64)), Errc::kTruncated},
+      {folder.write("text.bxt", std::string(200, 'x')), Errc::kBadMagic},
+  };
+  for (const Case& c : cases) {
+    for (const bool copy : {false, true}) {
+      OpenOptions options;
+      options.copy = copy;
+      const Result<File> file = File::open(c.path, options);
+      ASSERT_EQ(file.code(), c.expected) << c.path;
+      EXPECT_NE(file.error().detail.find(c.path.string()), std::string::npos)
+          << file.error().detail;
+    }
+  }
+}
+
+TEST(FileOpen, PipesAreRefusedWithoutWaiting) {
+  const test::TempFolder folder;
+  const std::filesystem::path pipe = folder.path() / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(File::open(pipe).code(), Errc::kFileUnreadable);
+}
+
+TEST(FileOpen, MapAndCopyAndMemoryAgree) {
+  const test::TempFolder folder;
+  const std::string whole = cooked_text();
+  const std::filesystem::path path = folder.write("torus.bxt", whole);
+  // Records are read at any alignment: one byte off on purpose.
+  const std::string shifted = "x" + whole;
+  OpenOptions copy;
+  copy.copy = true;
+  copy.verify_checksums = true;
+  for (const Result<File>& file : {File::open(path), File::open(path, copy),
+                                   File::open(std::as_bytes(std::span(shifted)).subspan(1))}) {
+    ASSERT_TRUE(file.ok()) << file.error().message();
+    const Result<Tree> tree = Tree::bind(*file);
+    ASSERT_TRUE(tree.ok());
+    const auto hit = closest_hit(*tree, {{1, 0.01, 9}, {0, 0, -1}});
+    ASSERT_TRUE(hit.ok() && hit->has_value());
+  }
+}
+
+TEST(FileOpen, ACopyOutlivesItsFile) {
+  const test::TempFolder folder;
+  const std::filesystem::path path = folder.write("torus.bxt", cooked_text());
+  OpenOptions options;
+  options.copy = true;
+  const Result<File> file = File::open(path, options);
+  ASSERT_TRUE(file.ok());
+  std::filesystem::resize_file(path, 0);
+  EXPECT_TRUE(verify_checksums(*file).ok());
+}
+
+TEST(FileTrees, AreFoundByNumberAndName) {
+  std::vector<cooker::EncodedTree> trees;
+  for (const cooker::SourceMesh& mesh : {test::torus(8, 6), test::sphere(6, 8)}) {
+    trees.push_back(std::move(cooker::cook_mesh(mesh, {})->tree));
+  }
+  const std::vector<std::byte> bytes = cooker::serialize(trees);
+  const Result<File> file = File::open(Bytes(bytes));
+  ASSERT_TRUE(file.ok());
+  ASSERT_EQ(file->tree_count(), 2u);
+  EXPECT_EQ(file->tree_name(0), "torus");
+  EXPECT_EQ(file->tree_name(1), "sphere");
+  EXPECT_EQ(*file->find_tree("sphere"), 1u);
+  EXPECT_EQ(file->find_tree("cube").code(), Errc::kTreeIndex);
+  EXPECT_EQ(Tree::bind(*file, 2).code(), Errc::kTreeIndex);
+  EXPECT_EQ(Tree::bind(*file, 1)->record().face_count, trees[1].face_count);
+}
+
+}  // namespace
+}  // namespace boxtree

@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+// What is left behind when writing fails, is abandoned or is killed: the old file and nothing else.
+#include <csignal>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/write/file_writer.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+Bytes bytes_of(std::string_view text) {
+  return std::as_bytes(std::span(text));
+}
+
+std::size_t entries(const std::filesystem::path& folder) {
+  return static_cast<std::size_t>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(AtomicFile, CommitsTheWholeAndReplacesTheOld) {
+  const test::TempFolder folder;
+  const auto target = folder.write("out", "old");
+  {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    ASSERT_TRUE(file.ok()) << file.error().message();
+    ASSERT_TRUE(file->write(bytes_of("ne")).ok());
+    ASSERT_TRUE(file->write(bytes_of("w")).ok());
+    EXPECT_EQ(test::read_text(target), "old");
+    ASSERT_TRUE(file->commit().ok());
+  }
+  EXPECT_EQ(test::read_text(target), "new");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, AbandonedLeavesTheOldAndNoLitter) {
+  const test::TempFolder folder;
+  const auto target = folder.write("out", "old");
+  {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    ASSERT_TRUE(file->write(bytes_of("new")).ok());
+  }
+  EXPECT_EQ(test::read_text(target), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, KilledLeavesTheOldAndNoLitter) {
+  const test::TempFolder folder;
+  const auto target = folder.write("out", "old");
+  int ready[2];
+  ASSERT_EQ(::pipe(ready), 0);
+  const pid_t child = ::fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    const bool written = file.ok() && file->write(bytes_of("half of it")).ok();
+    static_cast<void>(!::write(ready[1], written ? "y" : "n", 1));
+    ::pause();  // until killed
+    ::_exit(0);
+  }
+  char answer = 'n';
+  ASSERT_EQ(::read(ready[0], &answer, 1), 1);
+  EXPECT_EQ(answer, 'y');
+  ASSERT_EQ(::kill(child, SIGKILL), 0);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  ::close(ready[0]);
+  ::close(ready[1]);
+  EXPECT_EQ(test::read_text(target), "old");
+  // Where the file system has no unnamed files, the next writer sweeps.
+  ASSERT_TRUE(AtomicFile::create(target)->commit().ok());
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, SweepsWhatDeadWritersLeftAndNothingElse) {
+  const test::TempFolder folder;
+  const auto target = folder.write("out", "old");
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);  // a pid that was and is no more
+  const auto dead = folder.write(".out." + std::to_string(child) + ".cooking", "litter");
+  const auto living = folder.write(".out." + std::to_string(::getppid()) + ".cooking", "at work");
+  const auto other = folder.write(".out.notes.cooking", "not ours");
+  ASSERT_TRUE(AtomicFile::create(target).ok());
+  EXPECT_FALSE(std::filesystem::exists(dead));
+  EXPECT_TRUE(std::filesystem::exists(living));
+  EXPECT_TRUE(std::filesystem::exists(other));
+}
+
+TEST(AtomicFile, NoFolderNoFile) {
+  const test::TempFolder folder;
+  EXPECT_EQ(AtomicFile::create(folder.path() / "missing" / "out").code(), Errc::kWriteFailed);
+  EXPECT_EQ(AtomicFile::create(folder.path()).code(), Errc::kWriteFailed);
+}
+
+// A limit on file size stands for a full disk: write() fails half-way.
+class FullDisk {
+ public:
+  explicit FullDisk(rlim_t bytes) {
+    old_handler_ = ::signal(SIGXFSZ, SIG_IGN);
+    ::getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    ::setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() {
+    ::setrlimit(RLIMIT_FSIZE, &old_);
+    ::signal(SIGXFSZ, old_handler_);
+  }
+
+ private:
+  rlimit old_{};
+  void (*old_handler_)(int) = nullptr;
+};
+
+TEST(WriteFile, FullDiskLeavesTheOldAndNamesTheFile) {
+  const test::TempFolder folder;
+  const auto target = folder.write("torus.bxt", "old");
+  const Result<CookedTree> cooked = cook_mesh(test::torus(24, 16), {});
+  Status status;
+  {
+    const FullDisk full(4096);
+    status = write_file(target, std::span(&cooked->tree, 1), "{}\n");
+  }
+  ASSERT_EQ(status.code(), Errc::kWriteFailed);
+  EXPECT_NE(status.error().detail.find(target.string()), std::string::npos);
+  EXPECT_EQ(test::read_text(target), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+  ASSERT_TRUE(write_file(target, std::span(&cooked->tree, 1), "{}\n").ok());
+  EXPECT_TRUE(File::open(target).ok());
+}
+
+// The proof stands between the bytes and the target: a tree that loses a face is not released.
+TEST(WriteFile, ATreeThatDoesNotHoldIsNotReleased) {
+  const test::TempFolder folder;
+  const auto target = folder.write("torus.bxt", "old");
+  Result<CookedTree> cooked = cook_mesh(test::torus(24, 16), {});
+  cooked->tree.nodes.root_box.high[0] -= 1;
+  const Status status = write_file(target, std::span(&cooked->tree, 1), "");
+  EXPECT_EQ(status.code(), Errc::kBoxEscape) << status.error().message();
+  EXPECT_EQ(test::read_text(target), "old");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
