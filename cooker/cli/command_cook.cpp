@@ -48,7 +48,7 @@ class StepPrinter {
   void operator()(const std::string& step) {
     if (!enabled_ || Clock::now() - start_ < std::chrono::milliseconds(500)) return;
     fmt::print(stderr, "\r\033[K{} ...", step);
-    std::fflush(stderr);
+    static_cast<void>(std::fflush(stderr));
     printed_ = true;
   }
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
 struct CloseFile {
-  void operator()(std::FILE* file) const { std::fclose(file); }
+  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
 };
 using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
 

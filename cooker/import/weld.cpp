@@ -51,6 +51,7 @@ std::uint32_t Welder<T>::add(const std::array<T, 3>& position) {
   // Terminates: at least a third of the slots is free.
   for (; table_[slot] != kFree; slot = (slot + 1) & mask) {
     const T* other = &positions_[std::size_t{3} * table_[slot]];
+    // Bits and not values: -0 is not +0 here. NOLINTNEXTLINE(*-suspicious-memory-comparison,cert-*)
     if (std::memcmp(other, position.data(), sizeof(position)) == 0) return table_[slot];
   }
   assert(count < kFree);

@@ -2,10 +2,10 @@
 // Write, fsync, rename, fsync of the directory.
 #include <cerrno>
 #include <csignal>
-#include <cstring>
 #include <fcntl.h>
 #include <string_view>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -20,7 +20,8 @@ constexpr mode_t kMode = 0666;  // the umask takes away what the user does not w
 constexpr std::string_view kSuffix = ".cooking";
 
 Error failure(const fs::path& path, const char* what) {
-  return Error{Errc::kWriteFailed, path.string() + ": " + what + ": " + std::strerror(errno)};
+  return Error{Errc::kWriteFailed,
+               path.string() + ": " + what + ": " + std::generic_category().message(errno)};
 }
 
 fs::path directory_of(const fs::path& target) {

@@ -115,10 +115,9 @@ class Layout {
 std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                  const std::string& cook_record) {
   const Layout layout(trees, cook_record);
-  std::vector<std::byte> out;
-  out.reserve(layout.file_bytes());
-  static_cast<void>(layout.emit([&out](Bytes bytes) {
-    out.insert(out.end(), bytes.begin(), bytes.end());
+  std::vector<std::byte> out(layout.file_bytes());
+  static_cast<void>(layout.emit([at = out.data()](Bytes bytes) mutable {
+    at = std::copy(bytes.begin(), bytes.end(), at);
     return Status{};
   }));
   return out;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // File to memory by POSIX mmap. A copy is an anonymous mapping too, so that release is one path.
 #include <cerrno>
-#include <cstring>
 #include <fcntl.h>
 #include <string>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <system_error>
 #include <unistd.h>
 #include <utility>
 
@@ -31,7 +31,7 @@ class Descriptor {
 };
 
 Error system_error(Errc code, const std::filesystem::path& path, int number) {
-  return Error{code, path.string() + ": " + std::strerror(number)};
+  return Error{code, path.string() + ": " + std::generic_category().message(number)};
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.

@@ -72,7 +72,8 @@ struct Crossing {
 };
 
 constexpr std::size_t crossing_index(int s0, int s1, int s2) {
-  return static_cast<std::size_t>((s0 + 1) * 9 + (s1 + 1) * 3 + (s2 + 1));
+  const auto digit = [](int sign) { return static_cast<std::size_t>(sign) + 1; };
+  return digit(s0) * 9 + digit(s1) * 3 + digit(s2);
 }
 
 constexpr Crossing find_crossing(const Signs& s) {

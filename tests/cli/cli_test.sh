@@ -147,6 +147,12 @@ done
 expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree 2
 expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree nobody
 
+# Benchmarks: times beside the counts of their answers.
+expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
+same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
+same "$(jq -c '.files[0] | .ray_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
+expect 1 "$boxtree" bench external.bxt --quick --runs 1
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Seeded questions from integer arithmetic, so that no standard library can change them.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <boxtree/cooker/report/workload.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
+class Random {
+ public:
+  explicit Random(std::uint64_t seed) : state_(seed) {}
+
+  // Uniform in [0, 1).
+  double unit() {
+    std::uint64_t z = (state_ += 0x9e3779b97f4a7c15u);
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1p-53;
+  }
+  double between(double low, double high) { return low + (high - low) * unit(); }
+
+  Eigen::Vector3d inside(const Eigen::AlignedBox3d& box) {
+    Eigen::Vector3d p;
+    for (Eigen::Index k = 0; k < 3; ++k) p[k] = between(box.min()[k], box.max()[k]);
+    return p;
+  }
+  // Uniform on the unit sphere (Archimedes: heights are uniform).
+  Eigen::Vector3d direction() {
+    const double z = between(-1, 1);
+    const double angle = between(0, 2 * std::numbers::pi);
+    const double r = std::sqrt(1 - z * z);
+    return {r * std::cos(angle), r * std::sin(angle), z};
+  }
+  // Uniform rotation (Shoemake, "Uniform random rotations", 1992).
+  Eigen::Matrix3d rotation() {
+    const double u = unit();
+    const double a = between(0, 2 * std::numbers::pi);
+    const double b = between(0, 2 * std::numbers::pi);
+    const double s = std::sqrt(1 - u);
+    const double t = std::sqrt(u);
+    return Eigen::Quaterniond(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b))
+        .toRotationMatrix();
+  }
+
+ private:
+  std::uint64_t state_;
+};
+
+Eigen::AlignedBox3d turned(const Eigen::AlignedBox3d& box, const Eigen::Matrix3d& rotation) {
+  const Eigen::Vector3d half = rotation.cwiseAbs() * (box.sizes() / 2);
+  const Eigen::Vector3d centre = rotation * box.center();
+  return {centre - half, centre + half};
+}
+
+// How far along `direction` the centres are when the two boxes just touch.
+double touching_distance(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b,
+                         const Eigen::Vector3d& direction) {
+  double distance = std::numeric_limits<double>::infinity();
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double reach = (a.sizes()[k] + b.sizes()[k]) / 2;
+    if (direction[k] != 0) distance = std::min(distance, reach / std::abs(direction[k]));
+  }
+  return distance;
+}
+
+Pose random_pose(const Eigen::AlignedBox3d& bounds, double share, Random& random) {
+  const Eigen::Matrix3d rotation = random.rotation();
+  const Eigen::Vector3d direction = random.direction();
+  const Eigen::AlignedBox3d copy = turned(bounds, rotation);
+  Pose pose = Pose::Identity();
+  pose.linear() = rotation;
+  pose.translation() = bounds.center() - copy.center() +
+                       share * touching_distance(bounds, copy, direction) * direction;
+  return pose;
+}
+
+}  // namespace
+
+Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& size,
+                       std::uint64_t seed) {
+  Workload workload;
+  Random random(seed);
+  const double diagonal = bounds.diagonal().norm();
+  for (std::size_t i = 0; i < size.rays; ++i) {
+    const Eigen::Vector3d origin = bounds.center() + diagonal * random.direction();
+    workload.rays.push_back({origin, (random.inside(bounds) - origin).normalized()});
+  }
+  const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.025 * diagonal);
+  for (std::size_t i = 0; i < size.boxes; ++i) {
+    const Eigen::Vector3d centre = random.inside(bounds);
+    workload.boxes.emplace_back(centre - half, centre + half);
+  }
+  const Eigen::AlignedBox3d wider(bounds.center() - 0.6 * bounds.sizes(),
+                                  bounds.center() + 0.6 * bounds.sizes());
+  for (std::size_t i = 0; i < size.points; ++i) workload.points.push_back(random.inside(wider));
+  constexpr std::array kShares = {0.6, 0.8, 0.9, 1.0};
+  for (std::size_t i = 0; i < size.poses; ++i) {
+    workload.poses.push_back(random_pose(bounds, kShares[i % kShares.size()], random));
+  }
+  return workload;
+}
+
+std::vector<Pose> tumble_poses(const Eigen::AlignedBox3d& bounds, double distance,
+                               std::size_t steps) {
+  std::vector<Pose> poses;
+  const double unit = bounds.sizes().maxCoeff() / 2;
+  for (std::size_t k = 0; k < steps; ++k) {
+    const double angle = 2 * std::numbers::pi * static_cast<double>(k) / static_cast<double>(steps);
+    Pose pose = Pose::Identity();
+    pose.linear() = (Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) *
+                     Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitX()))
+                        .toRotationMatrix();
+    pose.translation() =
+        bounds.center() - pose.linear() * bounds.center() + Eigen::Vector3d(distance * unit, 0, 0);
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+}  // namespace boxtree::cooker

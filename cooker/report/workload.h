@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: MIT
+// The questions that measurements ask: seeded, the same on every machine and for every library.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <boxtree/runtime/query/ray.h>
+
+namespace boxtree::cooker {
+
+/// How many questions of each kind.
+struct WorkloadSize {
+  std::size_t rays = 200'000;
+  std::size_t boxes = 20'000;
+  std::size_t points = 20'000;
+  std::size_t poses = 200;
+};
+
+struct Workload {
+  /// From the sphere of twice the bounding radius toward random points of the bounds.
+  std::vector<Ray> rays;
+  /// Cubes with an edge of 5 % of the diagonal, centred in the bounds.
+  std::vector<Eigen::AlignedBox3d> boxes;
+  /// In the bounds enlarged by 1.2.
+  std::vector<Eigen::Vector3d> points;
+  /// Of a copy of the mesh: random rotations, at 0.6, 0.8, 0.9 and 1.0 of the distance at which the
+  /// bounding boxes of mesh and turned copy touch, in random directions.
+  std::vector<Pose> poses;
+};
+
+/// Questions for a mesh with these bounds (object space). Deterministic.
+[[nodiscard]] Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& size,
+                                     std::uint64_t seed = 1);
+
+/// The tumble protocol (Zachmann, "Optimizing the Collision Detection Pipeline", 2003; P1): the
+/// mesh against its copy, both centred, distances of the centres along x as shares of the largest
+/// half extent, `steps` turns about z and x for each.
+[[nodiscard]] std::vector<Pose> tumble_poses(const Eigen::AlignedBox3d& bounds, double distance,
+                                             std::size_t steps);
+
+}  // namespace boxtree::cooker
