@@ -53,7 +53,8 @@ Status encode_candidates(const BuildTree& build, const SourceMesh& mesh, const C
   const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
   for (const CodecInfo& codec : kCodecs) {
     if (options.codec && *options.codec != codec.id) continue;
-    EncodedNodes best = std::exchange(cooked.tree.nodes, encode_nodes(build, codec.id, order));
+    EncodedNodes best = std::exchange(cooked.tree.nodes,
+                                      encode_nodes(build, mesh, codec.id, order, options.widths));
     cooked.candidates.push_back({codec.id,
                                  cooked.tree.nodes.bytes.size(),
                                  geometry.vertices.size() + geometry.corners.size(),
@@ -76,6 +77,7 @@ std::string cook_record(const CookOptions& options, const std::vector<CookedTree
                                : options.goal == Goal::kSpeed ? "speed"
                                                               : "balance"},
                        {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
+                       {"widths", options.widths == FieldWidths::kExact ? "exact" : "estimated"},
                        {"geometry", geometry_name(options.geometry)},
                        {"face_ids", options.face_ids},
                        {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},

@@ -19,6 +19,7 @@ struct CookOptions {
   std::optional<CodecId> codec;  // nothing: the best of all [default]
   Goal goal = Goal::kBalance;
   Builder builder = Builder::kSah;
+  FieldWidths widths = FieldWidths::kExact;
   GeometryId geometry = GeometryId::kExact;
   bool face_ids = true;
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems

@@ -13,6 +13,10 @@ namespace boxtree {
 enum class CodecId : std::uint16_t {
   kPlainF32 = 1,
   kPlainF16 = 2,
+  kPackedF32 = 3,
+  kPackedF16 = 4,
+  kPackedF64 = 5,
+  kDedup = 6,
 };
 
 /// How vertices and corners are stored. Numbers are pinned.
@@ -28,8 +32,9 @@ struct CodecInfo {
 
 /// All codecs; adding one starts with a line here.
 inline constexpr std::array kCodecs = {
-    CodecInfo{CodecId::kPlainF32, "plain-f32"},
-    CodecInfo{CodecId::kPlainF16, "plain-f16"},
+    CodecInfo{CodecId::kPlainF32, "plain-f32"},   CodecInfo{CodecId::kPlainF16, "plain-f16"},
+    CodecInfo{CodecId::kPackedF32, "packed-f32"}, CodecInfo{CodecId::kPackedF16, "packed-f16"},
+    CodecInfo{CodecId::kPackedF64, "packed-f64"}, CodecInfo{CodecId::kDedup, "dedup"},
 };
 
 [[nodiscard]] constexpr std::string_view codec_name(CodecId id) noexcept {

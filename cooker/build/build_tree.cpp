@@ -74,19 +74,11 @@ void choose_frame(const Positions& positions, BuildTree& tree) {
 }
 
 Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
-  const Face& corners = mesh.faces[face];
-  const std::size_t count = corners.is_quad() ? 4 : 3;
-  Bounds bounds;
-  for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d p = frame.to_tree(mesh.positions[corners.corner[i]]);
-    bounds.low = bounds.low.cwiseMin(p);
-    bounds.high = bounds.high.cwiseMax(p);
-  }
+  const Box<double> bounds = face_bounds(mesh, frame, face);
   Box<float> box;
   for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Eigen::Index>(k);
-    box.low[k] = round_down(bounds.low[axis]);
-    box.high[k] = round_up(bounds.high[axis]);
+    box.low[k] = round_down(bounds.low[k]);
+    box.high[k] = round_up(bounds.high[k]);
   }
   return box;
 }
@@ -144,6 +136,19 @@ class Recursion {
 };
 
 }  // namespace
+
+Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
+  const Face& corners = mesh.faces[face];
+  const std::size_t count = corners.is_quad() ? 4 : 3;
+  Bounds bounds;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d p = frame.to_tree(mesh.positions[corners.corner[i]]);
+    bounds.low = bounds.low.cwiseMin(p);
+    bounds.high = bounds.high.cwiseMax(p);
+  }
+  return {{bounds.low[0], bounds.low[1], bounds.low[2]},
+          {bounds.high[0], bounds.high[1], bounds.high[2]}};
+}
 
 BuildTree build_tree(const SourceMesh& mesh, Builder builder) {
   BuildTree tree;

@@ -50,6 +50,9 @@ struct BuildTree {
   }
 };
 
+/// The bounds of a face in tree space, as a reader computes its corners.
+[[nodiscard]] Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face);
+
 enum class Builder : std::uint8_t {
   kSah,    // binned surface-area heuristic over box centres
   kPaper,  // the paper's: volume heuristic over box minima

@@ -24,6 +24,7 @@ struct Arguments {
   std::string codec = "auto";
   std::string goal = "balance";
   std::string builder = "sah";
+  std::string widths = "exact";
   std::filesystem::path depfile;
   CookOptions options;
   bool exact = false;
@@ -181,6 +182,7 @@ int run(Arguments& arguments) {
   if (arguments.goal == "memory") options.goal = Goal::kMemory;
   if (arguments.goal == "speed") options.goal = Goal::kSpeed;
   if (arguments.builder == "paper") options.builder = Builder::kPaper;
+  if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
   options.face_ids = !arguments.no_face_ids;
@@ -235,6 +237,9 @@ void add_cook_command(CLI::App& app, int& status) {
   const auto rare = [](CLI::Option* option) { return option->group(kRareOptions); };
   rare(command.add_option("--builder", arguments->builder, "Split rule"))
       ->check(CLI::IsMember({"sah", "paper"}))
+      ->capture_default_str();
+  rare(command.add_option("--widths", arguments->widths, "Widths of bit-packed fields"))
+      ->check(CLI::IsMember({"exact", "estimated"}))
       ->capture_default_str();
   rare(command.add_flag("--external", arguments->external,
                         "Leave positions and corners to the application, which binds its own "

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/format/binary_node.h>
 #include <boxtree/format/tree_record.h>
 
 namespace boxtree::cooker {
@@ -33,13 +34,25 @@ struct EncodedNodes {
   std::uint32_t shrink_count = 0;
   std::uint32_t depth = 0;
   ExpectedVisits visits;
+  // Of packed codecs: nodes of each NodeKind, and different cuts (dedup).
+  std::array<std::uint32_t, kNodeKinds> kind_count{};
+  std::size_t unique_cuts = 0;
 };
 
 /// Number that a leaf stores for a face: its position in tree order, or in the source.
 enum class FaceOrder : std::uint8_t { kTree, kSource };
 
-/// Encodes with codec `codec`. Conservative: every decoded box contains the build bounds below it.
-[[nodiscard]] EncodedNodes encode_nodes(const BuildTree& tree, CodecId codec, FaceOrder order);
+/// How packed codecs find the widths of their fields (paper sections 3.2 and 4.2).
+enum class FieldWidths : std::uint8_t {
+  kExact,      // from the finished tree
+  kEstimated,  // from the number of faces alone, as a builder in one pass must
+};
+
+/// Encodes with codec `codec`. Conservative: every decoded box contains what is below it. `mesh` is
+/// the source of the tree; `widths` matters to packed codecs only.
+[[nodiscard]] EncodedNodes encode_nodes(const BuildTree& tree, const SourceMesh& mesh,
+                                        CodecId codec, FaceOrder order,
+                                        FieldWidths widths = FieldWidths::kExact);
 
 /// Vertices, corners and ids in the form of their sections. Empty for geometry left external.
 struct EncodedGeometry {

@@ -15,10 +15,11 @@ namespace boxtree::cooker {
 class VisitCost {
  public:
   VisitCost() = default;
-  explicit VisitCost(const Box<float>& root) {
+  template <class S>
+  explicit VisitCost(const Box<S>& root) {
     double squared = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double extent = double{root.high[k]} - root.low[k];
+      const double extent = double{root.high[k]} - double{root.low[k]};
       squared += extent * extent;
       half_[k] = extent / 2;
     }
@@ -26,7 +27,8 @@ class VisitCost {
     root_ = measure(root);
   }
 
-  void add(const Box<float>& box) {
+  template <class S>
+  void add(const Box<S>& box) {
     const ExpectedVisits here = measure(box);
     // A root that is a point or a line has no area: then every query that reaches it visits all.
     sum_.ray += root_.ray > 0 ? here.ray / root_.ray : 1;
@@ -37,9 +39,10 @@ class VisitCost {
   [[nodiscard]] ExpectedVisits visits() const { return sum_; }
 
  private:
-  [[nodiscard]] ExpectedVisits measure(const Box<float>& box) const {
+  template <class S>
+  [[nodiscard]] ExpectedVisits measure(const Box<S>& box) const {
     std::array<double, 3> e;
-    for (std::size_t k = 0; k < 3; ++k) e[k] = double{box.high[k]} - box.low[k];
+    for (std::size_t k = 0; k < 3; ++k) e[k] = double{box.high[k]} - double{box.low[k]};
     return {e[0] * e[1] + e[1] * e[2] + e[2] * e[0],
             (e[0] + edge_) * (e[1] + edge_) * (e[2] + edge_),
             (e[0] + half_[0]) * (e[1] + half_[1]) * (e[2] + half_[2])};

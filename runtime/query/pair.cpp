@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Simultaneous descent of two trees (Zachmann, "The BoxTree", 1995; paper section 1.1), over any
 // pair of codecs.
+#include <variant>
+
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/relative_pose.h>
@@ -26,6 +28,40 @@ struct Side {
   }
 };
 
+// Any codec, found out at every node: for trees in different codecs, so that the number of
+// instantiations grows with the codecs and not with their square.
+struct ErasedCodec {
+  using Scalar = double;
+  using Children = ChildSet<2, double>;
+
+  const Tree* tree;
+
+  static Result<ErasedCodec> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
+  [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }
+
+  // Boxes of f32 codecs come and go through double unchanged.
+  [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
+    NodeChildren children;
+    if (tree->expand({box, ref, false}, children) != Errc::kOk) return false;
+    out.count = 0;
+    out.leaf_mask = 0;
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      add_binary_child(children.child[i].box, children.child[i].ref, children.child[i].is_leaf,
+                       out);
+    }
+    return true;
+  }
+};
+
+// As many pairs as an honest walk can meet: each node or leaf of one tree with each of the other,
+// once. A walk of corrupt bytes that would meet more ends with kNodeCorrupt.
+std::uint64_t most_pairs(const TreeRecord& first, const TreeRecord& second) noexcept {
+  const auto size = [](const TreeRecord& r) { return std::uint64_t{r.node_count} + r.face_count; };
+  const std::uint64_t a = size(first);
+  const std::uint64_t b = size(second);
+  return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;
+}
+
 template <Codec A, Codec B>
 class PairWalk {
  public:
@@ -36,7 +72,8 @@ class PairWalk {
         first_codec_(first_codec),
         second_codec_(second_codec),
         pose_(pose),
-        visitor_(visitor) {}
+        visitor_(visitor),
+        unmet_(most_pairs(first.record(), second.record())) {}
 
   [[nodiscard]] Result<Visit> run() {
     if (first_.empty() || second_.empty()) return Visit::kComplete;
@@ -74,7 +111,8 @@ class PairWalk {
   static constexpr std::size_t kPairStack = kMaxDepth * (kPairs - 1) + 1;
 
   void descend(const Entry entry) {
-    if (!expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
+    if (unmet_-- == 0 ||
+        !expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
         !expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_)) {
       error_ = Errc::kNodeCorrupt;
       return;
@@ -153,10 +191,11 @@ class PairWalk {
 
   const Tree& first_;
   const Tree& second_;
-  const A& first_codec_;
-  const B& second_codec_;
+  const A first_codec_;
+  const B second_codec_;
   const RelativePose& pose_;
   PairVisitor visitor_;
+  std::uint64_t unmet_;
   Errc error_ = Errc::kOk;
   bool stopped_ = false;
   NodeRef reported_ = kNone;  // the two faces reported last
@@ -175,10 +214,11 @@ Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tre
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
-  return with_codec(first, [&](const auto& first_codec) {
-    return with_codec(second, [&](const auto& second_codec) {
-      return PairWalk(first, first_codec, second, second_codec, *pose, visitor).run();
-    });
+  if (first.codec() != second.codec()) {
+    return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, *pose, visitor).run();
+  }
+  return with_codec(first, [&]<class C>(const C& codec) {
+    return PairWalk(first, codec, second, std::get<C>(second.codec_view()), *pose, visitor).run();
   });
 }
 

@@ -20,6 +20,14 @@ Result<AnyCodec> bind_codec(const TreeRecord& record, Bytes nodes) {
       return bind_as<PlainCodec<float>>(record, nodes);
     case CodecId::kPlainF16:
       return bind_as<PlainCodec<std::uint16_t>>(record, nodes);
+    case CodecId::kPackedF32:
+      return bind_as<PackedCodec<PackedCut::kF32>>(record, nodes);
+    case CodecId::kPackedF16:
+      return bind_as<PackedCodec<PackedCut::kF16>>(record, nodes);
+    case CodecId::kPackedF64:
+      return bind_as<PackedCodec<PackedCut::kF64>>(record, nodes);
+    case CodecId::kDedup:
+      return bind_as<PackedCodec<PackedCut::kTable>>(record, nodes);
   }
   return Errc::kCodecUnsupported;
 }

@@ -68,50 +68,129 @@ class File:
         return self.sections.get((kind, owner), b"")
 
 
+def cut_box(box, axis, side, cut, rounded):
+    """The box of a child (section 4): one plane moved inward by one rounded difference or sum."""
+    low, high = list(box[0]), list(box[1])
+    if side == 0:
+        high[axis] = rounded(high[axis] - cut)
+    else:
+        low[axis] = rounded(low[axis] + cut)
+    return (tuple(low), tuple(high))
+
+
 class Plain:
-    """Codecs plain-f32 and plain-f16 (section 4). A node reference is a range of nodes."""
+    """Codecs plain-f32 and plain-f16 (section 5). A node reference is the number of a node."""
 
     def __init__(self, tree, nodes):
         self.layout = "<I2I2f" if tree.codec == 1 else "<I2I2e"
         self.size = struct.calcsize(self.layout)
         self.nodes = nodes
+        self.count = tree.node_count
         expect(len(nodes) == self.size * tree.node_count, "size of section nodes")
 
-    def root(self, tree):
-        return (0, tree.node_count)
+    def root(self):
+        return 0
 
     def expand(self, ref, box):
-        begin, end = ref
         cutplane, left, right, cut0, cut1 = struct.unpack_from(
-            self.layout, self.nodes, begin * self.size)
+            self.layout, self.nodes, ref * self.size)
         axis, kinds = cutplane & 3, ((cutplane >> 2) & 3, (cutplane >> 4) & 3)
         expect(axis <= 2 and cutplane >> 6 == 0, "cutplane")
-        left_end = right if kinds[1] == 2 else end
         children = []
         for side, (kind, child, cut) in enumerate(((kinds[0], left, cut0), (kinds[1], right, cut1))):
-            low, high = list(box[0]), list(box[1])
-            if side == 0:
-                high[axis] = f32(high[axis] - cut)
-            else:
-                low[axis] = f32(low[axis] + cut)
-            child_box = (tuple(low), tuple(high))
             if kind == 0:
                 expect(child == 0xFFFFFFFF and cut == 0, "a missing child")
-            elif kind == 1:
+                continue
+            child_box = cut_box(box, axis, side, cut, f32)
+            if kind == 1:
                 children.append(("leaf", (child, 1), child_box))
             else:
-                expect(kind == 2, "kind of a child")
-                span = (begin + 1, left_end) if side == 0 else (right, end)
-                expect(child == span[0] and begin < span[0] < span[1] <= end, "range of a child")
-                children.append(("subtree", span, child_box))
+                expect(kind == 2 and ref < child < self.count, "a child behind its parent")
+                children.append(("subtree", child, child_box))
         return children
 
 
-CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain)}
+class Packed:
+    """Codecs packed-f32, packed-f16, packed-f64 and dedup (section 6). A node reference is a kind
+    and a number. Bits are read from one large integer, not by words."""
+
+    def __init__(self, tree, nodes):
+        *self.counts, cut_count, self.node_bits, self.face_bits, self.cut_bits, self.root_kind = (
+            struct.unpack_from("<4II4B", nodes))
+        expect(not any(nodes[24:64]) and sum(self.counts) == tree.node_count, "packed header")
+        self.table = struct.unpack_from(f"<{cut_count}f", nodes, 64)
+        self.codec = tree.codec
+        at = 64 + 4 * cut_count
+        self.arrays = []
+        for kind in range(4):
+            at = (at + 7) // 8 * 8
+            size = (self.counts[kind] * self.width(kind) + 7) // 8
+            self.arrays.append(nodes[at:at + size])
+            at += size
+        expect(len(nodes) == at + 8 and not any(nodes[at:]), "size of section nodes")
+
+    def leaf_sides(self, kind):
+        return ((True, True), (True, False), (False, True), (False, False))[kind]
+
+    def width(self, kind):
+        leaves = self.leaf_sides(kind)
+        return 2 + sum(self.face_bits if leaf else 2 + self.node_bits for leaf in leaves
+                       ) + 2 * self.cut_bits
+
+    def root(self):
+        return (self.root_kind, 0)
+
+    def cut(self, bits):
+        if self.codec == 4:
+            return struct.unpack("<e", struct.pack("<H", bits))[0]
+        if self.codec == 5:
+            return struct.unpack("<d", struct.pack("<Q", bits))[0]
+        if self.table:
+            expect(bits < len(self.table), "number of a cut")
+            return self.table[bits]
+        return struct.unpack("<f", struct.pack("<I", bits))[0]
+
+    def expand(self, ref, box):
+        kind, number = ref
+        width = self.width(kind)
+        first = number * width
+        piece = int.from_bytes(self.arrays[kind][first // 8:(first + width + 7) // 8], "little")
+        piece >>= first % 8
+        taken = 0
+
+        def field(bits):
+            nonlocal taken
+            value = (piece >> taken) & ((1 << bits) - 1)
+            taken += bits
+            return value
+
+        leaves = self.leaf_sides(kind)
+        axis = field(2)
+        expect(axis <= 2, "axis")
+        kinds = [None if leaf else field(2) for leaf in leaves]
+        numbers = [field(self.face_bits if leaf else self.node_bits) for leaf in leaves]
+        cuts = [field(self.cut_bits) for _ in leaves]
+        rounded = float if self.codec == 5 else f32
+        children = []
+        for side in range(2):
+            if not leaves[side] and numbers[side] == (1 << self.node_bits) - 1:
+                expect(kinds[side] == 0 and self.cut(cuts[side]) == 0, "a missing child")
+                continue
+            child_box = cut_box(box, axis, side, self.cut(cuts[side]), rounded)
+            if leaves[side]:
+                children.append(("leaf", (numbers[side], 1), child_box))
+            else:
+                expect(numbers[side] < self.counts[kinds[side]], "number of a node")
+                children.append(("subtree", (kinds[side], numbers[side]), child_box))
+        return children
+
+
+CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Packed),
+          4: ("packed-f16", Packed), 5: ("packed-f64", Packed), 6: ("dedup", Packed)}
 
 
 class Tree:
-    """A TreeRecord and its sections (sections 3, 5 and 6)."""
+    """A TreeRecord and its sections (sections 3, 7 and 8)."""
 
     def __init__(self, file, index, record):
         (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,
@@ -170,7 +249,7 @@ class Tree:
             self.leaf(found, (0, self.face_count), [(self.low, self.high)])
             return found
         codec = CODECS[self.codec][1](self, self.nodes)
-        stack = [(codec.root(self), [(self.low, self.high)])]
+        stack = [(codec.root(), [(self.low, self.high)])]
         while stack:
             ref, path = stack.pop()
             found["nodes"] += 1

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Fields of run-time width at any bit: one unaligned load, a shift and a mask (paper
+// section 3.2.1).
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include <boxtree/format/bytes.h>
+
+namespace boxtree {
+
+/// Bytes that a reader of bits may touch beyond the last one that holds a field.
+inline constexpr std::size_t kBitPadding = 8;
+
+/// The `width` low bits of a word, set. Precondition: width <= 64.
+[[nodiscard]] constexpr std::uint64_t low_bits(std::uint32_t width) noexcept {
+  return width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
+}
+
+/// The field of `width` bits that starts `position` bits after `bytes`; the first bit is the least
+/// significant one. Precondition: width <= 57, and kBitPadding bytes follow the field.
+[[nodiscard]] inline std::uint64_t read_bits(const std::byte* bytes, std::uint64_t position,
+                                             std::uint32_t width) noexcept {
+  return (load<std::uint64_t>(bytes + position / 8) >> (position % 8)) & low_bits(width);
+}
+
+/// The same for fields of up to 64 bits.
+[[nodiscard]] inline std::uint64_t read_wide_bits(const std::byte* bytes, std::uint64_t position,
+                                                  std::uint32_t width) noexcept {
+  constexpr std::uint32_t kHalf = 32;
+  if (width <= kHalf) return read_bits(bytes, position, width);
+  return read_bits(bytes, position, kHalf) | read_bits(bytes, position + kHalf, width - kHalf)
+                                                 << kHalf;
+}
+
+/// Sets a field that is zero. The mirror image of read_wide_bits; for writers.
+inline void write_bits(std::byte* bytes, std::uint64_t position, std::uint32_t width,
+                       std::uint64_t value) noexcept {
+  for (std::uint32_t done = 0; done < width;) {
+    const std::uint64_t at = position + done;
+    const auto offset = static_cast<std::uint32_t>(at % 8);
+    const std::uint32_t count = 8 - offset < width - done ? 8 - offset : width - done;
+    const std::uint64_t piece = ((value >> done) & low_bits(count)) << offset;
+    bytes[at / 8] |= static_cast<std::byte>(piece);
+    done += count;
+  }
+}
+
+/// Makes a field zero again; for writers.
+inline void clear_bits(std::byte* bytes, std::uint64_t position, std::uint32_t width) noexcept {
+  for (std::uint64_t at = position; at < position + width; ++at) {
+    bytes[at / 8] &= ~(std::byte{1} << (at % 8));
+  }
+}
+
+}  // namespace boxtree
