@@ -45,6 +45,12 @@ Status check_limits(const SourceMesh& mesh, const CookOptions& options) {
   return {};
 }
 
+// packed-f64 holds digits that the boxes of an f32 mesh do not have: never smaller than packed-f32
+// and never tighter, so that it is not tried unless asked for.
+bool can_win(CodecId codec, const SourceMesh& mesh) {
+  return codec != CodecId::kPackedF64 || mesh.positions.precision == Precision::kF64;
+}
+
 // Fills the candidates and leaves the nodes of the best in `cooked.tree`. Only the best so far is
 // kept: memory, not time, is what candidates cost.
 Status encode_candidates(const BuildTree& build, const SourceMesh& mesh, const CookOptions& options,
@@ -52,7 +58,7 @@ Status encode_candidates(const BuildTree& build, const SourceMesh& mesh, const C
   const EncodedGeometry& geometry = cooked.tree.geometry;
   const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
   for (const CodecInfo& codec : kCodecs) {
-    if (options.codec && *options.codec != codec.id) continue;
+    if (options.codec ? *options.codec != codec.id : !can_win(codec.id, mesh)) continue;
     EncodedNodes best = std::exchange(cooked.tree.nodes,
                                       encode_nodes(build, mesh, codec.id, order, options.widths));
     cooked.candidates.push_back({codec.id,
