@@ -8,6 +8,7 @@
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/version.h>
+#include <boxtree/cooker/write/blob_writer.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/primitive/triangle.h>
 
@@ -157,7 +158,9 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
   step("write " + output.filename().string());
   const std::string record =
       options.cook_record ? cook_record(options, report.trees, report.imports) : std::string();
-  if (Status status = write_file(output, trees, record); !status) return status.error();
+  const Status written = options.blob ? write_blob(output, trees, record, *options.blob)
+                                      : write_file(output, trees, record);
+  if (!written) return written.error();
   for (std::size_t i = 0; i < trees.size(); ++i) {
     report.trees[i].tree = std::move(trees[i]);
     release(report.trees[i]);

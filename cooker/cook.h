@@ -12,6 +12,7 @@
 #include <boxtree/cooker/choose/choose.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/write/file_writer.h>
+#include <boxtree/format/blob.h>
 
 namespace boxtree::cooker {
 
@@ -21,6 +22,7 @@ struct CookOptions {
   Builder builder = Builder::kSah;
   FieldWidths widths = FieldWidths::kExact;
   GeometryId geometry = GeometryId::kExact;
+  std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be asked
   bool face_ids = true;
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
   ImportOptions import;

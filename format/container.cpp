@@ -16,11 +16,11 @@ std::string describe(std::size_t index, const SectionEntry& entry) {
 }
 
 bool is_known(std::uint32_t kind) {
-  return kind >= static_cast<std::uint32_t>(SectionKind::kTrees) &&
-         kind <= static_cast<std::uint32_t>(SectionKind::kCookRecord);
+  return section_name(static_cast<SectionKind>(kind)) != "unknown";
 }
 
-Status check_header(const FileHeader& header, std::uint64_t file_size) {
+Status check_header(const FileHeader& header, std::uint64_t file_size,
+                    std::uint64_t known_features) {
   if (header.magic != kMagic)
     return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
   if (header.version_major != kVersionMajor) {
@@ -29,7 +29,7 @@ Status check_header(const FileHeader& header, std::uint64_t file_size) {
                      std::to_string(header.version_minor) + ", this reader knows " +
                      std::to_string(kVersionMajor) + "." + std::to_string(kVersionMinor)};
   }
-  if ((header.incompatible_features & ~kKnownIncompatibleFeatures) != 0) {
+  if ((header.incompatible_features & ~known_features) != 0) {
     return Error{Errc::kFeatureUnsupported,
                  "incompatible feature bits " + std::to_string(header.incompatible_features)};
   }
@@ -123,6 +123,8 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "names";
     case SectionKind::kCookRecord:
       return "cook_record";
+    case SectionKind::kBlob:
+      return "blob";
   }
   return "unknown";
 }
@@ -136,7 +138,8 @@ const SectionEntry* Container::find(SectionKind kind, std::uint32_t owner) const
   return &sections[*place];
 }
 
-Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
+Result<Container> check_container(Bytes file, ChecksumFunction checksum,
+                                  std::uint64_t known_features) {
   if (file.size() < sizeof(FileHeader)) {
     return Error{Errc::kTruncated, "the file has " + std::to_string(file.size()) +
                                        " bytes, a header alone has " +
@@ -144,7 +147,8 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum) {
   }
   Container container{load<FileHeader>(file.data()), {}, {}};
   const FileHeader& header = container.header;
-  if (Status status = check_header(header, file.size()); !status) return status.error();
+  if (Status status = check_header(header, file.size(), known_features); !status)
+    return status.error();
 
   const std::uint64_t table_bytes = std::uint64_t{header.section_count} * sizeof(SectionEntry);
   if (!in_range(sizeof(FileHeader), table_bytes, file.size())) {

@@ -23,9 +23,6 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'B', 'X', 'T', '\r'
 inline constexpr std::uint16_t kVersionMajor = 1;
 inline constexpr std::uint16_t kVersionMinor = 0;
 
-/// Bits of FileHeader::incompatible_features that this reader knows: none are defined in 1.0.
-inline constexpr std::uint64_t kKnownIncompatibleFeatures = 0;
-
 /// First bytes of the file. The section table follows at once.
 struct FileHeader {
   std::array<std::uint8_t, 8> magic;
@@ -54,6 +51,7 @@ enum class SectionKind : std::uint32_t {
   kCertificate = 6,  // CertificateRecord
   kNames = 7,        // UTF-8 names of all trees, joined; owner kNoOwner
   kCookRecord = 8,   // UTF-8 JSON: how the file was made; owner kNoOwner
+  kBlob = 9,         // BlobHeader and a compressed file (format/blob.h); owner kNoOwner
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.
@@ -93,7 +91,10 @@ using ChecksumFunction = std::uint64_t (*)(Bytes head, Bytes tail);
 /// Reads header and section table and checks all that they claim: magic, version, features, size,
 /// checksum, and that sections are known or optional, aligned, ascending, apart and inside.
 /// Touches no section: O(sections). Safe on any bytes; the first violation is returned.
-Result<Container> check_container(Bytes file, ChecksumFunction checksum);
+/// `known_features`: bits of incompatible_features that the caller can read; a file that is mapped
+/// has none.
+Result<Container> check_container(Bytes file, ChecksumFunction checksum,
+                                  std::uint64_t known_features = 0);
 
 /// Whether the bytes between sections, and after the last one, are all zero; else the first place.
 Status check_padding(Bytes file, const Container& container);

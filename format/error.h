@@ -28,6 +28,8 @@ enum class Errc : std::uint16_t {
   kSectionUnknown = 22,
   kPaddingNotZero = 23,
   kChecksumMismatch = 24,
+  kBlobLimit = 25,
+  kBlobCorrupt = 26,
 
   // 30..49: the trees inside.
   kCodecUnsupported = 30,

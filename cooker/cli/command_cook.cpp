@@ -178,7 +178,13 @@ void print_report(const Arguments& arguments, const CookReport& report, double s
 
 int run(Arguments& arguments) {
   CookOptions& options = arguments.options;
-  if (arguments.codec != "auto") options.codec = find_codec(arguments.codec);
+  if (arguments.codec == "blob-lzma") options.blob = BlobMethod::kLzma;
+  if (arguments.codec == "blob-zstd") options.blob = BlobMethod::kZstd;
+  if (options.blob) {
+    options.codec = CodecId::kPlainF32;  // as the paper does
+  } else if (arguments.codec != "auto") {
+    options.codec = find_codec(arguments.codec);
+  }
   if (arguments.goal == "memory") options.goal = Goal::kMemory;
   if (arguments.goal == "speed") options.goal = Goal::kSpeed;
   if (arguments.builder == "paper") options.builder = Builder::kPaper;
@@ -219,6 +225,7 @@ void add_cook_command(CLI::App& app, int& status) {
   std::vector<std::string> codecs{"auto"};
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
+  codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
   command.add_option("inputs", arguments->inputs, "Mesh files, one tree each")->required();
   command.add_option("-o,--output", arguments->output, "The file to write")->required();
   command.add_option("--codec", arguments->codec, "How nodes are stored")

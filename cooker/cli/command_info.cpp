@@ -5,6 +5,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/runtime/boxtree.h>
 
@@ -108,14 +109,18 @@ void print_file(const Json& json) {
 }
 
 int run(const Arguments& arguments) {
-  const Result<File> file = File::open(arguments.file);
-  if (!file) return fail(file.error());
+  const Result<OpenedFile> opened = open_file(arguments.file);
+  if (!opened) return fail(opened.error());
+  const File* const file = &opened->file;
   for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
     if (Status status = check_tree_record(file->tree_record(i), i); !status) {
       return fail(status.error());
     }
   }
-  const Json json = file_json(*file);
+  Json json = file_json(*file);
+  if (opened->blob_bytes != 0) {
+    json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
+  }
   if (arguments.json) {
     print(json);
   } else {

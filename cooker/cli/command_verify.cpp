@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
@@ -56,12 +57,13 @@ void report(const Arguments& arguments, const Findings& findings, const std::str
 }
 
 int run(const Arguments& arguments) {
-  const Result<File> file = File::open(arguments.file);
-  if (!file) {
-    const int status = fail(file.error());
-    if (arguments.json) report(arguments, {file.error()}, {});
+  const Result<OpenedFile> opened = open_file(arguments.file);
+  if (!opened) {
+    const int status = fail(opened.error());
+    if (arguments.json) report(arguments, {opened.error()}, {});
     return status;
   }
+  const File* const file = &opened->file;
   std::optional<MeshArrays> arrays;
   Imported imported;
   if (!arguments.mesh.empty()) {

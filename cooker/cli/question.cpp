@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/question.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
@@ -208,8 +209,9 @@ Result<Question> question_of(std::string_view kind, Fields& fields) {
 
 Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
                              const std::filesystem::path& mesh) {
-  Result<File> file = File::open(path);
-  if (!file) return file.error();
+  Result<OpenedFile> opened = open_file(path);
+  if (!opened) return opened.error();
+  File* const file = &opened->file;
   const Result<std::uint32_t> index = tree_index(*file, which);
   if (!index) return index.error();
   BindOptions options;

@@ -18,12 +18,16 @@ std::uint64_t header_checksum(Bytes head, Bytes tail) {
 Result<File> File::open(const std::filesystem::path& path, const OpenOptions& options) {
   Result<Mapping> mapping = options.copy ? Mapping::copy(path) : Mapping::map(path);
   if (!mapping) return mapping.error();
-  File file;
-  file.bytes_ = mapping->bytes();
-  file.mapping_ = std::move(*mapping);
-  Result<File> checked = check(std::move(file), options);
+  Result<File> checked = open(std::move(*mapping), options);
   if (!checked) return Error{checked.code(), path.string() + ": " + checked.error().detail};
   return checked;
+}
+
+Result<File> File::open(Mapping owned, const OpenOptions& options) {
+  File file;
+  file.bytes_ = owned.bytes();
+  file.mapping_ = std::move(owned);
+  return check(std::move(file), options);
 }
 
 Result<File> File::open(Bytes memory, const OpenOptions& options) {

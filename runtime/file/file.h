@@ -33,6 +33,9 @@ class File {
   /// to it lives. Any alignment.
   static Result<File> open(Bytes memory, const OpenOptions& options = {});
 
+  /// The same over memory that the File takes over.
+  static Result<File> open(Mapping owned, const OpenOptions& options = {});
+
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
   [[nodiscard]] const Container& container() const noexcept { return container_; }
   [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }

@@ -82,18 +82,26 @@ Result<Mapping> Mapping::copy(const std::filesystem::path& path) {
   const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
-  void* data = ::mmap(nullptr, *size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-  if (data == MAP_FAILED) return system_error(Errc::kMapFailed, path, errno);
-  Mapping copied(static_cast<const std::byte*>(data), *size);
+  Result<WritableMapping> copied = WritableMapping::allocate(*size);
+  if (!copied) return Error{copied.code(), path.string() + ": " + copied.error().detail};
+  std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {
-    const ssize_t got = ::pread(file.value(), static_cast<std::byte*>(data) + done, *size - done,
-                                static_cast<off_t>(done));
+    const ssize_t got = ::pread(file.value(), data + done, *size - done, static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return system_error(Errc::kFileUnreadable, path, errno);
     if (got == 0) return Error{Errc::kFileUnreadable, path.string() + ": shrank while being read"};
     done += static_cast<std::size_t>(got);
   }
-  return copied;
+  return std::move(*copied).finish();
+}
+
+Result<WritableMapping> WritableMapping::allocate(std::size_t size) {
+  if (size == 0) return WritableMapping(nullptr, 0);
+  void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+  if (data == MAP_FAILED) {
+    return Error{Errc::kMapFailed, "no memory for " + std::to_string(size) + " bytes"};
+  }
+  return WritableMapping(static_cast<std::byte*>(data), size);
 }
 
 }  // namespace boxtree

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
+#include <utility>
 
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/result.h>
@@ -35,10 +37,27 @@ class Mapping {
   [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
 
  private:
+  friend class WritableMapping;
   Mapping(const std::byte* data, std::size_t size) noexcept : data_(data), size_(size) {}
 
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
+};
+
+/// Memory that is filled once and then becomes a Mapping. Move-only.
+class WritableMapping {
+ public:
+  /// Zeros. Error: kMapFailed when there is not so much memory.
+  static Result<WritableMapping> allocate(std::size_t size);
+
+  [[nodiscard]] std::span<std::byte> bytes() noexcept { return {data_, mapping_.size_}; }
+  [[nodiscard]] Mapping finish() && noexcept { return std::move(mapping_); }
+
+ private:
+  WritableMapping(std::byte* data, std::size_t size) noexcept : mapping_(data, size), data_(data) {}
+
+  Mapping mapping_;
+  std::byte* data_;
 };
 
 }  // namespace boxtree

@@ -147,6 +147,19 @@ done
 expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree 2
 expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree nobody
 
+# Blobs: smaller on disk, the same answers, refused when truncated.
+for method in lzma zstd; do
+  expect 0 "$boxtree" cook cube.obj -o blob.bxt --codec "blob-$method"
+  expect 0 "$boxtree" verify blob.bxt
+  expect 0 "$boxtree" info blob.bxt --json
+  same "$(jq -r '.trees[0].codec' out)" plain-f32
+  same "$(jq -c '.blob.file_bytes < .blob.resident_bytes' out)" true
+  expect 0 "$boxtree" query blob.bxt point --at 0.5,0.5,3 --json
+  same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
+  head -c 300 blob.bxt >short.bxt
+  expect 3 "$boxtree" verify short.bxt
+done
+
 # Benchmarks: times beside the counts of their answers.
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
 same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true

@@ -34,4 +34,22 @@ for generator in Ninja "Unix Makefiles"; do
   grep -q 'Cooking level.bxt' "$work/log" || fail "$generator: a touched mesh did not recook"
   grep -q 'Cooking crate.bxt' "$work/log" && fail "$generator: crate was recooked for nothing"
 done
+# The component blob is found apart.
+mkdir "$work/blob"
+cat >"$work/blob/CMakeLists.txt" <<'CMAKE'
+cmake_minimum_required(VERSION 3.25)
+project(blob_user LANGUAGES CXX)
+find_package(boxtree CONFIG REQUIRED COMPONENTS blob)
+add_executable(blob_user main.cpp)
+target_link_libraries(blob_user PRIVATE boxtree::blob)
+CMAKE
+cat >"$work/blob/main.cpp" <<'CODE'
+#include <boxtree/runtime/blob/blob.h>
+int main(int, char** argv) { return boxtree::open_blob(argv[1]).ok() ? 0 : 1; }
+CODE
+cmake -S "$work/blob" -B "$work/blob/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake --build "$work/blob/build" >"$work/log" || { cat "$work/log"; fail "blob: build failed"; }
+"$work/prefix/bin/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/level.bxt" \
+  --codec blob-zstd -q
+"$work/blob/build/blob_user" "$work/level.bxt" || fail "blob: not opened"
 echo "consumer: as expected"

@@ -15,7 +15,7 @@ for file in "$golden"/v*.hex; do read_bxt "$file" >"$work/said" || fail "$file";
 
 codecs=$("$boxtree" cook --help | sed -n 's/.*{auto,\([^}]*\)}.*/\1/p' | tr ',' ' ')
 [ -n "$codecs" ] || fail "no list of codecs in the help of cook"
-for codec in $codecs; do
+for codec in ${codecs//blob-*/}; do # blobs come last
   for mesh in "$@"; do
     "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --codec "$codec" -q
     read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $codec"

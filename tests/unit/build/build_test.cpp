@@ -89,8 +89,8 @@ TEST_P(Builders, ScaleDoesNotChangeTheTree) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Builders, testing::Values(Builder::kSah, Builder::kPaper),
-                         [](const auto& info) {
-                           return info.param == Builder::kSah ? "Sah" : "Paper";
+                         [](const auto& builder) {
+                           return builder.param == Builder::kSah ? "Sah" : "Paper";
                          });
 
 }  // namespace

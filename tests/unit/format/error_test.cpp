@@ -30,6 +30,8 @@ constexpr Row kPinned[] = {
     {22, "section_unknown", 5},
     {23, "padding_not_zero", 3},
     {24, "checksum_mismatch", 3},
+    {25, "blob_limit", 3},
+    {26, "blob_corrupt", 3},
     {30, "codec_unsupported", 5},
     {31, "geometry_unsupported", 5},
     {32, "record_invalid", 3},

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Files as commands open them: mapped, or decompressed if they are blobs.
+#pragma once
+
+#include <filesystem>
+
+#include <boxtree/runtime/file/file.h>
+
+namespace boxtree::cooker {
+
+struct OpenedFile {
+  File file;
+  std::uint64_t blob_bytes = 0;  // size of the compressed file; 0 for a mapped one
+};
+
+/// Errors as File::open and open_blob.
+Result<OpenedFile> open_file(const std::filesystem::path& path);
+
+}  // namespace boxtree::cooker

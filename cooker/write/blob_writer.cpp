@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// Serialize, compress, write, read back, compare, prove, rename.
+#include <algorithm>
+#include <vector>
+
+#include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/write/blob_writer.h>
+#include <boxtree/cooker/write/file_writer.h>
+#include <boxtree/runtime/blob/blob.h>
+
+namespace boxtree::cooker {
+
+Status write_blob(const std::filesystem::path& path, std::span<const EncodedTree> trees,
+                  const std::string& cook_record, BlobMethod method) {
+  const std::vector<std::byte> file = serialize(trees, cook_record);
+  const Result<std::vector<std::byte>> blob = make_blob(file, method);
+  if (!blob) return blob.error();
+  Result<AtomicFile> out = AtomicFile::create(path);
+  if (!out) return out.error();
+  if (Status status = out->write(*blob); !status) return status;
+  const Result<Mapping> written = Mapping::map(out->descriptor(), path);
+  if (!written) return written.error();
+  const Result<File> opened = open_blob(written->bytes(), ~std::uint64_t{0});
+  if (!opened) return opened.error();
+  if (!std::ranges::equal(opened->bytes(), file)) {
+    return Error{Errc::kBlobCorrupt, path.string() + ": the file inside did not come back"};
+  }
+  if (const Findings findings = verify_file(*opened); !findings.empty()) return findings.front();
+  return out->commit();
+}
+
+}  // namespace boxtree::cooker

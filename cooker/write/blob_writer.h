@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// Files that are compressed as a whole, written with the same care as mapped ones.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <boxtree/cooker/encode/encoded_tree.h>
+#include <boxtree/format/blob.h>
+
+namespace boxtree::cooker {
+
+/// Writes the blob of what write_file() would write, opens what was written, compares it bit for
+/// bit with what was meant, proves every tree, and only then lets it take the place of `path`.
+/// Errors: as write_file(); kBlobCorrupt if it does not come back, which is a defect of ours.
+Status write_blob(const std::filesystem::path& path, std::span<const EncodedTree> trees,
+                  const std::string& cook_record, BlobMethod method);
+
+}  // namespace boxtree::cooker

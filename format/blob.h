@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: MIT
+// A whole .bxt file, compressed inside another one: for cold storage and for comparison. It cannot
+// be mapped and asked; boxtree::blob decompresses it when it is opened.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+
+namespace boxtree {
+
+/// FileHeader::incompatible_features of a blob: it has one section, kBlob, and no trees.
+inline constexpr std::uint64_t kFeatureBlob = 1u;
+
+/// How the file inside is compressed. Numbers are pinned.
+enum class BlobMethod : std::uint32_t {
+  kLzma = 1,  // an .xz stream
+  kZstd = 2,  // a zstd frame
+};
+
+/// First bytes of the section; the compressed stream follows up to its end.
+struct BlobHeader {
+  BlobMethod method;
+  std::uint32_t reserved0;   // zero
+  std::uint64_t file_bytes;  // of the file inside
+  std::uint64_t checksum;    // XXH3-64 of the file inside
+  std::uint64_t reserved1;   // zero
+};
+static_assert(sizeof(BlobHeader) == 32 && std::is_trivially_copyable_v<BlobHeader>);
+
+}  // namespace boxtree

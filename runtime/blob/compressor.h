@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: MIT
+// One pair of functions a method; the only callers of the compression libraries.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <boxtree/format/blob.h>
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/result.h>
+
+namespace boxtree {
+
+/// Fills `out` with exactly what `stream` holds. kBlobCorrupt when it is damaged, truncated,
+/// followed by anything, or holds fewer or more bytes than `out`; kBlobLimit when the decompressor
+/// itself would need more than `memory_limit`.
+Status decompress_lzma(Bytes stream, std::span<std::byte> out, std::uint64_t memory_limit);
+Status decompress_zstd(Bytes stream, std::span<std::byte> out, std::uint64_t memory_limit);
+
+/// The strongest setting that stays practical for a build farm.
+Result<std::vector<std::byte>> compress_lzma(Bytes bytes);
+Result<std::vector<std::byte>> compress_zstd(Bytes bytes);
+
+}  // namespace boxtree

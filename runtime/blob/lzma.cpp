@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// liblzma, one call each way: buffers are whole, so no stream state is kept.
+#include <lzma.h>
+#include <string>
+
+#include <boxtree/runtime/blob/compressor.h>
+
+namespace boxtree {
+namespace {
+
+const std::uint8_t* octets(Bytes bytes) {
+  return reinterpret_cast<const std::uint8_t*>(bytes.data());
+}
+
+}  // namespace
+
+Status decompress_lzma(Bytes stream, std::span<std::byte> out, std::uint64_t memory_limit) {
+  std::uint64_t limit = memory_limit;
+  std::size_t in_at = 0;
+  std::size_t out_at = 0;
+  const lzma_ret result =
+      lzma_stream_buffer_decode(&limit, 0, nullptr, octets(stream), &in_at, stream.size(),
+                                reinterpret_cast<std::uint8_t*>(out.data()), &out_at, out.size());
+  if (result == LZMA_MEMLIMIT_ERROR) {
+    return Error{Errc::kBlobLimit, "the lzma decoder needs " + std::to_string(limit) +
+                                       " bytes, allowed are " + std::to_string(memory_limit)};
+  }
+  if (result == LZMA_OK && in_at == stream.size() && out_at == out.size()) return {};
+  return Error{Errc::kBlobCorrupt,
+               "lzma stream: code " + std::to_string(result) + ", read " + std::to_string(in_at) +
+                   " of " + std::to_string(stream.size()) + " bytes, gave " +
+                   std::to_string(out_at) + " of " + std::to_string(out.size())};
+}
+
+Result<std::vector<std::byte>> compress_lzma(Bytes bytes) {
+  std::vector<std::byte> out(lzma_stream_buffer_bound(bytes.size()));
+  std::size_t size = 0;
+  const lzma_ret result = lzma_easy_buffer_encode(
+      LZMA_PRESET_DEFAULT | LZMA_PRESET_EXTREME, LZMA_CHECK_CRC32, nullptr, octets(bytes),
+      bytes.size(), reinterpret_cast<std::uint8_t*>(out.data()), &size, out.size());
+  if (result != LZMA_OK) {
+    return Error{Errc::kInternal, "lzma encoder: code " + std::to_string(result)};
+  }
+  out.resize(size);
+  return out;
+}
+
+}  // namespace boxtree

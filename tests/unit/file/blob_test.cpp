@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+// Blobs come back bit for bit; bombs, truncated and damaged streams are refused.
+#include <algorithm>
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/runtime/blob/blob.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+
+namespace boxtree {
+namespace {
+
+class Blobs : public testing::TestWithParam<BlobMethod> {
+ protected:
+  const std::vector<std::byte> file_ = test::cook_bytes(test::torus(24, 16), CodecId::kPlainF32);
+  std::vector<std::byte> blob_ = *make_blob(file_, GetParam());
+
+  // Changes the blob's own header and repairs the checksums around it.
+  template <class Change>
+  void edit(Change change) {
+    const auto entry = load<SectionEntry>(blob_.data() + sizeof(FileHeader));
+    auto header = load<BlobHeader>(blob_.data() + entry.offset);
+    change(header);
+    std::memcpy(blob_.data() + entry.offset, &header, sizeof(header));
+    test::repair_checksums(blob_);
+  }
+};
+
+TEST_P(Blobs, ComeBackBitForBitAndAnswer) {
+  EXPECT_LT(blob_.size(), file_.size());
+  const Result<File> opened = open_blob(blob_);
+  ASSERT_TRUE(opened.ok()) << opened.error().message();
+  EXPECT_TRUE(std::ranges::equal(opened->bytes(), file_));
+  const Result<Tree> tree = Tree::bind(*opened);
+  ASSERT_TRUE(tree.ok());
+  EXPECT_TRUE((*closest_hit(*tree, {{1, 0.01, 9}, {0, 0, -1}})).has_value());
+  EXPECT_EQ(blob_, *make_blob(file_, GetParam()));
+}
+
+TEST_P(Blobs, AreNotMappedAndFilesAreNotBlobs) {
+  EXPECT_EQ(File::open(Bytes(blob_)).code(), Errc::kFeatureUnsupported);
+  EXPECT_EQ(open_blob(file_).code(), Errc::kFeatureUnsupported);
+}
+
+TEST_P(Blobs, KeepTheirMemoryLimit) {
+  EXPECT_EQ(open_blob(blob_, file_.size() - 1).code(), Errc::kBlobLimit);
+  edit([](BlobHeader& header) { header.file_bytes = std::uint64_t{1} << 60; });
+  EXPECT_EQ(open_blob(blob_).code(), Errc::kBlobLimit);
+}
+
+// A bomb states a small size and holds a large one.
+TEST_P(Blobs, BombsAreRefused) {
+  const std::vector<std::byte> zeros(std::size_t{64} << 20);
+  blob_ = *make_blob(zeros, GetParam());
+  EXPECT_LT(blob_.size(), 64u << 10);
+  edit([](BlobHeader& header) { header.file_bytes = 4096; });
+  EXPECT_EQ(open_blob(blob_).code(), Errc::kBlobCorrupt);
+  edit([](BlobHeader& header) { header.file_bytes = std::uint64_t{65} << 20; });
+  EXPECT_EQ(open_blob(blob_).code(), Errc::kBlobCorrupt);
+}
+
+TEST_P(Blobs, EveryTruncationIsRefused) {
+  for (std::size_t size = 0; size < blob_.size(); size += 7) {
+    ASSERT_FALSE(open_blob(Bytes(blob_).first(size)).ok()) << size;
+  }
+}
+
+TEST_P(Blobs, EveryDamagedByteIsFound) {
+  for (std::size_t i = 0; i < blob_.size(); i += 5) {
+    const bool may_change = i / 2 == 5 || i / 8 == 4;  // minor version, compatible features
+    blob_[i] ^= std::byte{0x10};
+    test::repair_checksums(blob_);  // so that the stream's own checks are reached
+    const Result<File> opened = open_blob(blob_);
+    const bool padding = i >= sizeof(FileHeader) + sizeof(SectionEntry) && i < 128;
+    const bool tail = i >= blob_.size() - 64;
+    if (!may_change && !padding && !tail) {
+      ASSERT_TRUE(!opened.ok() || std::ranges::equal(opened->bytes(), file_)) << i;
+    }
+    blob_[i] ^= std::byte{0x10};
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, Blobs, testing::Values(BlobMethod::kLzma, BlobMethod::kZstd),
+                         [](const auto& method) {
+                           return method.param == BlobMethod::kLzma ? "Lzma" : "Zstd";
+                         });
+
+}  // namespace
+}  // namespace boxtree
