@@ -7,6 +7,8 @@ BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-
   zlib1g-dev libtbb-dev pkg-config liblzma-dev libzstd-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
 TEST_PACKAGES="libgtest-dev libcgal-dev jq python3-xxhash"
+# Libraries that boxtree_peers measures beside ours.
+PEER_PACKAGES="libembree-dev libbullet-dev libfcl-dev libode-dev"
 
 # install_missing PACKAGE...: asks the package manager only for what is not there.
 install_missing() {

@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 # shellcheck source=samples/packages.sh
 . samples/packages.sh
 # shellcheck disable=SC2086 # lists of words
-install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES $TEST_PACKAGES
+install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES $TEST_PACKAGES $PEER_PACKAGES
 
 passed=0 failed=0 skipped=0
 

@@ -8,7 +8,7 @@ cd "$(dirname "$0")/.."
 # shellcheck source=samples/packages.sh
 . samples/packages.sh
 # shellcheck disable=SC2086 # lists of words
-install_missing $BUILD_PACKAGES $TEST_PACKAGES clang-tidy clang-format
+install_missing $BUILD_PACKAGES $TEST_PACKAGES $PEER_PACKAGES clang-tidy clang-format
 
 git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 cmake --preset release -DCMAKE_EXPORT_COMPILE_COMMANDS=ON >/dev/null

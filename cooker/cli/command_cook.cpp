@@ -253,7 +253,7 @@ void add_cook_command(CLI::App& app, int& status) {
                         "arrays"))
       ->excludes(exact);
   rare(command.add_flag("--f64", arguments->f64,
-                        "Hold positions as f64: node transforms stay exact"));
+                        "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
   rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");

@@ -57,5 +57,6 @@ void add_info_command(CLI::App& app, int& status);
 void add_verify_command(CLI::App& app, int& status);
 void add_query_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
+void add_report_command(CLI::App& app, int& status);
 
 }  // namespace boxtree::cooker

@@ -15,6 +15,7 @@
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/obj_faults.h>
 #include <boxtree/cooker/import/off_text.h>
+#include <boxtree/cooker/import/ply_positions.h>
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
@@ -50,6 +51,7 @@ struct StandIn {
   std::string name;
   std::string text;
   KnownFaults known;
+  ExactPositions exact;
 };
 
 // Reads the scene, from the file or from what stands in for it; the files read are noted in
@@ -76,9 +78,9 @@ Status import_once(const fs::path& path, const ImportOptions& options, const Sta
   auto scene = read_scene(path, stand_in, out.report.files_read);
   if (!scene.ok()) return scene.error();
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
-  static const KnownFaults kNone;
-  return flatten_scene(*scene.value(), options, path.string(),
-                       stand_in != nullptr ? stand_in->known : kNone, out);
+  static const StandIn kNone;
+  const StandIn& aside = stand_in != nullptr ? *stand_in : kNone;
+  return flatten_scene(*scene.value(), options, path.string(), aside.known, aside.exact, out);
 }
 
 Error in_file(const fs::path& path, const Error& error) {
@@ -93,34 +95,47 @@ Status import_obj(const fs::path& path, const ImportOptions& options, Imported& 
   if (!text.ok()) return text.error();
   const Result<bool> is_unknown = has_unknown_vertex_forms(text.value());
   if (!is_unknown.ok()) return in_file(path, is_unknown.error());
+  const bool is_exact = options.precision == Precision::kF64;
   Status status;
-  if (!is_unknown.value()) {
+  if (!is_unknown.value() && !is_exact) {
     text.value() = std::string();  // not to stand beside assimp's own copy
     status = import_once(path, options, nullptr, out);
     if (status.ok() && out.report.skipped.empty()) return status;
     text = read_source_file(path);
     if (!text.ok()) return text.error();
   }
-  StandIn marked{path.string(), std::move(text).value(), {}};
+  StandIn marked{path.string(), std::move(text).value(), {}, {}};
   bool changed = false;
-  marked.known = mark_obj_faults(marked.text, changed);
-  return changed ? import_once(path, options, &marked, out) : status;
+  marked.known = mark_obj_faults(marked.text, changed, is_exact ? &marked.exact : nullptr);
+  return changed || is_exact ? import_once(path, options, &marked, out) : status;
 }
 
 Status import_off(const fs::path& path, const ImportOptions& options, Imported& out) {
   Result<std::string> off = read_source_file(path);
   if (!off.ok()) return off.error();
-  StandIn obj{path.string() + ".obj", {}, {}};
-  Result<std::string> text = obj_from_off(off.value(), obj.known);
+  StandIn obj{path.string() + ".obj", {}, {}, {}};
+  const bool is_exact = options.precision == Precision::kF64;
+  Result<std::string> text = obj_from_off(off.value(), obj.known, is_exact ? &obj.exact : nullptr);
   if (!text.ok()) return in_file(path, text.error());
   off.value() = std::string();
   obj.text = std::move(text).value();
   return import_once(path, options, &obj, out);
 }
 
+// For f64. A file whose vertices cannot be found is read as any other: with f32 positions.
+Status import_exact_ply(const fs::path& path, const ImportOptions& options, Imported& out) {
+  Result<std::string> file = read_source_file(path);
+  if (!file.ok()) return file.error();
+  StandIn numbered{path.string(), std::move(file).value(), {}, {}};
+  const bool is_numbered = number_ply_vertices(numbered.text, numbered.exact);
+  return import_once(path, options, is_numbered ? &numbered : nullptr, out);
+}
+
 Status import_any(const fs::path& path, const ImportOptions& options, Imported& out) {
   if (has_extension(path, "obj")) return import_obj(path, options, out);
   if (has_extension(path, "off")) return import_off(path, options, out);
+  const bool is_exact = options.precision == Precision::kF64;
+  if (is_exact && has_extension(path, "ply")) return import_exact_ply(path, options, out);
   return import_once(path, options, nullptr, out);
 }
 

@@ -45,9 +45,9 @@ struct Transform {
     }
     return product;
   }
-  [[nodiscard]] Vector3d operator*(const aiVector3D& v) const {
+  [[nodiscard]] Vector3d operator*(const Vector3d& v) const {
     const auto along = [&v](const std::array<double, 4>& r) {
-      return r[0] * v.x + r[1] * v.y + r[2] * v.z + r[3];
+      return r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + r[3];
     };
     return {along(row[0]), along(row[1]), along(row[2])};
   }
@@ -135,10 +135,11 @@ template <class T>
 class Flattener {
  public:
   Flattener(const ImportOptions& options, const std::string& file, const KnownFaults& known,
-            std::vector<T>& positions, Imported& out)
+            const ExactPositions& exact, std::vector<T>& positions, Imported& out)
       : options_(options),
         file_(file),
         known_(known),
+        exact_(exact),
         positions_(positions),
         mesh_(out.mesh),
         report_(out.report),
@@ -147,7 +148,7 @@ class Flattener {
   Status add(const aiMesh& mesh, const Transform& transform);
 
  private:
-  std::array<T, 3> place(const aiVector3D& source) const;
+  std::array<T, 3> place(unsigned vertex) const;
   void check_vertices();
   Status mark_used();
   void weld_used();
@@ -164,6 +165,7 @@ class Flattener {
   const ImportOptions& options_;
   const std::string& file_;
   const KnownFaults& known_;
+  const ExactPositions& exact_;
   std::vector<T>& positions_;
   SourceMesh& mesh_;
   ImportReport& report_;
@@ -202,9 +204,9 @@ Status Flattener<T>::add(const aiMesh& mesh, const Transform& transform) {
 }
 
 template <class T>
-std::array<T, 3> Flattener<T>::place(const aiVector3D& source) const {
-  if (is_identity_) return {T{source.x}, T{source.y}, T{source.z}};
-  const Vector3d placed = transform_ * source;
+std::array<T, 3> Flattener<T>::place(unsigned vertex) const {
+  const Vector3d source = exact_[source_->mVertices[vertex]];
+  const Vector3d placed = is_identity_ ? source : transform_ * source;
   return {static_cast<T>(placed[0]), static_cast<T>(placed[1]), static_cast<T>(placed[2])};
 }
 
@@ -212,7 +214,7 @@ template <class T>
 void Flattener<T>::check_vertices() {
   remap_.assign(source_->mNumVertices, kUnused);
   for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
-    const std::array<T, 3> placed = place(source_->mVertices[vertex]);
+    const std::array<T, 3> placed = place(vertex);
     if (!std::isfinite(placed[0]) || !std::isfinite(placed[1]) || !std::isfinite(placed[2])) {
       remap_[vertex] = kNotFinite;
     }
@@ -260,7 +262,7 @@ std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
     if (remap_[vertex] != kNotFinite) continue;
     const aiVector3D& source = source_->mVertices[vertex];
     if (const FaceFault* known = known_.find(source)) return *known;
-    const std::array<T, 3> placed = place(source);
+    const std::array<T, 3> placed = place(vertex);
     return FaceFault{Errc::kMeshNotFinite,
                      fmt::format("{} is not finite: ({}, {}, {})", name_of_vertex(vertex),
                                  placed[0], placed[1], placed[2])};
@@ -283,7 +285,7 @@ void Flattener<T>::weld_used() {
   welder_.reserve(std::min<std::size_t>(used, source_->mNumFaces));
   const std::size_t before = positions_.size() / 3;
   for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
-    if (remap_[vertex] == kUsed) remap_[vertex] = welder_.add(place(source_->mVertices[vertex]));
+    if (remap_[vertex] == kUsed) remap_[vertex] = welder_.add(place(vertex));
   }
   report_.vertices_welded += used - (positions_.size() / 3 - before);
 }
@@ -354,13 +356,15 @@ void Flattener<T>::push(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::
   mesh_.faces.push_back(Face{{a, b, c, d}});
 }
 
-// A coordinate was rounded to f32 when the file was written or read, then carried through the
-// transform, and rounded again to T. The arithmetic of the transform adds four roundings.
+// A coordinate was rounded to f32 (or f64, if exact) when the file was written or read, then
+// carried through the transform, and rounded again to T. The arithmetic of the transform adds four
+// roundings.
 template <class T>
 RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
-  const aiVector3D& source = source_->mVertices[vertex];
-  const Vector3d before(rounding_of<float>(source.x), rounding_of<float>(source.y),
-                        rounding_of<float>(source.z));
+  const Vector3d source = exact_[source_->mVertices[vertex]];
+  const auto rounding_when_read = exact_.empty() ? rounding_of<float> : rounding_of<double>;
+  const Vector3d before(rounding_when_read(source[0]), rounding_when_read(source[1]),
+                        rounding_when_read(source[2]));
   const Vector3d after = position(remap_[vertex]);
   if (is_identity_) return {after, before};
   Vector3d rounding;
@@ -370,7 +374,7 @@ RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
     for (int from = 0; from < 3; ++from) {
       const double factor = std::abs(row[static_cast<std::size_t>(from)]);
       carried += factor * before[from];
-      terms += factor * std::abs(double{source[static_cast<unsigned>(from)]});
+      terms += factor * std::abs(source[from]);
     }
     rounding[axis] = carried + rounding_of<T>(after[axis]) + 4 * rounding_of<double>(terms);
   }
@@ -441,7 +445,7 @@ const FaceFault* KnownFaults::find(const aiVector3D& position) const {
 }
 
 Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::string& file,
-                     const KnownFaults& known, Imported& out) {
+                     const KnownFaults& known, const ExactPositions& exact, Imported& out) {
   std::vector<Instance> instances = find_instances(scene);
   out.report.meshes_unplaced = add_unplaced(scene, instances);
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
@@ -456,10 +460,10 @@ Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::st
   out.mesh.positions.precision = options.precision;
   Status status;
   if (options.precision == Precision::kF32) {
-    Flattener<float> flattener(options, file, known, out.mesh.positions.f32, out);
+    Flattener<float> flattener(options, file, known, exact, out.mesh.positions.f32, out);
     status = flatten(scene, instances, flattener);
   } else {
-    Flattener<double> flattener(options, file, known, out.mesh.positions.f64, out);
+    Flattener<double> flattener(options, file, known, exact, out.mesh.positions.f64, out);
     status = flatten(scene, instances, flattener);
   }
   if (!status.ok()) return status;

@@ -9,6 +9,7 @@
 
 #include <assimp/vector3.h>
 
+#include <boxtree/cooker/import/exact_positions.h>
 #include <boxtree/cooker/import/import.h>
 
 struct aiScene;
@@ -34,8 +35,8 @@ struct KnownFaults {
 
 /// Flattens `scene` into `out.mesh` and counts in `out.report`, as import.h says. Frees each mesh
 /// of the scene as soon as its last instance is taken over, so that the two never coexist whole.
-/// `file` is what errors call the file.
+/// `file` is what errors call the file; `exact` holds positions that assimp knows by number alone.
 Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::string& file,
-                     const KnownFaults& known, Imported& out);
+                     const KnownFaults& known, const ExactPositions& exact, Imported& out);
 
 }  // namespace boxtree::cooker

@@ -17,7 +17,8 @@ struct ImportOptions {
   /// [false] Drop faces with a NaN or infinite vertex, or with a vertex number out of range, and
   /// report their numbers, instead of refusing the file.
   bool skip_bad = false;
-  /// [kF32] Hold positions as f32, or as f64 so that node transforms are not rounded to f32.
+  /// [kF32] Hold positions as f32, or as f64 with all the digits of OBJ, OFF and PLY files; in
+  /// other formats only node transforms gain by it.
   Precision precision = Precision::kF32;
 };
 
@@ -67,12 +68,13 @@ struct Imported {
 /// or out of memory). No exception leaves it, nothing is printed by it, it reads and writes no
 /// global state: safe to call from several threads, in any locale.
 ///
-/// What assimp decides: Debian's build holds positions as f32, so f64 keeps node transforms exact
-/// but adds no digits to the coordinates of a file; decimal coordinates can be a unit in the last
-/// place off the nearest f32. Where a reader of assimp repairs silently, we look first ourselves:
-/// OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out of range is refused even with
-/// skip_bad, and named by its mesh: assimp has dropped the faces and their numbers with them. Its
-/// other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
+/// What assimp decides: Debian's build holds positions as f32. f64 positions of OBJ, OFF and PLY
+/// files go past it; those of other formats have the digits of f32. Decimal coordinates read as f32
+/// can be a unit in the last place off the nearest. Where a reader of assimp repairs silently, we
+/// look first ourselves: OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out of range is
+/// refused even with skip_bad, and named by its mesh: assimp has dropped the faces and their
+/// numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex
+/// number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace boxtree::cooker

@@ -3,12 +3,12 @@
 #include <array>
 #include <cctype>
 #include <charconv>
-#include <cmath>
 #include <optional>
 #include <string_view>
 #include <vector>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <boxtree/cooker/import/obj_faults.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -63,7 +63,7 @@ bool is_known_form(const Statement& vertex, const Tokens& numbers) {
 
 class FaultMarker {
  public:
-  explicit FaultMarker(std::string_view text) : source_(text) {}
+  FaultMarker(std::string_view text, ExactPositions* exact) : source_(text), exact_(exact) {}
 
   KnownFaults run();
   std::string take_text() { return std::move(text_); }
@@ -72,10 +72,13 @@ class FaultMarker {
  private:
   void count_vertices();
   bool mark_vertex(const Statement& statement);
+  template <class T, class Read>
+  [[nodiscard]] Eigen::Vector3d position_as(std::size_t used, Read read) const;
   bool mark_element(const Statement& statement);
   std::string corner_fault(std::string_view token, std::size_t corner, std::size_t line) const;
 
   std::string_view source_;
+  ExactPositions* exact_;  // or null
   std::string text_;
   KnownFaults known_;
   Tokens tokens_;
@@ -115,17 +118,28 @@ void FaultMarker::count_vertices() {
   }
 }
 
+// The position of the vertex in tokens_, in the arithmetic of T.
+template <class T, class Read>
+Eigen::Vector3d FaultMarker::position_as(std::size_t used, Read read) const {
+  std::array<T, 4> value = {0, 0, 0, 1};
+  for (std::size_t i = 0; i < std::min(used, tokens_.size()); ++i) {
+    value[i] = read(tokens_[i]).value_or(0);
+  }
+  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
+}
+
 // Whether the vertex was rewritten.
 bool FaultMarker::mark_vertex(const Statement& statement) {
   split_numbers(statement, tokens_);
   ++vertices_so_far_;
-  std::array<float, 4> value = {0, 0, 0, 1};
   const std::size_t used = tokens_.size() == 4 ? 4 : 3;
-  for (std::size_t i = 0; i < std::min(used, tokens_.size()); ++i) {
-    value[i] = read_number(tokens_[i]).value_or(0);
-  }
-  const float x = value[0] / value[3], y = value[1] / value[3], z = value[2] / value[3];
-  if (std::isfinite(x) && std::isfinite(y) && std::isfinite(z)) {
+  const Eigen::Vector3d position = exact_ != nullptr ? position_as<double>(used, read_exact_number)
+                                                     : position_as<float>(used, read_number);
+  if (position.allFinite()) {
+    if (exact_ != nullptr) {
+      text_ += fmt::format("v {}\n", fmt::join(exact_->add(position), " "));
+      return true;
+    }
     if (is_known_form(statement, tokens_)) return false;
     text_ += "v";
     for (std::size_t i = 0; i < used; ++i) text_ += fmt::format(" {}", tokens_[i]);
@@ -134,8 +148,9 @@ bool FaultMarker::mark_vertex(const Statement& statement) {
   }
   text_ += marker_line(known_.faults.size());
   known_.faults.push_back(
-      {Errc::kMeshNotFinite, fmt::format("vertex {} (line {}) is not finite: ({}, {}, {})",
-                                         vertices_so_far_, statement.line, x, y, z)});
+      {Errc::kMeshNotFinite,
+       fmt::format("vertex {} (line {}) is not finite: ({}, {}, {})", vertices_so_far_,
+                   statement.line, position[0], position[1], position[2])});
   return true;
 }
 
@@ -219,8 +234,8 @@ Result<bool> has_unknown_vertex_forms(std::string_view text) {
   return is_unknown;
 }
 
-KnownFaults mark_obj_faults(std::string& text, bool& changed) {
-  FaultMarker marker(text);
+KnownFaults mark_obj_faults(std::string& text, bool& changed, ExactPositions* exact) {
+  FaultMarker marker(text, exact);
   KnownFaults known = marker.run();
   changed = marker.changed();
   text = marker.take_text();

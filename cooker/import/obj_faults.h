@@ -21,7 +21,8 @@ Result<bool> has_unknown_vertex_forms(std::string_view text);
 /// line and its number in the file. Vertices in unknown forms are reduced to their
 /// position. Texture and normal numbers that are no numbers go without a word: they are no
 /// geometry. Numbers of vertices and faces stay as they are. `changed` says whether anything was
-/// replaced.
-KnownFaults mark_obj_faults(std::string& text, bool& changed);
+/// replaced. With `exact`, every position is put aside there, whatever f32 makes of it, and `text`
+/// holds its number.
+KnownFaults mark_obj_faults(std::string& text, bool& changed, ExactPositions* exact = nullptr);
 
 }  // namespace boxtree::cooker

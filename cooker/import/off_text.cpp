@@ -2,10 +2,10 @@
 // A line reader for OFF (http://www.geomview.org/docs/html/OFF.html) that writes OBJ.
 #include <array>
 #include <charconv>
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <boxtree/cooker/import/off_text.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -15,7 +15,8 @@ namespace {
 
 class OffReader {
  public:
-  OffReader(std::string_view off, KnownFaults& known) : rest_(off), known_(known) {}
+  OffReader(std::string_view off, KnownFaults& known, ExactPositions* exact)
+      : rest_(off), known_(known), exact_(exact) {}
 
   Result<std::string> run();
 
@@ -31,6 +32,7 @@ class OffReader {
 
   std::string_view rest_;
   KnownFaults& known_;
+  ExactPositions* exact_;  // or null
   std::string obj_;
   Tokens tokens_;  // of the line at hand
   std::size_t line_ = 0;
@@ -132,18 +134,29 @@ Status OffReader::read_vertices() {
   return {};
 }
 
+// The position in the words of a vertex and its weight, in the arithmetic of T.
+template <class T, class Read>
+Eigen::Vector3d position_as(const std::array<std::string_view, 4>& words, Read read) {
+  std::array<T, 4> value{};
+  for (std::size_t i = 0; i < 4; ++i) value[i] = read(words[i]).value_or(0);
+  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
+}
+
 void OffReader::add_vertex(std::size_t vertex) {
   std::array<std::string_view, 4> words = {"0", "0", "0", "1"};
   for (std::size_t i = 0; i < dimensions_; ++i) words[i] = tokens_[i];
   if (is_homogeneous_) words[3] = tokens_[dimensions_];
-  std::array<float, 4> value{};
-  for (std::size_t i = 0; i < 4; ++i) value[i] = read_number(words[i]).value_or(0);
-  for (std::size_t i = 0; i < 3; ++i) value[i] /= value[3];
-  if (!std::isfinite(value[0]) || !std::isfinite(value[1]) || !std::isfinite(value[2])) {
+  const Eigen::Vector3d position = exact_ != nullptr ? position_as<double>(words, read_exact_number)
+                                                     : position_as<float>(words, read_number);
+  if (!position.allFinite()) {
     obj_ += marker_line(known_.faults.size());
     known_.faults.push_back(
         {Errc::kMeshNotFinite, fmt::format("vertex {} (line {}) is not finite: ({}, {}, {})",
-                                           vertex, line_, value[0], value[1], value[2])});
+                                           vertex, line_, position[0], position[1], position[2])});
+    return;
+  }
+  if (exact_ != nullptr) {
+    obj_ += fmt::format("v {}\n", fmt::join(exact_->add(position), " "));
     return;
   }
   obj_ += fmt::format("v {} {} {}", words[0], words[1], words[2]);
@@ -189,8 +202,8 @@ Status OffReader::add_face() {
 
 }  // namespace
 
-Result<std::string> obj_from_off(std::string_view off, KnownFaults& known) {
-  return OffReader(off, known).run();
+Result<std::string> obj_from_off(std::string_view off, KnownFaults& known, ExactPositions* exact) {
+  return OffReader(off, known, exact).run();
 }
 
 }  // namespace boxtree::cooker

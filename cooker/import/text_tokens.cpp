@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Words and numbers, read as assimp reads them.
+#include <charconv>
+
 #include <assimp/fast_atof.h>
 #include <fmt/format.h>
 
@@ -38,6 +40,17 @@ std::optional<float> read_number(std::string_view token) {
     return std::nullopt;
   }
   return number;
+}
+
+std::optional<double> read_exact_number(std::string_view token) {
+  const std::optional<float> rounded = read_number(token);
+  if (!rounded) return std::nullopt;
+  const std::size_t sign = token.starts_with('+') ? 1 : 0;
+  double number = 0;
+  const auto [end, error] =
+      std::from_chars(token.data() + sign, token.data() + token.size(), number);
+  // Spellings that only assimp reads ("1,5", "nan(...)") keep what it makes of them.
+  return error == std::errc() && end == token.data() + token.size() ? number : double{*rounded};
 }
 
 std::string marker_line(std::size_t fault) {

@@ -18,6 +18,9 @@ void split_tokens(std::string_view text, Tokens& tokens);
 /// The number at the beginning of `token`, exactly as assimp reads it; nothing if it reads none.
 [[nodiscard]] std::optional<float> read_number(std::string_view token);
 
+/// The same number with all its digits; what read_number does not read, this does not.
+[[nodiscard]] std::optional<double> read_exact_number(std::string_view token);
+
 /// The OBJ vertex that stands for a fault (flatten.h), as a line.
 [[nodiscard]] std::string marker_line(std::size_t fault);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Medians over whole workloads: single queries are shorter than a clock can tell.
+#include <ctime>
 #include <sys/resource.h>
 
 #include <boxtree/cooker/report/measure.h>
@@ -21,6 +22,12 @@ double per_question(const Questions& questions, std::size_t runs, Status& status
 }
 
 }  // namespace
+
+double thread_seconds() noexcept {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
 
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs) {
   QueryFigures figures;
@@ -69,34 +76,35 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   return figures;
 }
 
+Status ask_first(const Tree& tree) {
+  const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
+  const Eigen::Vector3d along(0.1, 0.2, -1);
+  const auto hit = closest_hit(tree, {bounds.center() - bounds.sizes().norm() * along, along});
+  return hit ? Status() : Status(hit.error());
+}
+
 Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_t tree,
                                  std::size_t runs) {
-  using Clock = std::chrono::steady_clock;
   OpenFigures figures;
   std::vector<double> open_us;
   std::vector<double> answer_us;
-  const auto micros = [](Clock::duration d) {
-    return std::chrono::duration<double, std::micro>(d).count();
-  };
   for (std::size_t i = 0; i <= runs; ++i) {
     rusage before{};
     rusage after{};
     ::getrusage(RUSAGE_SELF, &before);
-    const Clock::time_point start = Clock::now();
+    const double start = thread_seconds();
     const Result<File> file = File::open(path);
     if (!file) return file.error();
     const Result<Tree> bound = Tree::bind(*file, tree);
     if (!bound) return bound.error();
-    const Clock::time_point opened = Clock::now();
-    const Eigen::AlignedBox3d bounds = bounds_in_object_space(*bound);
-    const Eigen::Vector3d along(0.1, 0.2, -1);
-    const auto hit = closest_hit(*bound, {bounds.center() - bounds.sizes().norm() * along, along});
-    const Clock::time_point answered = Clock::now();
-    if (!hit) return hit.error();
+    const double opened = thread_seconds();
+    const Status asked = ask_first(*bound);
+    const double answered = thread_seconds();
+    if (!asked) return asked.error();
     ::getrusage(RUSAGE_SELF, &after);
     if (i == 0) continue;
-    open_us.push_back(micros(opened - start));
-    answer_us.push_back(micros(answered - start));
+    open_us.push_back(1e6 * (opened - start));
+    answer_us.push_back(1e6 * (answered - start));
     figures.page_faults = static_cast<std::uint64_t>(after.ru_minflt - before.ru_minflt);
   }
   figures.open_us = median(open_us);

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <utility>
@@ -21,17 +20,24 @@ namespace boxtree::cooker {
   return *middle;
 }
 
+/// Processor time of this thread in seconds, kernel included: other work on the machine is not in
+/// it.
+[[nodiscard]] double thread_seconds() noexcept;
+
+/// Processor time of one call in seconds.
+template <class Body>
+[[nodiscard]] double seconds_taken(Body body) {
+  const double start = thread_seconds();
+  body();
+  return thread_seconds() - start;
+}
+
 /// The median of `runs` calls in seconds, after one call that is not counted.
 template <class Body>
 [[nodiscard]] double median_seconds(std::size_t runs, Body body) {
-  using Clock = std::chrono::steady_clock;
+  body();
   std::vector<double> seconds;
-  for (std::size_t i = 0; i <= runs; ++i) {
-    const Clock::time_point start = Clock::now();
-    body();
-    const double taken = std::chrono::duration<double>(Clock::now() - start).count();
-    if (i > 0) seconds.push_back(taken);
-  }
+  for (std::size_t i = 0; i < runs; ++i) seconds.push_back(seconds_taken(body));
   return median(std::move(seconds));
 }
 
@@ -52,6 +58,9 @@ struct QueryFigures {
 /// Asks one tree everything, single-threaded; pairs are the tree against itself. Errors: those of
 /// the queries.
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs);
+
+/// One ray across the middle: the first answer in all times to it.
+Status ask_first(const Tree& tree);
 
 /// From a closed file in the page cache to answers.
 struct OpenFigures {

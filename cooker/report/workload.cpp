@@ -2,6 +2,7 @@
 // Seeded questions from integer arithmetic, so that no standard library can change them.
 #include <array>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include <boxtree/cooker/report/workload.h>
@@ -50,19 +51,21 @@ class Random {
   std::uint64_t state_;
 };
 
-Eigen::AlignedBox3d turned(const Eigen::AlignedBox3d& box, const Eigen::Matrix3d& rotation) {
-  const Eigen::Vector3d half = rotation.cwiseAbs() * (box.sizes() / 2);
-  const Eigen::Vector3d centre = rotation * box.center();
-  return {centre - half, centre + half};
-}
-
-// How far along `direction` the centres are when the two boxes just touch.
-double touching_distance(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d& b,
+// How far along `direction` the centres of a box and its turned copy are when they just touch: the
+// least over all axes that can separate two boxes (Gottschalk, Lin, Manocha, "OBBTree", 1996).
+double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& direction) {
   double distance = std::numeric_limits<double>::infinity();
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double reach = (a.sizes()[k] + b.sizes()[k]) / 2;
-    if (direction[k] != 0) distance = std::min(distance, reach / std::abs(direction[k]));
+  const auto consider = [&](const Eigen::Vector3d& axis) {
+    const double reach =
+        half.dot(axis.cwiseAbs()) + half.dot((rotation.transpose() * axis).cwiseAbs());
+    const double along = std::abs(direction.dot(axis));
+    if (along > 0) distance = std::min(distance, reach / along);
+  };
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    consider(Eigen::Vector3d::Unit(i));
+    consider(rotation.col(i));
+    for (Eigen::Index j = 0; j < 3; ++j) consider(Eigen::Vector3d::Unit(i).cross(rotation.col(j)));
   }
   return distance;
 }
@@ -70,11 +73,10 @@ double touching_distance(const Eigen::AlignedBox3d& a, const Eigen::AlignedBox3d
 Pose random_pose(const Eigen::AlignedBox3d& bounds, double share, Random& random) {
   const Eigen::Matrix3d rotation = random.rotation();
   const Eigen::Vector3d direction = random.direction();
-  const Eigen::AlignedBox3d copy = turned(bounds, rotation);
+  const double distance = share * touching_distance(bounds.sizes() / 2, rotation, direction);
   Pose pose = Pose::Identity();
   pose.linear() = rotation;
-  pose.translation() = bounds.center() - copy.center() +
-                       share * touching_distance(bounds, copy, direction) * direction;
+  pose.translation() = bounds.center() - rotation * bounds.center() + distance * direction;
   return pose;
 }
 

@@ -25,7 +25,7 @@ struct Workload {
   /// In the bounds enlarged by 1.2.
   std::vector<Eigen::Vector3d> points;
   /// Of a copy of the mesh: random rotations, at 0.6, 0.8, 0.9 and 1.0 of the distance at which the
-  /// bounding boxes of mesh and turned copy touch, in random directions.
+  /// mesh's bounding box and that of the copy, turned with it, touch; in random directions.
   std::vector<Pose> poses;
 };
 

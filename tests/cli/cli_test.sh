@@ -166,6 +166,25 @@ same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_u
 same "$(jq -c '.files[0] | .ray_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
 expect 1 "$boxtree" bench external.bxt --quick --runs 1
 
+# f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
+printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj
+for codec in packed-f64 plain-f16; do
+  expect 0 "$boxtree" cook layers.obj -o layers.bxt --f64 --codec "$codec"
+  expect 0 "$boxtree" verify layers.bxt
+  expect 0 "$boxtree" query layers.bxt ray --origin 1000000.25,0.25,-1 --direction 0,0,1 --json
+  same "$(jq -c '[.face,(.t - 0.999999999 | fabs < 1e-15)]' out)" '[1,true]'
+done
+
+# The paper's tables: text, a page and figures that agree with each other.
+expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json paper.json
+grep -q 'Table A.2' out && grep -q 'A.6 and A.7' out
+grep -q '<td>cube</td>' paper.html
+same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
+same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[6]'
+same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'
+expect 2 "$boxtree" report --paper missing.obj
+expect 1 "$boxtree" report cube.obj
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The same tetrahedron in the formats that people use most.
+#include <algorithm>
 #include <cstring>
 
 #include "temp_files.h"
@@ -160,6 +161,88 @@ TEST_F(ImportFormatTest, Base64AndExternalBuffers) {
   ASSERT_EQ(outside.report.files_read.size(), 2u);
   EXPECT_EQ(outside.report.files_read[1], folder_ / "a.bin");
   EXPECT_EQ(inside.report.files_read.size(), 1u);
+}
+
+// Two vertices that f32 cannot tell apart, in every format whose digits are kept.
+constexpr std::array<std::array<double, 3>, 4> kFine = {
+    {{1000000.0000000001, 0.1, 0}, {1000000.0000000003, 0.1, 0}, {0, 1e39, -0.5}, {0, 0, 1e-300}}};
+
+void expect_fine(const Imported& got) {
+  expect_invariants(got);
+  ASSERT_EQ(got.mesh.positions.precision, Precision::kF64);
+  ASSERT_EQ(got.mesh.positions.size(), 4u);
+  ASSERT_EQ(got.mesh.faces.size(), 2u);
+  constexpr std::array<std::array<std::size_t, 3>, 2> kCorners = {{{0, 1, 2}, {1, 3, 2}}};
+  for (std::size_t face = 0; face < 2; ++face) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const Eigen::Vector3d position = got.mesh.positions[got.mesh.faces[face].corner[corner]];
+      const auto& expected = kFine[kCorners[face][corner]];
+      EXPECT_EQ(position, Eigen::Vector3d(expected[0], expected[1], expected[2]));
+    }
+  }
+}
+
+TEST_F(ImportFormatTest, AllDigitsOfObjAndOffInF64) {
+  const ImportOptions options{.precision = Precision::kF64};
+  expect_fine(load("a.obj",
+                   "v 1000000.0000000001 0.1 0\nv 1000000.0000000003 0.1 0 # with a comment\n"
+                   "g first\nv 0 2e39 -1 2\nf 1 2 3\ng second\nv 0 0 1e-300 0.5 0.5 0.5\n"
+                   "f -3 -1 -2\n",
+                   options));
+  expect_fine(load("a.off",
+                   "OFF\n4 2 0\n1000000.0000000001 0.1 0\n1000000.0000000003 0.1 0\n"
+                   "0 1e39 -0.5\n0 0 1e-300\n3 0 1 2\n3 1 3 2\n",
+                   options));
+}
+
+TEST_F(ImportFormatTest, BadVerticesAreNamedInF64) {
+  const Error error =
+      fail("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e999 0\nf 1 2 3\n", {.precision = Precision::kF64});
+  EXPECT_EQ(error.code, Errc::kMeshNotFinite);
+  EXPECT_NE(error.detail.find("vertex 3 (line 3)"), std::string::npos) << error.detail;
+}
+
+std::string fine_ply(const std::string& format) {
+  std::string ply = "ply\nformat " + format +
+                    " 1.0\ncomment x\nelement material 1\nproperty uchar red\n"
+                    "element vertex 4\nproperty float nx\nproperty double x\n"
+                    "property double y\nproperty double z\nelement face 2\n"
+                    "property list uchar int vertex_indices\nend_header\n";
+  const bool swapped = format == "binary_big_endian";
+  const auto put = [&](auto value) {
+    std::string bytes;
+    append(bytes, value);
+    if (swapped) std::reverse(bytes.begin(), bytes.end());
+    ply += bytes;
+  };
+  put(std::uint8_t{7});
+  for (const auto& vertex : kFine) {
+    put(1.0f);
+    for (const double coordinate : vertex) put(coordinate);
+  }
+  for (const auto& face : {std::array<std::int32_t, 3>{0, 1, 2}, {1, 3, 2}}) {
+    put(std::uint8_t{3});
+    for (const std::int32_t corner : face) put(corner);
+  }
+  return ply;
+}
+
+TEST_F(ImportFormatTest, AllDigitsOfPlyInF64) {
+  const ImportOptions options{.precision = Precision::kF64};
+  expect_fine(load("little.ply", fine_ply("binary_little_endian"), options));
+  expect_fine(load("big.ply", fine_ply("binary_big_endian"), options));
+  expect_fine(load("text.ply",
+                   "ply\nformat ascii 1.0\nelement vertex 4\nproperty double x\nproperty double y\n"
+                   "property double z\nelement face 2\nproperty list uchar int vertex_indices\n"
+                   "end_header\n1000000.0000000001 0.1 0\n1000000.0000000003 0.1 0\n"
+                   "0 1e39 -0.5\n0 0 1e-300\n3 0 1 2\n3 1 3 2\n",
+                   options));
+}
+
+// A file that ends inside its vertices is for assimp to refuse, with or without f64.
+TEST_F(ImportFormatTest, ShortPlyIsRefusedInF64) {
+  const std::string ply = fine_ply("binary_little_endian");
+  fail("short.ply", ply.substr(0, ply.find("end_header") + 40), {.precision = Precision::kF64});
 }
 
 }  // namespace

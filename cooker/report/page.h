@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// A report as data: headings, tables and plots, written as text for a terminal or as one HTML page
+// that needs no network.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace boxtree::cooker {
+
+/// Cells are text; the first column is left-aligned, the others are numbers and right-aligned.
+struct PageTable {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+
+/// Points over two axes, both linear and from their smallest to their largest value.
+struct PagePlot {
+  struct Point {
+    double x;
+    double y;
+    std::string label;
+  };
+  struct Series {
+    std::string name;
+    std::vector<Point> points;
+  };
+  std::string x_title;
+  std::string y_title;
+  std::vector<Series> series;  // at most four, told apart by colour and shape
+};
+
+struct PageSection {
+  std::string title;
+  std::string text;  // what it shows and how to read it
+  std::vector<PageTable> tables;
+  std::vector<PagePlot> plots;
+};
+
+struct Page {
+  std::string title;
+  std::string text;
+  std::vector<PageSection> sections;
+};
+
+[[nodiscard]] std::string to_text(const Page& page);
+[[nodiscard]] std::string to_html(const Page& page);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Figures to the tables of the paper, each row beside the paper's own range.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/report/page.h>
+#include <boxtree/cooker/report/paper_figures.h>
+
+namespace boxtree::cooker {
+
+/// One measurement of a program that knows the original and other libraries.
+struct PeerRow {
+  std::string mesh;
+  std::string library;
+  std::string variant;
+  std::string metric;
+  double value = 0;
+  std::string unit;
+};
+
+/// Everything a paper report shows.
+struct PaperReport {
+  std::vector<PaperFigures> meshes;
+  std::vector<StairFigures> stairs;
+  std::vector<PeerRow> peers;  // empty: tables of times say that they were left out
+  std::string command;         // that made it
+};
+
+[[nodiscard]] Page paper_page(const PaperReport& report);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: MIT
+// What f16 cuts cost when they are rounded to nearest, as is usual, instead of outward: contacts
+// (paper section 2.5 does not say which it does). Only reports build such trees.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <boxtree/cooker/proof/gates.h>
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+/// The same contacts asked of three trees of one mesh.
+struct RoundingFigures {
+  std::uint64_t questions = 0;
+  std::uint64_t pairs_f32 = 0;      // pairs of faces found with f32 cuts
+  std::uint64_t pairs_nearest = 0;  // with f16 cuts rounded to nearest
+  std::uint64_t pairs_outward = 0;  // with f16 cuts rounded outward: codec plain-f16
+  Gates gates_nearest;              // what the gates say of the nearest tree
+  Gates gates_outward;
+};
+
+/// `f32` is a tree in codec plain-f32; the nearest tree is made of its very nodes. The mesh meets
+/// its copy turned by each of the 24 rotations that take axes to axes, with faces of the bounding
+/// boxes in contact or up to 1e-4 of the longest edge deep: aligned contact, as of parts on floors.
+Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTree& f32,
+                                        const EncodedTree& outward);
+
+/// A box resting on each of 64 steps of a stair 8 units long.
+struct StairFigures {
+  double depth = 0;  // of the box below the step
+  std::uint64_t steps = 0;
+  std::uint64_t missed_f32 = 0;
+  std::uint64_t missed_nearest = 0;
+  std::uint64_t missed_outward = 0;
+};
+Result<std::vector<StairFigures>> stair_contact();
+
+}  // namespace boxtree::cooker

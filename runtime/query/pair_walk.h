@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// Simultaneous descent of two trees (Zachmann, "The BoxTree", 1995; paper section 1.1), over any
+// pair of codecs. Behind runtime/query/pair.h; measurements use it directly, to listen.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/pair.h>
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/traversal.h>
+
+namespace boxtree {
+
+/// What a pair walk tells about itself; this one does not listen and costs nothing.
+struct NoPairObserver {
+  /// A pair of nodes, not both leaves, is about to be taken apart.
+  void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
+  /// The triangles of two leaves are about to be compared.
+  void leaf_pair(NodeRef, NodeRef) noexcept {}
+};
+
+/// The children of one side of a pair: those of a node, or a leaf standing for itself.
+template <Codec C>
+struct PairSide {
+  typename C::Children children;
+  std::array<Box<double>, C::Children::kWidth> image;  // in the other tree's space
+
+  void set_leaf(const Box<typename C::Scalar>& box, NodeRef ref) noexcept {
+    children.count = 1;
+    children.leaf_mask = 1;
+    children.ref[0] = ref;
+    for (std::size_t k = 0; k < 3; ++k) {
+      children.low[k][0] = box.low[k];
+      children.high[k][0] = box.high[k];
+    }
+  }
+};
+
+/// As many pairs as an honest walk can meet: each node or leaf of one tree with each of the other,
+/// once. A walk of corrupt bytes that would meet more ends with kNodeCorrupt.
+[[nodiscard]] inline std::uint64_t most_pairs(const TreeRecord& first,
+                                              const TreeRecord& second) noexcept {
+  const auto size = [](const TreeRecord& r) { return std::uint64_t{r.node_count} + r.face_count; };
+  const std::uint64_t a = size(first);
+  const std::uint64_t b = size(second);
+  return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;
+}
+
+/// One test of two trees. Everything passed by reference must outlive it.
+template <Codec A, Codec B, class Observer = NoPairObserver>
+class PairWalk {
+ public:
+  PairWalk(const Tree& first, const A& first_codec, const Tree& second, const B& second_codec,
+           const RelativePose& pose, PairVisitor visitor, Observer observer = {}) noexcept
+      : first_(first),
+        second_(second),
+        first_codec_(first_codec),
+        second_codec_(second_codec),
+        pose_(pose),
+        visitor_(visitor),
+        observer_(observer),
+        unmet_(most_pairs(first.record(), second.record())) {}
+
+  [[nodiscard]] Result<Visit> run() {
+    if (first_.empty() || second_.empty()) return Visit::kComplete;
+    const Entry root{root_box<typename A::Scalar>(first_),
+                     root_box<typename B::Scalar>(second_),
+                     first_.root_ref(),
+                     second_.root_ref(),
+                     first_.record().root == RootKind::kLeaf,
+                     second_.record().root == RootKind::kLeaf};
+    const bool apart = !boxes_overlap(root.first_box, pose_.hull_in_first(root.second_box)) ||
+                       !boxes_overlap(pose_.hull_in_second(root.first_box), root.second_box);
+    if (!apart && (root.first_leaf && root.second_leaf)) {
+      test_leaves(root.first, root.second);
+    } else if (!apart) {
+      stack_[size_++] = root;
+    }
+    while (size_ > 0 && error_ == Errc::kOk && !stopped_) descend(stack_[--size_]);
+    if (error_ != Errc::kOk) return error_;
+    return stopped_ ? Visit::kStopped : Visit::kComplete;
+  }
+
+ private:
+  struct Entry {
+    Box<typename A::Scalar> first_box;
+    Box<typename B::Scalar> second_box;
+    NodeRef first;
+    NodeRef second;
+    bool first_leaf;
+    bool second_leaf;
+  };
+
+  // Both sides go down at once; a path ends after as many steps as the deeper tree has levels, and
+  // each step leaves all but one of its child pairs pending.
+  static constexpr std::size_t kPairs = A::Children::kWidth * B::Children::kWidth;
+  static constexpr std::size_t kPairStack = kMaxDepth * (kPairs - 1) + 1;
+
+  void descend(const Entry entry) {
+    observer_.node_pair(entry.first, entry.first_leaf, entry.second, entry.second_leaf);
+    if (unmet_-- == 0 ||
+        !expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
+        !expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_)) {
+      error_ = Errc::kNodeCorrupt;
+      return;
+    }
+    const auto& a = first_side_.children;
+    const auto& b = second_side_.children;
+    for (std::uint32_t i = 0; i < a.count; ++i) {
+      first_side_.image[i] = pose_.hull_in_second(a.box(i));
+    }
+    for (std::uint32_t j = 0; j < b.count; ++j) {
+      second_side_.image[j] = pose_.hull_in_first(b.box(j));
+    }
+    for (std::uint32_t i = 0; i < a.count; ++i) {
+      for (std::uint32_t j = 0; j < b.count; ++j) {
+        if (!boxes_overlap(a.box(i), second_side_.image[j]) ||
+            !boxes_overlap(first_side_.image[i], b.box(j))) {
+          continue;
+        }
+        if (a.is_leaf(i) && b.is_leaf(j)) {
+          test_leaves(a.ref[i], b.ref[j]);
+          if (error_ != Errc::kOk || stopped_) return;
+          continue;
+        }
+        if (size_ == stack_.size()) {
+          error_ = Errc::kDepthExceeded;
+          return;
+        }
+        stack_[size_++] = {a.box(i), b.box(j), a.ref[i], b.ref[j], a.is_leaf(i), b.is_leaf(j)};
+      }
+    }
+  }
+
+  template <Codec C>
+  [[nodiscard]] static bool expand(const C& codec, bool leaf, const Box<typename C::Scalar>& box,
+                                   NodeRef ref, PairSide<C>& side) noexcept {
+    if (!leaf) return codec.expand(ref, box, side.children);
+    side.set_leaf(box, ref);
+    return true;
+  }
+
+  void test_leaves(NodeRef first, NodeRef second) {
+    observer_.leaf_pair(first, second);
+    error_ = first_.leaves().read(first.first, first.second, first_batch_);
+    if (error_ != Errc::kOk) return;
+    error_ = second_.leaves().read(second.first, second.second, second_batch_);
+    if (error_ != Errc::kOk) return;
+    std::array<Triangle, kMaxLeafTriangles> moved;
+    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+      const Triangle triangle = second_batch_.triangle(j);
+      for (std::size_t c = 0; c < 3; ++c) {
+        moved[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
+        if (is_within_reach(moved[j].corner[c])) continue;
+        error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
+        return;
+      }
+    }
+    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+      const Triangle triangle = first_batch_.triangle(i);
+      for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+        if (was_reported(i, j) || !triangles_intersect(triangle, moved[j])) continue;
+        reported_ = {first_batch_.face[i], second_batch_.face[j]};
+        stopped_ =
+            !visitor_({face_ref(first_, reported_.first), face_ref(second_, reported_.second)});
+        if (stopped_) return;
+      }
+    }
+    reported_ = kNone;
+  }
+
+  // Quads bring up to four triangle pairs of the same two faces, one after the other only when both
+  // leaves hold one face; leaves of binary codecs do.
+  [[nodiscard]] bool was_reported(std::uint32_t i, std::uint32_t j) const noexcept {
+    return reported_.first == first_batch_.face[i] && reported_.second == second_batch_.face[j];
+  }
+
+  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
+
+  const Tree& first_;
+  const Tree& second_;
+  const A first_codec_;
+  const B second_codec_;
+  const RelativePose& pose_;
+  PairVisitor visitor_;
+  [[no_unique_address]] Observer observer_;
+  std::uint64_t unmet_;
+  Errc error_ = Errc::kOk;
+  bool stopped_ = false;
+  NodeRef reported_ = kNone;  // the two faces reported last
+  PairSide<A> first_side_;
+  PairSide<B> second_side_;
+  TriangleBatch first_batch_;
+  TriangleBatch second_batch_;
+  std::array<Entry, kPairStack> stack_;
+  std::size_t size_ = 0;
+};
+
+}  // namespace boxtree

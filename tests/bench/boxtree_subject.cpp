@@ -1,0 +1,222 @@
+// SPDX-License-Identifier: MIT
+// All our codecs under measurement, through the public queries.
+#include <stdexcept>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/report/measure.h>
+#include <boxtree/cooker/report/scratch_file.h>
+#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/runtime/boxtree.h>
+#include <boxtree/runtime/query/pair_walk.h>
+
+#include "tests/bench/subject.h"
+
+namespace boxtree::bench {
+namespace {
+
+template <class T>
+T require(Result<T> result) {
+  if (!result) throw std::runtime_error(result.error().message());
+  return std::move(*result);
+}
+
+cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder) {
+  cooker::CookOptions options;
+  options.codec = codec;
+  options.builder = builder;
+  options.face_ids = false;
+  return require(cooker::cook_mesh(mesh.source, options)).tree;
+}
+
+// Where a node's bytes lie.
+template <class Cut>
+Bytes node_bytes(const PlainCodec<Cut>& codec, NodeRef ref) {
+  constexpr std::size_t kBytes = sizeof(typename PlainCodec<Cut>::Node);
+  return {codec.nodes + std::size_t{ref.first} * kBytes, kBytes};
+}
+template <PackedCut K>
+Bytes node_bytes(const PackedCodec<K>& codec, NodeRef ref) {
+  const auto& array = codec.arrays[ref.second];
+  const std::uint64_t first = std::uint64_t{ref.first} * array.layout.bits;
+  return {array.bits + first / 8, (first % 8 + array.layout.bits + 7) / 8};
+}
+
+// Counts the work of a walk of one tree against itself, and shows the cache model what it reads.
+// Cuts in the table of dedup are found through the nodes.
+template <Codec C>
+struct Listener {
+  const C* codec;
+  const cooker::EncodedGeometry* geometry;
+  PairWork* work;
+  CacheModel* cache;
+
+  void node_pair(NodeRef first, bool first_is_leaf, NodeRef second, bool second_is_leaf) {
+    ++work->node_pairs;
+    if (!first_is_leaf) read_node(first);
+    if (!second_is_leaf) read_node(second);
+  }
+  void leaf_pair(NodeRef first, NodeRef second) {
+    ++work->leaf_tests;
+    read_face(first.first);
+    read_face(second.first);
+  }
+
+ private:
+  void read_node(NodeRef ref) {
+    const Bytes bytes = node_bytes(*codec, ref);
+    cache->read(bytes.data(), bytes.size());
+    if constexpr (std::is_same_v<C, PackedCodec<PackedCut::kTable>>) {
+      if (codec->cut_count == 0) return;
+      const auto& array = codec->arrays[ref.second];
+      for (const std::uint8_t at : array.layout.cut_at) {
+        const std::uint64_t number = read_bits(
+            array.bits, std::uint64_t{ref.first} * array.layout.bits + at, codec->cut_bits);
+        cache->read(codec->cuts + number * sizeof(float), sizeof(float));
+      }
+    }
+  }
+  void read_face(std::uint32_t face) {
+    const std::size_t bytes = std::size_t{geometry->corner_bytes} * geometry->corners_per_face;
+    const std::byte* const corners = geometry->corners.data() + face * bytes;
+    cache->read(corners, bytes);
+    for (std::size_t i = 0; i < geometry->corners_per_face; ++i) {
+      const std::uint32_t vertex = geometry->corner_bytes == 2 ? load<std::uint16_t>(corners, i)
+                                                               : load<std::uint32_t>(corners, i);
+      constexpr std::size_t kVertexBytes = 3 * sizeof(float);
+      cache->read(geometry->vertices.data() + vertex * kVertexBytes, kVertexBytes);
+    }
+  }
+};
+
+class BoxtreeSubject : public Subject {
+ public:
+  BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder)
+      : encoded_(cook(mesh, codec, builder)),
+        tree_(require(Tree::bind(cooker::parts_of(encoded_), 0, BindOptions()))) {}
+
+  [[nodiscard]] SubjectBytes bytes() const override {
+    const auto tree = static_cast<double>(encoded_.nodes.bytes.size());
+    return {tree, tree + static_cast<double>(encoded_.geometry.vertices.size() +
+                                             encoded_.geometry.corners.size())};
+  }
+  [[nodiscard]] std::optional<SubjectOpen> open(std::size_t runs) override {
+    const std::vector<std::byte> bytes = cooker::serialize(std::span(&encoded_, 1));
+    const cooker::ScratchFile file = require(cooker::ScratchFile::create(bytes));
+    const auto figures = require(cooker::measure_open(file.path(), 0, 20 * runs));
+    return SubjectOpen{figures.first_answer_us, static_cast<double>(bytes.size()), 0};
+  }
+
+  bool rays(std::span<const Ray> rays, std::span<double> out) override {
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto hit = require(closest_hit(tree_, rays[i]));
+      out[i] = hit ? hit->t : std::numeric_limits<double>::infinity();
+    }
+    return true;
+  }
+  bool boxes(std::span<const Eigen::AlignedBox3d> boxes, std::span<double> out) override {
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      out[i] = 0;
+      static_cast<void>(require(overlap_box(tree_, boxes[i], [&](const FaceRef&) {
+        ++out[i];
+        return true;
+      })));
+    }
+    return true;
+  }
+  bool points(std::span<const Eigen::Vector3d> points, std::span<double> out) override {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      out[i] = require(closest_point(tree_, points[i]))->distance;
+    }
+    return true;
+  }
+  bool first_contacts(std::span<const Pose> poses, std::span<double> out) override {
+    const Pose here = Pose::Identity();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      out[i] = require(first_contact(tree_, here, tree_, poses[i])) ? 1 : 0;
+    }
+    return true;
+  }
+  bool all_pairs(std::span<const Pose> poses, std::span<double> out) override {
+    const Pose here = Pose::Identity();
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      out[i] = 0;
+      static_cast<void>(require(overlap_pairs(tree_, here, tree_, poses[i], [&](const FacePair&) {
+        ++out[i];
+        return true;
+      })));
+    }
+    return true;
+  }
+
+  [[nodiscard]] std::optional<PairWork> pair_work(std::span<const Pose> poses, bool first_only,
+                                                  CacheModel& cache) override {
+    PairWork work;
+    for (const Pose& pose : poses) {
+      const auto relative = RelativePose::make(tree_, Pose::Identity(), tree_, pose);
+      if (!relative) throw std::runtime_error(std::string(error_info(Errc::kInvalidPose).name));
+      with_codec(tree_, [&]<class C>(const C& codec) {
+        const Listener<C> listener{&codec, &encoded_.geometry, &work, &cache};
+        const auto visitor = [&](const FacePair&) { return !first_only; };
+        static_cast<void>(require(
+            PairWalk<C, C, Listener<C>>(tree_, codec, tree_, codec, *relative, visitor, listener)
+                .run()));
+      });
+    }
+    return work;
+  }
+
+ private:
+  cooker::EncodedTree encoded_;
+  Tree tree_;
+};
+
+// A compressed file has nothing but an opening time and a size: once open it is its plain-f32 tree.
+class BlobSubject : public Subject {
+ public:
+  BlobSubject(const TriangleMesh& mesh, BlobMethod method, cooker::Builder builder)
+      : encoded_(cook(mesh, CodecId::kPlainF32, builder)),
+        file_(cooker::serialize(std::span(&encoded_, 1))),
+        blob_(require(make_blob(file_, method))),
+        tree_bytes_(static_cast<double>(require(compressed_size(encoded_.nodes.bytes, method)))) {}
+
+  [[nodiscard]] SubjectBytes bytes() const override {
+    return {tree_bytes_, static_cast<double>(blob_.size())};
+  }
+  [[nodiscard]] std::optional<SubjectOpen> open(std::size_t runs) override {
+    const cooker::ScratchFile file = require(cooker::ScratchFile::create(blob_));
+    const double seconds = cooker::median_seconds(runs, [&] {
+      const File opened = require(open_blob(file.path()));
+      const Tree tree = require(Tree::bind(opened, 0));
+      if (const Status asked = cooker::ask_first(tree); !asked) {
+        throw std::runtime_error(asked.error().message());
+      }
+    });
+    return SubjectOpen{1e6 * seconds, static_cast<double>(blob_.size()),
+                       static_cast<double>(file_.size())};
+  }
+
+ private:
+  cooker::EncodedTree encoded_;
+  std::vector<std::byte> file_;
+  std::vector<std::byte> blob_;
+  double tree_bytes_;
+};
+
+}  // namespace
+
+void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder) {
+  for (const CodecInfo& codec : kCodecs) {
+    libraries.push_back(
+        {"boxtree", std::string(codec.name), [id = codec.id, builder](const TriangleMesh& mesh) {
+           return std::make_unique<BoxtreeSubject>(mesh, id, builder);
+         }});
+  }
+  for (const auto& [name, method] :
+       {std::pair("blob-lzma", BlobMethod::kLzma), std::pair("blob-zstd", BlobMethod::kZstd)}) {
+    libraries.push_back({"boxtree", name, [method, builder](const TriangleMesh& mesh) {
+                           return std::make_unique<BlobSubject>(mesh, method, builder);
+                         }});
+  }
+}
+
+}  // namespace boxtree::bench

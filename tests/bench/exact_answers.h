@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// The answers that all libraries are held against: every triangle, no tree, exact predicates.
+#pragma once
+
+#include "tests/bench/subject.h"
+
+namespace boxtree::bench {
+
+/// Answers to the first questions of each kind of a workload, as many as are affordable: brute
+/// force over n triangles (n log n and the overlaps along one axis for pairs).
+struct ExactAnswers {
+  std::vector<double> rays;
+  std::vector<double> boxes;
+  std::vector<double> points;
+  std::vector<double> pairs;  // numbers of pairs; not zero means contact
+};
+
+[[nodiscard]] ExactAnswers exact_answers(const TriangleMesh& mesh,
+                                         const cooker::Workload& workload);
+
+}  // namespace boxtree::bench

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// What a library under measurement is asked. Answers come one number a question, so that they can
+// be compared one by one; asking a whole workload in one call keeps the indirection out of the
+// times.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/report/workload.h>
+
+#include "tests/bench/cache_model.h"
+#include "tests/bench/triangle_mesh.h"
+
+namespace boxtree::bench {
+
+/// Memory in bytes. `total` is all that must be resident for any query, geometry included.
+struct SubjectBytes {
+  double tree = 0;
+  double total = 0;
+};
+
+/// From a closed file to answers, where a library has files.
+struct SubjectOpen {
+  double micros = 0;          // to the first answer
+  double file_bytes = 0;      // on disk
+  double resident_bytes = 0;  // that opening alone allocates or must read
+};
+
+/// What pair queries did, summed over all poses.
+struct PairWork {
+  std::uint64_t node_pairs = 0;  // pairs of nodes taken apart; the original also counts leaf pairs
+  std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
+};
+
+/// One mesh in one library's structure. A query that the library does not have returns false and
+/// leaves its answers alone.
+class Subject {
+ public:
+  virtual ~Subject() = default;
+
+  [[nodiscard]] virtual SubjectBytes bytes() const = 0;
+  [[nodiscard]] virtual std::optional<SubjectOpen> open(std::size_t /*runs*/) { return {}; }
+
+  /// Distance along the ray to the closest hit; infinity without one.
+  virtual bool rays(std::span<const Ray>, std::span<double>) { return false; }
+  /// Number of triangles that touch the box.
+  virtual bool boxes(std::span<const Eigen::AlignedBox3d>, std::span<double>) { return false; }
+  /// Distance to the closest point.
+  virtual bool points(std::span<const Eigen::Vector3d>, std::span<double>) { return false; }
+  /// Of the mesh against its copy in that pose: 1 if they touch, else 0.
+  virtual bool first_contacts(std::span<const Pose>, std::span<double>) { return false; }
+  /// Likewise: the number of pairs of triangles that touch.
+  virtual bool all_pairs(std::span<const Pose>, std::span<double>) { return false; }
+
+  /// Repeats first_contacts or all_pairs with a listening walk that also feeds the cache model.
+  [[nodiscard]] virtual std::optional<PairWork> pair_work(std::span<const Pose>,
+                                                          bool /*first_only*/, CacheModel&) {
+    return {};
+  }
+};
+
+/// One way to build a subject.
+struct Library {
+  std::string name;
+  std::string variant;
+  std::function<std::unique_ptr<Subject>(const TriangleMesh&)> build;
+};
+
+// Each library adds its variants; those that are not installed are not compiled.
+void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder);
+void add_original(std::vector<Library>& libraries);
+void add_bullet(std::vector<Library>& libraries);
+void add_cgal(std::vector<Library>& libraries);
+void add_embree(std::vector<Library>& libraries);
+void add_fcl(std::vector<Library>& libraries);
+void add_ode(std::vector<Library>& libraries);
+
+}  // namespace boxtree::bench

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// The page: every cell is there, nothing of a mesh's name is markup, plots stay in their frame.
+#include <regex>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/report/page.h>
+
+namespace boxtree::cooker {
+namespace {
+
+Page sample() {
+  Page page;
+  page.title = "T & <title>";
+  page.text = "made by \"x\"";
+  page.sections = {{"S",
+                    "explains",
+                    {{{"mesh", "bytes"}, {{"<b>bunny</b>", "12"}, {"cow", "3.5"}}}},
+                    {{"x", "y", {{"one", {{1, -2, "a"}, {9, 40, "b"}}}, {"two", {{5, 5, "c"}}}}}}}};
+  return page;
+}
+
+TEST(Page, HtmlEscapesAndHoldsEverything) {
+  const std::string html = to_html(sample());
+  for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;", "&lt;b&gt;bunny&lt;/b&gt;",
+                           "<td>12</td>", "<td>3.5</td>", "<svg", "</svg>"}) {
+    EXPECT_NE(html.find(part), std::string::npos) << part;
+  }
+  EXPECT_EQ(html.find("<b>"), std::string::npos);
+  EXPECT_EQ(html.find("http"), std::string::npos) << "no network";
+}
+
+TEST(Page, MarksLieInsideTheFrame) {
+  const std::string html = to_html(sample());
+  const std::regex circle("<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"");
+  std::size_t count = 0;
+  for (std::sregex_iterator it(html.begin(), html.end(), circle), end; it != end; ++it, ++count) {
+    const double x = std::stod((*it)[1]);
+    const double y = std::stod((*it)[2]);
+    EXPECT_TRUE(x >= 0 && x <= 640 && y >= 0 && y <= 400) << x << ' ' << y;
+  }
+  EXPECT_EQ(count, 3u);  // two points and the legend
+}
+
+TEST(Page, TextAlignsColumns) {
+  const std::string text = to_text(sample());
+  EXPECT_NE(text.find("  mesh          bytes\n  <b>bunny</b>     12\n  cow             3.5\n"),
+            std::string::npos)
+      << text;
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// What rounding f16 cuts to nearest loses, and that rounding outward loses nothing.
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/report/rounding.h>
+
+#include "tests/support/meshes.h"
+
+namespace boxtree::cooker {
+namespace {
+
+TEST(Rounding, StairsAreMissedByNearestAlone) {
+  const Result<std::vector<StairFigures>> rows = stair_contact();
+  ASSERT_TRUE(rows) << rows.error().message();
+  ASSERT_EQ(rows->size(), 4u);
+  for (const StairFigures& row : *rows) {
+    EXPECT_EQ(row.missed_f32, 0u) << row.depth;
+    EXPECT_EQ(row.missed_outward, 0u) << row.depth;
+    EXPECT_GT(row.missed_nearest, 0u) << row.depth;
+  }
+}
+
+TEST(Rounding, OutwardFindsAllThatF32Finds) {
+  const SourceMesh mesh = test::torus(24, 16);
+  const auto cook = [&](CodecId codec) {
+    CookOptions options;
+    options.codec = codec;
+    options.builder = Builder::kPaper;
+    return std::move(cook_mesh(mesh, options)->tree);
+  };
+  const Result<RoundingFigures> figures =
+      aligned_contact(mesh, cook(CodecId::kPlainF32), cook(CodecId::kPlainF16));
+  ASSERT_TRUE(figures) << figures.error().message();
+  EXPECT_EQ(figures->questions, 24u * 6 * 3);
+  EXPECT_GT(figures->pairs_f32, 0u);
+  EXPECT_EQ(figures->pairs_outward, figures->pairs_f32);
+  EXPECT_LE(figures->pairs_nearest, figures->pairs_f32);
+  EXPECT_TRUE(figures->gates_outward.pass());
+  EXPECT_FALSE(figures->gates_nearest.pass());
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
