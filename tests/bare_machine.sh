@@ -11,7 +11,8 @@ source=$(cd "$(dirname "$0")/.." && pwd)
 
 debootstrap --variant=minbase --include=git bookworm "$root" >/dev/null
 mount -t proc proc "$root/proc"
-trap 'umount "$root/proc"' EXIT
+mount -t devpts devpts "$root/dev/pts" # a test looks at what a terminal is shown
+trap 'umount "$root/dev/pts" "$root/proc"' EXIT
 cp /etc/resolv.conf /etc/hosts "$root/etc/"
 git clone --quiet "$source" "$root/boxtree"
 

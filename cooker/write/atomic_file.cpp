@@ -9,6 +9,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
@@ -30,7 +32,7 @@ fs::path directory_of(const fs::path& target) {
 
 // ".NAME.PID.cooking": hidden, and tells whether its writer still runs.
 std::string prefix_of(const fs::path& target) {
-  return "." + target.filename().string() + ".";
+  return fmt::format(".{}.", target.filename().string());
 }
 
 // Removes what killed writers of the same target left. A pid that was given to another process

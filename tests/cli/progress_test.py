@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Cook shows its steps on a terminal and only there, and only once it has worked half a second.
+
+No time here depends on the machine: the work is doubled until it is long enough to be shown, and
+silence is asked only of runs that took less than half a second from start to end.
+
+    progress_test.py BOXTREE
+"""
+import os
+import pty
+import re
+import subprocess
+import sys
+import tempfile
+import time
+
+SHOWN_AFTER = 0.5  # seconds, as in command_cook.cpp
+GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOWN_AFTER
+ERASE = "\r\x1b[K"  # to the start of the line, and clear it
+STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")
+
+
+def write_grid(path, cells):
+    """A square of cells x cells faces."""
+    with open(path, "w", encoding="ascii") as file:
+        for y in range(cells + 1):
+            for x in range(cells + 1):
+                file.write(f"v {x} {y} {x * y % 7}\n")
+        for y in range(cells):
+            for x in range(cells):
+                first = y * (cells + 1) + x + 1
+                file.write(f"f {first} {first + 1} {first + cells + 2} {first + cells + 1}\n")
+
+
+def run_on_terminal(command, names, **others):
+    """Runs the command with a terminal as its streams of these names. Returns the seconds it took
+    and what the terminal was sent."""
+    ours, theirs = pty.openpty()
+    streams = others | {name: theirs for name in names}
+    start = time.monotonic()
+    with subprocess.Popen(command, **streams) as child:
+        os.close(theirs)
+        sent = b""
+        try:
+            while part := os.read(ours, 65536):
+                sent += part
+        except OSError:
+            pass  # Linux's way to say that the last writer has closed a terminal
+        status = child.wait()
+    seconds = time.monotonic() - start
+    os.close(ours)
+    assert status == 0, f"exit {status}: {command}"
+    return seconds, sent.decode()
+
+
+def cook(boxtree, count, *options):
+    return [boxtree, "cook", *["grid.obj"] * count, "-o", "grid.bxt", *options]
+
+
+def find_long_work(boxtree):
+    """Returns how many inputs it takes until steps are shown."""
+    count = 1
+    while True:
+        seconds, sent = run_on_terminal(cook(boxtree, count), ["stderr"],
+                                        stdout=subprocess.DEVNULL)
+        if sent:
+            assert seconds >= SHOWN_AFTER, f"steps shown in a run of {seconds:.3f} s: {sent!r}"
+            assert STEPS.fullmatch(sent.removesuffix(ERASE)), f"not a list of steps: {sent!r}"
+            assert sent.endswith(ERASE), f"the last step stays on the terminal: {sent!r}"
+            return count
+        assert seconds < GIVE_UP_AFTER, f"nothing shown in {seconds:.3f} s"
+        count *= 2
+
+
+def main(boxtree):
+    with tempfile.TemporaryDirectory() as work:
+        os.chdir(work)
+        write_grid("grid.obj", 40)
+        # Twice what was just long enough: the runs below are long even if the machine is now less
+        # busy than it was.
+        count = 2 * find_long_work(boxtree)
+        with open("errors", "w+", encoding="ascii") as errors:
+            _, sent = run_on_terminal(cook(boxtree, count), ["stdin", "stdout"], stderr=errors)
+            errors.seek(0)
+            assert errors.read() == "", "steps shown in a file"
+            assert "\x1b" not in sent, f"steps shown on standard output: {sent!r}"
+            assert "wrote grid.bxt" in sent, f"no report: {sent!r}"
+        _, sent = run_on_terminal(cook(boxtree, count, "--quiet"), ["stdout", "stderr"])
+        assert sent == "", f"not quiet: {sent!r}"
+    print(f"steps of {count // 2} inputs shown on a terminal, of more of them nowhere else")
+
+
+if __name__ == "__main__":
+    main(os.path.abspath(sys.argv[1]))
