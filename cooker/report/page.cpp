@@ -26,7 +26,7 @@ p{max-width:46rem}.faint{color:var(--faint)}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem;margin:1rem 0}
 th,td{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{color:var(--faint);font-weight:600;vertical-align:bottom}
-th:first-child,td:first-child{text-align:left}
+th.word,td.word{text-align:left}
 svg{max-width:100%;height:auto}svg text{fill:var(--ink);font:12px system-ui,sans-serif}
 svg .axis{stroke:var(--faint)}svg .grid{stroke:var(--line)}
 @media print{body{max-width:none}h2{break-after:avoid}.scroll{overflow:visible}}
@@ -57,11 +57,17 @@ std::string escaped(const std::string& text) {
 
 void add_html(const PageTable& table, std::string& out) {
   out += "<div class=\"scroll\"><table><thead><tr>";
-  for (const std::string& column : table.columns) out += "<th>" + escaped(column) + "</th>";
+  const auto add_cells = [&](const char* tag, const std::vector<std::string>& cells) {
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      const char* const alignment = i < table.word_columns ? " class=\"word\"" : "";
+      out += fmt::format("<{0}{1}>{2}</{0}>", tag, alignment, escaped(cells[i]));
+    }
+  };
+  add_cells("th", table.columns);
   out += "</tr></thead><tbody>\n";
   for (const auto& row : table.rows) {
     out += "<tr>";
-    for (const std::string& cell : row) out += "<td>" + escaped(cell) + "</td>";
+    add_cells("td", row);
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
@@ -180,8 +186,8 @@ void add_text(const PageTable& table, std::string& out) {
   }
   const auto add_row = [&](const std::vector<std::string>& cells) {
     for (std::size_t i = 0; i < cells.size(); ++i) {
-      out += i == 0 ? fmt::format("  {:<{}}", cells[i], widths[i])
-                    : fmt::format("  {:>{}}", cells[i], widths[i]);
+      out += i < table.word_columns ? fmt::format("  {:<{}}", cells[i], widths[i])
+                                    : fmt::format("  {:>{}}", cells[i], widths[i]);
     }
     out += '\n';
   };

@@ -3,15 +3,17 @@
 // that needs no network.
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <vector>
 
 namespace boxtree::cooker {
 
-/// Cells are text; the first column is left-aligned, the others are numbers and right-aligned.
+/// Cells are text. The first columns hold words and are left-aligned, the others hold numbers.
 struct PageTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
+  std::size_t word_columns = 1;
 };
 
 /// Points over two axes, both linear and from their smallest to their largest value.

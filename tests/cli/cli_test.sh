@@ -178,7 +178,7 @@ done
 # The paper's tables: text, a page and figures that agree with each other.
 expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json paper.json
 grep -q 'Table A.2' out && grep -q 'A.6 and A.7' out
-grep -q '<td>cube</td>' paper.html
+grep -q '<td class="word">cube</td>' paper.html
 same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
 same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[6]'
 same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'

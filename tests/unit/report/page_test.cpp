@@ -22,7 +22,7 @@ Page sample() {
 
 TEST(Page, HtmlEscapesAndHoldsEverything) {
   const std::string html = to_html(sample());
-  for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;", "&lt;b&gt;bunny&lt;/b&gt;",
+  for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;", "<td class=\"word\">&lt;b&gt;bunny&lt;/b&gt;</td>",
                            "<td>12</td>", "<td>3.5</td>", "<svg", "</svg>"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
