@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -243,17 +242,18 @@ TEST(PolygonSplit, RandomWalksOnAGrid) {
 }
 
 TEST(PolygonSplit, ManyCornersEnd) {
+  // Teeth of three corners: clipping every other corner without looking would cut into them.
   Polygon comb;
-  constexpr int kTeeth = 5000;
+  constexpr int kTeeth = 4000;
   for (int i = 0; i < kTeeth; ++i) {
-    comb.push_back({2.0 * i, 0, 0});
-    comb.push_back({2.0 * i + 1, 100, 0});
+    comb.push_back({3.0 * i, 0, 0});
+    comb.push_back({3.0 * i + 1, 100, 0});
+    comb.push_back({3.0 * i + 2, 100, 0});
   }
-  comb.push_back({2.0 * kTeeth, -1, 0});
+  comb.push_back({3.0 * kTeeth, -1, 0});
   comb.push_back({0, -1, 0});
-  const auto start = std::chrono::steady_clock::now();
+  // Covered once, so it took fewer than kMaxTests: beyond them ears are clipped without looking.
   expect_covered(comb);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(20));
 }
 
 }  // namespace
