@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The stages in the order the data flows.
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,27 +53,72 @@ bool can_win(CodecId codec, const SourceMesh& mesh) {
   return codec != CodecId::kPackedF64 || mesh.positions.precision == Precision::kF64;
 }
 
-// Fills the candidates and leaves the nodes of the best in `cooked.tree`. Only the best so far is
-// kept: memory, not time, is what candidates cost.
-Status encode_candidates(const BuildTree& build, const SourceMesh& mesh, const CookOptions& options,
-                         CookedTree& cooked) {
-  const EncodedGeometry& geometry = cooked.tree.geometry;
-  const FaceOrder order = cooked.tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
+bool is_wanted(CodecId codec, const SourceMesh& mesh, const CookOptions& options) {
+  return options.codec ? *options.codec == codec : can_win(codec, mesh);
+}
+
+bool any_wanted(bool wide, const SourceMesh& mesh, const CookOptions& options) {
+  return std::any_of(kCodecs.begin(), kCodecs.end(), [&](const CodecInfo& codec) {
+    return is_wide(codec.id) == wide && is_wanted(codec.id, mesh, options);
+  });
+}
+
+// Proves a candidate and enters it into the list; returns whether it is the best so far.
+bool enter(const EncodedTree& tree, const SourceMesh& mesh, const CookOptions& options,
+           CookedTree& cooked) {
+  cooked.candidates.push_back({tree.nodes.codec,
+                               tree.nodes.bytes.size(),
+                               tree.geometry.vertices.size() + tree.geometry.corners.size(),
+                               tree.nodes.visits,
+                               check_gates(tree, arrays_of(mesh)),
+                               {}});
+  return choose(cooked.candidates, options.goal) == cooked.candidates.size() - 1;
+}
+
+EncodedTree without_bytes(const SourceMesh& mesh, const BuildTree& build) {
+  EncodedTree tree;
+  tree.name = mesh.name;
+  tree.origin = build.origin;
+  tree.scale_exponent = build.scale_exponent;
+  tree.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  tree.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
+  tree.degenerate_count = count_degenerate(mesh, build.frame());
+  tree.positions_f64 = mesh.positions.precision == Precision::kF64;
+  return tree;
+}
+
+// Codecs with one face a leaf share their splits and the order of faces, so only nodes differ. Only
+// the best so far is kept: memory, not time, is what candidates cost.
+void try_binary(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
+  const BuildTree build = build_tree(mesh, options.builder);
+  EncodedTree& tree = cooked.tree;
+  tree = without_bytes(mesh, build);
+  tree.faces_in_source_order = options.geometry == GeometryId::kExternal;
+  tree.geometry = tree.faces_in_source_order
+                      ? encode_external_geometry(mesh, {})
+                      : encode_exact_geometry(mesh, faces_in_tree_order(build), options.face_ids);
+  const FaceOrder order = tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
   for (const CodecInfo& codec : kCodecs) {
-    if (options.codec ? *options.codec != codec.id : !can_win(codec.id, mesh)) continue;
-    EncodedNodes best = std::exchange(cooked.tree.nodes,
-                                      encode_nodes(build, mesh, codec.id, order, options.widths));
-    cooked.candidates.push_back({codec.id,
-                                 cooked.tree.nodes.bytes.size(),
-                                 geometry.vertices.size() + geometry.corners.size(),
-                                 cooked.tree.nodes.visits,
-                                 check_gates(cooked.tree, arrays_of(mesh)),
-                                 {}});
-    const bool is_best = choose(cooked.candidates, options.goal) == cooked.candidates.size() - 1;
-    if (!is_best) cooked.tree.nodes = std::move(best);
+    if (is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
+    EncodedNodes best =
+        std::exchange(tree.nodes, encode_nodes(build, mesh, codec.id, order, options.widths));
+    if (!enter(tree, mesh, options, cooked)) tree.nodes = std::move(best);
   }
-  if (choose(cooked.candidates, options.goal)) return {};
-  return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
+}
+
+// Codecs with full leaves order the faces, each in its own way.
+void try_wide(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
+  const BuildTree build = build_full_leaves(mesh);
+  for (const CodecInfo& codec : kCodecs) {
+    if (!is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
+    EncodedTree tree = without_bytes(mesh, build);
+    tree.nodes = encode_nodes(build, mesh, codec.id, FaceOrder::kTree, options.widths);
+    const std::vector<std::uint32_t> order = std::move(tree.nodes.face_order);
+    tree.geometry = options.geometry == GeometryId::kExternal
+                        ? encode_external_geometry(mesh, order)
+                        : encode_exact_geometry(mesh, order, options.face_ids);
+    if (enter(tree, mesh, options, cooked)) cooked.tree = std::move(tree);
+  }
 }
 
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
@@ -110,24 +156,15 @@ void release(CookedTree& cooked) {
 
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options) {
   if (Status status = check_limits(mesh, options); !status) return status.error();
-  const BuildTree build = build_tree(mesh, options.builder);
   CookedTree cooked;
-  EncodedTree& tree = cooked.tree;
-  tree.name = mesh.name;
-  tree.origin = build.origin;
-  tree.scale_exponent = build.scale_exponent;
-  tree.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-  tree.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
-  tree.degenerate_count = count_degenerate(mesh, build.frame());
-  tree.positions_f64 = mesh.positions.precision == Precision::kF64;
-  tree.faces_in_source_order = options.geometry == GeometryId::kExternal;
-  tree.geometry = tree.faces_in_source_order ? encode_external_geometry(mesh)
-                                             : encode_exact_geometry(mesh, build, options.face_ids);
-  if (!options.face_ids) {
-    cooked.left_out.push_back({"face_ids", std::uint64_t{tree.face_count} * 4, "--no-face-ids"});
+  if (any_wanted(false, mesh, options)) try_binary(mesh, options, cooked);
+  if (any_wanted(true, mesh, options)) try_wide(mesh, options, cooked);
+  if (!choose(cooked.candidates, options.goal)) {
+    return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
   }
-  if (Status status = encode_candidates(build, mesh, options, cooked); !status) {
-    return status.error();
+  if (!options.face_ids) {
+    cooked.left_out.push_back(
+        {"face_ids", std::uint64_t{cooked.tree.face_count} * 4, "--no-face-ids"});
   }
   return cooked;
 }

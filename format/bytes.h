@@ -39,4 +39,17 @@ template <class T>
   return value;
 }
 
+/// Number `index` of an array of numbers of 1, 2 or 4 bytes each.
+[[nodiscard]] inline std::uint32_t load_number(const std::byte* numbers, std::uint8_t bytes,
+                                               std::size_t index) noexcept {
+  switch (bytes) {
+    case 1:
+      return load<std::uint8_t>(numbers, index);
+    case 2:
+      return load<std::uint16_t>(numbers, index);
+    default:
+      return load<std::uint32_t>(numbers, index);
+  }
+}
+
 }  // namespace boxtree

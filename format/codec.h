@@ -17,6 +17,8 @@ enum class CodecId : std::uint16_t {
   kPackedF16 = 4,
   kPackedF64 = 5,
   kDedup = 6,
+  kWide8 = 7,
+  kWide4 = 8,
 };
 
 /// How vertices and corners are stored. Numbers are pinned.
@@ -35,7 +37,13 @@ inline constexpr std::array kCodecs = {
     CodecInfo{CodecId::kPlainF32, "plain-f32"},   CodecInfo{CodecId::kPlainF16, "plain-f16"},
     CodecInfo{CodecId::kPackedF32, "packed-f32"}, CodecInfo{CodecId::kPackedF16, "packed-f16"},
     CodecInfo{CodecId::kPackedF64, "packed-f64"}, CodecInfo{CodecId::kDedup, "dedup"},
+    CodecInfo{CodecId::kWide8, "wide8"},          CodecInfo{CodecId::kWide4, "wide4"},
 };
+
+/// Whether a codec has leaves of several faces and an order of faces of its own.
+[[nodiscard]] constexpr bool is_wide(CodecId id) noexcept {
+  return id == CodecId::kWide8 || id == CodecId::kWide4;
+}
 
 [[nodiscard]] constexpr std::string_view codec_name(CodecId id) noexcept {
   for (const CodecInfo& info : kCodecs) {

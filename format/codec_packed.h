@@ -12,6 +12,7 @@
 #include <boxtree/format/binary_node.h>
 #include <boxtree/format/bits.h>
 #include <boxtree/format/half.h>
+#include <boxtree/format/limits.h>
 #include <boxtree/format/tree_record.h>
 
 namespace boxtree {
@@ -94,6 +95,7 @@ template <PackedCut K>
 struct PackedCodec {
   using Scalar = std::conditional_t<K == PackedCut::kF64, double, float>;
   using Children = ChildSet<2, Scalar>;
+  static constexpr std::uint32_t kDepthLimit = kMaxDepth;
 
   struct Array {
     const std::byte* bits = nullptr;

@@ -9,6 +9,7 @@
 #include <boxtree/format/binary_node.h>
 #include <boxtree/format/bytes.h>
 #include <boxtree/format/half.h>
+#include <boxtree/format/limits.h>
 #include <boxtree/format/tree_record.h>
 
 namespace boxtree {
@@ -60,6 +61,7 @@ struct PlainCodec {
   using Node = PlainNode<Cut>;
   using Scalar = float;
   using Children = ChildSet<2, float>;
+  static constexpr std::uint32_t kDepthLimit = kMaxDepth;
 
   const std::byte* nodes = nullptr;
   std::uint32_t node_count = 0;

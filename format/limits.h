@@ -29,8 +29,15 @@ inline constexpr std::int32_t kMaxScaleExponent = 1010;
 /// ones are below 2^41 (the largest extent is 2^15, and f32 tells positions 2^-24 apart).
 inline constexpr double kMaxRootCoordinate = 0x1p100;
 
-/// Triangles in one leaf, so that a leaf fits one batch of a vector test.
-inline constexpr std::uint32_t kMaxLeafTriangles = 8;
+/// The same for codecs with eight children a node, whose stacks hold seven entries a level: as many
+/// as the splits of the binary tree that such a tree is collapsed from, so that none is too deep.
+inline constexpr std::uint32_t kMaxWideDepth = 64;
+
+/// Faces in a leaf of the wide codecs; only the last leaf of a tree may hold fewer.
+inline constexpr std::uint32_t kLeafFaces = 8;
+
+/// Triangles in one leaf: each of its faces may be a quad.
+inline constexpr std::uint32_t kMaxLeafTriangles = 2 * kLeafFaces;
 
 /// Every section starts at a multiple of this many bytes: a cache line.
 inline constexpr std::uint64_t kSectionAlignment = 64;

@@ -45,7 +45,9 @@ bool geometry_fits(const TreeRecord& record) {
   const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
   if (!width_known || (in_source_order && record.face_id_bytes != 0)) return false;
   if (record.geometry == GeometryId::kExternal) {
-    return in_source_order && record.corner_bytes == 0 && record.corners_per_face == 0;
+    // Faces of the application are found by number, or through the ids of those in tree order.
+    const bool faces_are_named = in_source_order || record.face_id_bytes != 0;
+    return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
   }
   return (record.corner_bytes == 2 || record.corner_bytes == 4) &&
          (record.corners_per_face == 3 || record.corners_per_face == 4);

@@ -85,27 +85,29 @@ Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face
 
 class Recursion {
  public:
-  Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes, SplitRule rule)
-      : faces_(faces), nodes_(nodes), rule_(rule) {}
+  // Leaves hold `leaf_faces` faces, all but the last one exactly.
+  Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes, SplitRule rule,
+            std::size_t leaf_faces)
+      : faces_(faces), nodes_(nodes), rule_(rule), leaf_faces_(leaf_faces) {}
 
-  // Builds faces [first, last) into the nodes from `node` on: n faces fill exactly 2n - 1 of them,
+  // Builds faces [first, last) into the nodes from `node` on: n leaves fill exactly 2n - 1 of them,
   // so that subtrees know their places in advance and threads never meet. Returns the bounds.
   Box<float> build(std::size_t first, std::size_t last, std::size_t node,
                    std::uint32_t depth_left) {
     BuildNode& here = nodes_[node];
     const std::size_t count = last - first;
-    if (count == 1) {
-      here = {faces_[first].box, 0, faces_[first].face};
-      return here.bounds;
-    }
     const std::span<FaceBox> faces = faces_.subspan(first, count);
     Box<float> bounds = empty_box();
     for (const FaceBox& face : faces) expand(bounds, face.box);
+    if (count <= leaf_faces_) {
+      here = make_leaf(faces, first, bounds);
+      return bounds;
+    }
 
     const Split split = choose_split(faces, bounds, depth_left);
     const std::size_t middle = first + split.left_count;
     const std::size_t left = node + 1;
-    const std::size_t right = node + 2 * split.left_count;
+    const std::size_t right = node + 2 * leaves_of(split.left_count);
     const auto build_left = [&] { build(first, middle, left, depth_left - 1); };
     const auto build_right = [&] { build(middle, last, right, depth_left - 1); };
     if (count >= kParallelFaces) {
@@ -120,20 +122,45 @@ class Recursion {
   }
 
  private:
+  // Within a leaf faces follow their numbers, whatever order the divisions left them in.
+  [[nodiscard]] BuildNode make_leaf(std::span<FaceBox> faces, std::size_t first,
+                                    const Box<float>& bounds) const {
+    if (leaf_faces_ == 1) return {bounds, 0, faces[0].face};
+    std::sort(faces.begin(), faces.end(),
+              [](const FaceBox& a, const FaceBox& b) { return a.face < b.face; });
+    return {bounds, 0, static_cast<std::uint32_t>(first)};
+  }
+
+  [[nodiscard]] std::size_t leaves_of(std::size_t faces) const {
+    return (faces + leaf_faces_ - 1) / leaf_faces_;
+  }
+
   // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
   Split choose_split(std::span<FaceBox> faces, const Box<float>& bounds,
                      std::uint32_t depth_left) const {
-    const auto halvings = static_cast<std::uint32_t>(std::bit_width(faces.size() - 1));
+    const auto halvings = static_cast<std::uint32_t>(std::bit_width(leaves_of(faces.size()) - 1));
     if (halvings < depth_left) {
       if (const std::optional<Split> split = rule_(faces, bounds)) return *split;
     }
-    return split_median(faces, bounds);
+    return split_median(faces, bounds, leaf_faces_);
   }
 
   std::span<FaceBox> faces_;
   std::span<BuildNode> nodes_;
   SplitRule rule_;
+  std::size_t leaf_faces_;
 };
+
+std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame) {
+  std::vector<FaceBox> faces(mesh.faces.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        faces[i] = {face_box(mesh, frame, i), static_cast<std::uint32_t>(i)};
+                      }
+                    });
+  return faces;
+}
 
 }  // namespace
 
@@ -154,18 +181,23 @@ BuildTree build_tree(const SourceMesh& mesh, Builder builder) {
   BuildTree tree;
   choose_frame(mesh.positions, tree);
   if (mesh.faces.empty()) return tree;
-
-  const Frame frame = tree.frame();
-  std::vector<FaceBox> faces(mesh.faces.size());
-  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096),
-                    [&](const tbb::blocked_range<std::size_t>& range) {
-                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
-                        faces[i] = {face_box(mesh, frame, i), static_cast<std::uint32_t>(i)};
-                      }
-                    });
+  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
   tree.nodes.resize(2 * faces.size() - 1);
   const SplitRule rule = builder == Builder::kSah ? split_sah : split_paper;
-  Recursion(faces, tree.nodes, rule).build(0, faces.size(), 0, kMaxSplitDepth);
+  Recursion(faces, tree.nodes, rule, 1).build(0, faces.size(), 0, kMaxSplitDepth);
+  return tree;
+}
+
+BuildTree build_full_leaves(const SourceMesh& mesh) {
+  BuildTree tree;
+  choose_frame(mesh.positions, tree);
+  if (mesh.faces.empty()) return tree;
+  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
+  tree.nodes.resize(2 * ((faces.size() + kLeafFaces - 1) / kLeafFaces) - 1);
+  Recursion(faces, tree.nodes, split_sah_full_leaves, kLeafFaces)
+      .build(0, faces.size(), 0, kMaxSplitDepth);
+  tree.order.reserve(faces.size());
+  for (const FaceBox& face : faces) tree.order.push_back(face.face);
   return tree;
 }
 

@@ -29,21 +29,24 @@ static_assert(sizeof(FaceBox) == 28);
 struct BuildNode {
   Box<float> bounds;     // union of the face boxes below, tree space
   std::uint32_t right;   // number of the right child; 0 for a leaf
-  std::uint32_t detail;  // leaf: its face; otherwise axis | height << 8
+  std::uint32_t detail;  // leaf: its face, or first place in the order; else axis | height << 8
 
   [[nodiscard]] bool is_leaf() const { return right == 0; }
   [[nodiscard]] std::uint32_t face() const { return detail; }
+  [[nodiscard]] std::uint32_t first() const { return detail; }
   [[nodiscard]] std::uint32_t axis() const { return detail & 3u; }
   /// Inner nodes on the longest path from here down, this one included.
   [[nodiscard]] std::uint32_t height() const { return is_leaf() ? 0 : detail >> 8; }
 };
 static_assert(sizeof(BuildNode) == 32);
 
-/// A BoxTree in the making: 2n - 1 nodes for n faces, none for a mesh without faces.
+/// A BoxTree in the making: 2n - 1 nodes for n leaves, none for a mesh without faces.
 struct BuildTree {
   std::array<double, 3> origin = {0, 0, 0};  // of the frame, object space
   int scale_exponent = 0;                    // of the frame
   std::vector<BuildNode> nodes;
+  /// Of trees with full leaves: faces in the order of leaves, from left to right. Otherwise empty.
+  std::vector<std::uint32_t> order;
 
   [[nodiscard]] Frame frame() const {
     return Frame(Eigen::Vector3d(origin[0], origin[1], origin[2]), scale_exponent);
@@ -63,5 +66,9 @@ enum class Builder : std::uint8_t {
 /// Runs on the threads of the enclosing oneTBB arena.
 /// Precondition: finite positions, corners in range (what import promises).
 [[nodiscard]] BuildTree build_tree(const SourceMesh& mesh, Builder builder);
+
+/// The same with leaves of kLeafFaces faces, all full but the last one from left to right, by the
+/// surface-area heuristic over divisions that allow it.
+[[nodiscard]] BuildTree build_full_leaves(const SourceMesh& mesh);
 
 }  // namespace boxtree::cooker

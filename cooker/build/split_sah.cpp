@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <boxtree/cooker/build/splitter.h>
+#include <boxtree/format/codec_wide.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -92,7 +93,15 @@ Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
   return best;
 }
 
-std::optional<Split> split_binned(std::span<FaceBox> faces) {
+// Where bins are best divided, if there is a difference between any.
+struct BinnedSplit {
+  Binning binning;
+  std::size_t axis;
+  std::size_t position;    // first bin that goes right
+  std::size_t left_count;  // faces before it
+};
+
+std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
   const std::array<Binning, 3> binning = binnings(faces);
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const FaceBox& face : faces) {
@@ -109,20 +118,38 @@ std::optional<Split> split_binned(std::span<FaceBox> faces) {
     if (here.improves_on(best)) best = here;
   }
   if (!std::isfinite(best.cost)) return std::nullopt;
-  const Binning& chosen = binning[best.axis];
-  const auto middle = std::partition(faces.begin(), faces.end(), [&](const FaceBox& face) {
-    return chosen.bin(centre(face, best.axis)) < best.position;
-  });
-  return Split{static_cast<std::size_t>(middle - faces.begin()),
-               static_cast<std::uint32_t>(best.axis)};
+  std::size_t left_count = 0;
+  for (std::size_t i = 0; i < best.position; ++i) left_count += bins[best.axis][i].count;
+  return BinnedSplit{binning[best.axis], best.axis, best.position, left_count};
 }
 
-void sort_by_centre(std::span<FaceBox> faces, std::size_t axis) {
-  std::sort(faces.begin(), faces.end(), [axis](const FaceBox& a, const FaceBox& b) {
+std::optional<Split> split_binned(std::span<FaceBox> faces) {
+  const std::optional<BinnedSplit> best = best_binned(faces);
+  if (!best) return std::nullopt;
+  std::partition(faces.begin(), faces.end(), [&](const FaceBox& face) {
+    return best->binning.bin(centre(face, best->axis)) < best->position;
+  });
+  return Split{best->left_count, static_cast<std::uint32_t>(best->axis)};
+}
+
+// By centre, ties by face number: a strict order, so that divisions by it are unique.
+auto by_centre(std::size_t axis) {
+  return [axis](const FaceBox& a, const FaceBox& b) {
     const double ca = centre(a, axis);
     const double cb = centre(b, axis);
     return ca != cb ? ca < cb : a.face < b.face;
-  });
+  };
+}
+
+void sort_by_centre(std::span<FaceBox> faces, std::size_t axis) {
+  std::sort(faces.begin(), faces.end(), by_centre(axis));
+}
+
+// The first `count` faces along an axis go left.
+Split split_at(std::span<FaceBox> faces, std::size_t count, std::size_t axis) {
+  std::nth_element(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(count), faces.end(),
+                   by_centre(axis));
+  return {count, static_cast<std::uint32_t>(axis)};
 }
 
 std::optional<Split> split_sweep(std::span<FaceBox> faces) {
@@ -148,13 +175,61 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
   return Split{best.position, static_cast<std::uint32_t>(best.axis)};
 }
 
+// Sets up to this size are sorted along each axis and divided at the best multiple of a unit.
+constexpr std::size_t kUnitSweepLimit = 512;
+
+// Leaves that so many faces take: what a query that comes that way has to look at.
+double leaves_of(std::size_t faces) {
+  return static_cast<double>((faces + kLeafFaces - 1) / kLeafFaces);
+}
+
+std::optional<Split> sweep_units(std::span<FaceBox> faces, std::size_t unit) {
+  const std::size_t n = faces.size();
+  Candidate best;
+  for (std::size_t k = 0; k < 3; ++k) {
+    sort_by_centre(faces, k);
+    std::array<double, kUnitSweepLimit / kLeafFaces> right_cost;  // of faces from unit * i on
+    Box<float> box = empty_box();
+    for (std::size_t i = n; i-- > unit;) {
+      expand(box, faces[i].box);
+      if (i % unit == 0) right_cost[i / unit] = half_area(box) * leaves_of(n - i);
+    }
+    box = empty_box();
+    for (std::size_t i = 1; i < n; ++i) {
+      expand(box, faces[i - 1].box);
+      if (i % unit != 0) continue;
+      const Candidate here{half_area(box) * leaves_of(i) + right_cost[i / unit],
+                           imbalance(i, n - i), k, i};
+      if (here.improves_on(best)) best = here;
+    }
+  }
+  return split_at(faces, best.position, best.axis);
+}
+
+// The best boundary of bins, moved to the nearest multiple of a unit.
+std::optional<Split> bin_units(std::span<FaceBox> faces, std::size_t unit) {
+  const std::optional<BinnedSplit> best = best_binned(faces);
+  if (!best) return std::nullopt;
+  const std::size_t last = (faces.size() - 1) / unit;  // at least one: there are two units or more
+  const std::size_t units = std::clamp<std::size_t>((best->left_count + unit / 2) / unit, 1, last);
+  return split_at(faces, units * unit, best->axis);
+}
+
 }  // namespace
 
 std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& /*bounds*/) {
   return faces.size() <= kSweepLimit ? split_sweep(faces) : split_binned(faces);
 }
 
-Split split_median(std::span<FaceBox> faces, const Box<float>& bounds) {
+std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces, const Box<float>& /*bounds*/) {
+  // A node has room for eight leaves. Sets of more than that are divided at whole nodes, so that
+  // nodes above leaves, which are seven of eight, come out full.
+  constexpr std::size_t kNodeFaces = std::size_t{kLeafFaces} * kWideChildren;
+  const std::size_t unit = faces.size() > kNodeFaces ? kNodeFaces : std::size_t{kLeafFaces};
+  return faces.size() <= kUnitSweepLimit ? sweep_units(faces, unit) : bin_units(faces, unit);
+}
+
+Split split_median(std::span<FaceBox> faces, const Box<float>& bounds, std::size_t unit) {
   std::size_t axis = 0;
   double widest = -1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -164,14 +239,8 @@ Split split_median(std::span<FaceBox> faces, const Box<float>& bounds) {
       axis = k;
     }
   }
-  const std::size_t half = faces.size() / 2;
-  std::nth_element(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(half), faces.end(),
-                   [axis](const FaceBox& a, const FaceBox& b) {
-                     const double ca = centre(a, axis);
-                     const double cb = centre(b, axis);
-                     return ca != cb ? ca < cb : a.face < b.face;
-                   });
-  return {half, static_cast<std::uint32_t>(axis)};
+  const std::size_t half = std::max<std::size_t>(1, faces.size() / unit / 2) * unit;
+  return split_at(faces, half, axis);
 }
 
 }  // namespace boxtree::cooker

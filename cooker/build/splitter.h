@@ -47,8 +47,15 @@ using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<f
 [[nodiscard]] std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& bounds);
 [[nodiscard]] std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds);
 
-/// Halves the set by box centre along the widest axis, ties by face number: always succeeds, and
-/// bounds the depth. Precondition: at least two faces.
-[[nodiscard]] Split split_median(std::span<FaceBox> faces, const Box<float>& bounds);
+/// Divides so that the left side fills whole leaves of kLeafFaces, and whole nodes of leaves as far
+/// as there are any; the right side keeps the rest. Precondition: more than one leaf of faces.
+[[nodiscard]] std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces,
+                                                         const Box<float>& bounds);
+
+/// Halves the set by box centre along the widest axis, ties by face number, into a left side of a
+/// multiple of `unit` faces: always succeeds, and bounds the depth. Precondition: more faces than
+/// `unit`.
+[[nodiscard]] Split split_median(std::span<FaceBox> faces, const Box<float>& bounds,
+                                 std::size_t unit = 1);
 
 }  // namespace boxtree::cooker

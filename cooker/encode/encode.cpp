@@ -20,6 +20,10 @@ EncodedNodes encode_with(const BuildTree& tree, const SourceMesh& mesh, CodecId 
       return encode_packed_f64(tree, mesh, order, widths);
     case CodecId::kDedup:
       return encode_dedup(tree, order, widths);
+    case CodecId::kWide8:
+      return encode_wide8(tree);
+    case CodecId::kWide4:
+      return encode_wide4(tree);
   }
   return {};
 }

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <boxtree/cooker/build/build_tree.h>
@@ -37,6 +38,8 @@ struct EncodedNodes {
   // Of packed codecs: nodes of each NodeKind, and different cuts (dedup).
   std::array<std::uint32_t, kNodeKinds> kind_count{};
   std::size_t unique_cuts = 0;
+  // Of wide codecs: source faces in the tree's own order, which geometry must follow.
+  std::vector<std::uint32_t> face_order;
 };
 
 /// Number that a leaf stores for a face: its position in tree order, or in the source.
@@ -49,7 +52,8 @@ enum class FieldWidths : std::uint8_t {
 };
 
 /// Encodes with codec `codec`. Conservative: every decoded box contains what is below it. `mesh` is
-/// the source of the tree; `widths` matters to packed codecs only.
+/// the source of the tree; `widths` matters to packed codecs only, `order` to binary ones only.
+/// Precondition: wide codecs get a tree with full leaves, others one with a face a leaf.
 [[nodiscard]] EncodedNodes encode_nodes(const BuildTree& tree, const SourceMesh& mesh,
                                         CodecId codec, FaceOrder order,
                                         FieldWidths widths = FieldWidths::kExact);
@@ -67,11 +71,17 @@ struct EncodedGeometry {
   std::uint64_t hash = 0;  // geometry_hash of the source mesh
 };
 
-/// Faces in tree order, vertices in order of first use by them, positions bit for bit.
-[[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const BuildTree& tree,
+/// Source faces in the order of the leaves of a tree with a face a leaf, from left to right.
+[[nodiscard]] std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree);
+
+/// Faces in `order`, vertices in order of first use by them, positions bit for bit.
+[[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
+                                                    std::span<const std::uint32_t> order,
                                                     bool face_ids);
 
-/// Nothing but the hash that recognises the mesh again.
-[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh);
+/// Nothing but the hash that recognises the mesh again and, unless `order` is empty, the face ids
+/// through which a reader finds the application's faces.
+[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
+                                                       std::span<const std::uint32_t> order);
 
 }  // namespace boxtree::cooker

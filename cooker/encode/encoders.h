@@ -18,4 +18,8 @@ namespace boxtree::cooker {
                                              FaceOrder order, FieldWidths widths);
 [[nodiscard]] EncodedNodes encode_dedup(const BuildTree& tree, FaceOrder order, FieldWidths widths);
 
+/// Of trees with full leaves. They choose the order of faces: EncodedNodes::face_order.
+[[nodiscard]] EncodedNodes encode_wide8(const BuildTree& full_leaves);
+[[nodiscard]] EncodedNodes encode_wide4(const BuildTree& full_leaves);
+
 }  // namespace boxtree::cooker

@@ -46,16 +46,7 @@ std::uint8_t bytes_for(std::uint32_t largest) {
   return largest <= 0xffff ? 2 : 4;
 }
 
-std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
-  std::vector<std::uint32_t> order;
-  order.reserve((tree.nodes.size() + 1) / 2);
-  for (const BuildNode& node : tree.nodes) {
-    if (node.is_leaf()) order.push_back(node.face());
-  }
-  return order;
-}
-
-void encode_face_ids(const SourceMesh& mesh, const std::vector<std::uint32_t>& order,
+void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                      EncodedGeometry& out) {
   std::uint32_t largest = 0;
   for (const std::uint32_t face : order) largest = std::max(largest, mesh.face_id(face));
@@ -68,12 +59,20 @@ void encode_face_ids(const SourceMesh& mesh, const std::vector<std::uint32_t>& o
 
 }  // namespace
 
-EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const BuildTree& tree,
+std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
+  std::vector<std::uint32_t> order;
+  order.reserve((tree.nodes.size() + 1) / 2);
+  for (const BuildNode& node : tree.nodes) {
+    if (node.is_leaf()) order.push_back(node.face());
+  }
+  return order;
+}
+
+EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                                       bool face_ids) {
   EncodedGeometry out;
   out.geometry = GeometryId::kExact;
   out.hash = hash_of(mesh);
-  const std::vector<std::uint32_t> order = faces_in_tree_order(tree);
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;
@@ -100,11 +99,13 @@ EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const BuildTree& t
   return out;
 }
 
-EncodedGeometry encode_external_geometry(const SourceMesh& mesh) {
+EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
+                                         std::span<const std::uint32_t> order) {
   EncodedGeometry out;
   out.geometry = GeometryId::kExternal;
   out.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
   out.hash = hash_of(mesh);
+  if (!order.empty()) encode_face_ids(mesh, order, out);
   return out;
 }
 

@@ -12,7 +12,8 @@ namespace {
 // instantiations grows with the codecs and not with their square.
 struct ErasedCodec {
   using Scalar = double;
-  using Children = ChildSet<2, double>;
+  using Children = ChildSet<kWideChildren, double>;
+  static constexpr std::uint32_t kDepthLimit = kMaxDepth;
 
   const Tree* tree;
 
@@ -23,11 +24,16 @@ struct ErasedCodec {
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
     NodeChildren children;
     if (tree->expand({box, ref, false}, children) != Errc::kOk) return false;
-    out.count = 0;
+    out.count = children.count;
     out.leaf_mask = 0;
     for (std::uint32_t i = 0; i < children.count; ++i) {
-      add_binary_child(children.child[i].box, children.child[i].ref, children.child[i].is_leaf,
-                       out);
+      const Node& child = children.child[i];
+      for (std::size_t k = 0; k < 3; ++k) {
+        out.low[k][i] = child.box.low[k];
+        out.high[k][i] = child.box.high[k];
+      }
+      out.ref[i] = child.ref;
+      out.leaf_mask |= (child.is_leaf ? 1u : 0u) << i;
     }
     return true;
   }

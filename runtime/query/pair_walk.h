@@ -94,15 +94,86 @@ class PairWalk {
     bool second_leaf;
   };
 
-  // Both sides go down at once; a path ends after as many steps as the deeper tree has levels, and
-  // each step leaves all but one of its child pairs pending.
+  // Binary nodes: both sides go down at once, a path ends after as many steps as the deeper tree
+  // has levels, and each step leaves all but one of its child pairs pending. Wide nodes: one side
+  // goes down at a time, so that a step compares eight boxes with one and not with eight.
   static constexpr std::size_t kPairs = A::Children::kWidth * B::Children::kWidth;
-  static constexpr std::size_t kPairStack = kMaxDepth * (kPairs - 1) + 1;
+  static constexpr bool kBothSides = kPairs <= 4;
+  static constexpr std::size_t kPairStack =
+      kBothSides ? kMaxDepth * (kPairs - 1) + 1
+                 : A::kDepthLimit * (A::Children::kWidth - 1) +
+                       B::kDepthLimit * (B::Children::kWidth - 1) + 1;
 
   void descend(const Entry entry) {
     observer_.node_pair(entry.first, entry.first_leaf, entry.second, entry.second_leaf);
-    if (unmet_-- == 0 ||
-        !expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
+    if (unmet_-- == 0) {
+      error_ = Errc::kNodeCorrupt;
+    } else if constexpr (kBothSides) {
+      descend_both(entry);
+    } else {
+      descend_one(entry);
+    }
+  }
+
+  // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
+  // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
+  void descend_one(const Entry& entry) {
+    const Box<double> first_image = pose_.hull_in_second(entry.first_box);
+    const Box<double> second_image = pose_.hull_in_first(entry.second_box);
+    if (!entry.first_leaf &&
+        (entry.second_leaf || extent(entry.first_box) > extent(second_image))) {
+      auto& children = first_side_.children;
+      if (!first_codec_.expand(entry.first, entry.first_box, children)) {
+        error_ = Errc::kNodeCorrupt;
+        return;
+      }
+      for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
+        const Box<typename A::Scalar> box = children.box(i);
+        if (!boxes_overlap(box, second_image) ||
+            !boxes_overlap(pose_.hull_in_second(box), entry.second_box)) {
+          continue;
+        }
+        meet({box, entry.second_box, children.ref[i], entry.second, children.is_leaf(i),
+              entry.second_leaf});
+      }
+      return;
+    }
+    auto& children = second_side_.children;
+    if (!second_codec_.expand(entry.second, entry.second_box, children)) {
+      error_ = Errc::kNodeCorrupt;
+      return;
+    }
+    for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
+      const Box<typename B::Scalar> box = children.box(i);
+      if (!boxes_overlap(first_image, box) ||
+          !boxes_overlap(entry.first_box, pose_.hull_in_first(box))) {
+        continue;
+      }
+      meet({entry.first_box, box, entry.first, children.ref[i], entry.first_leaf,
+            children.is_leaf(i)});
+    }
+  }
+
+  template <class S>
+  [[nodiscard]] static double extent(const Box<S>& box) noexcept {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) sum += double{box.high[k]} - double{box.low[k]};
+    return sum;
+  }
+
+  // A pair whose boxes overlap: its triangles now, or its children later.
+  void meet(const Entry& entry) {
+    if (entry.first_leaf && entry.second_leaf) {
+      test_leaves(entry.first, entry.second);
+    } else if (size_ == stack_.size()) {
+      error_ = Errc::kDepthExceeded;
+    } else {
+      stack_[size_++] = entry;
+    }
+  }
+
+  void descend_both(const Entry& entry) {
+    if (!expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
         !expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_)) {
       error_ = Errc::kNodeCorrupt;
       return;
@@ -121,16 +192,8 @@ class PairWalk {
             !boxes_overlap(first_side_.image[i], b.box(j))) {
           continue;
         }
-        if (a.is_leaf(i) && b.is_leaf(j)) {
-          test_leaves(a.ref[i], b.ref[j]);
-          if (error_ != Errc::kOk || stopped_) return;
-          continue;
-        }
-        if (size_ == stack_.size()) {
-          error_ = Errc::kDepthExceeded;
-          return;
-        }
-        stack_[size_++] = {a.box(i), b.box(j), a.ref[i], b.ref[j], a.is_leaf(i), b.is_leaf(j)};
+        meet({a.box(i), b.box(j), a.ref[i], b.ref[j], a.is_leaf(i), b.is_leaf(j)});
+        if (error_ != Errc::kOk || stopped_) return;
       }
     }
   }
@@ -150,6 +213,7 @@ class PairWalk {
     error_ = second_.leaves().read(second.first, second.second, second_batch_);
     if (error_ != Errc::kOk) return;
     std::array<Triangle, kMaxLeafTriangles> moved;
+    std::array<Box<double>, kMaxLeafTriangles> moved_bounds;
     for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
       const Triangle triangle = second_batch_.triangle(j);
       for (std::size_t c = 0; c < 3; ++c) {
@@ -158,27 +222,38 @@ class PairWalk {
         error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
         return;
       }
+      moved_bounds[j] = bounds_of(moved[j]);
     }
+    // A face is reported once: what its second half finds is compared with what the first half did.
+    std::uint32_t last_face = kNoFaceId;
+    std::uint64_t found = 0;  // bit j: triangle j of the second leaf touches the face at hand
     for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
       const Triangle triangle = first_batch_.triangle(i);
+      const Box<double> bounds = bounds_of(triangle);
+      if (first_batch_.face[i] != last_face) found = 0;
+      last_face = first_batch_.face[i];
       for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-        if (was_reported(i, j) || !triangles_intersect(triangle, moved[j])) continue;
-        reported_ = {first_batch_.face[i], second_batch_.face[j]};
-        stopped_ =
-            !visitor_({face_ref(first_, reported_.first), face_ref(second_, reported_.second)});
+        if (!boxes_overlap(bounds, moved_bounds[j]) || was_found(found, j) ||
+            !triangles_intersect(triangle, moved[j])) {
+          continue;
+        }
+        found |= std::uint64_t{1} << j;
+        stopped_ = !visitor_(
+            {face_ref(first_, first_batch_.face[i]), face_ref(second_, second_batch_.face[j])});
         if (stopped_) return;
       }
     }
-    reported_ = kNone;
   }
 
-  // Quads bring up to four triangle pairs of the same two faces, one after the other only when both
-  // leaves hold one face; leaves of binary codecs do.
-  [[nodiscard]] bool was_reported(std::uint32_t i, std::uint32_t j) const noexcept {
-    return reported_.first == first_batch_.face[i] && reported_.second == second_batch_.face[j];
+  // Whether triangle j of the second leaf, or the other half of its face, was found already. Halves
+  // stand side by side.
+  [[nodiscard]] bool was_found(std::uint64_t found, std::uint32_t j) const noexcept {
+    const auto is_same = [&](std::uint32_t other) {
+      return second_batch_.face[other] == second_batch_.face[j] && ((found >> other) & 1u) != 0;
+    };
+    return is_same(j) || (j > 0 && is_same(j - 1)) ||
+           (j + 1 < second_batch_.count && is_same(j + 1));
   }
-
-  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
 
   const Tree& first_;
   const Tree& second_;
@@ -190,7 +265,6 @@ class PairWalk {
   std::uint64_t unmet_;
   Errc error_ = Errc::kOk;
   bool stopped_ = false;
-  NodeRef reported_ = kNone;  // the two faces reported last
   PairSide<A> first_side_;
   PairSide<B> second_side_;
   TriangleBatch first_batch_;

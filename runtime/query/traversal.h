@@ -67,7 +67,7 @@ template <class S>
 /// Entries that a depth-first walk of one tree can have pending: all but one child of each node on
 /// a path, and the root.
 template <Codec C>
-inline constexpr std::size_t kStackSize = kMaxDepth*(C::Children::kWidth - 1) + 1;
+inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
 /// Visits every leaf whose box passes, in no promised order.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.

@@ -28,6 +28,10 @@ Result<AnyCodec> bind_codec(const TreeRecord& record, Bytes nodes) {
       return bind_as<PackedCodec<PackedCut::kF64>>(record, nodes);
     case CodecId::kDedup:
       return bind_as<PackedCodec<PackedCut::kTable>>(record, nodes);
+    case CodecId::kWide8:
+      return bind_as<WideCodec<Wide8Node>>(record, nodes);
+    case CodecId::kWide4:
+      return bind_as<WideCodec<Wide4Node>>(record, nodes);
   }
   return Errc::kCodecUnsupported;
 }

@@ -7,6 +7,7 @@
 
 #include <boxtree/format/codec_packed.h>
 #include <boxtree/format/codec_plain.h>
+#include <boxtree/format/codec_wide.h>
 #include <boxtree/format/tree_record.h>
 
 namespace boxtree {
@@ -25,9 +26,10 @@ concept Codec = requires(const C& codec, const TreeRecord& record, Bytes section
 };
 
 /// One alternative a codec; a codec is added by its name here and in bind_codec().
-using AnyCodec = std::variant<PlainCodec<float>, PlainCodec<std::uint16_t>,
-                              PackedCodec<PackedCut::kF32>, PackedCodec<PackedCut::kF16>,
-                              PackedCodec<PackedCut::kF64>, PackedCodec<PackedCut::kTable>>;
+using AnyCodec =
+    std::variant<PlainCodec<float>, PlainCodec<std::uint16_t>, PackedCodec<PackedCut::kF32>,
+                 PackedCodec<PackedCut::kF16>, PackedCodec<PackedCut::kF64>,
+                 PackedCodec<PackedCut::kTable>, WideCodec<Wide8Node>, WideCodec<Wide4Node>>;
 
 /// The codec of `record` over the bytes of its nodes section. Errors: kCodecUnsupported and those
 /// of the codec's own bind.

@@ -56,7 +56,9 @@ Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& o
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
   for (std::uint32_t f = first; f < first + count; ++f) {
-    const std::array<std::uint32_t, 4> corner = mesh_.face(f);
+    const std::uint32_t stored = order_ == nullptr ? f : load_number(order_, order_bytes_, f);
+    if (stored >= mesh_.face_count) return Errc::kFaceOutOfRange;
+    const std::array<std::uint32_t, 4> corner = mesh_.face(stored);
     const std::uint32_t corner_count = corner[3] == kMissingCorner ? 3 : 4;
     if (out.count + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
     std::array<Eigen::Vector3d, 4> position;

@@ -107,6 +107,13 @@ class LeafReader {
   LeafReader() = default;
   LeafReader(const MeshArrays& mesh, const Frame& frame) noexcept : mesh_(mesh), frame_(frame) {}
 
+  /// From now on face n of the tree is face order[n] of the mesh, numbers of `bytes` (1, 2 or 4)
+  /// each: for arrays of an application, whose order is not the tree's.
+  void set_order(const std::byte* order, std::uint8_t bytes) noexcept {
+    order_ = order;
+    order_bytes_ = bytes;
+  }
+
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
 
   /// Triangles of faces [first, first + count). On corrupt bytes kFaceOutOfRange (also when the
@@ -117,6 +124,8 @@ class LeafReader {
  private:
   MeshArrays mesh_;
   Frame frame_;
+  const std::byte* order_ = nullptr;  // or null: the mesh is in the order of the tree
+  std::uint8_t order_bytes_ = 0;
 };
 
 }  // namespace boxtree

@@ -110,6 +110,9 @@ Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
             record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
   if (!ids) return ids.error();
   if (record_.face_id_bytes != 0) face_ids_ = *ids;
+  if (record_.geometry == GeometryId::kExternal && face_ids_ != nullptr) {
+    leaves_.set_order(face_ids_, record_.face_id_bytes);
+  }
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return Error{Errc::kPartLeftOut, place + "face ids were left out when it was cooked"};
   }
@@ -161,14 +164,7 @@ Errc Tree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept {
 std::uint32_t Tree::face_id(std::uint32_t face) const noexcept {
   if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
   if (face_ids_ == nullptr) return kNoFaceId;
-  switch (record_.face_id_bytes) {
-    case 1:
-      return load<std::uint8_t>(face_ids_, face);
-    case 2:
-      return load<std::uint16_t>(face_ids_, face);
-    default:
-      return load<std::uint32_t>(face_ids_, face);
-  }
+  return load_number(face_ids_, record_.face_id_bytes, face);
 }
 
 Eigen::AlignedBox3d Tree::to_object(const Box<double>& box) const noexcept {

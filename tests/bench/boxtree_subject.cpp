@@ -41,6 +41,11 @@ Bytes node_bytes(const PackedCodec<K>& codec, NodeRef ref) {
   return {array.bits + first / 8, (first % 8 + array.layout.bits + 7) / 8};
 }
 
+template <class Node>
+Bytes node_bytes(const WideCodec<Node>& codec, NodeRef ref) {
+  return {codec.nodes + std::size_t{ref.first} * sizeof(Node), sizeof(Node)};
+}
+
 // Counts the work of a walk of one tree against itself, and shows the cache model what it reads.
 // Cuts in the table of dedup are found through the nodes.
 template <Codec C>
@@ -57,8 +62,11 @@ struct Listener {
   }
   void leaf_pair(NodeRef first, NodeRef second) {
     ++work->leaf_tests;
-    read_face(first.first);
-    read_face(second.first);
+    for (const NodeRef leaf : {first, second}) {
+      for (std::uint32_t face = leaf.first; face < leaf.first + leaf.second; ++face) {
+        read_face(face);
+      }
+    }
   }
 
  private:

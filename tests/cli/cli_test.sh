@@ -180,7 +180,7 @@ expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html 
 grep -q 'Table A.2' out && grep -q 'A.6 and A.7' out
 grep -q '<td class="word">cube</td>' paper.html
 same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
-same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[6]'
+same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[8]'
 same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'
 expect 2 "$boxtree" report --paper missing.obj
 expect 1 "$boxtree" report cube.obj

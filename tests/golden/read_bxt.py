@@ -185,12 +185,70 @@ class Packed:
         return children
 
 
+class Wide:
+    """Codecs wide8 and wide4 (section 7). A node reference is the number of a node."""
+
+    def __init__(self, tree, nodes):
+        self.is_wide8 = tree.codec == 7
+        self.size = 64 if self.is_wide8 else 32
+        self.nodes = nodes
+        self.count = tree.node_count
+        self.faces = tree.face_count
+        expect(len(nodes) == self.size * tree.node_count, "size of section nodes")
+
+    def root(self):
+        return 0
+
+    def fields(self, ref):
+        """Codes as [side][axis][child], and the links."""
+        node = self.nodes[ref * self.size:(ref + 1) * self.size]
+        if self.is_wide8:
+            codes = [[list(node[24 * side + 8 * axis:24 * side + 8 * axis + 8])
+                      for axis in range(3)] for side in range(2)]
+            first_node, first_leaf, mask, count = struct.unpack_from("<IIBB", node, 48)
+            expect(not any(node[58:]), "zeros of a node")
+        else:
+            words = struct.unpack_from("<6I", node)
+            codes = [[[(words[3 * side + axis] >> (4 * i)) & 15 for i in range(8)]
+                      for axis in range(3)] for side in range(2)]
+            links = struct.unpack_from("<Q", node, 24)[0]
+            first_node, first_leaf = links & (2 ** 26 - 1), (links >> 26) & (2 ** 27 - 1)
+            mask, count = (links >> 53) & 255, (links >> 61) + 1
+        return codes, first_node, first_leaf, mask, count
+
+    def expand(self, ref, box):
+        codes, next_node, next_leaf, mask, count = self.fields(ref)
+        expect(1 <= count <= 8 and mask >> count == 0, "children of a node")
+        of_extent = 255 if self.is_wide8 else 225
+        children = []
+        for i in range(count):
+            low, high = [], []
+            for k in range(3):
+                step = f32(f32(box[1][k] - box[0][k]) * f32(1 / of_extent))
+                steps = [codes[side][k][i] if self.is_wide8 else codes[side][k][i] ** 2
+                         for side in range(2)]
+                low.append(f32(box[0][k] + f32(steps[0] * step)))
+                high.append(f32(box[1][k] - f32(steps[1] * step)))
+            child_box = (tuple(low), tuple(high))
+            if mask >> i & 1:
+                expect(ref < next_node < self.count, "a child behind its parent")
+                children.append(("subtree", next_node, child_box))
+                next_node += 1
+            else:
+                first = 8 * next_leaf
+                expect(first < self.faces, "number of a leaf")
+                children.append(("leaf", (first, min(8, self.faces - first)), child_box))
+                next_leaf += 1
+        return children
+
+
 CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Packed),
-          4: ("packed-f16", Packed), 5: ("packed-f64", Packed), 6: ("dedup", Packed)}
+          4: ("packed-f16", Packed), 5: ("packed-f64", Packed), 6: ("dedup", Packed),
+          7: ("wide8", Wide), 8: ("wide4", Wide)}
 
 
 class Tree:
-    """A TreeRecord and its sections (sections 3, 7 and 8)."""
+    """A TreeRecord and its sections (sections 3, 8 and 9)."""
 
     def __init__(self, file, index, record):
         (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,

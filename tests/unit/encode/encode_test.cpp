@@ -56,7 +56,7 @@ TEST(ExactGeometry, StandsInTreeOrderWithVerticesInOrderOfUse) {
   SourceMesh mesh = two_triangles();
   std::swap(mesh.faces[0], mesh.faces[1]);  // source order is not tree order
   const BuildTree build = build_tree(mesh, Builder::kSah);
-  const EncodedGeometry geometry = encode_exact_geometry(mesh, build, true);
+  const EncodedGeometry geometry = encode_exact_geometry(mesh, faces_in_tree_order(build), true);
   EXPECT_EQ(geometry.corner_bytes, 2);
   EXPECT_EQ(geometry.corners_per_face, 3);
   EXPECT_EQ(geometry.face_id_bytes, 1);
@@ -79,7 +79,7 @@ TEST(ExactGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
     }
     mesh.faces.push_back({{0, 1, 2, 3}});
     const EncodedGeometry geometry =
-        encode_exact_geometry(mesh, build_tree(mesh, Builder::kSah), true);
+        encode_exact_geometry(mesh, faces_in_tree_order(build_tree(mesh, Builder::kSah)), true);
     EXPECT_EQ(geometry.corner_bytes, vertices == 0xffff ? 2 : 4);
     EXPECT_EQ(geometry.face_id_bytes, vertices == 0xffff ? 2 : 4);
   }

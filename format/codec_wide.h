@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// Codecs wide8 and wide4: eight children a node, their planes in 8 or 4 bits relative to the
+// decoded box of the node. Leaves hold eight faces in tree order, so that a leaf's number gives its
+// faces and no leaf is stored; children that are nodes, and those that are leaves, stand in a row
+// each.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/children.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/format/tree_record.h>
+
+namespace boxtree {
+
+inline constexpr std::size_t kWideChildren = 8;
+
+/// wide8: one cache line. Children 0 to child_count - 1 are there; child i is a node if bit i of
+/// inner_mask is set, else a leaf. Nodes have numbers from first_node on in the order of the
+/// children, leaves from first_leaf on; leaf n holds faces 8n to 8n + 7, or up to the last face.
+struct Wide8Node {
+  static constexpr std::uint32_t kLargestCode = 255;
+
+  std::array<std::array<std::uint8_t, kWideChildren>, 3> low;   // [axis][child]
+  std::array<std::array<std::uint8_t, kWideChildren>, 3> high;  // [axis][child]
+  std::uint32_t first_node;
+  std::uint32_t first_leaf;
+  std::uint8_t inner_mask;
+  std::uint8_t child_count;              // 1..8
+  std::array<std::uint8_t, 6> reserved;  // zero
+
+  [[nodiscard]] std::uint32_t low_code(std::size_t axis, std::size_t child) const noexcept {
+    return low[axis][child];
+  }
+  [[nodiscard]] std::uint32_t high_code(std::size_t axis, std::size_t child) const noexcept {
+    return high[axis][child];
+  }
+  /// How far from the side of the box a plane is, in steps.
+  [[nodiscard]] static constexpr float steps(std::uint32_t code) noexcept {
+    return static_cast<float>(code);
+  }
+  /// A code of at least so many steps. For writers.
+  [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
+    return static_cast<std::uint32_t>(steps) + 1;
+  }
+  static constexpr float kStepsOfExtent = 255;
+};
+static_assert(sizeof(Wide8Node) == 64 && std::is_trivially_copyable_v<Wide8Node>);
+
+/// wide4: the same in half a cache line. Codes are squared, because planes crowd near the sides
+/// of the box that they lie in.
+struct Wide4Node {
+  static constexpr std::uint32_t kLargestCode = 15;
+
+  std::array<std::uint32_t, 3> low;   // [axis], child i in bits 4i to 4i + 3
+  std::array<std::uint32_t, 3> high;  // likewise
+  // Bits 0-25 first node, 26-52 first leaf, 53-60 inner mask, 61-63 children less one.
+  std::uint64_t links;
+
+  [[nodiscard]] std::uint32_t low_code(std::size_t axis, std::size_t child) const noexcept {
+    return (low[axis] >> (4 * child)) & 15u;
+  }
+  [[nodiscard]] std::uint32_t high_code(std::size_t axis, std::size_t child) const noexcept {
+    return (high[axis] >> (4 * child)) & 15u;
+  }
+  [[nodiscard]] static constexpr float steps(std::uint32_t code) noexcept {
+    return static_cast<float>(code * code);
+  }
+  /// A code of at least so many steps. For writers.
+  [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
+    return static_cast<std::uint32_t>(std::sqrt(steps)) + 1;
+  }
+  static constexpr float kStepsOfExtent = 225;
+};
+static_assert(sizeof(Wide4Node) == 32 && std::is_trivially_copyable_v<Wide4Node>);
+
+/// What a node says of its children, whatever its layout.
+struct WideLinks {
+  std::uint32_t first_node;
+  std::uint32_t first_leaf;
+  std::uint32_t inner_mask;
+  std::uint32_t child_count;
+};
+
+/// Numbers that the layout of wide4 can hold.
+inline constexpr std::uint32_t kMaxWide4Nodes = 1u << 26;
+inline constexpr std::uint32_t kMaxWide4Leaves = 1u << 27;
+
+[[nodiscard]] inline WideLinks links_of(const Wide8Node& node) noexcept {
+  return {node.first_node, node.first_leaf, node.inner_mask, node.child_count};
+}
+[[nodiscard]] inline WideLinks links_of(const Wide4Node& node) noexcept {
+  return {static_cast<std::uint32_t>(node.links) & (kMaxWide4Nodes - 1),
+          static_cast<std::uint32_t>(node.links >> 26) & (kMaxWide4Leaves - 1),
+          static_cast<std::uint32_t>(node.links >> 53) & 0xffu,
+          static_cast<std::uint32_t>(node.links >> 61) + 1};
+}
+
+/// Length of a step on one axis of a box: fl(fl(high - low) * fl(1 / steps of the extent)).
+template <class Node>
+[[nodiscard]] constexpr float wide_step(float low, float high) noexcept {
+  return (high - low) * (1 / Node::kStepsOfExtent);
+}
+
+/// A plane counted from the low side, and one counted from the high side: one product and one sum,
+/// each rounded to nearest. Encoders choose codes by this very arithmetic.
+template <class Node>
+[[nodiscard]] constexpr float wide_low_plane(float low, float step, std::uint32_t code) noexcept {
+  return low + Node::steps(code) * step;
+}
+template <class Node>
+[[nodiscard]] constexpr float wide_high_plane(float high, float step, std::uint32_t code) noexcept {
+  return high - Node::steps(code) * step;
+}
+
+/// Decodes nodes of one tree. NodeRef::first of a subtree is the number of its node; the root is
+/// node 0, and children stand behind their parents.
+template <class NodeType>
+struct WideCodec {
+  using Node = NodeType;
+  using Scalar = float;
+  using Children = ChildSet<kWideChildren, float>;
+  static constexpr std::uint32_t kDepthLimit = kMaxWideDepth;
+
+  const std::byte* nodes = nullptr;
+  std::uint32_t node_count = 0;
+  std::uint32_t face_count = 0;
+
+  /// Reads nodes of `record` out of its section. Error: kSectionSize.
+  static Result<WideCodec> bind(const TreeRecord& record, Bytes section) {
+    const std::uint64_t expected = std::uint64_t{record.node_count} * sizeof(Node);
+    if (section.size() != expected) return section_size_error(section.size(), expected);
+    return WideCodec{section.data(), record.node_count, record.face_count};
+  }
+
+  [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {0, 0}; }
+
+  /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
+  /// corrupt: no children, or a child that is no node behind its parent or has no face.
+  /// Precondition: `ref` came from root() or expand().
+  [[nodiscard]] bool expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
+    const Node node = load<Node>(nodes, ref.first);
+    const WideLinks links = links_of(node);
+    const std::uint32_t count = links.child_count;
+    if (count - 1 >= kWideChildren || (links.inner_mask >> count) != 0) return false;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const float step = wide_step<Node>(box.low[axis], box.high[axis]);
+      for (std::size_t i = 0; i < kWideChildren; ++i) {
+        out.low[axis][i] = wide_low_plane<Node>(box.low[axis], step, node.low_code(axis, i));
+        out.high[axis][i] = wide_high_plane<Node>(box.high[axis], step, node.high_code(axis, i));
+      }
+    }
+    out.count = count;
+    out.leaf_mask = ~links.inner_mask & ((1u << count) - 1);
+    std::uint32_t next_node = links.first_node;
+    std::uint64_t next_face = std::uint64_t{links.first_leaf} * kLeafFaces;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (out.is_leaf(i)) {
+        if (next_face >= face_count) return false;
+        const auto first = static_cast<std::uint32_t>(next_face);
+        out.ref[i] = {first, std::min(kLeafFaces, face_count - first)};
+        next_face += kLeafFaces;
+      } else {
+        if (next_node <= ref.first || next_node >= node_count) return false;
+        out.ref[i] = {next_node++, 0};
+      }
+    }
+    return true;
+  }
+};
+
+}  // namespace boxtree

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: MIT
+// Full leaves, the collapse and the codes of the wide codecs.
+#include <algorithm>
+#include <numeric>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/encode/encoders.h>
+#include <boxtree/cooker/encode/wide_collapse.h>
+
+#include "tests/support/meshes.h"
+
+namespace boxtree::cooker {
+namespace {
+
+std::vector<SourceMesh> meshes() {
+  std::vector<SourceMesh> all = test::all_kinds();
+  for (unsigned faces = 1; faces <= 140; faces += 7) all.push_back(test::soup(faces, faces));
+  return all;
+}
+
+TEST(FullLeaves, EveryFaceOnceAndAllLeavesFullButTheLast) {
+  for (const SourceMesh& mesh : meshes()) {
+    const BuildTree tree = build_full_leaves(mesh);
+    std::vector<std::uint32_t> sorted = tree.order;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint32_t> all(mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(sorted, all) << mesh.name;
+    std::uint32_t next = 0;
+    for (const BuildNode& node : tree.nodes) {
+      if (!node.is_leaf()) continue;
+      EXPECT_EQ(node.first(), next) << mesh.name;
+      next += kLeafFaces;
+    }
+    EXPECT_EQ(tree.nodes.size(), 2 * ((mesh.faces.size() + 7) / 8) - 1) << mesh.name;
+  }
+}
+
+// The collapse against every other choice of children, on trees small enough to try all.
+double cheapest(const BuildTree& tree, std::uint32_t node, double node_cost);
+double cheapest_forest(const BuildTree& tree, const std::vector<std::uint32_t>& roots,
+                       double node_cost) {
+  double cost = 0;
+  for (const std::uint32_t root : roots) cost += cheapest(tree, root, node_cost);
+  for (std::size_t i = 0; i < roots.size() && roots.size() < kWideChildren; ++i) {
+    if (tree.nodes[roots[i]].is_leaf()) continue;
+    std::vector<std::uint32_t> opened = roots;
+    opened[i] = roots[i] + 1;
+    opened.push_back(tree.nodes[roots[i]].right);
+    cost = std::min(cost, cheapest_forest(tree, opened, node_cost));
+  }
+  return cost;
+}
+double area_of(const BuildTree& tree, std::uint32_t node) {
+  const Box<float>& box = tree.nodes[node].bounds;
+  const double x = double{box.high[0]} - box.low[0];
+  const double y = double{box.high[1]} - box.low[1];
+  const double z = double{box.high[2]} - box.low[2];
+  return x * y + y * z + z * x;
+}
+double cheapest(const BuildTree& tree, std::uint32_t node, double node_cost) {
+  if (tree.nodes[node].is_leaf()) return 0;
+  return area_of(tree, node) / area_of(tree, 0) + node_cost +
+         cheapest_forest(tree, {node + 1, tree.nodes[node].right}, node_cost);
+}
+double chosen(const BuildTree& tree, const WideCollapse& collapse, std::uint32_t node,
+              double node_cost) {
+  if (tree.nodes[node].is_leaf()) return 0;
+  std::vector<std::uint32_t> children;
+  collapse.children_of(node, children);
+  EXPECT_GE(children.size(), 2u);
+  EXPECT_LE(children.size(), kWideChildren);
+  double cost = area_of(tree, node) / area_of(tree, 0) + node_cost;
+  for (const std::uint32_t child : children) cost += chosen(tree, collapse, child, node_cost);
+  return cost;
+}
+
+TEST(WideCollapse, NoChoiceOfChildrenIsCheaper) {
+  for (const double node_cost : {0.0, 0.01, 1.0}) {
+    for (const unsigned faces : {9u, 40u, 72u, 100u}) {
+      const BuildTree tree = build_full_leaves(test::soup(faces, faces));
+      const WideCollapse collapse(tree, node_cost);
+      EXPECT_NEAR(chosen(tree, collapse, 0, node_cost), cheapest(tree, 0, node_cost), 1e-9)
+          << faces << " faces, cost " << node_cost;
+    }
+  }
+}
+
+TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
+  for (const SourceMesh& mesh : meshes()) {
+    const BuildTree tree = build_full_leaves(mesh);
+    for (const EncodedNodes& nodes : {encode_wide8(tree), encode_wide4(tree)}) {
+      std::vector<std::uint32_t> sorted = nodes.face_order;
+      std::sort(sorted.begin(), sorted.end());
+      std::vector<std::uint32_t> all(mesh.faces.size());
+      std::iota(all.begin(), all.end(), 0u);
+      EXPECT_EQ(sorted, all) << mesh.name;
+      EXPECT_EQ(nodes.leaf_count, (mesh.faces.size() + 7) / 8) << mesh.name;
+    }
+  }
+}
+
+// A box of one mesh in two sizes of code: the finer one is never looser.
+TEST(WideEncoder, MoreBitsNeverVisitMore) {
+  for (const SourceMesh& mesh : {test::sphere(24, 32), test::terrain(40, 3), test::city(6, 2)}) {
+    const BuildTree tree = build_full_leaves(mesh);
+    const ExpectedVisits fine = encode_wide8(tree).visits;
+    const ExpectedVisits coarse = encode_wide4(tree).visits;
+    EXPECT_LE(fine.ray, coarse.ray) << mesh.name;
+    EXPECT_LE(fine.box, coarse.box) << mesh.name;
+    EXPECT_LE(fine.pair, coarse.pair) << mesh.name;
+  }
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
