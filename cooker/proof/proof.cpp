@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Proof by walking the file that was written, not the tree that was meant.
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <cmath>
 #include <string>
 #include <utility>
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <boxtree/cooker/proof/proof.h>
 #include <boxtree/format/limits.h>
@@ -12,14 +17,30 @@
 namespace boxtree::cooker {
 namespace {
 
+// Trees of fewer faces are walked by one thread; others in tasks for the subtrees some levels down,
+// up to 512 of them.
+constexpr std::uint32_t kParallelFaces = 16384;
+constexpr std::uint32_t kBinaryTaskLevels = 9;
+constexpr std::uint32_t kWideTaskLevels = 3;
+
+// One byte a face, set once it was met.
+using Reached = std::vector<std::atomic<std::uint8_t>>;
+
+// The walk of one subtree. Counts and findings are its own and are added up in the order of the
+// children, so that they do not depend on threads.
 class Walk {
  public:
-  Walk(const Tree& tree, bool with_geometry, TreeProof& proof)
-      : tree_(tree), with_geometry_(with_geometry), proof_(proof) {}
+  Walk(const Tree& tree, bool with_geometry, Reached& reached, TreeProof& proof)
+      : tree_(tree),
+        with_geometry_(with_geometry),
+        task_levels_(tree.record().face_count < kParallelFaces ? 0
+                     : is_wide(tree.codec())                   ? kWideTaskLevels
+                                                               : kBinaryTaskLevels),
+        reached_(reached),
+        proof_(proof) {}
 
   void run() {
     if (!tree_.empty()) {
-      reached_.resize(tree_.record().face_count, false);
       walk(tree_.root(), 0);
       report_unreached();
     }
@@ -75,10 +96,49 @@ class Walk {
     ++proof_.certificate.node_count;
     proof_.certificate.depth = std::max(proof_.certificate.depth, depth + 1);
     if (children.count == 1) ++proof_.certificate.shrink_count;
+    if (depth < task_levels_) return walk_in_tasks(children, depth + 1);
     for (std::uint32_t i = 0; i < children.count; ++i) {
       grow(content, walk(children.child[i], depth + 1));
     }
     return content;
+  }
+
+  Box<double> walk_in_tasks(const NodeChildren& children, std::uint32_t depth) {
+    struct Part {
+      TreeProof proof;
+      Box<double> content;
+      std::uint32_t triangles = 0;
+    };
+    std::array<Part, std::tuple_size_v<decltype(children.child)>> parts;
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, children.count, 1),
+                      [&](const tbb::blocked_range<std::uint32_t>& range) {
+                        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+                          Walk below(tree_, with_geometry_, reached_, parts[i].proof);
+                          parts[i].content = below.walk(children.child[i], depth);
+                          parts[i].triangles = below.triangles_;
+                        }
+                      });
+    Box<double> content = nothing();
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      grow(content, parts[i].content);
+      triangles_ += parts[i].triangles;
+      add_up(parts[i].proof);
+    }
+    return content;
+  }
+
+  void add_up(const TreeProof& part) {
+    CertificateRecord& sum = proof_.certificate;
+    const CertificateRecord& more = part.certificate;
+    sum.depth = std::max(sum.depth, more.depth);
+    sum.node_count += more.node_count;
+    sum.leaf_count += more.leaf_count;
+    sum.face_count += more.face_count;
+    sum.shrink_count += more.shrink_count;
+    sum.degenerate_count += more.degenerate_count;
+    proof_.missed += part.missed;
+    proof_.escapes += part.escapes;
+    for (const Error& finding : part.findings) add(finding.code, finding.detail);
   }
 
   Box<double> visit_leaf(const Node& leaf) {
@@ -90,9 +150,10 @@ class Walk {
       return content;
     }
     for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
-      if (reached_[f]) add(Errc::kFaceRepeated, "face " + std::to_string(f) + " is in two leaves");
-      if (!reached_[f]) ++proof_.certificate.face_count;
-      reached_[f] = true;
+      // Who meets a face first does not matter to anyone but the report of a corrupt tree.
+      const bool met = reached_[f].exchange(1, std::memory_order_relaxed) != 0;
+      if (met) add(Errc::kFaceRepeated, "face " + std::to_string(f) + " is in two leaves");
+      if (!met) ++proof_.certificate.face_count;
     }
     if (!with_geometry_) return content;
     TriangleBatch batch;
@@ -112,7 +173,7 @@ class Walk {
 
   void report_unreached() {
     for (std::size_t f = 0; f < reached_.size(); ++f) {
-      if (reached_[f]) continue;
+      if (reached_[f].load(std::memory_order_relaxed) != 0) continue;
       ++proof_.missed;
       add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
     }
@@ -132,8 +193,9 @@ class Walk {
 
   const Tree& tree_;
   bool with_geometry_;
+  std::uint32_t task_levels_;
+  Reached& reached_;
   TreeProof& proof_;
-  std::vector<bool> reached_;
   std::uint32_t triangles_ = 0;
 };
 
@@ -169,7 +231,8 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 
 TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   TreeProof proof;
-  Walk(tree, with_geometry, proof).run();
+  Reached reached(tree.empty() ? 0 : tree.record().face_count);
+  Walk(tree, with_geometry, reached, proof).run();
   return proof;
 }
 
