@@ -12,8 +12,9 @@ namespace {
 
 bool counts_fit(const TreeRecord& record) {
   const std::uint64_t faces = record.face_count;
+  const std::uint32_t deepest = is_wide(record.codec) ? kMaxWideDepth : kMaxDepth;
   return faces <= kMaxFaces && record.vertex_count <= kMaxVertices &&
-         record.node_count <= kMaxNodes && record.depth <= kMaxDepth &&
+         record.node_count <= kMaxNodes && record.depth <= deepest &&
          record.triangle_count >= faces && record.triangle_count <= 2 * faces;
 }
 
