@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: MIT
 // The stages in the order the data flows.
 #include <algorithm>
+#include <array>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
 
 #include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/version.h>
 #include <boxtree/cooker/write/blob_writer.h>
@@ -87,24 +92,71 @@ EncodedTree without_bytes(const SourceMesh& mesh, const BuildTree& build) {
   return tree;
 }
 
-// Codecs with one face a leaf share their splits and the order of faces, so only nodes differ. Only
-// the best so far is kept: memory, not time, is what candidates cost.
-void try_binary(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
-  const BuildTree build = build_tree(mesh, options.builder);
-  EncodedTree& tree = cooked.tree;
-  tree = without_bytes(mesh, build);
-  tree.faces_in_source_order = options.geometry == GeometryId::kExternal;
-  tree.geometry = tree.faces_in_source_order
-                      ? encode_external_geometry(mesh, {})
-                      : encode_exact_geometry(mesh, faces_in_tree_order(build), options.face_ids);
-  const FaceOrder order = tree.faces_in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
-  for (const CodecInfo& codec : kCodecs) {
-    if (is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
-    EncodedNodes best =
-        std::exchange(tree.nodes, encode_nodes(build, mesh, codec.id, order, options.widths));
-    if (!enter(tree, mesh, options, cooked)) tree.nodes = std::move(best);
+// Codecs with one face a leaf share their splits and the order of faces, so only nodes differ.
+class BinaryTrials {
+ public:
+  BinaryTrials(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked)
+      : mesh_(mesh), options_(options), cooked_(cooked) {}
+
+  // Memory, not time, is what candidates cost: the build tree goes once it has been walked, and
+  // only the best candidate so far stays.
+  void run() {
+    walk();
+    for (const CodecInfo& codec : kCodecs) {
+      if (is_wide(codec.id) || !is_wanted(codec.id, mesh_, options_)) continue;
+      EncodedTree& tree = cooked_.tree;
+      EncodedNodes best = std::exchange(tree.nodes, nodes_of(codec.id));
+      if (!enter(tree, mesh_, options_, cooked_)) tree.nodes = std::move(best);
+    }
   }
-}
+
+ private:
+  void walk() {
+    const BuildTree build = build_tree(mesh_, options_.builder);
+    const bool external = options_.geometry == GeometryId::kExternal;
+    cooked_.tree = without_bytes(mesh_, build);
+    cooked_.tree.faces_in_source_order = external;
+    cooked_.tree.geometry =
+        external ? encode_external_geometry(mesh_, {})
+                 : encode_exact_geometry(mesh_, faces_in_tree_order(build), options_.face_ids);
+    const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
+    const auto walk_for = [&](std::size_t cut) {
+      if (is_cut_wanted(static_cast<PlainCut>(cut))) {
+        plain_[cut] = encode_plain(build, mesh_, static_cast<PlainCut>(cut), order);
+      }
+    };
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain_.size(), 1),
+                      [&](const tbb::blocked_range<std::size_t>& range) {
+                        for (std::size_t i = range.begin(); i < range.end(); ++i) walk_for(i);
+                      });
+  }
+
+  [[nodiscard]] bool is_cut_wanted(PlainCut cut) const {
+    return std::any_of(kCodecs.begin(), kCodecs.end(), [&](const CodecInfo& codec) {
+      return !is_wide(codec.id) && plain_cut_of(codec.id) == cut &&
+             is_wanted(codec.id, mesh_, options_);
+    });
+  }
+
+  std::optional<EncodedNodes>& plain_of(CodecId codec) {
+    return plain_[static_cast<std::size_t>(plain_cut_of(codec))];
+  }
+
+  EncodedNodes nodes_of(CodecId codec) {
+    const EncodedNodes& plain = *plain_of(codec);
+    if (codec != CodecId::kPlainF32 && codec != CodecId::kPlainF16) {
+      return pack_nodes(plain, codec, options_.widths);
+    }
+    EncodedNodes nodes = plain;
+    nodes.codec = codec;
+    return nodes;
+  }
+
+  const SourceMesh& mesh_;
+  const CookOptions& options_;
+  CookedTree& cooked_;
+  std::array<std::optional<EncodedNodes>, 3> plain_;  // by PlainCut
+};
 
 // Codecs with full leaves order the faces, each in its own way.
 void try_wide(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
@@ -157,7 +209,7 @@ void release(CookedTree& cooked) {
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options) {
   if (Status status = check_limits(mesh, options); !status) return status.error();
   CookedTree cooked;
-  if (any_wanted(false, mesh, options)) try_binary(mesh, options, cooked);
+  if (any_wanted(false, mesh, options)) BinaryTrials(mesh, options, cooked).run();
   if (any_wanted(true, mesh, options)) try_wide(mesh, options, cooked);
   if (!choose(cooked.candidates, options.goal)) {
     return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};

@@ -51,6 +51,9 @@ static_assert(sizeof(PlainNodeF16) == 16 && std::is_trivially_copyable_v<PlainNo
 [[nodiscard]] constexpr float cut_value(float cut) noexcept {
   return cut;
 }
+[[nodiscard]] constexpr double cut_value(double cut) noexcept {
+  return cut;
+}
 [[nodiscard]] constexpr float cut_value(std::uint16_t cut) noexcept {
   return half_to_float(cut);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The walk behind every binary codec: from the build tree to nodes with cuts, carrying the decoded
-// box that a reader will see and cutting only as far as that box allows. How a node is stored is
+// box that a reader will see and cutting only as far as that box allows. What a node looks like is
 // the sink's business.
 #pragma once
 

@@ -8,27 +8,36 @@ namespace {
 EncodedNodes encode_with(const BuildTree& tree, const SourceMesh& mesh, CodecId codec,
                          FaceOrder order, FieldWidths widths) {
   switch (codec) {
-    case CodecId::kPlainF32:
-      return encode_plain_f32(tree, order);
-    case CodecId::kPlainF16:
-      return encode_plain_f16(tree, order);
-    case CodecId::kPackedF32:
-      return encode_packed_f32(tree, order, widths);
-    case CodecId::kPackedF16:
-      return encode_packed_f16(tree, order, widths);
-    case CodecId::kPackedF64:
-      return encode_packed_f64(tree, mesh, order, widths);
-    case CodecId::kDedup:
-      return encode_dedup(tree, order, widths);
     case CodecId::kWide8:
       return encode_wide8(tree);
     case CodecId::kWide4:
       return encode_wide4(tree);
+    case CodecId::kPlainF32:
+    case CodecId::kPlainF16:
+      return encode_plain(tree, mesh, plain_cut_of(codec), order);
+    case CodecId::kPackedF32:
+    case CodecId::kPackedF16:
+    case CodecId::kPackedF64:
+    case CodecId::kDedup:
+      break;
   }
-  return {};
+  return pack_nodes(encode_plain(tree, mesh, plain_cut_of(codec), order), codec, widths);
 }
 
 }  // namespace
+
+EncodedNodes EncodedNodes::without_bytes() const {
+  EncodedNodes nodes;
+  nodes.codec = codec;
+  nodes.root = root;
+  nodes.root_box = root_box;
+  nodes.node_count = node_count;
+  nodes.leaf_count = leaf_count;
+  nodes.shrink_count = shrink_count;
+  nodes.depth = depth;
+  nodes.visits = visits;
+  return nodes;
+}
 
 EncodedNodes encode_nodes(const BuildTree& tree, const SourceMesh& mesh, CodecId codec,
                           FaceOrder order, FieldWidths widths) {

@@ -40,6 +40,9 @@ struct EncodedNodes {
   std::size_t unique_cuts = 0;
   // Of wide codecs: source faces in the tree's own order, which geometry must follow.
   std::vector<std::uint32_t> face_order;
+
+  /// All but the bytes.
+  [[nodiscard]] EncodedNodes without_bytes() const;
 };
 
 /// Number that a leaf stores for a face: its position in tree order, or in the source.

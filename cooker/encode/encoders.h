@@ -1,22 +1,29 @@
 // SPDX-License-Identifier: MIT
-// One function a codec; encode_nodes() in encoded.h chooses among them.
+// The encoders behind encode_nodes() in encoded.h. Binary codecs start from plain nodes: one walk
+// of the build tree for each scalar of the cuts, packed in as many ways as are wanted.
 #pragma once
 
 #include <boxtree/cooker/encode/encoded.h>
 
 namespace boxtree::cooker {
 
-[[nodiscard]] EncodedNodes encode_plain_f32(const BuildTree& tree, FaceOrder order);
-[[nodiscard]] EncodedNodes encode_plain_f16(const BuildTree& tree, FaceOrder order);
+/// How plain nodes hold their cuts.
+enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 
-[[nodiscard]] EncodedNodes encode_packed_f32(const BuildTree& tree, FaceOrder order,
-                                             FieldWidths widths);
-[[nodiscard]] EncodedNodes encode_packed_f16(const BuildTree& tree, FaceOrder order,
-                                             FieldWidths widths);
-/// Needs the mesh: the build tree's own bounds are f32.
-[[nodiscard]] EncodedNodes encode_packed_f64(const BuildTree& tree, const SourceMesh& mesh,
-                                             FaceOrder order, FieldWidths widths);
-[[nodiscard]] EncodedNodes encode_dedup(const BuildTree& tree, FaceOrder order, FieldWidths widths);
+/// The plain nodes that a binary codec starts from.
+[[nodiscard]] constexpr PlainCut plain_cut_of(CodecId codec) noexcept {
+  if (codec == CodecId::kPlainF16 || codec == CodecId::kPackedF16) return PlainCut::kF16;
+  return codec == CodecId::kPackedF64 ? PlainCut::kF64 : PlainCut::kF32;
+}
+
+/// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. The mesh
+/// serves f64 alone: the build tree's own bounds are f32.
+[[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
+                                        FaceOrder order);
+
+/// Packs plain nodes with the cuts of plain_cut_of(codec); codecs packed-f32, packed-f16,
+/// packed-f64 and dedup.
+[[nodiscard]] EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths);
 
 /// Of trees with full leaves. They choose the order of faces: EncodedNodes::face_order.
 [[nodiscard]] EncodedNodes encode_wide8(const BuildTree& full_leaves);

@@ -3,12 +3,11 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <limits>
 #include <utility>
 
-#include <boxtree/cooker/encode/binary_encoder.h>
 #include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/format/codec_packed.h>
+#include <boxtree/format/codec_plain.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -17,130 +16,96 @@ std::uint8_t width_of(std::uint64_t largest) {
   return static_cast<std::uint8_t>(std::max(1, static_cast<int>(std::bit_width(largest))));
 }
 
-template <PackedCut K>
-using CutScalar = std::conditional_t<K == PackedCut::kF64, double, float>;
+// The nodes of a binary tree in the order of the walk, cuts in the scalar of the codec, and what
+// packing needs to know of them: the kind of each and its number among those of its kind.
+template <class Cut>
+struct WalkedNodes {
+  std::span<const std::byte> bytes;
+  std::vector<std::uint32_t> number;
+  std::array<std::uint32_t, kNodeKinds> kind_count{};
 
-template <PackedCut K>
-CutScalar<K> storable_cut(CutScalar<K> cut) {
-  if constexpr (K == PackedCut::kF16) return half_to_float(half_toward_zero(cut));
-  return cut;
+  explicit WalkedNodes(std::span<const std::byte> plain)
+      : bytes(plain), number(plain.size() / sizeof(PlainNode<Cut>)) {
+    for (std::size_t i = 0; i < number.size(); ++i) {
+      number[i] = kind_count[static_cast<std::size_t>(kind_of((*this)[i]))]++;
+    }
+  }
+  [[nodiscard]] std::size_t size() const { return number.size(); }
+  [[nodiscard]] PlainNode<Cut> operator[](std::size_t i) const {
+    return load<PlainNode<Cut>>(bytes.data(), i);
+  }
+  [[nodiscard]] static NodeKind kind_of(const PlainNode<Cut>& node) {
+    const bool left_leaf = node.kind(0) == PlainChild::kLeaf;
+    if (node.kind(1) == PlainChild::kLeaf) {
+      return left_leaf ? NodeKind::kTwoLeaves : NodeKind::kRightLeaf;
+    }
+    return left_leaf ? NodeKind::kLeftLeaf : NodeKind::kNoLeaves;
+  }
+};
+
+// Ascending and each once. A cut is never negative, and -0 cannot arise from a difference.
+std::vector<float> unique_cuts(const WalkedNodes<float>& nodes) {
+  std::vector<float> cuts;
+  cuts.reserve(2 * nodes.size());
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const PlainNodeF32 node = nodes[i];
+    cuts.insert(cuts.end(), {node.cut[0], node.cut[1]});
+  }
+  std::sort(cuts.begin(), cuts.end());
+  cuts.erase(std::unique(cuts.begin(), cuts.end()), cuts.end());
+  return cuts;
 }
 
-// First pass: counts nodes of each kind, and gathers cuts for the table. Kinds of children and
-// cuts do not depend on widths, so both passes see the same tree.
-template <PackedCut K>
-class CountingSink {
- public:
-  using Scalar = CutScalar<K>;
+// The bits of a cut as a field; with a table, its number there.
+std::uint64_t cut_field(std::uint16_t cut, const std::vector<float>& /*table*/) {
+  return cut;
+}
+std::uint64_t cut_field(double cut, const std::vector<float>& /*table*/) {
+  return std::bit_cast<std::uint64_t>(cut);
+}
+std::uint64_t cut_field(float cut, const std::vector<float>& table) {
+  if (table.empty()) return std::bit_cast<std::uint32_t>(cut);
+  return static_cast<std::uint64_t>(std::lower_bound(table.begin(), table.end(), cut) -
+                                    table.begin());
+}
 
-  static Scalar storable(Scalar cut) { return storable_cut<K>(cut); }
-
-  NodePlace add(NodeKind kind, const Cuts<Scalar>& cuts) {
-    if constexpr (K == PackedCut::kTable) {
-      cuts_.insert(cuts_.end(), {cuts.cut[0], cuts.cut[1]});
-    }
-    const NodePlace place{kind, counts_[static_cast<std::size_t>(kind)]++};
-    if (total_++ == 0) root_ = place;
-    return place;
+// The section: header, table, and every node's fields at the place that its kind and number give.
+template <class Cut>
+std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& header,
+                            const std::vector<float>& table) {
+  const PackedPlaces places(header);
+  std::vector<std::byte> bytes(places.section_bytes);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  if (!table.empty()) {
+    std::memcpy(bytes.data() + sizeof(header), table.data(), table.size() * sizeof(float));
   }
-  void set_leaf(NodePlace, std::size_t, std::uint32_t) {}
-  void set_subtree(NodePlace, std::size_t, NodePlace) {}
-
-  [[nodiscard]] const std::array<std::uint32_t, kNodeKinds>& counts() const { return counts_; }
-  [[nodiscard]] NodePlace root() const { return root_; }
-
-  // Ascending and each once. A cut is never negative, and -0 cannot arise from a difference.
-  [[nodiscard]] std::vector<float> unique_cuts() {
-    std::sort(cuts_.begin(), cuts_.end());
-    cuts_.erase(std::unique(cuts_.begin(), cuts_.end()), cuts_.end());
-    return std::move(cuts_);
+  std::array<PackedLayout, kNodeKinds> layouts;
+  for (std::size_t kind = 0; kind < kNodeKinds; ++kind) {
+    layouts[kind] = PackedLayout(static_cast<NodeKind>(kind), header);
   }
-
- private:
-  std::array<std::uint32_t, kNodeKinds> counts_{};
-  std::uint64_t total_ = 0;
-  NodePlace root_{};
-  std::vector<float> cuts_;
-};
-
-// Second pass: writes fields at the places that the counts of the first one give.
-template <PackedCut K>
-class PackedSink {
- public:
-  using Scalar = CutScalar<K>;
-
-  PackedSink(const PackedHeader& header, std::vector<float> table)
-      : table_(std::move(table)), cut_bits_(header.cut_bits) {
-    const PackedPlaces places(header);
-    bytes_.resize(places.section_bytes);
-    std::memcpy(bytes_.data(), &header, sizeof(header));
-    if (!table_.empty()) {
-      std::memcpy(bytes_.data() + sizeof(header), table_.data(), table_.size() * sizeof(float));
-    }
-    for (std::size_t kind = 0; kind < kNodeKinds; ++kind) {
-      layout_[kind] = PackedLayout(static_cast<NodeKind>(kind), header);
-      array_[kind] = bytes_.data() + places.array_at[kind];
-    }
-  }
-
-  static Scalar storable(Scalar cut) { return storable_cut<K>(cut); }
-
-  NodePlace add(NodeKind kind, const Cuts<Scalar>& cuts) {
-    const NodePlace place{kind, count_[static_cast<std::size_t>(kind)]++};
-    const PackedLayout& layout = layout_of(place);
-    write(place, 0, 2, cuts.axis);
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const PlainNode<Cut> node = nodes[i];
+    const auto kind = static_cast<std::size_t>(WalkedNodes<Cut>::kind_of(node));
+    const PackedLayout& layout = layouts[kind];
+    std::byte* const array = bytes.data() + places.array_at[kind];
+    const std::uint64_t at = std::uint64_t{nodes.number[i]} * layout.bits;
+    write_bits(array, at, 2, node.axis());
     for (std::size_t side = 0; side < 2; ++side) {
-      write(place, layout.cut_at[side], cut_bits_, cut_field(cuts.cut[side]));
-      // All bits set until a child is set: what a missing one has.
-      write(place, layout.number_at[side], layout.number_bits[side],
-            low_bits(layout.number_bits[side]));
-    }
-    return place;
-  }
-  void set_leaf(NodePlace parent, std::size_t side, std::uint32_t face) {
-    set_number(parent, side, face);
-  }
-  void set_subtree(NodePlace parent, std::size_t side, NodePlace child) {
-    set_number(parent, side, child.number);
-    write(parent, layout_of(parent).kind_at[side], 2, static_cast<std::uint64_t>(child.kind));
-  }
-
-  [[nodiscard]] std::vector<std::byte> take() { return std::move(bytes_); }
-
- private:
-  [[nodiscard]] const PackedLayout& layout_of(NodePlace place) const {
-    return layout_[static_cast<std::size_t>(place.kind)];
-  }
-  void write(NodePlace place, std::uint32_t at, std::uint32_t width, std::uint64_t value) {
-    write_bits(array_[static_cast<std::size_t>(place.kind)],
-               std::uint64_t{place.number} * layout_of(place).bits + at, width, value);
-  }
-  void set_number(NodePlace place, std::size_t side, std::uint32_t number) {
-    const PackedLayout& layout = layout_of(place);
-    const std::uint8_t width = layout.number_bits[side];
-    clear_bits(array_[static_cast<std::size_t>(place.kind)],
-               std::uint64_t{place.number} * layout.bits + layout.number_at[side], width);
-    write(place, layout.number_at[side], width, number);
-  }
-  [[nodiscard]] std::uint64_t cut_field(Scalar cut) const {
-    if constexpr (K == PackedCut::kF16) return half_toward_zero(cut);
-    if constexpr (K == PackedCut::kF64) return std::bit_cast<std::uint64_t>(cut);
-    if constexpr (K == PackedCut::kTable) {
-      if (!table_.empty()) {
-        const auto place = std::lower_bound(table_.begin(), table_.end(), cut);
-        return static_cast<std::uint64_t>(place - table_.begin());
+      const std::uint32_t child = node.child[side];
+      std::uint64_t number = low_bits(layout.number_bits[side]);  // of a child that is not there
+      if (node.kind(side) == PlainChild::kLeaf) number = child;
+      if (node.kind(side) == PlainChild::kSubtree) {
+        number = nodes.number[child];
+        write_bits(array, at + layout.kind_at[side], 2,
+                   static_cast<std::uint64_t>(WalkedNodes<Cut>::kind_of(nodes[child])));
       }
+      write_bits(array, at + layout.number_at[side], layout.number_bits[side], number);
+      write_bits(array, at + layout.cut_at[side], header.cut_bits,
+                 cut_field(node.cut[side], table));
     }
-    return std::bit_cast<std::uint32_t>(static_cast<float>(cut));
   }
-
-  std::vector<std::byte> bytes_;
-  std::vector<float> table_;
-  std::array<PackedLayout, kNodeKinds> layout_;
-  std::array<std::byte*, kNodeKinds> array_{};
-  std::array<std::uint32_t, kNodeKinds> count_{};
-  std::uint8_t cut_bits_;
-};
+  return bytes;
+}
 
 // The paper's estimate before a tree exists: three nodes a face. It holds for every mesh seen, and
 // where it would not (or would overflow), the exact width is taken.
@@ -181,70 +146,40 @@ void choose_table(PackedHeader& header, std::vector<float>& table, std::uint64_t
   }
 }
 
-template <PackedCut K, class Bounds>
-EncodedNodes encode(const BuildTree& tree, FaceOrder order, Bounds bounds, FieldWidths widths) {
-  CountingSink<K> counting;
-  EncodedNodes nodes = BinaryEncoder(tree, order, bounds, counting).run();
+template <class Cut>
+EncodedNodes pack_walked(const EncodedNodes& plain, CodecId codec, FieldWidths widths) {
+  EncodedNodes nodes = plain.without_bytes();
+  nodes.codec = codec;
   if (nodes.root != RootKind::kSubtree) return nodes;
-  const std::uint64_t faces = (tree.nodes.size() + 1) / 2;
-  PackedHeader header = header_of(counting.counts(), faces, widths);
+  const WalkedNodes<Cut> walked(plain.bytes);
+  PackedHeader header = header_of(walked.kind_count, nodes.leaf_count, widths);
   std::vector<float> table;
-  if constexpr (K == PackedCut::kTable) {
-    table = counting.unique_cuts();
-    nodes.unique_cuts = table.size();
-    choose_table(header, table, faces, widths);
-  } else {
-    header.cut_bits = K == PackedCut::kF16 ? 16 : K == PackedCut::kF32 ? 32 : 64;
+  header.cut_bits = 8 * sizeof(Cut);
+  if constexpr (std::is_same_v<Cut, float>) {
+    if (codec == CodecId::kDedup) {
+      table = unique_cuts(walked);
+      nodes.unique_cuts = table.size();
+      choose_table(header, table, nodes.leaf_count, widths);
+    }
   }
-  // The root is the first node of its kind.
-  header.root_kind = static_cast<std::uint8_t>(counting.root().kind);
-  PackedSink<K> sink(header, std::move(table));
-  static_cast<void>(BinaryEncoder(tree, order, bounds, sink).run());
-  nodes.bytes = sink.take();
-  nodes.kind_count = counting.counts();
+  header.root_kind = static_cast<std::uint8_t>(WalkedNodes<Cut>::kind_of(walked[0]));
+  nodes.bytes = pack(walked, header, table);
+  nodes.kind_count = walked.kind_count;
   return nodes;
-}
-
-// What each node of the build tree must hold, without rounding to f32: from the leaves up, which
-// stand behind their parents.
-std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMesh& mesh) {
-  const Frame frame = tree.frame();
-  std::vector<Box<double>> bounds(tree.nodes.size());
-  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
-    const BuildNode& node = tree.nodes[i];
-    if (node.is_leaf()) {
-      bounds[i] = face_bounds(mesh, frame, node.face());
-      continue;
-    }
-    const Box<double>& left = bounds[i + 1];
-    const Box<double>& right = bounds[node.right];
-    for (std::size_t k = 0; k < 3; ++k) {
-      bounds[i].low[k] = std::min(left.low[k], right.low[k]);
-      bounds[i].high[k] = std::max(left.high[k], right.high[k]);
-    }
-  }
-  return bounds;
 }
 
 }  // namespace
 
-EncodedNodes encode_packed_f32(const BuildTree& tree, FaceOrder order, FieldWidths widths) {
-  return encode<PackedCut::kF32>(tree, order, BuildBounds{&tree}, widths);
-}
-
-EncodedNodes encode_packed_f16(const BuildTree& tree, FaceOrder order, FieldWidths widths) {
-  return encode<PackedCut::kF16>(tree, order, BuildBounds{&tree}, widths);
-}
-
-EncodedNodes encode_dedup(const BuildTree& tree, FaceOrder order, FieldWidths widths) {
-  return encode<PackedCut::kTable>(tree, order, BuildBounds{&tree}, widths);
-}
-
-EncodedNodes encode_packed_f64(const BuildTree& tree, const SourceMesh& mesh, FaceOrder order,
-                               FieldWidths widths) {
-  const std::vector<Box<double>> bounds = bounds_in_double(tree, mesh);
-  const auto at = [&bounds](std::uint32_t node) -> const Box<double>& { return bounds[node]; };
-  return encode<PackedCut::kF64>(tree, order, at, widths);
+EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths) {
+  switch (plain_cut_of(codec)) {
+    case PlainCut::kF16:
+      return pack_walked<std::uint16_t>(plain, codec, widths);
+    case PlainCut::kF32:
+      return pack_walked<float>(plain, codec, widths);
+    case PlainCut::kF64:
+      break;
+  }
+  return pack_walked<double>(plain, codec, widths);
 }
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Encoder of plain-f32 and plain-f16 (decoder: format/codec_plain.h).
+// Encoder of plain-f32 and plain-f16 (decoder: format/codec_plain.h), and of the plain nodes that
+// the packed codecs start from.
 #include <cstring>
 #include <utility>
 
@@ -14,6 +15,9 @@ namespace {
 void store_cut(float cut, float& out) {
   out = cut;
 }
+void store_cut(double cut, double& out) {
+  out = cut;
+}
 void store_cut(float cut, std::uint16_t& out) {
   out = half_toward_zero(cut);
 }
@@ -21,20 +25,20 @@ void store_cut(float cut, std::uint16_t& out) {
 template <class Cut>
 class PlainSink {
  public:
-  using Scalar = float;
+  using Scalar = std::conditional_t<std::is_same_v<Cut, double>, double, float>;
   using Node = PlainNode<Cut>;
 
   // A little more than the two nodes a face that trees with many shrink nodes have; pages that are
   // not used never become resident.
   explicit PlainSink(std::size_t faces) { bytes_.reserve(faces * 9 / 4 * sizeof(Node)); }
 
-  static float storable(float cut) {
+  static Scalar storable(Scalar cut) {
     Cut stored{};
     store_cut(cut, stored);
     return cut_value(stored);
   }
 
-  NodePlace add(NodeKind kind, const Cuts<float>& cuts) {
+  NodePlace add(NodeKind kind, const Cuts<Scalar>& cuts) {
     Node node{};
     node.cutplane = static_cast<std::uint32_t>(cuts.axis);
     node.child[0] = node.child[1] = kPlainNoChild;
@@ -65,22 +69,44 @@ class PlainSink {
   std::vector<std::byte> bytes_;
 };
 
-template <class Cut>
-EncodedNodes encode(const BuildTree& tree, FaceOrder order) {
+template <class Cut, class Bounds>
+EncodedNodes encode(const BuildTree& tree, FaceOrder order, Bounds bounds) {
   PlainSink<Cut> sink((tree.nodes.size() + 1) / 2);
-  EncodedNodes nodes = BinaryEncoder(tree, order, BuildBounds{&tree}, sink).run();
+  EncodedNodes nodes = BinaryEncoder(tree, order, bounds, sink).run();
   nodes.bytes = sink.take();
   return nodes;
 }
 
-}  // namespace
-
-EncodedNodes encode_plain_f32(const BuildTree& tree, FaceOrder order) {
-  return encode<float>(tree, order);
+// What each node of the build tree must hold, without rounding to f32: from the leaves up, which
+// stand behind their parents.
+std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMesh& mesh) {
+  const Frame frame = tree.frame();
+  std::vector<Box<double>> bounds(tree.nodes.size());
+  for (std::size_t i = tree.nodes.size(); i-- > 0;) {
+    const BuildNode& node = tree.nodes[i];
+    if (node.is_leaf()) {
+      bounds[i] = face_bounds(mesh, frame, node.face());
+      continue;
+    }
+    const Box<double>& left = bounds[i + 1];
+    const Box<double>& right = bounds[node.right];
+    for (std::size_t k = 0; k < 3; ++k) {
+      bounds[i].low[k] = std::min(left.low[k], right.low[k]);
+      bounds[i].high[k] = std::max(left.high[k], right.high[k]);
+    }
+  }
+  return bounds;
 }
 
-EncodedNodes encode_plain_f16(const BuildTree& tree, FaceOrder order) {
-  return encode<std::uint16_t>(tree, order);
+}  // namespace
+
+EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
+                          FaceOrder order) {
+  if (cut == PlainCut::kF16) return encode<std::uint16_t>(tree, order, BuildBounds{&tree});
+  if (cut == PlainCut::kF32) return encode<float>(tree, order, BuildBounds{&tree});
+  const std::vector<Box<double>> bounds = bounds_in_double(tree, mesh);
+  const auto at = [&bounds](std::uint32_t node) -> const Box<double>& { return bounds[node]; };
+  return encode<double>(tree, order, at);
 }
 
 }  // namespace boxtree::cooker
