@@ -75,7 +75,7 @@ class PairWalk {
     const bool apart = !boxes_overlap(root.first_box, pose_.hull_in_first(root.second_box)) ||
                        !boxes_overlap(pose_.hull_in_second(root.first_box), root.second_box);
     if (!apart && (root.first_leaf && root.second_leaf)) {
-      test_leaves(root.first, root.second);
+      test_leaves(root);
     } else if (!apart) {
       stack_[size_++] = root;
     }
@@ -164,7 +164,7 @@ class PairWalk {
   // A pair whose boxes overlap: its triangles now, or its children later.
   void meet(const Entry& entry) {
     if (entry.first_leaf && entry.second_leaf) {
-      test_leaves(entry.first, entry.second);
+      test_leaves(entry);
     } else if (size_ == stack_.size()) {
       error_ = Errc::kDepthExceeded;
     } else {
@@ -206,35 +206,29 @@ class PairWalk {
     return true;
   }
 
-  void test_leaves(NodeRef first, NodeRef second) {
-    observer_.leaf_pair(first, second);
-    error_ = first_.leaves().read(first.first, first.second, first_batch_);
-    if (error_ != Errc::kOk) return;
-    error_ = second_.leaves().read(second.first, second.second, second_batch_);
-    if (error_ != Errc::kOk) return;
-    std::array<Triangle, kMaxLeafTriangles> moved;
-    std::array<Box<double>, kMaxLeafTriangles> moved_bounds;
+  void test_leaves(const Entry& entry) {
+    observer_.leaf_pair(entry.first, entry.second);
+    if (!read_first(entry.first) || !read_second(entry.second)) return;
+    // Only what reaches into the other leaf's box can touch anything in it.
+    std::array<std::uint32_t, kMaxLeafTriangles> near;  // triangles of the second leaf
+    std::size_t near_count = 0;
     for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-      const Triangle triangle = second_batch_.triangle(j);
-      for (std::size_t c = 0; c < 3; ++c) {
-        moved[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
-        if (is_within_reach(moved[j].corner[c])) continue;
-        error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
-        return;
-      }
-      moved_bounds[j] = bounds_of(moved[j]);
+      if (boxes_overlap(entry.first_box, moved_bounds_[j])) near[near_count++] = j;
     }
+    if (near_count == 0) return;
+    const Box<double> second_image = pose_.hull_in_first(entry.second_box);
     // A face is reported once: what its second half finds is compared with what the first half did.
     std::uint32_t last_face = kNoFaceId;
     std::uint64_t found = 0;  // bit j: triangle j of the second leaf touches the face at hand
     for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-      const Triangle triangle = first_batch_.triangle(i);
-      const Box<double> bounds = bounds_of(triangle);
       if (first_batch_.face[i] != last_face) found = 0;
       last_face = first_batch_.face[i];
-      for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-        if (!boxes_overlap(bounds, moved_bounds[j]) || was_found(found, j) ||
-            !triangles_intersect(triangle, moved[j])) {
+      if (!boxes_overlap(first_bounds_[i], second_image)) continue;
+      const Triangle triangle = first_batch_.triangle(i);
+      for (std::size_t n = 0; n < near_count; ++n) {
+        const std::uint32_t j = near[n];
+        if (!boxes_overlap(first_bounds_[i], moved_bounds_[j]) || was_found(found, j) ||
+            !triangles_intersect(triangle, moved_[j])) {
           continue;
         }
         found |= std::uint64_t{1} << j;
@@ -243,6 +237,39 @@ class PairWalk {
         if (stopped_) return;
       }
     }
+  }
+
+  // Leaves are often met several times in a row; what was read of the last one stays. False with
+  // error_ set on corrupt bytes.
+  [[nodiscard]] bool read_first(NodeRef leaf) {
+    if (leaf == first_read_) return true;
+    first_read_ = kNone;
+    error_ = first_.leaves().read(leaf.first, leaf.second, first_batch_);
+    if (error_ != Errc::kOk) return false;
+    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+      first_bounds_[i] = bounds_of(first_batch_.triangle(i));
+    }
+    first_read_ = leaf;
+    return true;
+  }
+
+  [[nodiscard]] bool read_second(NodeRef leaf) {
+    if (leaf == second_read_) return true;
+    second_read_ = kNone;
+    error_ = second_.leaves().read(leaf.first, leaf.second, second_batch_);
+    if (error_ != Errc::kOk) return false;
+    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+      const Triangle triangle = second_batch_.triangle(j);
+      for (std::size_t c = 0; c < 3; ++c) {
+        moved_[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
+        if (is_within_reach(moved_[j].corner[c])) continue;
+        error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
+        return false;
+      }
+      moved_bounds_[j] = bounds_of(moved_[j]);
+    }
+    second_read_ = leaf;
+    return true;
   }
 
   // Whether triangle j of the second leaf, or the other half of its face, was found already. Halves
@@ -267,8 +294,14 @@ class PairWalk {
   bool stopped_ = false;
   PairSide<A> first_side_;
   PairSide<B> second_side_;
+  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
+  NodeRef first_read_ = kNone;  // the leaf that first_batch_ holds
+  NodeRef second_read_ = kNone;
   TriangleBatch first_batch_;
   TriangleBatch second_batch_;
+  std::array<Box<double>, kMaxLeafTriangles> first_bounds_;
+  std::array<Triangle, kMaxLeafTriangles> moved_;  // the second leaf in the first tree's space
+  std::array<Box<double>, kMaxLeafTriangles> moved_bounds_;
   std::array<Entry, kPairStack> stack_;
   std::size_t size_ = 0;
 };

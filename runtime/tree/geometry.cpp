@@ -55,28 +55,48 @@ Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
+  if (mesh_.positions_f64) {
+    return mesh_.corner_bytes == 2 ? read_as<double, std::uint16_t>(first, count, out)
+                                   : read_as<double, std::uint32_t>(first, count, out);
+  }
+  return mesh_.corner_bytes == 2 ? read_as<float, std::uint16_t>(first, count, out)
+                                 : read_as<float, std::uint32_t>(first, count, out);
+}
+
+template <class Scalar, class Corner>
+Errc LeafReader::read_as(std::uint32_t first, std::uint32_t count,
+                         TriangleBatch& out) const noexcept {
+  constexpr auto kMissing = static_cast<Corner>(kMissingCorner);
+  const std::uint32_t corners_per_face = mesh_.corners_per_face;
+  std::uint32_t triangles = 0;
   for (std::uint32_t f = first; f < first + count; ++f) {
     const std::uint32_t stored = order_ == nullptr ? f : load_number(order_, order_bytes_, f);
     if (stored >= mesh_.face_count) return Errc::kFaceOutOfRange;
-    const std::array<std::uint32_t, 4> corner = mesh_.face(stored);
-    const std::uint32_t corner_count = corner[3] == kMissingCorner ? 3 : 4;
-    if (out.count + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
+    const std::byte* const face =
+        mesh_.corners + std::size_t{stored} * corners_per_face * sizeof(Corner);
+    const std::uint32_t corner_count =
+        corners_per_face == 4 && load<Corner>(face, 3) != kMissing ? 4 : 3;
+    if (triangles + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
     std::array<Eigen::Vector3d, 4> position;
-    for (std::size_t i = 0; i < corner_count; ++i) {
-      if (corner[i] >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
-      position[i] = frame_.to_tree(mesh_.position(corner[i]));
+    for (std::uint32_t i = 0; i < corner_count; ++i) {
+      const std::uint32_t vertex = load<Corner>(face, i);
+      if (vertex >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
+      const auto p = load<std::array<Scalar, 3>>(mesh_.positions +
+                                                 std::size_t{vertex} * mesh_.position_stride);
+      position[i] = frame_.to_tree({p[0], p[1], p[2]});
       if (!is_within_reach(position[i])) return Errc::kVertexNotFinite;
     }
-    for (std::size_t second = 1; second + 1 < corner_count; ++second) {
+    for (std::uint32_t second = 1; second + 1 < corner_count; ++second) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         const auto k = static_cast<Eigen::Index>(axis);
-        out.coordinate[0][axis][out.count] = position[0][k];
-        out.coordinate[1][axis][out.count] = position[second][k];
-        out.coordinate[2][axis][out.count] = position[second + 1][k];
+        out.coordinate[0][axis][triangles] = position[0][k];
+        out.coordinate[1][axis][triangles] = position[second][k];
+        out.coordinate[2][axis][triangles] = position[second + 1][k];
       }
-      out.face[out.count++] = f;
+      out.face[triangles++] = f;
     }
   }
+  out.count = triangles;
   return Errc::kOk;
 }
 

@@ -122,6 +122,11 @@ class LeafReader {
                           TriangleBatch& out) const noexcept;
 
  private:
+  // Scalar of the positions, type of the corner numbers.
+  template <class Scalar, class Corner>
+  [[nodiscard]] Errc read_as(std::uint32_t first, std::uint32_t count,
+                             TriangleBatch& out) const noexcept;
+
   MeshArrays mesh_;
   Frame frame_;
   const std::byte* order_ = nullptr;  // or null: the mesh is in the order of the tree
