@@ -31,7 +31,7 @@ class ExactPositions {
 
   /// The position behind what assimp read; without any, and for what is not finite, that itself.
   [[nodiscard]] Eigen::Vector3d operator[](const aiVector3D& read) const {
-    const Eigen::Vector3d itself(read.x, read.y, read.z);
+    Eigen::Vector3d itself(read.x, read.y, read.z);
     if (empty() || !itself.allFinite()) return itself;
     const auto number = static_cast<std::size_t>(read.x) + (static_cast<std::size_t>(read.y) << 24);
     return number < positions_.size() ? positions_[number] : itself;

@@ -185,7 +185,8 @@ bool number_binary(std::string& file, const Layout& layout, ExactPositions& exac
     stride += size_of(property.type);
   }
   const std::size_t first = layout.body + layout.bytes_before;
-  if (first > file.size() || layout.vertices > (file.size() - first) / stride) return false;
+  if (stride == 0 || first > file.size()) return false;
+  if (layout.vertices > (file.size() - first) / stride) return false;
   const bool swapped =
       (layout.form == Layout::Form::kBigEndian) == (std::endian::native == std::endian::little);
   for (std::size_t i = 0; i < layout.vertices; ++i) {

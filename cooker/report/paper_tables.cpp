@@ -266,7 +266,7 @@ PageSection times(const PaperReport& report) {
       for (const auto& [library, variant] : kVariants) {
         const PeerRow* time = find(report, mesh.mesh, library, variant, prefix + "us");
         if (time == nullptr) continue;
-        const auto get = [&](const char* what) {
+        const auto get = [&, library = library, variant = variant](const char* what) {
           return find(report, mesh.mesh, library, variant, prefix + what);
         };
         const std::string codec = variant;
@@ -309,7 +309,7 @@ PageSection cache_misses(const PaperReport& report) {
     const PeerRow* original =
         find(report, mesh.mesh, "original", "pointers", "tumble_all_level2_misses");
     for (const auto& [library, variant] : kVariants) {
-      const auto get = [&](const char* metric) {
+      const auto get = [&, library = library, variant = variant](const char* metric) {
         return find(report, mesh.mesh, library, variant, metric);
       };
       const PeerRow* level2 = get("tumble_all_level2_misses");

@@ -221,7 +221,7 @@ void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder) {
   }
   for (const auto& [name, method] :
        {std::pair("blob-lzma", BlobMethod::kLzma), std::pair("blob-zstd", BlobMethod::kZstd)}) {
-    libraries.push_back({"boxtree", name, [method, builder](const TriangleMesh& mesh) {
+    libraries.push_back({"boxtree", name, [method = method, builder](const TriangleMesh& mesh) {
                            return std::make_unique<BlobSubject>(mesh, method, builder);
                          }});
   }

@@ -22,8 +22,9 @@ Page sample() {
 
 TEST(Page, HtmlEscapesAndHoldsEverything) {
   const std::string html = to_html(sample());
-  for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;", "<td class=\"word\">&lt;b&gt;bunny&lt;/b&gt;</td>",
-                           "<td>12</td>", "<td>3.5</td>", "<svg", "</svg>"}) {
+  for (const char* part : {"T &amp; &lt;title&gt;", "&quot;x&quot;",
+                           "<td class=\"word\">&lt;b&gt;bunny&lt;/b&gt;</td>", "<td>12</td>",
+                           "<td>3.5</td>", "<svg", "</svg>"}) {
     EXPECT_NE(html.find(part), std::string::npos) << part;
   }
   EXPECT_EQ(html.find("<b>"), std::string::npos);
