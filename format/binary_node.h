@@ -40,16 +40,4 @@ template <class S>
   return child;
 }
 
-/// Appends a child to a set.
-template <class S>
-void add_binary_child(const Box<S>& box, NodeRef ref, bool is_leaf, ChildSet<2, S>& out) noexcept {
-  const std::uint32_t i = out.count++;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.low[k][i] = box.low[k];
-    out.high[k][i] = box.high[k];
-  }
-  out.leaf_mask |= (is_leaf ? 1u : 0u) << i;
-  out.ref[i] = ref;
-}
-
 }  // namespace boxtree

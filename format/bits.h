@@ -3,6 +3,7 @@
 // section 3.2.1).
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -16,6 +17,11 @@ inline constexpr std::size_t kBitPadding = 8;
 /// The `width` low bits of a word, set. Precondition: width <= 64.
 [[nodiscard]] constexpr std::uint64_t low_bits(std::uint32_t width) noexcept {
   return width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
+}
+
+/// Bits that a field for numbers up to `largest` takes; for writers.
+[[nodiscard]] constexpr std::uint8_t field_width(std::uint64_t largest) noexcept {
+  return static_cast<std::uint8_t>(largest == 0 ? 1 : std::bit_width(largest));
 }
 
 /// The field of `width` bits that starts `position` bits after `bytes`; the first bit is the least

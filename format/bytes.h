@@ -39,6 +39,12 @@ template <class T>
   return value;
 }
 
+/// Bytes of each number in an array of numbers up to `largest`: 1, 2 or 4.
+[[nodiscard]] constexpr std::uint8_t number_bytes(std::uint32_t largest) noexcept {
+  if (largest <= 0xff) return 1;
+  return largest <= 0xffff ? 2 : 4;
+}
+
 /// Number `index` of an array of numbers of 1, 2 or 4 bytes each.
 [[nodiscard]] inline std::uint32_t load_number(const std::byte* numbers, std::uint8_t bytes,
                                                std::size_t index) noexcept {

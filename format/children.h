@@ -33,6 +33,19 @@ struct ChildSet {
   std::array<std::array<S, Width>, 3> high;
   std::array<NodeRef, Width> ref;
 
+  /// Appends a child. Precondition: count < kWidth; leaf_mask has no bit at or above count.
+  template <class From>
+  void add(const Box<From>& box, NodeRef child, bool is_leaf_child) noexcept {
+    const std::uint32_t i = count++;
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k][i] = box.low[k];
+      high[k][i] = box.high[k];
+    }
+    leaf_mask |= (is_leaf_child ? 1u : 0u) << i;
+    ref[i] = child;
+  }
+  void clear() noexcept { count = leaf_mask = 0; }
+
   [[nodiscard]] bool is_leaf(std::uint32_t child) const noexcept {
     return ((leaf_mask >> child) & 1u) != 0;
   }

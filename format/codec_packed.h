@@ -144,8 +144,7 @@ struct PackedCodec {
     const std::uint64_t head = read_bits(array.bits, at, 6);  // axis and at most two kinds
     const auto axis = static_cast<std::size_t>(head & 3);
     if (axis > 2) return false;
-    out.count = 0;
-    out.leaf_mask = 0;
+    out.clear();
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint32_t width = layout.number_bits[side];
       const auto number =
@@ -159,7 +158,7 @@ struct PackedCodec {
       }
       Scalar cut;
       if (!read_cut(array.bits, at + layout.cut_at[side], cut)) return false;
-      add_binary_child(child_box(box, axis, side, cut), {number, child_kind}, is_leaf, out);
+      out.add(child_box(box, axis, side, cut), {number, child_kind}, is_leaf);
     }
     return true;
   }

@@ -37,6 +37,14 @@ struct PlainNode {
   [[nodiscard]] PlainChild kind(std::size_t side) const noexcept {
     return static_cast<PlainChild>((cutplane >> (2 + 2 * side)) & 3u);
   }
+  /// Which of the paper's kinds the node is.
+  [[nodiscard]] NodeKind node_kind() const noexcept {
+    const bool left_leaf = kind(0) == PlainChild::kLeaf;
+    if (kind(1) == PlainChild::kLeaf) {
+      return left_leaf ? NodeKind::kTwoLeaves : NodeKind::kRightLeaf;
+    }
+    return left_leaf ? NodeKind::kLeftLeaf : NodeKind::kNoLeaves;
+  }
 };
 using PlainNodeF32 = PlainNode<float>;
 using PlainNodeF16 = PlainNode<std::uint16_t>;
@@ -85,8 +93,7 @@ struct PlainCodec {
     const Node node = load<Node>(nodes, ref.first);
     const std::uint32_t axis = node.axis();
     if (axis > 2 || (node.cutplane >> 6) != 0) return false;
-    out.count = 0;
-    out.leaf_mask = 0;
+    out.clear();
     for (std::size_t side = 0; side < 2; ++side) {
       const PlainChild kind = node.kind(side);
       if (kind == PlainChild::kNone) continue;
@@ -94,8 +101,8 @@ struct PlainCodec {
       const bool is_leaf = kind == PlainChild::kLeaf;
       const bool is_node = kind == PlainChild::kSubtree && child > ref.first && child < node_count;
       if (!is_leaf && !is_node) return false;
-      add_binary_child(child_box(box, axis, side, cut_value(node.cut[side])),
-                       {child, is_leaf ? 1u : 0u}, is_leaf, out);
+      out.add(child_box(box, axis, side, cut_value(node.cut[side])), {child, is_leaf ? 1u : 0u},
+              is_leaf);
     }
     return true;
   }

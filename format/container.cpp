@@ -138,6 +138,23 @@ const SectionEntry* Container::find(SectionKind kind, std::uint32_t owner) const
   return &sections[*place];
 }
 
+FileHeader make_header(std::span<const SectionEntry> sections, std::uint64_t features,
+                       ChecksumFunction checksum) noexcept {
+  const std::uint64_t end =
+      sections.empty() ? sizeof(FileHeader) : sections.back().offset + sections.back().size;
+  FileHeader header{};
+  header.magic = kMagic;
+  header.version_major = kVersionMajor;
+  header.version_minor = kVersionMinor;
+  header.header_bytes = sizeof(FileHeader);
+  header.file_bytes = align_up(end, kSectionAlignment);
+  header.incompatible_features = features;
+  header.section_count = static_cast<std::uint32_t>(sections.size());
+  const Bytes before = std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, checksum));
+  header.checksum = checksum(before, std::as_bytes(sections));
+  return header;
+}
+
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
                                   std::uint64_t known_features) {
   if (file.size() < sizeof(FileHeader)) {

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 #include <type_traits>
 #include <vector>
@@ -87,6 +88,11 @@ struct Container {
 
 /// Computes XXH3-64; handed in because format/ links nothing.
 using ChecksumFunction = std::uint64_t (*)(Bytes head, Bytes tail);
+
+/// The header of a file with these sections, the last of which ends it; `features` are its
+/// incompatible ones. For writers.
+[[nodiscard]] FileHeader make_header(std::span<const SectionEntry> sections, std::uint64_t features,
+                                     ChecksumFunction checksum) noexcept;
 
 /// Reads header and section table and checks all that they claim: magic, version, features, size,
 /// checksum, and that sections are known or optional, aligned, ascending, apart and inside.

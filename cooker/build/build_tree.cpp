@@ -97,7 +97,7 @@ class Recursion {
     BuildNode& here = nodes_[node];
     const std::size_t count = last - first;
     const std::span<FaceBox> faces = faces_.subspan(first, count);
-    Box<float> bounds = empty_box();
+    Box<float> bounds = empty_box<float>();
     for (const FaceBox& face : faces) expand(bounds, face.box);
     if (count <= leaf_faces_) {
       here = make_leaf(faces, first, bounds);

@@ -64,14 +64,14 @@ std::array<Binning, 3> binnings(std::span<const FaceBox> faces) {
 }
 
 struct Bin {
-  Box<float> bounds = empty_box();
+  Box<float> bounds = empty_box<float>();
   std::size_t count = 0;
 };
 
 Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
   std::array<double, kBins> right_cost;  // of bins [i, kBins)
   std::array<std::size_t, kBins> right_count;
-  Box<float> box = empty_box();
+  Box<float> box = empty_box<float>();
   std::size_t count = 0;
   for (std::size_t i = kBins; i-- > 1;) {
     expand(box, bins[i].bounds);
@@ -80,7 +80,7 @@ Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
     right_cost[i] = count == 0 ? 0 : half_area(box) * static_cast<double>(count);
   }
   Candidate best;
-  box = empty_box();
+  box = empty_box<float>();
   count = 0;
   for (std::size_t i = 1; i < kBins; ++i) {
     expand(box, bins[i - 1].bounds);
@@ -158,12 +158,12 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
   for (std::size_t k = 0; k < 3; ++k) {
     sort_by_centre(faces, k);
     std::array<double, kSweepLimit> right_cost;
-    Box<float> box = empty_box();
+    Box<float> box = empty_box<float>();
     for (std::size_t i = n; i-- > 1;) {
       expand(box, faces[i].box);
       right_cost[i] = half_area(box) * static_cast<double>(n - i);
     }
-    box = empty_box();
+    box = empty_box<float>();
     for (std::size_t i = 1; i < n; ++i) {
       expand(box, faces[i - 1].box);
       const Candidate here{half_area(box) * static_cast<double>(i) + right_cost[i],
@@ -189,12 +189,12 @@ std::optional<Split> sweep_units(std::span<FaceBox> faces, std::size_t unit) {
   for (std::size_t k = 0; k < 3; ++k) {
     sort_by_centre(faces, k);
     std::array<double, kUnitSweepLimit / kLeafFaces> right_cost;  // of faces from unit * i on
-    Box<float> box = empty_box();
+    Box<float> box = empty_box<float>();
     for (std::size_t i = n; i-- > unit;) {
       expand(box, faces[i].box);
       if (i % unit == 0) right_cost[i / unit] = half_area(box) * leaves_of(n - i);
     }
-    box = empty_box();
+    box = empty_box<float>();
     for (std::size_t i = 1; i < n; ++i) {
       expand(box, faces[i - 1].box);
       if (i % unit != 0) continue;

@@ -2,28 +2,13 @@
 // What the two builders share: a split rule is a function from a set of faces to two smaller sets.
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
-#include <limits>
 #include <optional>
 #include <span>
 
 #include <boxtree/cooker/build/build_tree.h>
 
 namespace boxtree::cooker {
-
-/// A box that contains nothing; grows by expand().
-[[nodiscard]] inline Box<float> empty_box() {
-  constexpr float kInfinity = std::numeric_limits<float>::infinity();
-  return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-}
-
-inline void expand(Box<float>& box, const Box<float>& by) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.low[k] = std::min(box.low[k], by.low[k]);
-    box.high[k] = std::max(box.high[k], by.high[k]);
-  }
-}
 
 /// Half the surface of a box, in double so that thin boxes do not round to nothing.
 [[nodiscard]] inline double half_area(const Box<float>& box) {

@@ -41,16 +41,11 @@ void append_position(const Positions& positions, std::size_t vertex, std::vector
   }
 }
 
-std::uint8_t bytes_for(std::uint32_t largest) {
-  if (largest <= 0xff) return 1;
-  return largest <= 0xffff ? 2 : 4;
-}
-
 void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                      EncodedGeometry& out) {
   std::uint32_t largest = 0;
   for (const std::uint32_t face : order) largest = std::max(largest, mesh.face_id(face));
-  out.face_id_bytes = bytes_for(largest);
+  out.face_id_bytes = number_bytes(largest);
   out.face_ids.reserve(order.size() * out.face_id_bytes);
   for (const std::uint32_t face : order) {
     append_number(out.face_ids, mesh.face_id(face), out.face_id_bytes);

@@ -82,7 +82,7 @@ class Walk {
   }
 
   Box<double> visit_node(const Node& node, std::uint32_t depth) {
-    Box<double> content = nothing();
+    Box<double> content = empty_box<double>();
     if (depth == kMaxDepth) {
       add(Errc::kDepthExceeded, "node " + std::to_string(node.ref.first) + " is below depth " +
                                     std::to_string(kMaxDepth));
@@ -98,7 +98,7 @@ class Walk {
     if (children.count == 1) ++proof_.certificate.shrink_count;
     if (depth < task_levels_) return walk_in_tasks(children, depth + 1);
     for (std::uint32_t i = 0; i < children.count; ++i) {
-      grow(content, walk(children.child[i], depth + 1));
+      expand(content, walk(children.child[i], depth + 1));
     }
     return content;
   }
@@ -118,9 +118,9 @@ class Walk {
                           parts[i].triangles = below.triangles_;
                         }
                       });
-    Box<double> content = nothing();
+    Box<double> content = empty_box<double>();
     for (std::uint32_t i = 0; i < children.count; ++i) {
-      grow(content, parts[i].content);
+      expand(content, parts[i].content);
       triangles_ += parts[i].triangles;
       add_up(parts[i].proof);
     }
@@ -143,7 +143,7 @@ class Walk {
 
   Box<double> visit_leaf(const Node& leaf) {
     ++proof_.certificate.leaf_count;
-    Box<double> content = nothing();
+    Box<double> content = empty_box<double>();
     if (!in_range(leaf.ref.first, leaf.ref.second, reached_.size())) {
       add(Errc::kFaceOutOfRange, "a leaf names face " + std::to_string(leaf.ref.first) + " of " +
                                      std::to_string(reached_.size()));
@@ -168,7 +168,7 @@ class Walk {
   void visit_triangle(const Triangle& triangle, Box<double>& content) {
     ++triangles_;
     if (is_degenerate(triangle)) ++proof_.certificate.degenerate_count;
-    grow(content, bounds_of(triangle));
+    expand(content, bounds_of(triangle));
   }
 
   void report_unreached() {
@@ -176,18 +176,6 @@ class Walk {
       if (reached_[f].load(std::memory_order_relaxed) != 0) continue;
       ++proof_.missed;
       add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
-    }
-  }
-
-  static Box<double> nothing() {
-    constexpr double kInfinity = std::numeric_limits<double>::infinity();
-    return {{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
-  }
-
-  static void grow(Box<double>& box, const Box<double>& by) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = std::min(box.low[k], by.low[k]);
-      box.high[k] = std::max(box.high[k], by.high[k]);
     }
   }
 

@@ -89,16 +89,7 @@ class Layout {
       table_.push_back(entry);
       at = entry.offset + entry.size;
     }
-    header_ = {};
-    header_.magic = kMagic;
-    header_.version_major = kVersionMajor;
-    header_.version_minor = kVersionMinor;
-    header_.header_bytes = sizeof(FileHeader);
-    header_.file_bytes = align_up(at, kSectionAlignment);
-    header_.section_count = static_cast<std::uint32_t>(table_.size());
-    header_.checksum =
-        checksum(std::as_bytes(std::span(&header_, 1)).first(offsetof(FileHeader, checksum)),
-                 bytes_of(table_));
+    header_ = make_header(table_, 0, checksum);
   }
 
   std::vector<TreeRecord> records_;

@@ -12,12 +12,8 @@
 namespace boxtree {
 namespace {
 
-std::uint64_t container_checksum(Bytes head, Bytes tail) {
-  return checksum(head, tail);
-}
-
 Result<Bytes> blob_section(Bytes file) {
-  const Result<Container> container = check_container(file, container_checksum, kFeatureBlob);
+  const Result<Container> container = check_container(file, checksum, kFeatureBlob);
   if (!container) return container.error();
   if ((container->header.incompatible_features & kFeatureBlob) == 0) {
     return Error{Errc::kFeatureUnsupported, "the file is not a blob: map it with File::open"};
@@ -99,17 +95,7 @@ Result<std::vector<std::byte>> make_blob(Bytes file, BlobMethod method) {
   entry.offset = align_up(sizeof(FileHeader) + sizeof(SectionEntry), kSectionAlignment);
   entry.size = body.size();
   entry.checksum = checksum(body);
-  FileHeader header{};
-  header.magic = kMagic;
-  header.version_major = kVersionMajor;
-  header.version_minor = kVersionMinor;
-  header.header_bytes = sizeof(FileHeader);
-  header.file_bytes = align_up(entry.offset + entry.size, kSectionAlignment);
-  header.incompatible_features = kFeatureBlob;
-  header.section_count = 1;
-  header.checksum =
-      checksum(std::as_bytes(std::span(&header, 1)).first(offsetof(FileHeader, checksum)),
-               std::as_bytes(std::span(&entry, 1)));
+  const FileHeader header = make_header({&entry, 1}, kFeatureBlob, checksum);
   std::vector<std::byte> out(header.file_bytes);
   std::memcpy(out.data(), &header, sizeof(header));
   std::memcpy(out.data() + sizeof(header), &entry, sizeof(entry));

@@ -7,14 +7,6 @@
 #include <boxtree/runtime/file/file.h>
 
 namespace boxtree {
-namespace {
-
-std::uint64_t header_checksum(Bytes head, Bytes tail) {
-  return checksum(head, tail);
-}
-
-}  // namespace
-
 Result<File> File::open(const std::filesystem::path& path, const OpenOptions& options) {
   Result<Mapping> mapping = options.copy ? Mapping::copy(path) : Mapping::map(path);
   if (!mapping) return mapping.error();
@@ -37,7 +29,7 @@ Result<File> File::open(Bytes memory, const OpenOptions& options) {
 }
 
 Result<File> File::check(File file, const OpenOptions& options) {
-  Result<Container> container = check_container(file.bytes_, header_checksum);
+  Result<Container> container = check_container(file.bytes_, checksum);
   if (!container) return container.error();
   file.container_ = std::move(*container);
 

@@ -24,16 +24,10 @@ struct ErasedCodec {
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
     NodeChildren children;
     if (tree->expand({box, ref, false}, children) != Errc::kOk) return false;
-    out.count = children.count;
-    out.leaf_mask = 0;
+    out.clear();
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const Node& child = children.child[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        out.low[k][i] = child.box.low[k];
-        out.high[k][i] = child.box.high[k];
-      }
-      out.ref[i] = child.ref;
-      out.leaf_mask |= (child.is_leaf ? 1u : 0u) << i;
+      out.add(child.box, child.ref, child.is_leaf);
     }
     return true;
   }

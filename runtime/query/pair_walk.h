@@ -29,13 +29,8 @@ struct PairSide {
   std::array<Box<double>, C::Children::kWidth> image;  // in the other tree's space
 
   void set_leaf(const Box<typename C::Scalar>& box, NodeRef ref) noexcept {
-    children.count = 1;
-    children.leaf_mask = 1;
-    children.ref[0] = ref;
-    for (std::size_t k = 0; k < 3; ++k) {
-      children.low[k][0] = box.low[k];
-      children.high[k][0] = box.high[k];
-    }
+    children.clear();
+    children.add(box, ref, true);
   }
 };
 
@@ -118,7 +113,6 @@ class PairWalk {
   // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
   // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
   void descend_one(const Entry& entry) {
-    const Box<double> first_image = pose_.hull_in_second(entry.first_box);
     const Box<double> second_image = pose_.hull_in_first(entry.second_box);
     if (!entry.first_leaf &&
         (entry.second_leaf || extent(entry.first_box) > extent(second_image))) {
@@ -138,6 +132,7 @@ class PairWalk {
       }
       return;
     }
+    const Box<double> first_image = pose_.hull_in_second(entry.first_box);
     auto& children = second_side_.children;
     if (!second_codec_.expand(entry.second, entry.second_box, children)) {
       error_ = Errc::kNodeCorrupt;

@@ -19,12 +19,7 @@ decltype(auto) with_codec(const Tree& tree, Visitor&& visitor) {
 /// rounded; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
 template <class S>
 [[nodiscard]] Box<S> root_box(const Tree& tree) noexcept {
-  Box<S> box;
-  for (std::size_t k = 0; k < 3; ++k) {
-    box.low[k] = static_cast<S>(tree.record().root_low[k]);
-    box.high[k] = static_cast<S>(tree.record().root_high[k]);
-  }
-  return box;
+  return box_cast<S>(Box<double>{tree.record().root_low, tree.record().root_high});
 }
 
 }  // namespace boxtree

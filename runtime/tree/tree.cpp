@@ -135,22 +135,12 @@ Node Tree::root() const noexcept {
 Errc Tree::expand(const Node& node, NodeChildren& out) const noexcept {
   out.count = 0;
   return with_codec(*this, [&]<class C>(const C& codec) {
-    using S = typename C::Scalar;
-    Box<S> box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      box.low[k] = static_cast<S>(node.box.low[k]);
-      box.high[k] = static_cast<S>(node.box.high[k]);
-    }
     typename C::Children children;
-    if (!codec.expand(node.ref, box, children)) return Errc::kNodeCorrupt;
+    if (!codec.expand(node.ref, box_cast<typename C::Scalar>(node.box), children)) {
+      return Errc::kNodeCorrupt;
+    }
     for (std::uint32_t i = 0; i < children.count; ++i) {
-      Node& child = out.child[i];
-      for (std::size_t k = 0; k < 3; ++k) {
-        child.box.low[k] = children.low[k][i];
-        child.box.high[k] = children.high[k][i];
-      }
-      child.ref = children.ref[i];
-      child.is_leaf = children.is_leaf(i);
+      out.child[i] = {box_cast<double>(children.box(i)), children.ref[i], children.is_leaf(i)};
     }
     out.count = children.count;
     return Errc::kOk;
