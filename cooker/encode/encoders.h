@@ -7,6 +7,9 @@
 
 namespace boxtree::cooker {
 
+/// The paper's threshold: an empty slab is cut off when it holds at least this share of the box.
+inline constexpr double kShrinkShare = 0.15;
+
 /// How plain nodes hold their cuts.
 enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 

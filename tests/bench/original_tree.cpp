@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/cooker/encode/binary_encoder.h>
+#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/format/binary_node.h>
+#include <boxtree/format/limits.h>
 
 namespace boxtree::bench {
 namespace {
