@@ -6,42 +6,11 @@
 #include <utility>
 
 #include <boxtree/cooker/encode/encoders.h>
+#include <boxtree/cooker/encode/walked_nodes.h>
 #include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
 
 namespace boxtree::cooker {
 namespace {
-
-std::uint8_t width_of(std::uint64_t largest) {
-  return static_cast<std::uint8_t>(std::max(1, static_cast<int>(std::bit_width(largest))));
-}
-
-// The nodes of a binary tree in the order of the walk, cuts in the scalar of the codec, and what
-// packing needs to know of them: the kind of each and its number among those of its kind.
-template <class Cut>
-struct WalkedNodes {
-  std::span<const std::byte> bytes;
-  std::vector<std::uint32_t> number;
-  std::array<std::uint32_t, kNodeKinds> kind_count{};
-
-  explicit WalkedNodes(std::span<const std::byte> plain)
-      : bytes(plain), number(plain.size() / sizeof(PlainNode<Cut>)) {
-    for (std::size_t i = 0; i < number.size(); ++i) {
-      number[i] = kind_count[static_cast<std::size_t>(kind_of((*this)[i]))]++;
-    }
-  }
-  [[nodiscard]] std::size_t size() const { return number.size(); }
-  [[nodiscard]] PlainNode<Cut> operator[](std::size_t i) const {
-    return load<PlainNode<Cut>>(bytes.data(), i);
-  }
-  [[nodiscard]] static NodeKind kind_of(const PlainNode<Cut>& node) {
-    const bool left_leaf = node.kind(0) == PlainChild::kLeaf;
-    if (node.kind(1) == PlainChild::kLeaf) {
-      return left_leaf ? NodeKind::kTwoLeaves : NodeKind::kRightLeaf;
-    }
-    return left_leaf ? NodeKind::kLeftLeaf : NodeKind::kNoLeaves;
-  }
-};
 
 // Ascending and each once. A cut is never negative, and -0 cannot arise from a difference.
 std::vector<float> unique_cuts(const WalkedNodes<float>& nodes) {
@@ -85,7 +54,7 @@ std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& h
   }
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const PlainNode<Cut> node = nodes[i];
-    const auto kind = static_cast<std::size_t>(WalkedNodes<Cut>::kind_of(node));
+    const auto kind = static_cast<std::size_t>(node.node_kind());
     const PackedLayout& layout = layouts[kind];
     std::byte* const array = bytes.data() + places.array_at[kind];
     const std::uint64_t at = std::uint64_t{nodes.number[i]} * layout.bits;
@@ -97,7 +66,7 @@ std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& h
       if (node.kind(side) == PlainChild::kSubtree) {
         number = nodes.number[child];
         write_bits(array, at + layout.kind_at[side], 2,
-                   static_cast<std::uint64_t>(WalkedNodes<Cut>::kind_of(nodes[child])));
+                   static_cast<std::uint64_t>(nodes[child].node_kind()));
       }
       write_bits(array, at + layout.number_at[side], layout.number_bits[side], number);
       write_bits(array, at + layout.cut_at[side], header.cut_bits,
@@ -113,21 +82,20 @@ constexpr std::uint64_t kEstimatedNodesPerFace = 3;
 
 std::uint8_t number_width(std::uint64_t exact_largest, std::uint64_t estimated_largest,
                           FieldWidths widths) {
-  const std::uint8_t exact = width_of(exact_largest);
+  const std::uint8_t exact = field_width(exact_largest);
   if (widths == FieldWidths::kExact) return exact;
-  const std::uint8_t estimated = width_of(estimated_largest);
+  const std::uint8_t estimated = field_width(estimated_largest);
   return estimated >= exact && estimated <= 32 ? estimated : exact;
 }
 
-PackedHeader header_of(const std::array<std::uint32_t, kNodeKinds>& counts, std::uint64_t faces,
-                       FieldWidths widths) {
+template <class Cut>
+PackedHeader header_of(const WalkedNodes<Cut>& nodes, std::uint64_t faces, FieldWidths widths) {
   PackedHeader header{};
-  header.node_count = counts;
+  header.node_count = nodes.kind_count;
   // The largest number is one below the largest count, so that count itself fits: all bits set is
   // never a node and can mark a missing child.
-  const std::uint64_t most = *std::max_element(counts.begin(), counts.end());
-  header.node_bits = number_width(most, kEstimatedNodesPerFace * faces, widths);
-  header.face_bits = width_of(faces - 1);
+  header.node_bits = number_width(nodes.largest_count(), kEstimatedNodesPerFace * faces, widths);
+  header.face_bits = field_width(faces - 1);
   return header;
 }
 
@@ -152,7 +120,7 @@ EncodedNodes pack_walked(const EncodedNodes& plain, CodecId codec, FieldWidths w
   nodes.codec = codec;
   if (nodes.root != RootKind::kSubtree) return nodes;
   const WalkedNodes<Cut> walked(plain.bytes);
-  PackedHeader header = header_of(walked.kind_count, nodes.leaf_count, widths);
+  PackedHeader header = header_of(walked, nodes.leaf_count, widths);
   std::vector<float> table;
   header.cut_bits = 8 * sizeof(Cut);
   if constexpr (std::is_same_v<Cut, float>) {
@@ -162,7 +130,7 @@ EncodedNodes pack_walked(const EncodedNodes& plain, CodecId codec, FieldWidths w
       choose_table(header, table, nodes.leaf_count, widths);
     }
   }
-  header.root_kind = static_cast<std::uint8_t>(WalkedNodes<Cut>::kind_of(walked[0]));
+  header.root_kind = static_cast<std::uint8_t>(walked[0].node_kind());
   nodes.bytes = pack(walked, header, table);
   nodes.kind_count = walked.kind_count;
   return nodes;

@@ -25,7 +25,7 @@ struct CountedSizes {
   double one_cut_shrink = 0;  // shrink nodes as two kinds of their own, one number and one cut
 };
 
-/// `nodes` is a tree in codec plain-f32 with a subtree for a root; `faces` its faces.
-[[nodiscard]] CountedSizes count_sizes(const EncodedNodes& nodes, std::uint32_t faces);
+/// `tree` is one in codec plain-f32 with a subtree for a root; `faces` its faces.
+[[nodiscard]] CountedSizes count_sizes(const EncodedNodes& tree, std::uint32_t faces);
 
 }  // namespace boxtree::cooker
