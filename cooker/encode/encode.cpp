@@ -26,19 +26,6 @@ EncodedNodes encode_with(const BuildTree& tree, const SourceMesh& mesh, CodecId 
 
 }  // namespace
 
-EncodedNodes EncodedNodes::without_bytes() const {
-  EncodedNodes nodes;
-  nodes.codec = codec;
-  nodes.root = root;
-  nodes.root_box = root_box;
-  nodes.node_count = node_count;
-  nodes.leaf_count = leaf_count;
-  nodes.shrink_count = shrink_count;
-  nodes.depth = depth;
-  nodes.visits = visits;
-  return nodes;
-}
-
 EncodedNodes encode_nodes(const BuildTree& tree, const SourceMesh& mesh, CodecId codec,
                           FaceOrder order, FieldWidths widths) {
   EncodedNodes nodes = encode_with(tree, mesh, codec, order, widths);

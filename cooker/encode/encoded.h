@@ -24,10 +24,9 @@ struct ExpectedVisits {
   double pair = 0;
 };
 
-/// The nodes of one tree in one codec.
-struct EncodedNodes {
+/// What is known of the nodes of one tree in one codec, beside their bytes.
+struct NodeFacts {
   CodecId codec{};
-  std::vector<std::byte> bytes;
   RootKind root = RootKind::kEmpty;
   Box<double> root_box{};  // tree space
   std::uint32_t node_count = 0;
@@ -35,14 +34,15 @@ struct EncodedNodes {
   std::uint32_t shrink_count = 0;
   std::uint32_t depth = 0;
   ExpectedVisits visits;
+};
+
+struct EncodedNodes : NodeFacts {
+  std::vector<std::byte> bytes;
   // Of packed codecs: nodes of each NodeKind, and different cuts (dedup).
   std::array<std::uint32_t, kNodeKinds> kind_count{};
   std::size_t unique_cuts = 0;
   // Of wide codecs: source faces in the tree's own order, which geometry must follow.
   std::vector<std::uint32_t> face_order;
-
-  /// All but the bytes.
-  [[nodiscard]] EncodedNodes without_bytes() const;
 };
 
 /// Number that a leaf stores for a face: its position in tree order, or in the source.

@@ -116,7 +116,7 @@ void choose_table(PackedHeader& header, std::vector<float>& table, std::uint64_t
 
 template <class Cut>
 EncodedNodes pack_walked(const EncodedNodes& plain, CodecId codec, FieldWidths widths) {
-  EncodedNodes nodes = plain.without_bytes();
+  EncodedNodes nodes{static_cast<const NodeFacts&>(plain)};
   nodes.codec = codec;
   if (nodes.root != RootKind::kSubtree) return nodes;
   const WalkedNodes<Cut> walked(plain.bytes);
