@@ -105,7 +105,8 @@ class BinaryTrials {
     for (const CodecInfo& codec : kCodecs) {
       if (is_wide(codec.id) || !is_wanted(codec.id, mesh_, options_)) continue;
       EncodedTree& tree = cooked_.tree;
-      EncodedNodes best = std::exchange(tree.nodes, nodes_of(codec.id));
+      EncodedNodes best =
+          std::exchange(tree.nodes, pack_nodes(*plain_of(codec.id), codec.id, options_.widths));
       if (!enter(tree, mesh_, options_, cooked_)) tree.nodes = std::move(best);
     }
   }
@@ -142,16 +143,6 @@ class BinaryTrials {
     return plain_[static_cast<std::size_t>(plain_cut_of(codec))];
   }
 
-  EncodedNodes nodes_of(CodecId codec) {
-    const EncodedNodes& plain = *plain_of(codec);
-    if (codec != CodecId::kPlainF32 && codec != CodecId::kPlainF16) {
-      return pack_nodes(plain, codec, options_.widths);
-    }
-    EncodedNodes nodes = plain;
-    nodes.codec = codec;
-    return nodes;
-  }
-
   const SourceMesh& mesh_;
   const CookOptions& options_;
   CookedTree& cooked_;
@@ -164,7 +155,7 @@ void try_wide(const SourceMesh& mesh, const CookOptions& options, CookedTree& co
   for (const CodecInfo& codec : kCodecs) {
     if (!is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
     EncodedTree tree = without_bytes(mesh, build);
-    tree.nodes = encode_nodes(build, mesh, codec.id, FaceOrder::kTree, options.widths);
+    tree.nodes = encode_wide(build, codec.id);
     const std::vector<std::uint32_t> order = std::move(tree.nodes.face_order);
     tree.geometry = options.geometry == GeometryId::kExternal
                         ? encode_external_geometry(mesh, order)

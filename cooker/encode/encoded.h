@@ -54,13 +54,6 @@ enum class FieldWidths : std::uint8_t {
   kEstimated,  // from the number of faces alone, as a builder in one pass must
 };
 
-/// Encodes with codec `codec`. Conservative: every decoded box contains what is below it. `mesh` is
-/// the source of the tree; `widths` matters to packed codecs only, `order` to binary ones only.
-/// Precondition: wide codecs get a tree with full leaves, others one with a face a leaf.
-[[nodiscard]] EncodedNodes encode_nodes(const BuildTree& tree, const SourceMesh& mesh,
-                                        CodecId codec, FaceOrder order,
-                                        FieldWidths widths = FieldWidths::kExact);
-
 /// Vertices, corners and ids in the form of their sections. Empty for geometry left external.
 struct EncodedGeometry {
   GeometryId geometry = GeometryId::kExact;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The encoders behind encode_nodes() in encoded.h. Binary codecs start from plain nodes: one walk
-// of the build tree for each scalar of the cuts, packed in as many ways as are wanted.
+// From build trees to nodes. Conservative: every decoded box contains what is below it. Binary
+// codecs start from plain nodes: one walk of the build tree for each scalar of the cuts, packed in
+// as many ways as are wanted.
 #pragma once
 
 #include <boxtree/cooker/encode/encoded.h>
@@ -19,17 +20,18 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
   return codec == CodecId::kPackedF64 ? PlainCut::kF64 : PlainCut::kF32;
 }
 
-/// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. The mesh
-/// serves f64 alone: the build tree's own bounds are f32.
+/// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. `mesh` is
+/// the source of the tree and serves f64 alone: the build tree's own bounds are f32. Precondition:
+/// a tree with a face a leaf.
 [[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
                                         FaceOrder order);
 
-/// Packs plain nodes with the cuts of plain_cut_of(codec); codecs packed-f32, packed-f16,
-/// packed-f64 and dedup.
+/// The nodes of a binary codec from plain nodes with the cuts of plain_cut_of(codec). `widths`
+/// matters to packed codecs and dedup alone.
 [[nodiscard]] EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths);
 
-/// Of trees with full leaves. They choose the order of faces: EncodedNodes::face_order.
-[[nodiscard]] EncodedNodes encode_wide8(const BuildTree& full_leaves);
-[[nodiscard]] EncodedNodes encode_wide4(const BuildTree& full_leaves);
+/// Codecs wide8 and wide4. They choose the order of faces: EncodedNodes::face_order. Precondition:
+/// a tree with full leaves.
+[[nodiscard]] EncodedNodes encode_wide(const BuildTree& full_leaves, CodecId codec);
 
 }  // namespace boxtree::cooker

@@ -286,8 +286,11 @@ EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCu
   const auto at = [&tree](std::uint32_t node) -> const Box<float>& {
     return tree.nodes[node].bounds;
   };
-  return cut == PlainCut::kF16 ? encode<std::uint16_t>(tree, order, at)
-                               : encode<float>(tree, order, at);
+  const bool is_f16 = cut == PlainCut::kF16;
+  EncodedNodes nodes =
+      is_f16 ? encode<std::uint16_t>(tree, order, at) : encode<float>(tree, order, at);
+  nodes.codec = is_f16 ? CodecId::kPlainF16 : CodecId::kPlainF32;
+  return nodes;
 }
 
 }  // namespace boxtree::cooker

@@ -199,12 +199,11 @@ EncodedNodes encode(const BuildTree& tree) {
 
 }  // namespace
 
-EncodedNodes encode_wide8(const BuildTree& full_leaves) {
-  return encode<Wide8Node>(full_leaves);
-}
-
-EncodedNodes encode_wide4(const BuildTree& full_leaves) {
-  return encode<Wide4Node>(full_leaves);
+EncodedNodes encode_wide(const BuildTree& full_leaves, CodecId codec) {
+  EncodedNodes nodes =
+      codec == CodecId::kWide8 ? encode<Wide8Node>(full_leaves) : encode<Wide4Node>(full_leaves);
+  nodes.codec = codec;
+  return nodes;
 }
 
 }  // namespace boxtree::cooker

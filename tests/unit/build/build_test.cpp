@@ -9,6 +9,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/runtime/boxtree.h>
 
 #include "tests/support/meshes.h"
@@ -66,7 +67,7 @@ TEST_P(Builders, SameBytesForAnyThreadCount) {
 TEST(PaperBuilder, MergedNodeRatioIsThePapers) {
   for (const SourceMesh& mesh : {test::torus(80, 60), test::sphere(60, 80)}) {
     const EncodedNodes nodes =
-        encode_nodes(build_tree(mesh, Builder::kPaper), mesh, CodecId::kPlainF32, FaceOrder::kTree);
+        encode_plain(build_tree(mesh, Builder::kPaper), mesh, PlainCut::kF32, FaceOrder::kTree);
     const double ratio =
         nodes.node_count / static_cast<double>(nodes.node_count + nodes.leaf_count);
     EXPECT_GT(ratio, 0.60) << mesh.name;
@@ -78,12 +79,12 @@ TEST(PaperBuilder, MergedNodeRatioIsThePapers) {
 TEST_P(Builders, ScaleDoesNotChangeTheTree) {
   const SourceMesh mesh = test::torus(20, 12);
   const EncodedNodes reference =
-      encode_nodes(build_tree(mesh, GetParam()), mesh, CodecId::kPlainF16, FaceOrder::kTree);
+      encode_plain(build_tree(mesh, GetParam()), mesh, PlainCut::kF16, FaceOrder::kTree);
   for (const float scale : {0x1p-100f, 0x1p-20f, 0x1p60f}) {
     SourceMesh scaled = mesh;
     for (float& number : scaled.positions.f32) number *= scale;
     const EncodedNodes nodes =
-        encode_nodes(build_tree(scaled, GetParam()), scaled, CodecId::kPlainF16, FaceOrder::kTree);
+        encode_plain(build_tree(scaled, GetParam()), scaled, PlainCut::kF16, FaceOrder::kTree);
     EXPECT_EQ(nodes.bytes, reference.bytes) << scale;
   }
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/cooker/proof/proof.h>
 #include <boxtree/format/codec_plain.h>
 
@@ -25,8 +26,7 @@ SourceMesh two_triangles() {
 TEST(PlainNodes, OfTwoTrianglesAreAsWorkedOutByHand) {
   const BuildTree build = build_tree(two_triangles(), Builder::kSah);
   EXPECT_EQ(build.scale_exponent, -12);
-  const EncodedNodes nodes =
-      encode_nodes(build, two_triangles(), CodecId::kPlainF32, FaceOrder::kTree);
+  const EncodedNodes nodes = encode_plain(build, two_triangles(), PlainCut::kF32, FaceOrder::kTree);
   EXPECT_EQ(nodes.root_box, (Box<double>{{0, 0, 0}, {16384, 4096, 0}}));
   ASSERT_EQ(nodes.node_count, 1u);
   const auto node = load<PlainNodeF32>(nodes.bytes.data());
@@ -35,8 +35,7 @@ TEST(PlainNodes, OfTwoTrianglesAreAsWorkedOutByHand) {
   EXPECT_EQ(node.child[1], 1u);
   EXPECT_EQ(node.cut[0], 12288.0f);  // 4 - 1 units
   EXPECT_EQ(node.cut[1], 12288.0f);  // 3 - 0 units
-  const EncodedNodes half =
-      encode_nodes(build, two_triangles(), CodecId::kPlainF16, FaceOrder::kTree);
+  const EncodedNodes half = encode_plain(build, two_triangles(), PlainCut::kF16, FaceOrder::kTree);
   EXPECT_EQ(load<PlainNodeF16>(half.bytes.data()).cut[0], 0x7200);  // 1.5 * 2^13
   EXPECT_EQ(half.depth, 1u);
   EXPECT_EQ(half.leaf_count, 2u);
@@ -45,8 +44,7 @@ TEST(PlainNodes, OfTwoTrianglesAreAsWorkedOutByHand) {
 
 TEST(ExpectedVisits, OfTwoTrianglesAreTheRootAlone) {
   const BuildTree build = build_tree(two_triangles(), Builder::kSah);
-  const EncodedNodes nodes =
-      encode_nodes(build, two_triangles(), CodecId::kPlainF32, FaceOrder::kTree);
+  const EncodedNodes nodes = encode_plain(build, two_triangles(), PlainCut::kF32, FaceOrder::kTree);
   EXPECT_EQ(nodes.visits.ray, 1);
   EXPECT_EQ(nodes.visits.box, 1);
   EXPECT_EQ(nodes.visits.pair, 1);

@@ -90,7 +90,8 @@ TEST(WideCollapse, NoChoiceOfChildrenIsCheaper) {
 TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
   for (const SourceMesh& mesh : meshes()) {
     const BuildTree tree = build_full_leaves(mesh);
-    for (const EncodedNodes& nodes : {encode_wide8(tree), encode_wide4(tree)}) {
+    for (const EncodedNodes& nodes :
+         {encode_wide(tree, CodecId::kWide8), encode_wide(tree, CodecId::kWide4)}) {
       std::vector<std::uint32_t> sorted = nodes.face_order;
       std::sort(sorted.begin(), sorted.end());
       std::vector<std::uint32_t> all(mesh.faces.size());
@@ -105,8 +106,8 @@ TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
 TEST(WideEncoder, MoreBitsNeverVisitMore) {
   for (const SourceMesh& mesh : {test::sphere(24, 32), test::terrain(40, 3), test::city(6, 2)}) {
     const BuildTree tree = build_full_leaves(mesh);
-    const ExpectedVisits fine = encode_wide8(tree).visits;
-    const ExpectedVisits coarse = encode_wide4(tree).visits;
+    const ExpectedVisits fine = encode_wide(tree, CodecId::kWide8).visits;
+    const ExpectedVisits coarse = encode_wide(tree, CodecId::kWide4).visits;
     EXPECT_LE(fine.ray, coarse.ray) << mesh.name;
     EXPECT_LE(fine.box, coarse.box) << mesh.name;
     EXPECT_LE(fine.pair, coarse.pair) << mesh.name;
