@@ -107,7 +107,7 @@ class Recursion {
     const Split split = choose_split(faces, bounds, depth_left);
     const std::size_t middle = first + split.left_count;
     const std::size_t left = node + 1;
-    const std::size_t right = node + 2 * leaves_of(split.left_count);
+    const std::size_t right = node + 2 * leaves_of(split.left_count, leaf_faces_);
     const auto build_left = [&] { build(first, middle, left, depth_left - 1); };
     const auto build_right = [&] { build(middle, last, right, depth_left - 1); };
     if (count >= kParallelFaces) {
@@ -131,14 +131,11 @@ class Recursion {
     return {bounds, 0, static_cast<std::uint32_t>(first)};
   }
 
-  [[nodiscard]] std::size_t leaves_of(std::size_t faces) const {
-    return (faces + leaf_faces_ - 1) / leaf_faces_;
-  }
-
   // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
   Split choose_split(std::span<FaceBox> faces, const Box<float>& bounds,
                      std::uint32_t depth_left) const {
-    const auto halvings = static_cast<std::uint32_t>(std::bit_width(leaves_of(faces.size()) - 1));
+    const auto halvings =
+        static_cast<std::uint32_t>(std::bit_width(leaves_of(faces.size(), leaf_faces_) - 1));
     if (halvings < depth_left) {
       if (const std::optional<Split> split = rule_(faces, bounds)) return *split;
     }
@@ -193,7 +190,7 @@ BuildTree build_full_leaves(const SourceMesh& mesh) {
   choose_frame(mesh.positions, tree);
   if (mesh.faces.empty()) return tree;
   std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
-  tree.nodes.resize(2 * ((faces.size() + kLeafFaces - 1) / kLeafFaces) - 1);
+  tree.nodes.resize(2 * leaves_of(faces.size()) - 1);
   Recursion(faces, tree.nodes, split_sah_full_leaves, kLeafFaces)
       .build(0, faces.size(), 0, kMaxSplitDepth);
   tree.order.reserve(faces.size());

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include <boxtree/cooker/import/source_mesh.h>
 #include <boxtree/format/box.h>
+#include <boxtree/format/limits.h>
 #include <boxtree/runtime/tree/frame.h>
 
 namespace boxtree::cooker {
@@ -55,6 +57,12 @@ struct BuildTree {
 
 /// The bounds of a face in tree space, as a reader computes its corners.
 [[nodiscard]] Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face);
+
+/// Leaves that so many faces take when all but the last are full.
+[[nodiscard]] constexpr std::size_t leaves_of(std::size_t faces,
+                                              std::size_t leaf_faces = kLeafFaces) {
+  return (faces + leaf_faces - 1) / leaf_faces;
+}
 
 enum class Builder : std::uint8_t {
   kSah,    // binned surface-area heuristic over box centres

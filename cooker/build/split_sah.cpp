@@ -178,9 +178,9 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
 // Sets up to this size are sorted along each axis and divided at the best multiple of a unit.
 constexpr std::size_t kUnitSweepLimit = 512;
 
-// Leaves that so many faces take: what a query that comes that way has to look at.
-double leaves_of(std::size_t faces) {
-  return static_cast<double>((faces + kLeafFaces - 1) / kLeafFaces);
+// What a query that comes to so many faces has to look at: their leaves.
+double cost_of(std::size_t faces) {
+  return static_cast<double>(leaves_of(faces));
 }
 
 std::optional<Split> sweep_units(std::span<FaceBox> faces, std::size_t unit) {
@@ -192,14 +192,14 @@ std::optional<Split> sweep_units(std::span<FaceBox> faces, std::size_t unit) {
     Box<float> box = empty_box<float>();
     for (std::size_t i = n; i-- > unit;) {
       expand(box, faces[i].box);
-      if (i % unit == 0) right_cost[i / unit] = half_area(box) * leaves_of(n - i);
+      if (i % unit == 0) right_cost[i / unit] = half_area(box) * cost_of(n - i);
     }
     box = empty_box<float>();
     for (std::size_t i = 1; i < n; ++i) {
       expand(box, faces[i - 1].box);
       if (i % unit != 0) continue;
-      const Candidate here{half_area(box) * leaves_of(i) + right_cost[i / unit],
-                           imbalance(i, n - i), k, i};
+      const Candidate here{half_area(box) * cost_of(i) + right_cost[i / unit], imbalance(i, n - i),
+                           k, i};
       if (here.improves_on(best)) best = here;
     }
   }

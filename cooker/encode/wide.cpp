@@ -80,7 +80,7 @@ template <class Node>
 class WideEncoder {
  public:
   explicit WideEncoder(const BuildTree& tree) : tree_(tree), collapse_(tree, kNodeCost) {
-    leaf_count_ = static_cast<std::uint32_t>((tree.order.size() + kLeafFaces - 1) / kLeafFaces);
+    leaf_count_ = static_cast<std::uint32_t>(leaves_of(tree.order.size()));
     has_partial_leaf_ = tree.order.size() % kLeafFaces != 0;
     face_order_.resize(tree.order.size());
   }
