@@ -149,19 +149,26 @@ class BinaryTrials {
   std::array<std::optional<EncodedNodes>, 3> plain_;  // by PlainCut
 };
 
-// Codecs with full leaves order the faces, each in its own way.
+// Codecs with full leaves share a layout and its order of faces, so only nodes differ.
 void try_wide(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
   const BuildTree build = build_full_leaves(mesh);
+  const WideLayout layout = lay_out_wide(build);
+  EncodedTree tree = without_bytes(mesh, build);
+  tree.geometry = options.geometry == GeometryId::kExternal
+                      ? encode_external_geometry(mesh, layout.face_order)
+                      : encode_exact_geometry(mesh, layout.face_order, options.face_ids);
+  bool leads = false;
   for (const CodecInfo& codec : kCodecs) {
     if (!is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
-    EncodedTree tree = without_bytes(mesh, build);
-    tree.nodes = encode_wide(build, codec.id);
-    const std::vector<std::uint32_t> order = std::move(tree.nodes.face_order);
-    tree.geometry = options.geometry == GeometryId::kExternal
-                        ? encode_external_geometry(mesh, order)
-                        : encode_exact_geometry(mesh, order, options.face_ids);
-    if (enter(tree, mesh, options, cooked)) cooked.tree = std::move(tree);
+    EncodedNodes best = std::exchange(tree.nodes, encode_wide(layout, codec.id));
+    if (enter(tree, mesh, options, cooked)) {
+      leads = true;
+      cooked.tree = {};
+    } else {
+      tree.nodes = std::move(best);
+    }
   }
+  if (leads) cooked.tree = std::move(tree);
 }
 
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,

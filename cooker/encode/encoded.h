@@ -41,8 +41,6 @@ struct EncodedNodes : NodeFacts {
   // Of packed codecs: nodes of each NodeKind, and different cuts (dedup).
   std::array<std::uint32_t, kNodeKinds> kind_count{};
   std::size_t unique_cuts = 0;
-  // Of wide codecs: source faces in the tree's own order, which geometry must follow.
-  std::vector<std::uint32_t> face_order;
 };
 
 /// Number that a leaf stores for a face: its position in tree order, or in the source.

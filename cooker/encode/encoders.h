@@ -5,6 +5,7 @@
 #pragma once
 
 #include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/encode/wide_layout.h>
 
 namespace boxtree::cooker {
 
@@ -30,8 +31,7 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 /// matters to packed codecs and dedup alone.
 [[nodiscard]] EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths);
 
-/// Codecs wide8 and wide4. They choose the order of faces: EncodedNodes::face_order. Precondition:
-/// a tree with full leaves.
-[[nodiscard]] EncodedNodes encode_wide(const BuildTree& full_leaves, CodecId codec);
+/// Codecs wide8 and wide4.
+[[nodiscard]] EncodedNodes encode_wide(const WideLayout& layout, CodecId codec);
 
 }  // namespace boxtree::cooker

@@ -89,15 +89,14 @@ TEST(WideCollapse, NoChoiceOfChildrenIsCheaper) {
 
 TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
   for (const SourceMesh& mesh : meshes()) {
-    const BuildTree tree = build_full_leaves(mesh);
-    for (const EncodedNodes& nodes :
-         {encode_wide(tree, CodecId::kWide8), encode_wide(tree, CodecId::kWide4)}) {
-      std::vector<std::uint32_t> sorted = nodes.face_order;
-      std::sort(sorted.begin(), sorted.end());
-      std::vector<std::uint32_t> all(mesh.faces.size());
-      std::iota(all.begin(), all.end(), 0u);
-      EXPECT_EQ(sorted, all) << mesh.name;
-      EXPECT_EQ(nodes.leaf_count, (mesh.faces.size() + 7) / 8) << mesh.name;
+    const WideLayout layout = lay_out_wide(build_full_leaves(mesh));
+    std::vector<std::uint32_t> sorted = layout.face_order;
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint32_t> all(mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0u);
+    EXPECT_EQ(sorted, all) << mesh.name;
+    for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+      EXPECT_EQ(encode_wide(layout, codec).leaf_count, (mesh.faces.size() + 7) / 8) << mesh.name;
     }
   }
 }
@@ -105,9 +104,9 @@ TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
 // A box of one mesh in two sizes of code: the finer one is never looser.
 TEST(WideEncoder, MoreBitsNeverVisitMore) {
   for (const SourceMesh& mesh : {test::sphere(24, 32), test::terrain(40, 3), test::city(6, 2)}) {
-    const BuildTree tree = build_full_leaves(mesh);
-    const ExpectedVisits fine = encode_wide(tree, CodecId::kWide8).visits;
-    const ExpectedVisits coarse = encode_wide(tree, CodecId::kWide4).visits;
+    const WideLayout layout = lay_out_wide(build_full_leaves(mesh));
+    const ExpectedVisits fine = encode_wide(layout, CodecId::kWide8).visits;
+    const ExpectedVisits coarse = encode_wide(layout, CodecId::kWide4).visits;
     EXPECT_LE(fine.ray, coarse.ray) << mesh.name;
     EXPECT_LE(fine.box, coarse.box) << mesh.name;
     EXPECT_LE(fine.pair, coarse.pair) << mesh.name;

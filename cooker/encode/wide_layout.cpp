@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Numbers nodes, leaves and faces from the root down.
+#include <algorithm>
+#include <utility>
+
+#include <boxtree/cooker/encode/wide_collapse.h>
+#include <boxtree/cooker/encode/wide_layout.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// What a node's bytes weigh against visits to it, in areas of the root.
+constexpr double kNodeCost = 1e-4;
+
+class Layouter {
+ public:
+  Layouter(const BuildTree& tree, WideLayout& out)
+      : tree_(tree), collapse_(tree, kNodeCost), out_(out) {}
+
+  void run() {
+    out_.nodes.resize(1);
+    fill(0, 0, 1);
+  }
+
+ private:
+  // Fills node `number` from the node `source` of the build tree, and all below it. Nodes that are
+  // siblings stand together, then what is below the first of them, and so on.
+  void fill(std::uint32_t number, std::uint32_t source, std::uint32_t depth) {
+    out_.depth = std::max(out_.depth, depth);
+    std::vector<std::uint32_t> children;
+    collapse_.children_of(source, children);
+
+    WideLayout::Node node{};
+    node.links = {static_cast<std::uint32_t>(out_.nodes.size()), next_leaf_, 0,
+                  static_cast<std::uint32_t>(children.size())};
+    std::uint32_t leaves = 0;
+    bool holds_partial_leaf = false;
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const BuildNode& child = tree_.nodes[children[i]];
+      node.content[i] = child.bounds;
+      if (child.is_leaf()) {
+        ++leaves;
+        holds_partial_leaf |= child.first() + kLeafFaces > tree_.order.size();
+      } else {
+        node.links.inner_mask |= 1u << i;
+      }
+    }
+    // The leaf that is not full must have the last number of all. It is the last one from left to
+    // right, so the last one among these, too.
+    if (holds_partial_leaf) {
+      node.links.first_leaf = out_.leaf_count - leaves;
+    } else {
+      next_leaf_ += leaves;
+    }
+    out_.nodes[number] = node;
+    out_.nodes.resize(out_.nodes.size() + children.size() - leaves);
+
+    std::uint32_t next_node = node.links.first_node;
+    std::uint32_t next_leaf = node.links.first_leaf;
+    for (const std::uint32_t child : children) {
+      if (tree_.nodes[child].is_leaf()) {
+        place_leaf(next_leaf++, child);
+      } else {
+        fill(next_node++, child, depth + 1);
+      }
+    }
+  }
+
+  // The faces of a leaf take the places that its number says.
+  void place_leaf(std::uint32_t number, std::uint32_t leaf) {
+    const std::size_t from = tree_.nodes[leaf].first();
+    const std::size_t to = std::size_t{number} * kLeafFaces;
+    for (std::size_t i = 0; i < kLeafFaces && from + i < tree_.order.size(); ++i) {
+      out_.face_order[to + i] = tree_.order[from + i];
+    }
+  }
+
+  const BuildTree& tree_;
+  WideCollapse collapse_;
+  WideLayout& out_;
+  std::uint32_t next_leaf_ = 0;
+};
+
+}  // namespace
+
+WideLayout lay_out_wide(const BuildTree& full_leaves) {
+  WideLayout out;
+  if (full_leaves.nodes.empty()) return out;
+  out.root_box = full_leaves.nodes[0].bounds;
+  out.leaf_count = static_cast<std::uint32_t>(leaves_of(full_leaves.order.size()));
+  if (out.leaf_count == 1) {
+    out.root = RootKind::kLeaf;
+    out.face_order = full_leaves.order;
+    return out;
+  }
+  out.root = RootKind::kSubtree;
+  out.face_order.resize(full_leaves.order.size());
+  Layouter(full_leaves, out).run();
+  return out;
+}
+
+}  // namespace boxtree::cooker
