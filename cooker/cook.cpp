@@ -2,7 +2,7 @@
 // The stages in the order the data flows.
 #include <algorithm>
 #include <array>
-#include <optional>
+#include <functional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -58,14 +58,15 @@ bool can_win(CodecId codec, const SourceMesh& mesh) {
   return codec != CodecId::kPackedF64 || mesh.positions.precision == Precision::kF64;
 }
 
-bool is_wanted(CodecId codec, const SourceMesh& mesh, const CookOptions& options) {
-  return options.codec ? *options.codec == codec : can_win(codec, mesh);
-}
-
-bool any_wanted(bool wide, const SourceMesh& mesh, const CookOptions& options) {
-  return std::any_of(kCodecs.begin(), kCodecs.end(), [&](const CodecInfo& codec) {
-    return is_wide(codec.id) == wide && is_wanted(codec.id, mesh, options);
-  });
+std::vector<CodecId> wanted_codecs(bool wide, const SourceMesh& mesh, const CookOptions& options) {
+  std::vector<CodecId> wanted;
+  for (const CodecInfo& codec : kCodecs) {
+    if (is_wide(codec.id) != wide) continue;
+    if (options.codec ? *options.codec == codec.id : can_win(codec.id, mesh)) {
+      wanted.push_back(codec.id);
+    }
+  }
+  return wanted;
 }
 
 // Proves a candidate and enters it into the list; returns whether it is the best so far.
@@ -92,75 +93,67 @@ EncodedTree without_bytes(const SourceMesh& mesh, const BuildTree& build) {
   return tree;
 }
 
-// Codecs with one face a leaf share their splits and the order of faces, so only nodes differ.
-class BinaryTrials {
- public:
-  BinaryTrials(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked)
-      : mesh_(mesh), options_(options), cooked_(cooked) {}
-
-  // Memory, not time, is what candidates cost: the build tree goes once it has been walked, and
-  // only the best candidate so far stays.
-  void run() {
-    walk();
-    for (const CodecInfo& codec : kCodecs) {
-      if (is_wide(codec.id) || !is_wanted(codec.id, mesh_, options_)) continue;
-      EncodedTree& tree = cooked_.tree;
-      EncodedNodes best =
-          std::exchange(tree.nodes, pack_nodes(*plain_of(codec.id), codec.id, options_.widths));
-      if (!enter(tree, mesh_, options_, cooked_)) tree.nodes = std::move(best);
-    }
-  }
-
- private:
-  void walk() {
-    const BuildTree build = build_tree(mesh_, options_.builder);
-    const bool external = options_.geometry == GeometryId::kExternal;
-    cooked_.tree = without_bytes(mesh_, build);
-    cooked_.tree.faces_in_source_order = external;
-    cooked_.tree.geometry =
-        external ? encode_external_geometry(mesh_, {})
-                 : encode_exact_geometry(mesh_, faces_in_tree_order(build), options_.face_ids);
-    const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
-    const auto walk_for = [&](std::size_t cut) {
-      if (is_cut_wanted(static_cast<PlainCut>(cut))) {
-        plain_[cut] = encode_plain(build, mesh_, static_cast<PlainCut>(cut), order);
-      }
-    };
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain_.size(), 1),
-                      [&](const tbb::blocked_range<std::size_t>& range) {
-                        for (std::size_t i = range.begin(); i < range.end(); ++i) walk_for(i);
-                      });
-  }
-
-  [[nodiscard]] bool is_cut_wanted(PlainCut cut) const {
-    return std::any_of(kCodecs.begin(), kCodecs.end(), [&](const CodecInfo& codec) {
-      return !is_wide(codec.id) && plain_cut_of(codec.id) == cut &&
-             is_wanted(codec.id, mesh_, options_);
-    });
-  }
-
-  std::optional<EncodedNodes>& plain_of(CodecId codec) {
-    return plain_[static_cast<std::size_t>(plain_cut_of(codec))];
-  }
-
-  const SourceMesh& mesh_;
-  const CookOptions& options_;
-  CookedTree& cooked_;
-  std::array<std::optional<EncodedNodes>, 3> plain_;  // by PlainCut
+// Codecs that share a build tree and its order of faces, so that only nodes differ. The build tree
+// itself is gone: memory, not time, is what candidates cost.
+struct Family {
+  EncodedTree tree;  // all but the nodes
+  std::function<EncodedNodes(CodecId)> nodes_of;
 };
 
-// Codecs with full leaves share a layout and its order of faces, so only nodes differ.
-void try_wide(const SourceMesh& mesh, const CookOptions& options, CookedTree& cooked) {
-  const BuildTree build = build_full_leaves(mesh);
-  const WideLayout layout = lay_out_wide(build);
-  EncodedTree tree = without_bytes(mesh, build);
-  tree.geometry = options.geometry == GeometryId::kExternal
-                      ? encode_external_geometry(mesh, layout.face_order)
-                      : encode_exact_geometry(mesh, layout.face_order, options.face_ids);
+// Codecs with one face a leaf.
+Family binary_family(const SourceMesh& mesh, const CookOptions& options,
+                     const std::vector<CodecId>& codecs) {
+  const BuildTree build = build_tree(mesh, options.builder);
+  const bool external = options.geometry == GeometryId::kExternal;
+  Family family{without_bytes(mesh, build), {}};
+  family.tree.faces_in_source_order = external;
+  family.tree.geometry =
+      external ? encode_external_geometry(mesh, {})
+               : encode_exact_geometry(mesh, faces_in_tree_order(build), options.face_ids);
+  const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
+  std::array<EncodedNodes, 3> plain;  // by PlainCut
+  const auto walk_for = [&](std::size_t i) {
+    const auto cut = static_cast<PlainCut>(i);
+    const bool is_wanted = std::any_of(codecs.begin(), codecs.end(),
+                                       [&](CodecId codec) { return plain_cut_of(codec) == cut; });
+    if (is_wanted) plain[i] = encode_plain(build, mesh, cut, order);
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain.size(), 1),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) walk_for(i);
+                    });
+  family.nodes_of = [plain = std::move(plain), widths = options.widths](CodecId codec) {
+    return pack_nodes(plain[static_cast<std::size_t>(plain_cut_of(codec))], codec, widths);
+  };
+  return family;
+}
+
+// Codecs with full leaves, whose layout orders the faces.
+Family wide_family(const SourceMesh& mesh, const CookOptions& options) {
+  Family family;
+  WideLayout layout;
+  {
+    const BuildTree build = build_full_leaves(mesh);
+    family.tree = without_bytes(mesh, build);
+    layout = lay_out_wide(build);
+  }
+  family.tree.geometry = options.geometry == GeometryId::kExternal
+                             ? encode_external_geometry(mesh, layout.face_order)
+                             : encode_exact_geometry(mesh, layout.face_order, options.face_ids);
+  layout.face_order = {};
+  family.nodes_of = [layout = std::move(layout)](CodecId codec) {
+    return encode_wide(layout, codec);
+  };
+  return family;
+}
+
+// Only the best candidate so far stays, of this family or of one before.
+void try_family(Family family, const std::vector<CodecId>& codecs, const SourceMesh& mesh,
+                const CookOptions& options, CookedTree& cooked) {
+  EncodedTree& tree = family.tree;
   bool leads = false;
-  for (const CodecInfo& codec : kCodecs) {
-    if (!is_wide(codec.id) || !is_wanted(codec.id, mesh, options)) continue;
-    EncodedNodes best = std::exchange(tree.nodes, encode_wide(layout, codec.id));
+  for (const CodecId codec : codecs) {
+    EncodedNodes best = std::exchange(tree.nodes, family.nodes_of(codec));
     if (enter(tree, mesh, options, cooked)) {
       leads = true;
       cooked.tree = {};
@@ -207,8 +200,12 @@ void release(CookedTree& cooked) {
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options) {
   if (Status status = check_limits(mesh, options); !status) return status.error();
   CookedTree cooked;
-  if (any_wanted(false, mesh, options)) BinaryTrials(mesh, options, cooked).run();
-  if (any_wanted(true, mesh, options)) try_wide(mesh, options, cooked);
+  if (const auto codecs = wanted_codecs(false, mesh, options); !codecs.empty()) {
+    try_family(binary_family(mesh, options, codecs), codecs, mesh, options, cooked);
+  }
+  if (const auto codecs = wanted_codecs(true, mesh, options); !codecs.empty()) {
+    try_family(wide_family(mesh, options), codecs, mesh, options, cooked);
+  }
   if (!choose(cooked.candidates, options.goal)) {
     return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
   }
