@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A line scanner for OBJ, as lenient as assimp's, that looks at `v` and `f` (and `p`, `l`) alone.
-#include <array>
-#include <cctype>
+#include <algorithm>
 #include <charconv>
 #include <optional>
 #include <string_view>
@@ -72,8 +71,6 @@ class FaultMarker {
  private:
   void count_vertices();
   bool mark_vertex(const Statement& statement);
-  template <class T, class Read>
-  [[nodiscard]] Eigen::Vector3d position_as(std::size_t used, Read read) const;
   bool mark_element(const Statement& statement);
   std::string corner_fault(std::string_view token, std::size_t corner, std::size_t line) const;
 
@@ -118,23 +115,14 @@ void FaultMarker::count_vertices() {
   }
 }
 
-// The position of the vertex in tokens_, in the arithmetic of T.
-template <class T, class Read>
-Eigen::Vector3d FaultMarker::position_as(std::size_t used, Read read) const {
-  std::array<T, 4> value = {0, 0, 0, 1};
-  for (std::size_t i = 0; i < std::min(used, tokens_.size()); ++i) {
-    value[i] = read(tokens_[i]).value_or(0);
-  }
-  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
-}
-
 // Whether the vertex was rewritten.
 bool FaultMarker::mark_vertex(const Statement& statement) {
   split_numbers(statement, tokens_);
   ++vertices_so_far_;
   const std::size_t used = tokens_.size() == 4 ? 4 : 3;
-  const Eigen::Vector3d position = exact_ != nullptr ? position_as<double>(used, read_exact_number)
-                                                     : position_as<float>(used, read_number);
+  VertexWords words = kOrigin;
+  std::copy_n(tokens_.begin(), std::min(used, tokens_.size()), words.begin());
+  const Eigen::Vector3d position = read_position(words, exact_ != nullptr);
   if (position.allFinite()) {
     if (exact_ != nullptr) {
       text_ += fmt::format("v {}\n", fmt::join(exact_->add(position), " "));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // A line reader for OFF (http://www.geomview.org/docs/html/OFF.html) that writes OBJ.
-#include <array>
 #include <charconv>
 #include <optional>
 
@@ -134,20 +133,11 @@ Status OffReader::read_vertices() {
   return {};
 }
 
-// The position in the words of a vertex and its weight, in the arithmetic of T.
-template <class T, class Read>
-Eigen::Vector3d position_as(const std::array<std::string_view, 4>& words, Read read) {
-  std::array<T, 4> value{};
-  for (std::size_t i = 0; i < 4; ++i) value[i] = read(words[i]).value_or(0);
-  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
-}
-
 void OffReader::add_vertex(std::size_t vertex) {
-  std::array<std::string_view, 4> words = {"0", "0", "0", "1"};
+  VertexWords words = kOrigin;
   for (std::size_t i = 0; i < dimensions_; ++i) words[i] = tokens_[i];
   if (is_homogeneous_) words[3] = tokens_[dimensions_];
-  const Eigen::Vector3d position = exact_ != nullptr ? position_as<double>(words, read_exact_number)
-                                                     : position_as<float>(words, read_number);
+  const Eigen::Vector3d position = read_position(words, exact_ != nullptr);
   if (!position.allFinite()) {
     obj_ += marker_line(known_.faults.size());
     known_.faults.push_back(

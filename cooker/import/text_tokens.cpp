@@ -20,6 +20,14 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\0' || c == '\\';
 }
 
+// In the arithmetic of T; words that are no numbers count as 0.
+template <class T, class Read>
+Eigen::Vector3d position_as(const VertexWords& words, Read read) {
+  std::array<T, 4> value{};
+  for (std::size_t i = 0; i < 4; ++i) value[i] = read(words[i]).value_or(0);
+  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
+}
+
 }  // namespace
 
 void split_tokens(std::string_view text, Tokens& tokens) {
@@ -51,6 +59,11 @@ std::optional<double> read_exact_number(std::string_view token) {
       std::from_chars(token.data() + sign, token.data() + token.size(), number);
   // Spellings that only assimp reads ("1,5", "nan(...)") keep what it makes of them.
   return error == std::errc() && end == token.data() + token.size() ? number : double{*rounded};
+}
+
+Eigen::Vector3d read_position(const VertexWords& words, bool exact) {
+  return exact ? position_as<double>(words, read_exact_number)
+               : position_as<float>(words, read_number);
 }
 
 std::string marker_line(std::size_t fault) {
