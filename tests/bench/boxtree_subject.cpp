@@ -10,15 +10,12 @@
 #include <boxtree/runtime/query/pair_walk.h>
 
 #include "tests/bench/subject.h"
+#include "tests/support/require.h"
 
 namespace boxtree::bench {
 namespace {
 
-template <class T>
-T require(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message());
-  return std::move(*result);
-}
+using test::require;
 
 cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder) {
   cooker::CookOptions options;

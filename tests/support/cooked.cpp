@@ -4,20 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
-#include <stdexcept>
 
 #include <boxtree/runtime/file/checksum.h>
 
+#include "tests/support/require.h"
+
 namespace boxtree::test {
-namespace {
-
-template <class T>
-T require(Result<T> result) {
-  if (!result) throw std::runtime_error(result.error().message());
-  return std::move(*result);
-}
-
-}  // namespace
 
 std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
                                   cooker::CookOptions options) {
