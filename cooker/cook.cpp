@@ -216,6 +216,13 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options)
   return cooked;
 }
 
+Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options) {
+  options.codec = codec;
+  Result<CookedTree> cooked = cook_mesh(mesh, options);
+  if (!cooked) return cooked.error();
+  return std::move(cooked->tree);
+}
+
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress) {

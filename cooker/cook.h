@@ -46,6 +46,9 @@ struct CookedTree {
 /// kMeshUnsupported when faces of an n-gon would have to stay external.
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options);
 
+/// The tree that cook_mesh makes in one codec, whatever `options` say of codecs.
+Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options = {});
+
 struct CookReport {
   std::vector<CookedTree> trees;  // bytes of nodes and geometry already released
   std::vector<ImportReport> imports;

@@ -15,17 +15,6 @@
 namespace boxtree::cooker {
 namespace {
 
-Result<EncodedTree> encode_as(const SourceMesh& mesh, CodecId codec, FieldWidths widths) {
-  CookOptions options;
-  options.codec = codec;
-  options.builder = Builder::kPaper;
-  options.widths = widths;
-  options.face_ids = false;
-  Result<CookedTree> cooked = cook_mesh(mesh, options);  // proves it
-  if (!cooked) return cooked.error();
-  return std::move(cooked->tree);
-}
-
 constexpr std::size_t kOpenRuns = 5;
 
 Result<BlobSizes> measure_blob(const EncodedTree& tree, BlobMethod method) {
@@ -81,12 +70,17 @@ Result<PaperFigures> paper_figures(const SourceMesh& mesh) {
   }
   std::optional<EncodedTree> f32;
   std::optional<EncodedTree> f16;
+  CookOptions options;
+  options.builder = Builder::kPaper;
+  options.face_ids = false;
+  CookOptions with_estimate = options;
+  with_estimate.widths = FieldWidths::kEstimated;
   for (const CodecInfo& codec : kCodecs) {
     CodecSizes sizes{codec.id};
-    Result<EncodedTree> exact = encode_as(mesh, codec.id, FieldWidths::kExact);
+    Result<EncodedTree> exact = cook_as(mesh, codec.id, options);
     if (!exact) return exact.error();
     sizes.exact = static_cast<double>(exact->nodes.bytes.size());
-    const Result<EncodedTree> estimated = encode_as(mesh, codec.id, FieldWidths::kEstimated);
+    const Result<EncodedTree> estimated = cook_as(mesh, codec.id, with_estimate);
     if (!estimated) return estimated.error();
     sizes.estimated = static_cast<double>(estimated->nodes.bytes.size());
     figures.codecs.push_back(sizes);

@@ -143,15 +143,6 @@ SourceMesh crate() {
   return mesh;
 }
 
-Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec) {
-  CookOptions options;
-  options.codec = codec;
-  options.builder = Builder::kPaper;
-  Result<CookedTree> cooked = cook_mesh(mesh, options);
-  if (!cooked) return cooked.error();
-  return std::move(cooked->tree);
-}
-
 }  // namespace
 
 Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTree& f32,
@@ -179,11 +170,13 @@ Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTre
 }
 
 Result<std::vector<StairFigures>> stair_contact() {
-  const Result<EncodedTree> f32 = cook_as(stairs(), CodecId::kPlainF32);
+  CookOptions options;
+  options.builder = Builder::kPaper;
+  const Result<EncodedTree> f32 = cook_as(stairs(), CodecId::kPlainF32, options);
   if (!f32) return f32.error();
-  const Result<EncodedTree> outward = cook_as(stairs(), CodecId::kPlainF16);
+  const Result<EncodedTree> outward = cook_as(stairs(), CodecId::kPlainF16, options);
   if (!outward) return outward.error();
-  const Result<EncodedTree> box = cook_as(crate(), CodecId::kPlainF32);
+  const Result<EncodedTree> box = cook_as(crate(), CodecId::kPlainF32, options);
   if (!box) return box.error();
   const EncodedTree nearest = with_nearest_cuts(*f32);
   const Result<Tree> resting = Tree::bind(parts_of(*box), 0, BindOptions());

@@ -19,10 +19,9 @@ using test::require;
 
 cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder) {
   cooker::CookOptions options;
-  options.codec = codec;
   options.builder = builder;
   options.face_ids = false;
-  return require(cooker::cook_mesh(mesh.source, options)).tree;
+  return require(cooker::cook_as(mesh.source, codec, options));
 }
 
 // Where a node's bytes lie.

@@ -12,10 +12,8 @@ namespace boxtree {
 namespace {
 
 std::vector<std::byte> small_file(CodecId codec) {
-  cooker::CookOptions options;
-  options.codec = codec;
-  Result<cooker::CookedTree> cooked = cooker::cook_mesh(test::city(2, 1), options);
-  return cooker::serialize(std::span(&cooked->tree, 1), "{}\n");
+  const Result<cooker::EncodedTree> cooked = cooker::cook_as(test::city(2, 1), codec);
+  return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
 
 // Opens, proves and asks everything; whatever comes back, it must come back.

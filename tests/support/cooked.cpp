@@ -12,10 +12,9 @@
 namespace boxtree::test {
 
 std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
-                                  cooker::CookOptions options) {
-  options.codec = codec;
-  const cooker::CookedTree cooked = require(cooker::cook_mesh(mesh, options));
-  return cooker::serialize(std::span(&cooked.tree, 1));
+                                  const cooker::CookOptions& options) {
+  const cooker::EncodedTree cooked = require(cooker::cook_as(mesh, codec, options));
+  return cooker::serialize(std::span(&cooked, 1));
 }
 
 CookedTree cook_tree(const cooker::SourceMesh& mesh, CodecId codec,

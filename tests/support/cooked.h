@@ -14,7 +14,7 @@ namespace boxtree::test {
 
 /// The bytes of a file with one tree, in one codec.
 [[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
-                                                cooker::CookOptions options = {});
+                                                const cooker::CookOptions& options = {});
 
 /// A tree together with the bytes it points into.
 struct CookedTree {

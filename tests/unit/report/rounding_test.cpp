@@ -23,14 +23,11 @@ TEST(Rounding, StairsAreMissedByNearestAlone) {
 
 TEST(Rounding, OutwardFindsAllThatF32Finds) {
   const SourceMesh mesh = test::torus(24, 16);
-  const auto cook = [&](CodecId codec) {
-    CookOptions options;
-    options.codec = codec;
-    options.builder = Builder::kPaper;
-    return std::move(cook_mesh(mesh, options)->tree);
-  };
+  CookOptions options;
+  options.builder = Builder::kPaper;
   const Result<RoundingFigures> figures =
-      aligned_contact(mesh, cook(CodecId::kPlainF32), cook(CodecId::kPlainF16));
+      aligned_contact(mesh, *cook_as(mesh, CodecId::kPlainF32, options),
+                      *cook_as(mesh, CodecId::kPlainF16, options));
   ASSERT_TRUE(figures) << figures.error().message();
   EXPECT_EQ(figures->questions, 24u * 6 * 3);
   EXPECT_GT(figures->pairs_f32, 0u);
