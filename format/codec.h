@@ -45,6 +45,12 @@ inline constexpr std::array kCodecs = {
   return id == CodecId::kWide8 || id == CodecId::kWide4;
 }
 
+/// Whether nodes are bit fields, whose widths each tree has for itself.
+[[nodiscard]] constexpr bool is_packed(CodecId id) noexcept {
+  return id == CodecId::kPackedF32 || id == CodecId::kPackedF16 || id == CodecId::kPackedF64 ||
+         id == CodecId::kDedup;
+}
+
 [[nodiscard]] constexpr std::string_view codec_name(CodecId id) noexcept {
   for (const CodecInfo& info : kCodecs) {
     if (info.id == id) return info.name;

@@ -139,7 +139,7 @@ EncodedNodes pack_walked(const EncodedNodes& plain, CodecId codec, FieldWidths w
 }  // namespace
 
 EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths) {
-  if (codec == CodecId::kPlainF32 || codec == CodecId::kPlainF16) return plain;
+  if (!is_packed(codec)) return plain;
   switch (plain_cut_of(codec)) {
     case PlainCut::kF16:
       return pack_walked<std::uint16_t>(plain, codec, widths);

@@ -80,9 +80,12 @@ Result<PaperFigures> paper_figures(const SourceMesh& mesh) {
     Result<EncodedTree> exact = cook_as(mesh, codec.id, options);
     if (!exact) return exact.error();
     sizes.exact = static_cast<double>(exact->nodes.bytes.size());
-    const Result<EncodedTree> estimated = cook_as(mesh, codec.id, with_estimate);
-    if (!estimated) return estimated.error();
-    sizes.estimated = static_cast<double>(estimated->nodes.bytes.size());
+    sizes.estimated = sizes.exact;
+    if (is_packed(codec.id)) {
+      const Result<EncodedTree> estimated = cook_as(mesh, codec.id, with_estimate);
+      if (!estimated) return estimated.error();
+      sizes.estimated = static_cast<double>(estimated->nodes.bytes.size());
+    }
     figures.codecs.push_back(sizes);
     if (codec.id == CodecId::kPackedF32) figures.kinds = exact->nodes.kind_count;
     if (codec.id == CodecId::kDedup) figures.unique_cuts = exact->nodes.unique_cuts;

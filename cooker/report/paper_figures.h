@@ -54,9 +54,9 @@ struct PaperFigures {
   }
 };
 
-/// Builds, encodes with every codec both ways, and proves each. Errors: as cook_mesh, kNoFaces when
-/// the mesh has fewer than two faces (it then has no nodes to count), and those of a temporary
-/// file.
+/// Builds, encodes with every codec, packed ones both ways, and proves each. Errors: as cook_mesh,
+/// kNoFaces when the mesh has fewer than two faces (it then has no nodes to count), and those of a
+/// temporary file.
 Result<PaperFigures> paper_figures(const SourceMesh& mesh);
 
 }  // namespace boxtree::cooker
