@@ -43,7 +43,7 @@ class Rows {
   Rows(const TriangleMesh& mesh, const Library& library, nlohmann::ordered_json& rows)
       : mesh_(mesh), library_(library), rows_(rows) {}
 
-  void add(const char* metric, double value, const char* unit) {
+  void add(const std::string& metric, double value, const std::string& unit) {
     rows_.push_back({{"mesh", mesh_.name},
                      {"triangles", mesh_.triangles.size()},
                      {"library", library_.name},
@@ -59,36 +59,8 @@ class Rows {
   nlohmann::ordered_json& rows_;
 };
 
-using Ask = std::function<bool(std::span<double>)>;
-
 // A run of one kind of question takes no longer than about this; slow libraries are asked less.
 constexpr double kSecondsPerRun = 4;
-
-struct Timed {
-  double seconds;     // a question
-  std::size_t asked;  // how many of them
-};
-
-// Nothing if the library does not know the question. The run that is not counted finds out how many
-// questions are affordable; answers to the others are cut off.
-std::optional<Timed> time_questions(std::size_t count, std::size_t runs, std::vector<double>& out,
-                                    const Ask& ask) {
-  out.assign(count, 0);
-  if (count == 0 || !ask(std::span(out).first(1))) return std::nullopt;
-  std::size_t asked = 1;
-  for (bool affordable = true; affordable && asked < count;) {
-    const std::size_t more = std::min(count, 2 * asked);
-    const double taken = cooker::seconds_taken([&] { ask(std::span(out).first(more)); });
-    asked = more;
-    affordable = 2 * taken < kSecondsPerRun;
-  }
-  out.resize(asked);
-  std::vector<double> seconds;
-  for (std::size_t run = 0; run < runs; ++run) {
-    seconds.push_back(cooker::seconds_taken([&] { ask(out); }));
-  }
-  return Timed{cooker::median(std::move(seconds)) / static_cast<double>(asked), asked};
-}
 
 double sum(const std::vector<double>& values) {
   double total = 0;
@@ -128,73 +100,91 @@ double excess(const std::vector<double>& found, const std::vector<double>& exact
   return more;
 }
 
+double count_finite(const std::vector<double>& values) {
+  return static_cast<double>(std::count_if(values.begin(), values.end(),
+                                           [](double value) { return std::isfinite(value); }));
+}
+
+// How one kind of question is reported.
+struct Kind {
+  std::string name;   // of its rows
+  std::string unit;   // of its time
+  std::string total;  // the row of all answers together
+  std::string total_unit;
+  double (*total_of)(const std::vector<double>&) = sum;
+};
+
+template <class Question>
+using Query = bool (Subject::*)(std::span<const Question>, std::span<double>);
+
+// Times one kind of question and adds the rows of time and answers. Nothing if the library does not
+// know the question. The run that is not counted finds out how many questions are affordable;
+// answers to the others are cut off.
+template <class Question>
+std::optional<std::vector<double>> ask(Subject& subject, Query<Question> query,
+                                       const std::vector<Question>& questions, const Kind& kind,
+                                       std::size_t runs, Rows& rows) {
+  std::vector<double> answers(questions.size());
+  const auto ask_first = [&](std::size_t count) {
+    return (subject.*query)(std::span(questions).first(count), std::span(answers).first(count));
+  };
+  if (questions.empty() || !ask_first(1)) return std::nullopt;
+  std::size_t asked = 1;
+  for (bool affordable = true; affordable && asked < questions.size();) {
+    const std::size_t more = std::min(questions.size(), 2 * asked);
+    const double taken = cooker::seconds_taken([&] { ask_first(more); });
+    asked = more;
+    affordable = 2 * taken < kSecondsPerRun;
+  }
+  answers.resize(asked);
+  std::vector<double> seconds;
+  for (std::size_t run = 0; run < runs; ++run) {
+    seconds.push_back(cooker::seconds_taken([&] { ask_first(asked); }));
+  }
+  const double each = cooker::median(std::move(seconds)) / static_cast<double>(asked);
+  rows.add(kind.name + "_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * each, kind.unit);
+  rows.add(kind.name + "_asked", static_cast<double>(asked), "questions");
+  rows.add(kind.total, kind.total_of(answers), kind.total_unit);
+  return answers;
+}
+
 void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
                     const ExactAnswers& exact, std::size_t runs, Rows& rows) {
   // A library in f32 cannot know distances better than this share of the scene.
   const double scene = 4 * mesh.bounds.diagonal().norm();
   const double slack = scene * 1e-5;
-  std::vector<double> answers;
-  if (const auto time =
-          time_questions(workload.rays.size(), runs, answers, [&](std::span<double> out) {
-            return subject.rays(std::span(workload.rays).first(out.size()), out);
-          })) {
-    rows.add("ray_ns", 1e9 * time->seconds, "ns");
-    rows.add("ray_asked", static_cast<double>(time->asked), "questions");
-    rows.add("ray_hits",
-             static_cast<double>(std::count_if(answers.begin(), answers.end(),
-                                               [](double t) { return std::isfinite(t); })),
-             "hits");
-    rows.add("ray_checked", checked(answers, exact.rays), "questions");
-    rows.add("ray_wrong", count_wrong(answers, exact.rays, slack), "questions");
-    rows.add("ray_error", largest_error(answers, exact.rays) / scene, "of the scene");
+  if (const auto found = ask(subject, &Subject::rays, workload.rays,
+                             {"ray", "ns", "ray_hits", "hits", count_finite}, runs, rows)) {
+    rows.add("ray_checked", checked(*found, exact.rays), "questions");
+    rows.add("ray_wrong", count_wrong(*found, exact.rays, slack), "questions");
+    rows.add("ray_error", largest_error(*found, exact.rays) / scene, "of the scene");
   }
-  if (const auto time =
-          time_questions(workload.boxes.size(), runs, answers, [&](std::span<double> out) {
-            return subject.boxes(std::span(workload.boxes).first(out.size()), out);
-          })) {
-    rows.add("box_ns", 1e9 * time->seconds, "ns");
-    rows.add("box_asked", static_cast<double>(time->asked), "questions");
-    rows.add("box_tris", sum(answers), "triangles");
-    rows.add("box_checked", checked(answers, exact.boxes), "questions");
-    rows.add("box_wrong", count_wrong(answers, exact.boxes, 0), "questions");
+  if (const auto found = ask(subject, &Subject::boxes, workload.boxes,
+                             {"box", "ns", "box_tris", "triangles"}, runs, rows)) {
+    rows.add("box_checked", checked(*found, exact.boxes), "questions");
+    rows.add("box_wrong", count_wrong(*found, exact.boxes, 0), "questions");
   }
-  if (const auto time =
-          time_questions(workload.points.size(), runs, answers, [&](std::span<double> out) {
-            return subject.points(std::span(workload.points).first(out.size()), out);
-          })) {
-    rows.add("point_ns", 1e9 * time->seconds, "ns");
-    rows.add("point_asked", static_cast<double>(time->asked), "questions");
-    rows.add("point_distance", sum(answers), "summed");
-    rows.add("point_checked", checked(answers, exact.points), "questions");
-    rows.add("point_wrong", count_wrong(answers, exact.points, slack), "questions");
-    rows.add("point_error", largest_error(answers, exact.points) / scene, "of the scene");
+  if (const auto found = ask(subject, &Subject::points, workload.points,
+                             {"point", "ns", "point_distance", "summed"}, runs, rows)) {
+    rows.add("point_checked", checked(*found, exact.points), "questions");
+    rows.add("point_wrong", count_wrong(*found, exact.points, slack), "questions");
+    rows.add("point_error", largest_error(*found, exact.points) / scene, "of the scene");
   }
 }
 
 void measure_pairs(Subject& subject, const cooker::Workload& workload, const ExactAnswers& exact,
                    std::size_t runs, Rows& rows) {
-  std::vector<double> answers;
-  if (const auto time =
-          time_questions(workload.poses.size(), runs, answers, [&](std::span<double> out) {
-            return subject.first_contacts(std::span(workload.poses).first(out.size()), out);
-          })) {
+  if (const auto found = ask(subject, &Subject::first_contacts, workload.poses,
+                             {"pair_first", "us", "pair_hits", "contacts"}, runs, rows)) {
     std::vector<double> touching = exact.pairs;
     for (double& count : touching) count = count > 0 ? 1 : 0;
-    rows.add("pair_first_us", 1e6 * time->seconds, "us");
-    rows.add("pair_first_asked", static_cast<double>(time->asked), "questions");
-    rows.add("pair_hits", sum(answers), "contacts");
-    rows.add("pair_checked", checked(answers, exact.pairs), "questions");
-    rows.add("pair_first_wrong", count_wrong(answers, touching, 0), "questions");
+    rows.add("pair_checked", checked(*found, exact.pairs), "questions");
+    rows.add("pair_first_wrong", count_wrong(*found, touching, 0), "questions");
   }
-  if (const auto time =
-          time_questions(workload.poses.size(), runs, answers, [&](std::span<double> out) {
-            return subject.all_pairs(std::span(workload.poses).first(out.size()), out);
-          })) {
-    rows.add("pair_all_us", 1e6 * time->seconds, "us");
-    rows.add("pair_all_asked", static_cast<double>(time->asked), "questions");
-    rows.add("pair_pairs", sum(answers), "pairs");
-    rows.add("pair_all_wrong", count_wrong(answers, exact.pairs, 0), "questions");
-    rows.add("pair_all_error", excess(answers, exact.pairs), "pairs too many");
+  if (const auto found = ask(subject, &Subject::all_pairs, workload.poses,
+                             {"pair_all", "us", "pair_pairs", "pairs"}, runs, rows)) {
+    rows.add("pair_all_wrong", count_wrong(*found, exact.pairs, 0), "questions");
+    rows.add("pair_all_error", excess(*found, exact.pairs), "pairs too many");
   }
 }
 
@@ -216,36 +206,29 @@ std::vector<Pose> all_tumble_poses(const TriangleMesh& mesh, std::size_t steps) 
 void measure_tumble(Subject& subject, const std::vector<Pose>& poses, std::size_t runs,
                     Rows& rows) {
   const std::optional<CacheMissCounter> counter = CacheMissCounter::open();
-  std::vector<double> answers;
   const auto measure = [&](bool first_only) {
-    const std::string name = first_only ? "tumble_first_" : "tumble_all_";
-    const Ask ask = [&](std::span<double> out) {
-      const auto part = std::span(poses).first(out.size());
-      return first_only ? subject.first_contacts(part, out) : subject.all_pairs(part, out);
+    const std::string name = first_only ? "tumble_first" : "tumble_all";
+    const Query<Pose> query = first_only ? &Subject::first_contacts : &Subject::all_pairs;
+    const Kind kind = first_only ? Kind{name, "us", name + "_hits", "contacts"}
+                                 : Kind{name, "us", name + "_pairs", "pairs"};
+    auto found = ask(subject, query, poses, kind, runs, rows);
+    if (!found) return;
+    const auto asked = std::span(poses).first(found->size());
+    const auto add = [&](const char* metric, std::uint64_t total, const char* unit) {
+      rows.add(name + metric, static_cast<double>(total) / static_cast<double>(asked.size()), unit);
     };
-    const auto time = time_questions(poses.size(), runs, answers, ask);
-    if (!time) return;
-    const auto each = [&](double total) { return total / static_cast<double>(time->asked); };
-    rows.add((name + "us").c_str(), 1e6 * time->seconds, "us");
-    rows.add((name + "asked").c_str(), static_cast<double>(time->asked), "questions");
-    rows.add((name + (first_only ? "hits" : "pairs")).c_str(), sum(answers),
-             first_only ? "contacts" : "pairs");
     if (counter) {
       counter->start();
-      ask(answers);
-      rows.add((name + "cache_misses").c_str(), each(static_cast<double>(counter->stop())),
-               "a query (processor)");
+      (subject.*query)(asked, *found);
+      add("_cache_misses", counter->stop(), "a query (processor)");
     }
     CacheModel cache;
-    const std::optional<PairWork> work =
-        subject.pair_work(std::span(poses).first(time->asked), first_only, cache);
+    const std::optional<PairWork> work = subject.pair_work(asked, first_only, cache);
     if (!work) return;
-    rows.add((name + "node_pairs").c_str(), each(static_cast<double>(work->node_pairs)), "a query");
-    rows.add((name + "leaf_tests").c_str(), each(static_cast<double>(work->leaf_tests)), "a query");
-    rows.add((name + "level1_misses").c_str(), each(static_cast<double>(cache.level1_misses())),
-             "a query (simulated)");
-    rows.add((name + "level2_misses").c_str(), each(static_cast<double>(cache.level2_misses())),
-             "a query (simulated)");
+    add("_node_pairs", work->node_pairs, "a query");
+    add("_leaf_tests", work->leaf_tests, "a query");
+    add("_level1_misses", cache.level1_misses(), "a query (simulated)");
+    add("_level2_misses", cache.level2_misses(), "a query (simulated)");
   };
   measure(true);
   measure(false);
