@@ -38,15 +38,4 @@ struct FaceWalk {
   }
 };
 
-/// Visits each face once of which some triangle touches the shape.
-template <class Shape>
-Result<Visit> visit_faces(const Tree& tree, const Shape& shape, FaceVisitor visitor) {
-  FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
-  const Errc walked =
-      with_codec(tree, [&](const auto& codec) { return traverse_overlap(tree, codec, walk); });
-  if (walked != Errc::kOk) return walked;
-  if (walk.error != Errc::kOk) return walk.error;
-  return walk.stopped ? Visit::kStopped : Visit::kComplete;
-}
-
 }  // namespace boxtree

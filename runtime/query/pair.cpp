@@ -4,6 +4,7 @@
 
 #include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/pair_walk.h>
+#include <boxtree/runtime/wide/pair_walks.h>
 
 namespace boxtree {
 namespace {
@@ -44,7 +45,7 @@ Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tre
     return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, *pose, visitor).run();
   }
   return with_codec(first, [&]<class C>(const C& codec) {
-    return PairWalk(first, codec, second, std::get<C>(second.codec_view()), *pose, visitor).run();
+    return walk_pairs(first, codec, second, std::get<C>(second.codec_view()), *pose, visitor);
   });
 }
 

@@ -4,19 +4,6 @@
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
-namespace {
-
-Eigen::Vector3d reach_of(const Tree& tree) {
-  const TreeRecord& record = tree.record();
-  Eigen::Vector3d reach;
-  for (std::size_t k = 0; k < 3; ++k) {
-    reach[static_cast<Eigen::Index>(k)] =
-        std::max(std::abs(record.root_low[k]), std::abs(record.root_high[k]));
-  }
-  return reach;
-}
-
-}  // namespace
 
 std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& first_pose,
                                                const Tree& second,

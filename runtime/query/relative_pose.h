@@ -65,6 +65,9 @@ class RelativePose {
 
   /// Second's tree space to first's: where triangles are compared.
   [[nodiscard]] const AffineMap& to_first() const noexcept { return to_first_; }
+  /// Its inverse, as computed, and how far on each axis an image can be off.
+  [[nodiscard]] const AffineMap& to_second() const noexcept { return to_second_; }
+  [[nodiscard]] const Eigen::Vector3d& to_second_error() const noexcept { return margin_; }
 
   /// Image of a box of the second tree in first's space.
   template <class S>

@@ -52,6 +52,17 @@ namespace boxtree {
   return triangle > 0 && batch.face[triangle - 1] == batch.face[triangle] ? 1 : 0;
 }
 
+/// Largest magnitude of any box coordinate of a tree, on each axis.
+[[nodiscard]] inline Eigen::Vector3d reach_of(const Tree& tree) noexcept {
+  const TreeRecord& record = tree.record();
+  Eigen::Vector3d reach;
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach[static_cast<Eigen::Index>(k)] =
+        std::max(std::abs(record.root_low[k]), std::abs(record.root_high[k]));
+  }
+  return reach;
+}
+
 /// Squared distance from a point to a closed box; monotone in the box, zero inside.
 template <class S>
 [[nodiscard]] double squared_distance(const Eigen::Vector3d& point, const Box<S>& box) noexcept {

@@ -115,6 +115,9 @@ class LeafReader {
   }
 
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
+  /// Whether face n of the tree is face n of the mesh.
+  [[nodiscard]] bool is_in_tree_order() const noexcept { return order_ == nullptr; }
 
   /// Triangles of faces [first, first + count). On corrupt bytes kFaceOutOfRange (also when the
   /// leaf holds more than kMaxLeafTriangles), kVertexOutOfRange or kVertexNotFinite.

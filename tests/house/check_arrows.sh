@@ -18,7 +18,7 @@ forbid() {
 forbid format 'boxtree/(runtime|cooker)|Eigen|xxhash|assimp|fmt|nlohmann|CLI|tbb|oneapi|hwy' \
   'format uses the C++ standard library alone'
 forbid runtime 'boxtree/cooker|assimp|fmt/|nlohmann|CLI|tbb|oneapi|iostream|cstdio' \
-  'runtime uses format, Eigen and xxHash, and prints nothing'
+  'runtime uses format, Eigen, Highway and xxHash, and prints nothing'
 
 # forbid_symbols LIBRARY REGEX WHY: no undefined symbol may match.
 forbid_symbols() {
@@ -32,7 +32,7 @@ if [ -n "$build" ]; then
   forbid_symbols format/libboxtree_format.a '\b(printf|puts|abort|exit|std::cout|std::cerr)\b|Assimp|tbb::|XXH' \
     'format prints nothing, ends nothing, links nothing'
   forbid_symbols runtime/libboxtree_runtime.a '\b(printf|puts|abort|exit|std::cout|std::cerr)\b|Assimp|tbb::|fmt::|nlohmann|boxtree::cooker|XXH' \
-    'runtime prints nothing, ends nothing, links format alone'
+    'runtime prints nothing, ends nothing, links format and Highway alone'
 fi
 [ "$bad" -eq 0 ] && echo "arrows point one way"
 exit "$bad"

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+// Decoded boxes of all children of a node, in vectors: the same bits as WideCodec::expand.
+#if defined(BOXTREE_RUNTIME_WIDE_DECODE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WIDE_DECODE_INL_H
+#undef BOXTREE_RUNTIME_WIDE_DECODE_INL_H
+#else
+#define BOXTREE_RUNTIME_WIDE_DECODE_INL_H
+#endif
+
+#include <boxtree/runtime/wide/node-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+/// Boxes of eight children or triangles, as many as a vector holds.
+struct VectorBox {
+  FloatVector low[3];
+  FloatVector high[3];
+};
+
+/// The same in memory, all eight.
+struct ChildBoxes {
+  HWY_ALIGN float low[3][kWideChildren];
+  HWY_ALIGN float high[3][kWideChildren];
+
+  [[nodiscard]] Box<float> box(std::uint32_t i) const {
+    return {{low[0][i], low[1][i], low[2][i]}, {high[0][i], high[1][i], high[2][i]}};
+  }
+};
+
+/// Part `part` of the children of `node`, whose decoded box is `box`; also written to `out`.
+/// One product and one sum, each rounded: the planes are part of the format.
+template <class Node>
+HWY_INLINE VectorBox decode(const Node& node, const Box<float>& box, std::size_t part,
+                            ChildBoxes& out) {
+  const Floats d;
+  VectorBox boxes;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FloatVector step = hn::Set(d, wide_step<Node>(box.low[k], box.high[k]));
+    boxes.low[k] =
+        hn::Add(hn::Set(d, box.low[k]), hn::Mul(steps_of(codes(node, 0, k), part), step));
+    boxes.high[k] =
+        hn::Sub(hn::Set(d, box.high[k]), hn::Mul(steps_of(codes(node, 1, k), part), step));
+    hn::Store(boxes.low[k], d, out.low[k] + part * kLanes);
+    hn::Store(boxes.high[k], d, out.high[k] + part * kLanes);
+  }
+  return boxes;
+}
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// The triangles of a leaf in single precision, side by side, for filters.
+#if defined(BOXTREE_RUNTIME_WIDE_LEAF_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WIDE_LEAF_INL_H
+#undef BOXTREE_RUNTIME_WIDE_LEAF_INL_H
+#else
+#define BOXTREE_RUNTIME_WIDE_LEAF_INL_H
+#endif
+
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/tree/tree.h>
+#include <boxtree/runtime/wide/decode-inl.h>
+#include <boxtree/runtime/wide/rounding.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+/// Reads leaves of one tree, one at a time. Coordinates are the exact ones or those rounded to
+/// nearest, see corner_error(). Exact triangles come from with_triangle().
+class LeafFloats {
+ public:
+  explicit LeafFloats(const Tree& tree) : reader_(tree.leaves()), mesh_(reader_.mesh()) {
+    const Frame& frame = reader_.frame();
+    scale_ = static_cast<float>(frame.inverse_scale);
+    const bool is_exact =
+        double{scale_} == frame.inverse_scale && std::isnormal(scale_) && frame.origin.isZero(0);
+    rounding_ = float_above(reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
+                            double{std::numeric_limits<float>::min()});
+    direct_ = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
+              mesh_.position_stride == kStride && reader_.is_in_tree_order() &&
+              mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxDirectVertices;
+  }
+
+  /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
+  /// error().
+  bool load(std::uint32_t first, std::uint32_t count) {
+    first_ = first;
+    count_ = count;
+    is_direct_ = direct_ && count == kLeafFaces && in_range(first, count, mesh_.face_count) &&
+                 (mesh_.corner_bytes == 2 ? gather<std::uint16_t>() : gather<std::uint32_t>());
+    return is_direct_ || convert();
+  }
+
+  /// Bounds how far the coordinates of a leaf are off: nothing when they were gathered, but for
+  /// what underflows; half an ulp of the largest otherwise.
+  [[nodiscard]] float corner_error() const {
+    return is_direct_ ? std::numeric_limits<float>::min() : rounding_;
+  }
+
+  /// Triangles of the leaf; lanes from there on are unspecified.
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::size_t groups() const { return count_ > kWideChildren ? 2 : 1; }
+  /// Bit i: lane i of a group is a triangle.
+  [[nodiscard]] std::uint32_t lanes(std::size_t group) const {
+    return (((1u << count_) - 1) >> (group * kWideChildren)) & 0xffu;
+  }
+  /// Coordinates of the triangles of a group and part.
+  [[nodiscard]] FloatVector at(std::size_t corner, std::size_t axis, std::size_t group,
+                               std::size_t part) const {
+    return hn::Load(Floats(), &coordinate_[corner][axis][group * kWideChildren + part * kLanes]);
+  }
+
+  /// Their bounds.
+  [[nodiscard]] VectorBox bounds(std::size_t group, std::size_t part) const {
+    VectorBox box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const FloatVector a = at(0, k, group, part);
+      const FloatVector b = at(1, k, group, part);
+      const FloatVector c = at(2, k, group, part);
+      box.low[k] = hn::Min(a, hn::Min(b, c));
+      box.high[k] = hn::Max(a, hn::Max(b, c));
+    }
+    return box;
+  }
+
+  /// The face that a lane belongs to, in the tree's order.
+  [[nodiscard]] std::uint32_t face(std::uint32_t lane) const {
+    return is_direct_ ? first_ + lane : batch_.face[lane];
+  }
+
+  /// Calls visit(triangle, face, half) with the exact triangle of a lane. False when its bytes are
+  /// corrupt.
+  template <class Visitor>
+  bool with_triangle(std::uint32_t lane, Visitor&& visit) {
+    if (!is_direct_) {
+      visit(batch_.triangle(lane), batch_.face[lane], half_of_face(batch_, lane));
+      return true;
+    }
+    Triangle triangle;
+    const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
+    const double scale = reader_.frame().inverse_scale;
+    bool is_finite = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const float* p = positions + start_[3 * lane + c];
+      triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
+      is_finite &= is_within_reach(triangle.corner[c]);
+    }
+    if (!is_finite) {
+      error_ = Errc::kVertexNotFinite;
+      return false;
+    }
+    visit(triangle, first_ + lane, 0u);
+    return true;
+  }
+
+  [[nodiscard]] Errc error() const { return error_; }
+
+ private:
+  static constexpr std::size_t kCorners = 3 * kLeafFaces;
+  static constexpr std::size_t kStride = 3 * sizeof(float);
+  // Three times the number of a vertex fits into 32 bits.
+  static constexpr std::uint32_t kMaxDirectVertices = 1u << 30;
+
+  // Three corners a face, in floats, in the tree's order, and scaled without rounding: the common
+  // case. Four floats are read at once, so a leaf with the last vertex goes the other way.
+  template <class Corner>
+  HWY_INLINE bool gather() {
+    const hn::Repartition<std::uint32_t, Floats> words;
+    const hn::Rebind<Corner, decltype(words)> stored;
+    const auto* corners = reinterpret_cast<const Corner*>(mesh_.corners) + std::size_t{first_} * 3;
+    auto largest = hn::Zero(words);
+    for (std::size_t i = 0; i < kCorners; i += kLanes) {
+      const auto vertex = widen(words, hn::LoadU(stored, corners + i));
+      largest = hn::Max(largest, vertex);
+      hn::Store(hn::Add(vertex, hn::ShiftLeft<1>(vertex)), words, start_ + i);
+    }
+    if (!hn::AllTrue(words, hn::Lt(largest, hn::Set(words, mesh_.vertex_count - 1)))) return false;
+    const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
+    for (std::size_t c = 0; c < 3; ++c) transpose(positions, start_ + c, c);
+    return true;
+  }
+  template <class D, class V>
+  static HWY_INLINE hn::Vec<D> widen(D words, V stored) {
+    if constexpr (sizeof(hn::TFromV<V>) == sizeof(hn::TFromD<D>)) {
+      return stored;
+    } else {
+      return hn::PromoteTo(words, stored);
+    }
+  }
+
+#if HWY_TARGET == HWY_SCALAR
+  void transpose(const float* positions, const std::uint32_t* start, std::size_t corner) {
+    for (std::size_t i = 0; i < kLeafFaces; ++i) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        coordinate_[corner][axis][i] = positions[start[3 * i] + axis] * scale_;
+      }
+    }
+  }
+#else
+  // Corner `corner` of all faces; start[3 i] is where that of face i begins.
+  HWY_INLINE void transpose(const float* positions, const std::uint32_t* start,
+                            std::size_t corner) {
+    const FloatVector scale = hn::Set(Floats(), scale_);
+    const hn::Repartition<std::uint64_t, Floats> pairs;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::uint32_t* rows = start + 3 * part * kLanes;
+      // Of each block of four rows: x0 x1 y0 y1, z0 z1 - -, and so on, to x0 x1 x2 x3.
+      const FloatVector r0 = blocks(positions, rows), r1 = blocks(positions, rows + 3);
+      const FloatVector r2 = blocks(positions, rows + 6), r3 = blocks(positions, rows + 9);
+      const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(Floats(), r0, r1));
+      const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(Floats(), r2, r3));
+      const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(Floats(), r0, r1));
+      const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(Floats(), r2, r3));
+      const auto store = [&](std::size_t axis, auto values) {
+        hn::Store(hn::Mul(hn::BitCast(Floats(), values), scale), Floats(),
+                  &coordinate_[corner][axis][part * kLanes]);
+      };
+      store(0, hn::InterleaveLower(pairs, xy01, xy23));
+      store(1, hn::InterleaveUpper(pairs, xy01, xy23));
+      store(2, hn::InterleaveLower(pairs, z01, z23));
+    }
+  }
+
+  // The row at start[0] and, in the next block, the one four faces on.
+  static HWY_INLINE FloatVector blocks(const float* positions, const std::uint32_t* start) {
+    const hn::CappedTag<float, 4> four;
+    const auto row = hn::LoadU(four, positions + start[0]);
+#if HWY_MAX_BYTES >= 32
+    return hn::Combine(Floats(), hn::LoadU(four, positions + start[12]), row);
+#else
+    return row;
+#endif
+  }
+#endif
+
+  bool convert() {
+    error_ = reader_.read(first_, count_, batch_);
+    count_ = batch_.count;
+    if (error_ != Errc::kOk) return false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::uint32_t i = 0; i < count_; ++i) {
+          coordinate_[c][k][i] = static_cast<float>(batch_.coordinate[c][k][i]);
+        }
+      }
+    }
+    return true;
+  }
+
+  const LeafReader& reader_;
+  const MeshArrays& mesh_;
+  float scale_;
+  float rounding_;
+  bool direct_;     // leaves that do not hold the last vertex can be gathered
+  bool is_direct_;  // this one was
+  std::uint32_t first_ = 0;
+  std::uint32_t count_ = 0;
+  Errc error_ = Errc::kOk;
+  HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
+  HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
+  TriangleBatch batch_;
+};
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: MIT
+// Reading nodes of the wide codecs with vectors: compiled once for each instruction set, so there
+// is no guard against a second inclusion but Highway's own.
+#if defined(BOXTREE_RUNTIME_WIDE_NODE_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WIDE_NODE_INL_H
+#undef BOXTREE_RUNTIME_WIDE_NODE_INL_H
+#else
+#define BOXTREE_RUNTIME_WIDE_NODE_INL_H
+#endif
+
+#include <bit>
+#include <cstdint>
+#include <hwy/highway.h>
+
+#include <boxtree/format/codec_wide.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+/// Eight lanes where the machine has them, otherwise as many as it has: loops over `kParts`.
+using Floats = hn::CappedTag<float, kWideChildren>;
+using FloatVector = hn::Vec<Floats>;
+inline constexpr std::size_t kLanes = hn::MaxLanes(Floats());
+inline constexpr std::size_t kParts = kWideChildren / kLanes;
+
+/// Bit i: lane i of the part.
+HWY_INLINE std::uint32_t bits_of(hn::Mask<Floats> mask) {
+  alignas(8) std::uint8_t bits[8] = {};
+  hn::StoreMaskBits(Floats(), mask, bits);
+  return bits[0];
+}
+
+/// Codes of planes `part` * kLanes and on, as steps. `codes` are the eight codes of an axis.
+HWY_INLINE FloatVector steps_of(const std::uint8_t* codes, std::size_t part) {
+  const hn::Rebind<std::int32_t, Floats> integers;
+  const hn::Rebind<std::uint8_t, Floats> bytes;
+  return hn::ConvertTo(Floats(), hn::PromoteTo(integers, hn::LoadU(bytes, codes + part * kLanes)));
+}
+HWY_INLINE FloatVector steps_of(const std::uint32_t* codes, std::size_t part) {
+  const hn::Rebind<std::uint32_t, Floats> words;
+  const hn::Rebind<std::int32_t, Floats> integers;
+  const auto shift = hn::ShiftLeft<2>(hn::Iota(words, static_cast<std::uint32_t>(part * kLanes)));
+  const auto code = hn::And(hn::Shr(hn::Set(words, *codes), shift), hn::Set(words, 15u));
+  const FloatVector steps = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
+  return hn::Mul(steps, steps);
+}
+
+/// The codes of the low (side 0) or high (side 1) planes of an axis.
+template <class Node>
+HWY_INLINE const auto* codes(const Node& node, std::size_t side, std::size_t axis) {
+  using Code = std::conditional_t<std::is_same_v<Node, Wide8Node>, std::uint8_t, std::uint32_t>;
+  constexpr std::size_t kCodesOfSide = sizeof(Node::low) / sizeof(Code);
+  static_assert(offsetof(Node, low) == 0 && offsetof(Node, high) == sizeof(Node::low));
+  return reinterpret_cast<const Code*>(&node) + side * kCodesOfSide + axis * (kCodesOfSide / 3);
+}
+
+/// How many of the bits below bit i are set.
+HWY_INLINE std::uint32_t rank(std::uint32_t mask, std::uint32_t i) {
+  return static_cast<std::uint32_t>(std::popcount(mask & ((1u << i) - 1)));
+}
+/// Number of the node that child i is. Precondition: it is one.
+HWY_INLINE std::uint32_t node_number(const WideLinks& links, std::uint32_t i) {
+  return links.first_node + rank(links.inner_mask, i);
+}
+/// First face of the leaf that child i is. Precondition: it is one.
+HWY_INLINE std::uint32_t first_face(const WideLinks& links, std::uint32_t i) {
+  return (links.first_leaf + rank(~links.inner_mask, i)) * kLeafFaces;
+}
+
+/// The checks of WideCodec::expand, once for all children of a kind: they stand in a row. Counts
+/// have fewer than 32 bits, so that no sum overflows.
+template <class Node>
+HWY_INLINE bool is_sound(const WideCodec<Node>& codec, std::uint32_t number,
+                         const WideLinks& links) {
+  const std::uint64_t inner = static_cast<std::uint64_t>(std::popcount(links.inner_mask));
+  const std::uint64_t leaves = links.child_count - inner;
+  const bool has_children =
+      links.child_count - 1 < kWideChildren && (links.inner_mask >> (links.child_count & 15)) == 0;
+  const bool nodes_fit =
+      (inner == 0) | ((links.first_node > number) & (links.first_node + inner <= codec.node_count));
+  const bool leaves_fit =
+      (leaves == 0) | ((links.first_leaf + leaves - 1) * kLeafFaces < codec.face_count);
+  return has_children & nodes_fit & leaves_fit;
+}
+
+/// Calls visit(child) for each set bit, from the lowest on, while it returns true; whether all did.
+template <class Visitor>
+HWY_INLINE bool for_each_bit(std::uint32_t bits, Visitor&& visit) {
+  for (; bits != 0; bits &= bits - 1) {
+    if (!visit(static_cast<std::uint32_t>(std::countr_zero(bits)))) return false;
+  }
+  return true;
+}
+
+/// Takes the bit of the smallest key out of `bits`, which is not 0.
+HWY_INLINE std::uint32_t take_smallest(std::uint32_t& bits, const float* key) {
+  auto smallest = static_cast<std::uint32_t>(std::countr_zero(bits));
+  for (std::uint32_t rest = bits & (bits - 1); rest != 0; rest &= rest - 1) {
+    const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+    smallest = key[i] < key[smallest] ? i : smallest;
+  }
+  bits &= ~(1u << smallest);
+  return smallest;
+}
+
+/// Entries of a stack that holds all but one child of each node on a path.
+template <class Node>
+inline constexpr std::size_t kWideStack = WideCodec<Node>::kDepthLimit*(kWideChildren - 1) + 1;
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

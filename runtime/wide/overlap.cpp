@@ -1,0 +1,280 @@
+// SPDX-License-Identifier: MIT
+// Boxes and spheres over the wide codecs. What is inside the shape as a whole is reported without
+// another test: neither its boxes nor its triangles are read.
+#include <boxtree/runtime/wide/point_filter.h>
+#include <boxtree/runtime/wide/targets.h>
+#include <boxtree/runtime/wide/walks.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "boxtree/runtime/wide/overlap.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include <boxtree/runtime/wide/distance-inl.h>
+#include <boxtree/runtime/wide/leaf-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+// Both filters answer for boxes, decoded or bounds of triangles: bit i of `touched` is clear only
+// when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the shape
+// beyond doubt.
+struct Verdict {
+  std::uint32_t touched;
+  std::uint32_t inside;
+};
+
+class BoxFilter {
+ public:
+  // Decoded boxes are exact; triangles were rounded to float.
+  BoxFilter(const Tree& tree, const BoxQuery& query) {
+    const double error = reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
+                         double{std::numeric_limits<float>::min()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      low_[k] = float_below(query.low[axis] - error);
+      high_[k] = float_above(query.high[axis] + error);
+      inner_low_[k] = float_above(query.low[axis] + error);
+      inner_high_[k] = float_below(query.high[axis] - error);
+    }
+  }
+
+  HWY_INLINE Verdict judge(const VectorBox& box) const {
+    const Floats d;
+    auto touched =
+        hn::And(hn::Le(box.low[0], hn::Set(d, high_[0])), hn::Ge(box.high[0], hn::Set(d, low_[0])));
+    auto inside = hn::And(hn::Ge(box.low[0], hn::Set(d, inner_low_[0])),
+                          hn::Le(box.high[0], hn::Set(d, inner_high_[0])));
+    for (std::size_t k = 1; k < 3; ++k) {
+      touched = hn::And(touched, hn::And(hn::Le(box.low[k], hn::Set(d, high_[k])),
+                                         hn::Ge(box.high[k], hn::Set(d, low_[k]))));
+      inside = hn::And(inside, hn::And(hn::Ge(box.low[k], hn::Set(d, inner_low_[k])),
+                                       hn::Le(box.high[k], hn::Set(d, inner_high_[k]))));
+    }
+    return {bits_of(touched), bits_of(inside)};
+  }
+
+  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
+    const Floats d;
+    auto inside = hn::Ge(point[0], hn::Set(d, inner_low_[0]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      inside = hn::And(inside, hn::And(hn::Ge(point[k], hn::Set(d, inner_low_[k])),
+                                       hn::Le(point[k], hn::Set(d, inner_high_[k]))));
+    }
+    return bits_of(inside);
+  }
+
+ private:
+  std::array<float, 3> low_, high_;
+  std::array<float, 3> inner_low_, inner_high_;
+};
+
+class SphereFilter {
+ public:
+  SphereFilter(const Tree& tree, const SphereQuery& query)
+      : center_(tree, query.center),
+        above_(PointFilter::above(query.squared_radius)),
+        below_(PointFilter::below(query.squared_radius)) {}
+
+  HWY_INLINE Verdict judge(const VectorBox& box) const {
+    const Floats d;
+    return {bits_of(hn::Le(nearest_squared(center_, box), hn::Set(d, above_))),
+            bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
+  }
+
+  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
+    const VectorBox box{{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
+    return bits_of(hn::Le(farthest_squared(center_, box), hn::Set(Floats(), below_)));
+  }
+
+ private:
+  PointFilter center_;
+  float above_, below_;  // squared radius
+};
+
+template <class Node, class Shape, class Filter>
+class OverlapWalk {
+ public:
+  OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
+      : tree_(tree), codec_(codec), walk_(walk), filter_(tree, walk.shape), leaf_(tree) {}
+
+  Errc run(const Box<float>& root) {
+    std::size_t size = 0;
+    stack_[size++] = {root, 0, false};
+    std::uint64_t unexpanded = codec_.node_count;
+    ChildBoxes children;
+    while (size > 0) {
+      const Entry entry = stack_[--size];
+      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + entry.node;
+      const WideLinks links = links_of(*node);
+      if (unexpanded-- == 0 || !is_sound(codec_, entry.node, links)) return Errc::kNodeCorrupt;
+      const std::uint32_t all = (1u << links.child_count) - 1;
+      Verdict verdict{all, all};
+      if (!entry.inside) {
+        verdict = {0, 0};
+        for (std::size_t part = 0; part < kParts; ++part) {
+          const Verdict of_part = filter_.judge(decode(*node, entry.box, part, children));
+          verdict.touched |= of_part.touched << (part * kLanes);
+          verdict.inside |= of_part.inside << (part * kLanes);
+        }
+        verdict.touched &= all;
+      }
+      const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
+        const std::uint32_t first = first_face(links, i);
+        const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
+        const bool inside = ((verdict.inside >> i) & 1u) != 0;
+        return inside ? report_all(first, count) : visit_leaf(first, count);
+      });
+      if (!go_on) return Errc::kOk;
+      const std::uint32_t inner = verdict.touched & links.inner_mask;
+      if (stack_.size() - size < static_cast<std::size_t>(std::popcount(inner))) {
+        return Errc::kDepthExceeded;
+      }
+      for_each_bit(inner, [&](std::uint32_t i) {
+        stack_[size++] = {children.box(i), node_number(links, i),
+                          ((verdict.inside >> i) & 1u) != 0};
+        return true;
+      });
+    }
+    return Errc::kOk;
+  }
+
+ private:
+  struct Entry {
+    Box<float> box;  // unspecified when inside
+    std::uint32_t node;
+    bool inside;
+  };
+
+  bool report(std::uint32_t face) {
+    walk_.stopped = !walk_.visitor(face_ref(tree_, face));
+    return !walk_.stopped;
+  }
+
+  bool report_all(std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t face = first; face < first + count; ++face) {
+      if (!report(face)) return false;
+    }
+    return true;
+  }
+
+  bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
+      walk_.error = leaf_.error();
+      return false;
+    }
+    std::uint32_t reported = kNoFaceId;  // halves of a quad stand side by side
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      std::uint32_t touched = 0, certain = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const Verdict verdict = filter_.judge(leaf_.bounds(group, part));
+        touched |= verdict.touched << (part * kLanes);
+        certain |= (verdict.inside | any_corner(group, part)) << (part * kLanes);
+      }
+      const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+        if (leaf_.face(lane) == reported) return true;
+        if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
+        reported = leaf_.face(lane);
+        return report(reported);
+      });
+      if (!go_on) return false;
+    }
+    return true;
+  }
+
+  // Bit i: a corner of triangle i is inside the shape.
+  HWY_INLINE std::uint32_t any_corner(std::size_t group, std::size_t part) const {
+    std::uint32_t any = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const FloatVector corner[3] = {leaf_.at(c, 0, group, part), leaf_.at(c, 1, group, part),
+                                     leaf_.at(c, 2, group, part)};
+      any |= filter_.contained(corner);
+    }
+    return any;
+  }
+
+  bool touches(std::uint32_t lane) {
+    bool touched = false;
+    const bool read = leaf_.with_triangle(
+        lane, [&](const Triangle& triangle, std::uint32_t /*face*/, std::uint32_t /*half*/) {
+          touched = walk_.shape.overlaps(bounds_of(triangle)) && walk_.shape.touches(triangle);
+        });
+    if (!read) walk_.error = leaf_.error();
+    return touched;
+  }
+
+  const Tree& tree_;
+  const WideCodec<Node>& codec_;
+  FaceWalk<Shape>& walk_;
+  const Filter filter_;
+  LeafFloats leaf_;
+  std::array<Entry, kWideStack<Node>> stack_;
+};
+
+template <class Filter, class Node, class Shape>
+Errc walk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& faces) {
+  const Box<float> root = root_box<float>(tree);
+  if (!faces.overlaps(root)) return Errc::kOk;
+  return OverlapWalk<Node, Shape, Filter>(tree, codec, faces).run(root);
+}
+
+Errc box_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& faces) {
+  return walk<BoxFilter>(tree, codec, faces);
+}
+Errc box_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& faces) {
+  return walk<BoxFilter>(tree, codec, faces);
+}
+Errc sphere_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec,
+                  FaceWalk<SphereQuery>& faces) {
+  return walk<SphereFilter>(tree, codec, faces);
+}
+Errc sphere_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec,
+                  FaceWalk<SphereQuery>& faces) {
+  return walk<SphereFilter>(tree, codec, faces);
+}
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(box_wide8);
+HWY_EXPORT(box_wide4);
+HWY_EXPORT(sphere_wide8);
+HWY_EXPORT(sphere_wide4);
+
+bool has_nodes(const Tree& tree) {
+  return tree.record().root == RootKind::kSubtree;
+}
+
+}  // namespace
+
+Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& walk) {
+  if (!has_nodes(tree)) return traverse_overlap(tree, codec, walk);
+  return HWY_DYNAMIC_DISPATCH(box_wide8)(tree, codec, walk);
+}
+Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& walk) {
+  if (!has_nodes(tree)) return traverse_overlap(tree, codec, walk);
+  return HWY_DYNAMIC_DISPATCH(box_wide4)(tree, codec, walk);
+}
+Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec,
+                  FaceWalk<SphereQuery>& walk) {
+  const bool near = PointFilter::is_near(tree, walk.shape.center);
+  if (!has_nodes(tree) || !near) return traverse_overlap(tree, codec, walk);
+  return HWY_DYNAMIC_DISPATCH(sphere_wide8)(tree, codec, walk);
+}
+Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec,
+                  FaceWalk<SphereQuery>& walk) {
+  const bool near = PointFilter::is_near(tree, walk.shape.center);
+  if (!has_nodes(tree) || !near) return traverse_overlap(tree, codec, walk);
+  return HWY_DYNAMIC_DISPATCH(sphere_wide4)(tree, codec, walk);
+}
+
+}  // namespace boxtree
+#endif

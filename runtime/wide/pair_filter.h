@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// The maps between two trees in single precision: rejects pairs of boxes that are apart beyond
+// doubt.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/wide/rounding.h>
+
+namespace boxtree {
+
+/// x -> linear x + translation, for boxes given by center and half extent: the image has center
+/// linear c + translation and half extent |linear| h.
+struct FloatMap {
+  /// `reach`: largest magnitudes of x; `target_reach`: of the boxes that images are compared with;
+  /// `given_error`: of the map itself.
+  FloatMap(const AffineMap& map, const Eigen::Vector3d& reach, const Eigen::Vector3d& target_reach,
+           const Eigen::Vector3d& given_error) noexcept {
+    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto row = static_cast<Eigen::Index>(i);
+      double magnitude = std::abs(map.translation[row]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const auto column = static_cast<Eigen::Index>(j);
+        const double m = map.linear(row, column);
+        linear[i][j] = static_cast<float>(m);
+        absolute[i][j] = float_above(std::abs(m));
+        magnitude += std::abs(m) * reach[column];
+      }
+      translation[i] = static_cast<float>(map.translation[row]);
+      // Each of the three products passes through the rounding of its factors, of the center and of
+      // three sums: 8u of the sum of magnitudes, doubled for the half extents; 4u of what the image
+      // is compared with, for its own center and half extent and their sums.
+      error[i] = float_above(16 * kUnit * magnitude + 4 * kUnit * target_reach[row] +
+                             given_error[row] + double{std::numeric_limits<float>::min()});
+    }
+  }
+
+  std::array<std::array<float, 3>, 3> linear;    // [row][column]
+  std::array<std::array<float, 3>, 3> absolute;  // magnitudes, rounded up
+  std::array<float, 3> translation;
+  std::array<float, 3> error;  // of an image compared with a box, on each axis
+};
+
+/// Two trees in relative pose.
+struct PairFilter {
+  PairFilter(const Tree& first, const Tree& second, const RelativePose& pose) noexcept
+      : to_first(pose.to_first(), reach_of(second), reach_of(first), Eigen::Vector3d::Zero()),
+        to_second(pose.to_second(), reach_of(first), reach_of(second), pose.to_second_error()) {}
+
+  FloatMap to_first;   // of boxes and triangles of the second tree
+  FloatMap to_second;  // of boxes of the first tree
+};
+
+}  // namespace boxtree

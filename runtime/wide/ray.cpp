@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: MIT
+// Rays through the wide codecs.
+#include <boxtree/runtime/wide/ray_filter.h>
+#include <boxtree/runtime/wide/targets.h>
+#include <boxtree/runtime/wide/walks.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "boxtree/runtime/wide/ray.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include <boxtree/runtime/wide/leaf-inl.h>
+#include <boxtree/runtime/wide/node-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+// A box as the ray sees it: the parameters of its planes. Those of a child follow from them as its
+// planes do from those of its parent, so no box is ever decoded.
+struct RayBox {
+  std::array<float, 3> near;
+  std::array<float, 3> far;
+};
+
+struct RayEntry {
+  RayBox box;
+  float key;  // where the ray enters
+  std::uint32_t node;
+};
+
+template <class Node>
+class RayWalk {
+ public:
+  RayWalk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query, const RayFilter& filter)
+      : codec_(codec), query_(query), filter_(filter), leaf_(tree) {
+    bound_ = filter.bound(query.t_max);
+  }
+
+  Errc run(const Box<float>& root) {
+    RayEntry entry{{}, 0, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<float, 2> side = {root.low[k], root.high[k]};
+      const std::uint32_t near_high = filter_.near_high[k];
+      entry.box.near[k] = (side[near_high] - filter_.origin[k]) * filter_.inverse[k];
+      entry.box.far[k] = (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k];
+    }
+    std::size_t size = 0;
+    std::uint64_t unexpanded = codec_.node_count;
+    Children children;
+    for (;;) {
+      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + entry.node;
+      const WideLinks links = links_of(*node);
+      if (unexpanded-- == 0 || !is_sound(codec_, entry.node, links)) return Errc::kNodeCorrupt;
+      const std::uint32_t passing =
+          meet(*node, entry.box, children) & ((1u << links.child_count) - 1);
+      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
+        const std::uint32_t i = take_smallest(leaves, children.key);
+        if (children.key[i] > bound_) break;
+        const std::uint32_t face = first_face(links, i);
+        if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
+      }
+      // The nearest inner child is next; the others wait, and see whether they still matter.
+      std::uint32_t inner = passing & links.inner_mask;
+      if (inner != 0) {
+        auto nearest = static_cast<std::uint32_t>(std::countr_zero(inner));
+        for (inner &= inner - 1; inner != 0; inner &= inner - 1) {
+          const auto i = static_cast<std::uint32_t>(std::countr_zero(inner));
+          const bool is_nearer = children.key[i] < children.key[nearest];
+          const std::uint32_t later = is_nearer ? nearest : i;
+          nearest = is_nearer ? i : nearest;
+          if (size == stack_.size()) return Errc::kDepthExceeded;
+          stack_[size++] = entry_of(children, links, later);
+        }
+        entry = entry_of(children, links, nearest);
+        if (entry.key <= bound_) continue;
+      }
+      do {
+        if (size == 0) return Errc::kOk;
+        entry = stack_[--size];
+      } while (entry.key > bound_);
+    }
+  }
+
+ private:
+  // Parameters of all children's planes, and where the ray enters each.
+  struct Children {
+    HWY_ALIGN float near[3][kWideChildren];
+    HWY_ALIGN float far[3][kWideChildren];
+    HWY_ALIGN float key[kWideChildren];
+  };
+
+  static HWY_INLINE RayEntry entry_of(const Children& children, const WideLinks& links,
+                                      std::uint32_t i) {
+    return {{{children.near[0][i], children.near[1][i], children.near[2][i]},
+             {children.far[0][i], children.far[1][i], children.far[2][i]}},
+            children.key[i],
+            node_number(links, i)};
+  }
+
+  // Bit i: the ray meets child i before the bound.
+  HWY_INLINE std::uint32_t meet(const Node& node, const RayBox& box, Children& out) const {
+    const Floats d;
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      FloatVector enter = hn::Zero(d);
+      FloatVector leave = hn::Set(d, bound_);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const FloatVector step =
+            hn::Set(d, (box.far[k] - box.near[k]) * (1 / Node::kStepsOfExtent));
+        const std::uint32_t near_high = filter_.near_high[k];
+        const FloatVector margin = hn::Set(d, filter_.margin[k]);
+        const FloatVector near =
+            hn::MulAdd(steps_of(codes(node, near_high, k), part), step, hn::Set(d, box.near[k]));
+        const FloatVector far = hn::NegMulAdd(steps_of(codes(node, 1 - near_high, k), part), step,
+                                              hn::Set(d, box.far[k]));
+        hn::Store(near, d, out.near[k] + part * kLanes);
+        hn::Store(far, d, out.far[k] + part * kLanes);
+        enter = hn::Max(enter, hn::Sub(near, margin));
+        leave = hn::Min(leave, hn::Add(far, margin));
+      }
+      hn::Store(enter, d, out.key + part * kLanes);
+      passing |= bits_of(hn::Le(enter, leave)) << (part * kLanes);
+    }
+    return passing;
+  }
+
+  HWY_INLINE bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
+      query_.error = leaf_.error();
+      return false;
+    }
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      std::uint32_t near = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        near |= ~missed(group, part) << (part * kLanes);
+      }
+      near &= leaf_.lanes(group);
+      for (; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) +
+                          static_cast<std::uint32_t>(std::countr_zero(near));
+        if (!leaf_.with_triangle(
+                lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+                  query_.test(triangle, face, half);
+                })) {
+          query_.error = leaf_.error();
+          return false;
+        }
+      }
+    }
+    bound_ = filter_.bound(query_.t_max);
+    return !query_.is_done();
+  }
+
+  // Bit i: the ray misses triangle i beyond doubt. The test of triangle_ray.h in float: an area of
+  // corners at most `size` from the ray, each coordinate off by at most 3 error, is off by less
+  // than 8 (size + 3 error) 3 error.
+  HWY_INLINE std::uint32_t missed(std::size_t group, std::size_t part) const {
+    const Floats d;
+    FloatVector x[3], y[3];
+    FloatVector size = hn::Zero(d);
+    FloatVector first = hn::Zero(d), last = hn::Zero(d);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const FloatVector z = hn::Sub(leaf_.at(c, filter_.axis_z, group, part),
+                                    hn::Set(d, filter_.origin[filter_.axis_z]));
+      x[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_x), z,
+                           hn::Sub(leaf_.at(c, filter_.axis_x, group, part),
+                                   hn::Set(d, filter_.origin[filter_.axis_x])));
+      y[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_y), z,
+                           hn::Sub(leaf_.at(c, filter_.axis_y, group, part),
+                                   hn::Set(d, filter_.origin[filter_.axis_y])));
+      size = hn::Max(size, hn::Max(hn::Abs(x[c]), hn::Abs(y[c])));
+      const FloatVector depth = hn::Mul(z, hn::Set(d, filter_.shear_z));
+      first = c == 0 ? depth : hn::Min(first, depth);
+      last = c == 0 ? depth : hn::Max(last, depth);
+    }
+    const auto area = [&](std::size_t from, std::size_t to) {
+      return hn::MulSub(x[from], y[to], hn::Mul(y[from], x[to]));
+    };
+    const FloatVector a = area(2, 1), b = area(0, 2), c = area(1, 0);
+    const FloatVector error = hn::Set(d, 3 * filter_.error);
+    const FloatVector doubt = hn::Mul(hn::Mul(hn::Set(d, 8.0f), error), hn::Add(size, error));
+    const FloatVector smallest = hn::Min(a, hn::Min(b, c));
+    const FloatVector largest = hn::Max(a, hn::Max(b, c));
+    const auto apart = hn::And(hn::Gt(largest, doubt), hn::Lt(smallest, hn::Neg(doubt)));
+    const auto beyond = hn::Or(hn::Gt(first, hn::Add(hn::Set(d, bound_), error)),
+                               hn::Lt(last, hn::Neg(hn::Add(error, error))));
+    return bits_of(hn::Or(apart, beyond));
+  }
+
+  const WideCodec<Node>& codec_;
+  RayQuery& query_;
+  const RayFilter& filter_;
+  float bound_;
+  LeafFloats leaf_;
+  std::array<RayEntry, kWideStack<Node>> stack_;
+};
+
+template <class Node>
+Errc walk_ray(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
+  const Box<float> root = root_box<float>(tree);
+  const SlabInterval at = query.slab.intersect(root);
+  if (!(at.enter <= at.leave && at.leave >= query.t_min && at.enter <= query.t_max)) {
+    return Errc::kOk;
+  }
+  return RayWalk<Node>(tree, codec, query, RayFilter(query, at.enter)).run(root);
+}
+
+Errc walk_ray_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
+  return walk_ray(tree, codec, query);
+}
+Errc walk_ray_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
+  return walk_ray(tree, codec, query);
+}
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_ray_wide8);
+HWY_EXPORT(walk_ray_wide4);
+
+}  // namespace
+
+Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
+  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  return HWY_DYNAMIC_DISPATCH(walk_ray_wide8)(tree, codec, query);
+}
+Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
+  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  return HWY_DYNAMIC_DISPATCH(walk_ray_wide4)(tree, codec, query);
+}
+
+}  // namespace boxtree
+#endif
