@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/face_intake.h>
+#include <boxtree/format/limits.h>
 
 namespace boxtree::cooker {
 

@@ -13,8 +13,6 @@
 
 namespace boxtree::cooker {
 
-inline constexpr std::uint64_t kMaxFaces = 0x7fffffffu;
-
 /// Something wrong with one face.
 struct FaceFault {
   Errc code;
