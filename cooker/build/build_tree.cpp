@@ -11,6 +11,7 @@
 
 #include <boxtree/cooker/build/build_tree.h>
 #include <boxtree/cooker/build/splitter.h>
+#include <boxtree/cooker/build/unit_sweep.h>
 #include <boxtree/format/limits.h>
 
 namespace boxtree::cooker {
@@ -97,10 +98,14 @@ class Recursion {
     BuildNode& here = nodes_[node];
     const std::size_t count = last - first;
     const std::span<FaceBox> faces = faces_.subspan(first, count);
+    if (leaf_faces_ > 1 && count <= UnitSweep::kMaxFaces) {
+      UnitSweep sweep(faces);
+      return build_swept(sweep, first, {0, count}, node, depth_left);
+    }
     Box<float> bounds = empty_box<float>();
     for (const FaceBox& face : faces) expand(bounds, face.box);
-    if (count <= leaf_faces_) {
-      here = make_leaf(faces, first, bounds);
+    if (count == 1) {
+      here = {bounds, 0, faces[0].face};
       return bounds;
     }
 
@@ -116,27 +121,54 @@ class Recursion {
       build_left();
       build_right();
     }
-    const std::uint32_t height = 1 + std::max(nodes_[left].height(), nodes_[right].height());
-    here = {bounds, static_cast<std::uint32_t>(right), split.axis | height << 8};
+    here = make_inner(bounds, left, right, split.axis);
     return bounds;
   }
 
  private:
-  // Within a leaf faces follow their numbers, whatever order the divisions left them in.
-  [[nodiscard]] BuildNode make_leaf(std::span<FaceBox> faces, std::size_t first,
-                                    const Box<float>& bounds) const {
-    if (leaf_faces_ == 1) return {bounds, 0, faces[0].face};
-    std::sort(faces.begin(), faces.end(),
-              [](const FaceBox& a, const FaceBox& b) { return a.face < b.face; });
-    return {bounds, 0, static_cast<std::uint32_t>(first)};
+  struct Part {  // of a sweep
+    std::size_t first, last;
+  };
+
+  // The same for a part of a small set, whose faces stand from `base` on. Within a leaf they follow
+  // their numbers.
+  Box<float> build_swept(UnitSweep& sweep, std::size_t base, Part part, std::size_t node,
+                         std::uint32_t depth_left) {
+    BuildNode& here = nodes_[node];
+    const std::size_t count = part.last - part.first;
+    const Box<float> bounds = sweep.bounds(part.first, part.last);
+    if (count <= leaf_faces_) {
+      here = {bounds, 0, static_cast<std::uint32_t>(base + part.first)};
+      sweep.copy_to(part.first, faces_.subspan(base + part.first, count));
+      return bounds;
+    }
+    const std::size_t unit = count > kNodeFaces ? kNodeFaces : leaf_faces_;
+    const Split split = halvings(count) < depth_left ? sweep.best_split(part.first, part.last, unit)
+                                                     : median_of(count, bounds, leaf_faces_);
+    sweep.divide(part.first, part.last, split);
+    const std::size_t middle = part.first + split.left_count;
+    const std::size_t left = node + 1;
+    const std::size_t right = node + 2 * leaves_of(split.left_count, leaf_faces_);
+    build_swept(sweep, base, {part.first, middle}, left, depth_left - 1);
+    build_swept(sweep, base, {middle, part.last}, right, depth_left - 1);
+    here = make_inner(bounds, left, right, split.axis);
+    return bounds;
+  }
+
+  [[nodiscard]] BuildNode make_inner(const Box<float>& bounds, std::size_t left, std::size_t right,
+                                     std::uint32_t axis) const {
+    const std::uint32_t height = 1 + std::max(nodes_[left].height(), nodes_[right].height());
+    return {bounds, static_cast<std::uint32_t>(right), axis | height << 8};
   }
 
   // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
+  [[nodiscard]] std::uint32_t halvings(std::size_t faces) const {
+    return static_cast<std::uint32_t>(std::bit_width(leaves_of(faces, leaf_faces_) - 1));
+  }
+
   Split choose_split(std::span<FaceBox> faces, const Box<float>& bounds,
                      std::uint32_t depth_left) const {
-    const auto halvings =
-        static_cast<std::uint32_t>(std::bit_width(leaves_of(faces.size(), leaf_faces_) - 1));
-    if (halvings < depth_left) {
+    if (halvings(faces.size()) < depth_left) {
       if (const std::optional<Split> split = rule_(faces, bounds)) return *split;
     }
     return split_median(faces, bounds, leaf_faces_);

@@ -15,28 +15,6 @@ namespace {
 constexpr std::size_t kBins = 32;
 constexpr std::size_t kSweepLimit = 24;
 
-// Twice the centre of a box; the factor drops out of every comparison.
-double centre(const FaceBox& face, std::size_t axis) {
-  return double{face.box.low[axis]} + face.box.high[axis];
-}
-
-// Smaller cost wins, then the more even division, then the lower axis: no cost can be NaN, and flat
-// sets, whose costs are all zero, still split in the middle.
-struct Candidate {
-  double cost = std::numeric_limits<double>::infinity();
-  std::size_t imbalance = 0;
-  std::size_t axis = 0;
-  std::size_t position = 0;  // first bin, or first face of the sorted order, that goes right
-
-  [[nodiscard]] bool improves_on(const Candidate& best) const {
-    return cost < best.cost || (cost == best.cost && imbalance < best.imbalance);
-  }
-};
-
-std::size_t imbalance(std::size_t left, std::size_t right) {
-  return left > right ? left - right : right - left;
-}
-
 // Maps centres of one axis to bins; monotone, so that bins divide space.
 struct Binning {
   double low = 0;
@@ -68,7 +46,7 @@ struct Bin {
   std::size_t count = 0;
 };
 
-Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
+SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
   std::array<double, kBins> right_cost;  // of bins [i, kBins)
   std::array<std::size_t, kBins> right_count;
   Box<float> box = empty_box<float>();
@@ -79,14 +57,14 @@ Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
     right_count[i] = count;
     right_cost[i] = count == 0 ? 0 : half_area(box) * static_cast<double>(count);
   }
-  Candidate best;
+  SplitCost best;
   box = empty_box<float>();
   count = 0;
   for (std::size_t i = 1; i < kBins; ++i) {
     expand(box, bins[i - 1].bounds);
     count += bins[i - 1].count;
     if (count == 0 || right_count[i] == 0) continue;
-    const Candidate here{half_area(box) * static_cast<double>(count) + right_cost[i],
+    const SplitCost here{half_area(box) * static_cast<double>(count) + right_cost[i],
                          imbalance(count, right_count[i]), axis, i};
     if (here.improves_on(best)) best = here;
   }
@@ -97,8 +75,9 @@ Candidate best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
 struct BinnedSplit {
   Binning binning;
   std::size_t axis;
-  std::size_t position;    // first bin that goes right
-  std::size_t left_count;  // faces before it
+  std::size_t position;                   // first bin that goes right
+  std::size_t left_count;                 // faces before it
+  std::array<std::size_t, kBins> counts;  // of faces, along the axis
 };
 
 std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
@@ -111,16 +90,19 @@ std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
       ++bin.count;
     }
   }
-  Candidate best;
+  SplitCost best;
   for (std::size_t k = 0; k < 3; ++k) {
     if (binning[k].scale == 0) continue;
-    const Candidate here = best_bin_boundary(bins[k], k);
+    const SplitCost here = best_bin_boundary(bins[k], k);
     if (here.improves_on(best)) best = here;
   }
   if (!std::isfinite(best.cost)) return std::nullopt;
-  std::size_t left_count = 0;
-  for (std::size_t i = 0; i < best.position; ++i) left_count += bins[best.axis][i].count;
-  return BinnedSplit{binning[best.axis], best.axis, best.position, left_count};
+  BinnedSplit split{binning[best.axis], best.axis, best.position, 0, {}};
+  for (std::size_t i = 0; i < kBins; ++i) {
+    split.counts[i] = bins[best.axis][i].count;
+    if (i < best.position) split.left_count += split.counts[i];
+  }
+  return split;
 }
 
 std::optional<Split> split_binned(std::span<FaceBox> faces) {
@@ -154,7 +136,7 @@ Split split_at(std::span<FaceBox> faces, std::size_t count, std::size_t axis) {
 
 std::optional<Split> split_sweep(std::span<FaceBox> faces) {
   const std::size_t n = faces.size();
-  Candidate best;
+  SplitCost best;
   for (std::size_t k = 0; k < 3; ++k) {
     sort_by_centre(faces, k);
     std::array<double, kSweepLimit> right_cost;
@@ -166,7 +148,7 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
     box = empty_box<float>();
     for (std::size_t i = 1; i < n; ++i) {
       expand(box, faces[i - 1].box);
-      const Candidate here{half_area(box) * static_cast<double>(i) + right_cost[i],
+      const SplitCost here{half_area(box) * static_cast<double>(i) + right_cost[i],
                            imbalance(i, n - i), k, i};
       if (here.improves_on(best)) best = here;
     }
@@ -175,35 +157,23 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
   return Split{best.position, static_cast<std::uint32_t>(best.axis)};
 }
 
-// Sets up to this size are sorted along each axis and divided at the best multiple of a unit.
-constexpr std::size_t kUnitSweepLimit = 512;
-
-// What a query that comes to so many faces has to look at: their leaves.
-double cost_of(std::size_t faces) {
-  return static_cast<double>(leaves_of(faces));
-}
-
-std::optional<Split> sweep_units(std::span<FaceBox> faces, std::size_t unit) {
-  const std::size_t n = faces.size();
-  Candidate best;
-  for (std::size_t k = 0; k < 3; ++k) {
-    sort_by_centre(faces, k);
-    std::array<double, kUnitSweepLimit / kLeafFaces> right_cost;  // of faces from unit * i on
-    Box<float> box = empty_box<float>();
-    for (std::size_t i = n; i-- > unit;) {
-      expand(box, faces[i].box);
-      if (i % unit == 0) right_cost[i / unit] = half_area(box) * cost_of(n - i);
-    }
-    box = empty_box<float>();
-    for (std::size_t i = 1; i < n; ++i) {
-      expand(box, faces[i - 1].box);
-      if (i % unit != 0) continue;
-      const Candidate here{half_area(box) * cost_of(i) + right_cost[i / unit], imbalance(i, n - i),
-                           k, i};
-      if (here.improves_on(best)) best = here;
-    }
+// The first `count` faces along the axis go left. Bins divide space, so that only the bin in which
+// the count ends needs to be looked at face by face.
+Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit& bins) {
+  std::size_t before = 0, bin = 0;
+  while (before + bins.counts[bin] <= count) before += bins.counts[bin++];
+  const auto bin_of = [&](const FaceBox& face) {
+    return bins.binning.bin(centre(face, bins.axis));
+  };
+  const auto rest = std::partition(faces.begin(), faces.end(),
+                                   [&](const FaceBox& face) { return bin_of(face) < bin; });
+  if (count > before) {
+    const auto above =
+        std::partition(rest, faces.end(), [&](const FaceBox& face) { return bin_of(face) == bin; });
+    std::nth_element(rest, rest + static_cast<std::ptrdiff_t>(count - before), above,
+                     by_centre(bins.axis));
   }
-  return split_at(faces, best.position, best.axis);
+  return {count, static_cast<std::uint32_t>(bins.axis)};
 }
 
 // The best boundary of bins, moved to the nearest multiple of a unit.
@@ -212,7 +182,7 @@ std::optional<Split> bin_units(std::span<FaceBox> faces, std::size_t unit) {
   if (!best) return std::nullopt;
   const std::size_t last = (faces.size() - 1) / unit;  // at least one: there are two units or more
   const std::size_t units = std::clamp<std::size_t>((best->left_count + unit / 2) / unit, 1, last);
-  return split_at(faces, units * unit, best->axis);
+  return split_bins_at(faces, units * unit, *best);
 }
 
 }  // namespace
@@ -222,14 +192,10 @@ std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& /*bou
 }
 
 std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces, const Box<float>& /*bounds*/) {
-  // A node has room for eight leaves. Sets of more than that are divided at whole nodes, so that
-  // nodes above leaves, which are seven of eight, come out full.
-  constexpr std::size_t kNodeFaces = std::size_t{kLeafFaces} * kWideChildren;
-  const std::size_t unit = faces.size() > kNodeFaces ? kNodeFaces : std::size_t{kLeafFaces};
-  return faces.size() <= kUnitSweepLimit ? sweep_units(faces, unit) : bin_units(faces, unit);
+  return bin_units(faces, kNodeFaces);
 }
 
-Split split_median(std::span<FaceBox> faces, const Box<float>& bounds, std::size_t unit) {
+Split median_of(std::size_t faces, const Box<float>& bounds, std::size_t unit) {
   std::size_t axis = 0;
   double widest = -1;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -239,8 +205,12 @@ Split split_median(std::span<FaceBox> faces, const Box<float>& bounds, std::size
       axis = k;
     }
   }
-  const std::size_t half = std::max<std::size_t>(1, faces.size() / unit / 2) * unit;
-  return split_at(faces, half, axis);
+  return {std::max<std::size_t>(1, faces / unit / 2) * unit, static_cast<std::uint32_t>(axis)};
+}
+
+Split split_median(std::span<FaceBox> faces, const Box<float>& bounds, std::size_t unit) {
+  const Split split = median_of(faces.size(), bounds, unit);
+  return split_at(faces, split.left_count, split.axis);
 }
 
 }  // namespace boxtree::cooker

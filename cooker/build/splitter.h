@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <span>
 
 #include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/format/codec_wide.h>
 
 namespace boxtree::cooker {
 
@@ -17,6 +19,32 @@ namespace boxtree::cooker {
   const double z = double{box.high[2]} - box.low[2];
   return x * y + y * z + z * x;
 }
+
+/// Twice the centre of a box; the factor drops out of every comparison.
+[[nodiscard]] inline double centre(const FaceBox& face, std::size_t axis) {
+  return double{face.box.low[axis]} + face.box.high[axis];
+}
+
+[[nodiscard]] inline std::size_t imbalance(std::size_t left, std::size_t right) {
+  return left > right ? left - right : right - left;
+}
+
+/// A division under consideration. Smaller cost wins, then the more even division, then the lower
+/// axis: no cost can be NaN, and flat sets, whose costs are all zero, still split in the middle.
+struct SplitCost {
+  double cost = std::numeric_limits<double>::infinity();
+  std::size_t imbalance = 0;
+  std::size_t axis = 0;
+  std::size_t position = 0;  // first bin, or first face of the sorted order, that goes right
+
+  [[nodiscard]] bool improves_on(const SplitCost& best) const {
+    return cost < best.cost || (cost == best.cost && imbalance < best.imbalance);
+  }
+};
+
+/// Faces of a wide node above leaves. Sets of more than that are divided at multiples of it, so
+/// that nodes above leaves, which are seven of eight, come out full.
+inline constexpr std::size_t kNodeFaces = std::size_t{kLeafFaces} * kWideChildren;
 
 /// Where a set was divided: faces [0, left_count) go left. Both sides are not empty.
 struct Split {
@@ -32,14 +60,16 @@ using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<f
 [[nodiscard]] std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& bounds);
 [[nodiscard]] std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds);
 
-/// Divides so that the left side fills whole leaves of kLeafFaces, and whole nodes of leaves as far
-/// as there are any; the right side keeps the rest. Precondition: more than one leaf of faces.
+/// Divides so that the left side fills whole nodes of kNodeFaces; the right side keeps the rest.
+/// For large sets: UnitSweep divides those that it takes. Precondition: more faces than kNodeFaces.
 [[nodiscard]] std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces,
                                                          const Box<float>& bounds);
 
-/// Halves the set by box centre along the widest axis, ties by face number, into a left side of a
-/// multiple of `unit` faces: always succeeds, and bounds the depth. Precondition: more faces than
-/// `unit`.
+/// Where to halve so many faces with these bounds: along the widest axis, into a left side of a
+/// multiple of `unit` faces. Precondition: more faces than `unit`.
+[[nodiscard]] Split median_of(std::size_t faces, const Box<float>& bounds, std::size_t unit);
+
+/// Halves the set there by box centre, ties by face number: always succeeds, and bounds the depth.
 [[nodiscard]] Split split_median(std::span<FaceBox> faces, const Box<float>& bounds,
                                  std::size_t unit = 1);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// import_mesh: one assimp import without post-processing, checked before and after.
+// import_mesh: our own reader, or one assimp import without post-processing, checked before and
+// after.
 #include <exception>
 #include <memory>
 #include <new>
@@ -10,6 +11,8 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
+#include <boxtree/cooker/import/binary_ply.h>
+#include <boxtree/cooker/import/binary_stl.h>
 #include <boxtree/cooker/import/flatten.h>
 #include <boxtree/cooker/import/header_checks.h>
 #include <boxtree/cooker/import/import.h>
@@ -122,7 +125,8 @@ Status import_off(const fs::path& path, const ImportOptions& options, Imported& 
   return import_once(path, options, &obj, out);
 }
 
-// For f64. A file whose vertices cannot be found is read as any other: with f32 positions.
+// Files of text, for f64. A file whose vertices cannot be found is read as any other: with f32
+// positions.
 Status import_exact_ply(const fs::path& path, const ImportOptions& options, Imported& out) {
   Result<std::string> file = read_source_file(path);
   if (!file.ok()) return file.error();
@@ -139,16 +143,27 @@ Status import_any(const fs::path& path, const ImportOptions& options, Imported& 
   return import_once(path, options, nullptr, out);
 }
 
+// Formats of large meshes, read past assimp. False if this file is for assimp.
+Result<bool> import_directly(const fs::path& path, const ImportOptions& options, Imported& out) {
+  if (has_extension(path, "ply")) return import_binary_ply(path, options, out);
+  if (has_extension(path, "stl")) return import_binary_stl(path, options, out);
+  return false;
+}
+
 Result<Imported> import_checked(const fs::path& path, const ImportOptions& options) {
   if (Status status = check_source_file(path); !status.ok()) return status.error();
   Imported out;
-  const Status status = import_any(path, options, out);
-  if (!status.ok()) return status.error();
+  const Result<bool> is_read = import_directly(path, options, out);
+  if (!is_read.ok()) return is_read.error();
+  if (!is_read.value()) {
+    const Status status = import_any(path, options, out);
+    if (!status.ok()) return status.error();
+    // Hashed only now, so that a refused file costs no second reading.
+    const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
+    if (!hash.ok()) return hash.error();
+    out.report.content_hash = hash.value();
+  }
   out.mesh.name = path.stem().string();
-  // Hashed only now, so that a refused file costs no second reading.
-  const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
-  if (!hash.ok()) return hash.error();
-  out.report.content_hash = hash.value();
   return out;
 }
 

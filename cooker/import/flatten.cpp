@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Flattening: walks the node tree, applies transforms in double, welds, splits, counts.
+// Flattening: walks the node tree, applies transforms in double, welds, counts.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <optional>
 #include <type_traits>
 
@@ -12,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/flatten.h>
-#include <boxtree/cooker/import/polygon_split.h>
 #include <boxtree/cooker/import/weld.h>
 
 namespace boxtree::cooker {
@@ -20,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t kMaxFaces = 0x7fffffffu;
 constexpr std::size_t kMaxMarkers = std::size_t{1} << 24;  // integers that a float holds
 
 // What remap_ says of a vertex before it has a number.
@@ -64,15 +61,6 @@ struct Instance {
   unsigned mesh;
   Transform transform;
 };
-
-// At most a unit in the last place of `value`, or of the smallest normal number below that. One
-// rounding makes half of that; assimp's reader of decimal numbers makes two (the integer part, then
-// its sum with the fraction), and a file may have been rounded when written.
-template <class T>
-double rounding_of(double value) {
-  return std::max(std::abs(value), double{std::numeric_limits<T>::min()}) *
-         double{std::numeric_limits<T>::epsilon()};
-}
 
 // Instances in node order, depth first, with an explicit stack: a file may nest as deep as it
 // likes.
@@ -141,9 +129,9 @@ class Flattener {
         known_(known),
         exact_(exact),
         positions_(positions),
-        mesh_(out.mesh),
         report_(out.report),
-        welder_(positions) {}
+        welder_(positions),
+        intake_(positions, out) {}
 
   Status add(const aiMesh& mesh, const Transform& transform);
 
@@ -153,27 +141,20 @@ class Flattener {
   Status mark_used();
   void weld_used();
   void add_face(const aiFace& face);
-  void add_quad(const aiFace& face);
-  void add_polygon();
-  void push(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d = kNoCorner);
   [[nodiscard]] std::optional<FaceFault> fault_of(const aiFace& face) const;
   [[nodiscard]] std::string name_of_vertex(unsigned vertex) const;
   [[nodiscard]] RoundedCorner rounded_corner(unsigned vertex) const;
-  [[nodiscard]] Vector3d position(std::uint32_t vertex) const;
-  [[nodiscard]] bool has_no_area(const Face& face) const;
 
   const ImportOptions& options_;
   const std::string& file_;
   const KnownFaults& known_;
   const ExactPositions& exact_;
   std::vector<T>& positions_;
-  SourceMesh& mesh_;
   ImportReport& report_;
   Welder<T> welder_;
-  PolygonSplitter splitter_;
+  FaceIntake<T> intake_;
   std::vector<std::uint32_t> remap_;    // for each vertex of the instance: state or number
   std::vector<std::uint32_t> corners_;  // of the face at hand, as numbers in positions_
-  std::vector<Vector3d> points_;        // their positions, for the splitter
   std::uint32_t next_face_id_ = 0;
 
   // The instance at hand.
@@ -227,18 +208,14 @@ Status Flattener<T>::mark_used() {
   for (unsigned i = 0; i < source_->mNumFaces; ++i) {
     const aiFace& face = source_->mFaces[i];
     if (face.mNumIndices < 3) {
-      if (face.mNumIndices == 0) ++report_.empty_skipped;
-      if (face.mNumIndices == 1) ++report_.points_skipped;
-      if (face.mNumIndices == 2) ++report_.lines_skipped;
+      count_no_face(face.mNumIndices, report_);
       continue;
     }
     const std::uint32_t face_id = next_face_id_++;
     ++report_.source_faces;
     if (std::optional<FaceFault> fault = fault_of(face)) {
-      if (!options_.skip_bad) {
-        return Error{fault->code, fmt::format("{}: face {}: {}", file_, face_id, fault->reason)};
-      }
-      report_.skipped.push_back({face_id, std::move(fault->reason)});
+      Status status = report_fault(std::move(*fault), face_id, file_, options_, report_);
+      if (!status.ok()) return status;
       continue;
     }
     for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
@@ -255,17 +232,13 @@ std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
   for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
     const unsigned vertex = face.mIndices[corner];
     if (vertex >= source_->mNumVertices) {
-      return FaceFault{Errc::kMeshIndexOutOfRange,
-                       fmt::format("corner {} names {}, but there are {} vertices", corner,
-                                   name_of_vertex(vertex), source_->mNumVertices)};
+      return vertex_out_of_range(corner, name_of_vertex(vertex), source_->mNumVertices);
     }
     if (remap_[vertex] != kNotFinite) continue;
     const aiVector3D& source = source_->mVertices[vertex];
     if (const FaceFault* known = known_.find(source)) return *known;
     const std::array<T, 3> placed = place(vertex);
-    return FaceFault{Errc::kMeshNotFinite,
-                     fmt::format("{} is not finite: ({}, {}, {})", name_of_vertex(vertex),
-                                 placed[0], placed[1], placed[2])};
+    return vertex_not_finite(name_of_vertex(vertex), {placed[0], placed[1], placed[2]});
   }
   return std::nullopt;
 }
@@ -297,7 +270,6 @@ void Flattener<T>::add_face(const aiFace& face) {
     const unsigned vertex = face.mIndices[corner];
     if (vertex >= source_->mNumVertices || remap_[vertex] == kNotFinite) return;
   }
-  const std::size_t first = mesh_.faces.size();
   corners_.clear();
   for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
     // A mirrored face would show its back: walk it the other way round, from the same corner.
@@ -305,55 +277,14 @@ void Flattener<T>::add_face(const aiFace& face) {
     corners_.push_back(remap_[face.mIndices[from]]);
   }
   if (corners_.size() == 3) {
-    push(corners_[0], corners_[1], corners_[2]);
+    intake_.add_triangle(face_id, {corners_[0], corners_[1], corners_[2]});
   } else if (corners_.size() == 4) {
-    add_quad(face);
+    intake_.add_quad(face_id, {corners_[0], corners_[1], corners_[2], corners_[3]},
+                     {rounded_corner(face.mIndices[0]), rounded_corner(face.mIndices[1]),
+                      rounded_corner(face.mIndices[2]), rounded_corner(face.mIndices[3])});
   } else {
-    ++report_.ngons_split;
-    add_polygon();
+    intake_.add_polygon(face_id, corners_);
   }
-  bool no_area = true;
-  for (std::size_t i = first; i < mesh_.faces.size(); ++i) {
-    no_area = no_area && has_no_area(mesh_.faces[i]);
-  }
-  if (no_area) ++report_.degenerate_faces;
-  // Ids are written down only once they differ from the position of the face.
-  const std::size_t last = mesh_.faces.size();
-  if (mesh_.face_ids.empty() && face_id == first && last == first + 1) return;
-  if (mesh_.face_ids.empty()) {
-    mesh_.face_ids.reserve(mesh_.faces.capacity());
-    mesh_.face_ids.resize(first);
-    std::iota(mesh_.face_ids.begin(), mesh_.face_ids.end(), 0u);
-  }
-  mesh_.face_ids.resize(last, face_id);
-}
-
-template <class T>
-void Flattener<T>::add_quad(const aiFace& face) {
-  const std::array<RoundedCorner, 4> corners = {
-      rounded_corner(face.mIndices[0]), rounded_corner(face.mIndices[1]),
-      rounded_corner(face.mIndices[2]), rounded_corner(face.mIndices[3])};
-  if (is_planar_convex_quad(corners)) {
-    ++report_.quads_kept;
-    push(corners_[0], corners_[1], corners_[2], corners_[3]);
-  } else {
-    ++report_.quads_split;
-    add_polygon();
-  }
-}
-
-template <class T>
-void Flattener<T>::add_polygon() {
-  points_.clear();
-  for (const std::uint32_t corner : corners_) points_.push_back(position(corner));
-  for (const PolygonSplitter::Triangle& triangle : splitter_.split(points_)) {
-    push(corners_[triangle[0]], corners_[triangle[1]], corners_[triangle[2]]);
-  }
-}
-
-template <class T>
-void Flattener<T>::push(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
-  mesh_.faces.push_back(Face{{a, b, c, d}});
 }
 
 // A coordinate was rounded to f32 (or f64, if exact) when the file was written or read, then
@@ -365,7 +296,7 @@ RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
   const auto rounding_when_read = exact_.empty() ? rounding_of<float> : rounding_of<double>;
   const Vector3d before(rounding_when_read(source[0]), rounding_when_read(source[1]),
                         rounding_when_read(source[2]));
-  const Vector3d after = position(remap_[vertex]);
+  const Vector3d after = intake_.position(remap_[vertex]);
   if (is_identity_) return {after, before};
   Vector3d rounding;
   for (int axis = 0; axis < 3; ++axis) {
@@ -379,21 +310,6 @@ RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
     rounding[axis] = carried + rounding_of<T>(after[axis]) + 4 * rounding_of<double>(terms);
   }
   return {after, rounding};
-}
-
-template <class T>
-Vector3d Flattener<T>::position(std::uint32_t vertex) const {
-  const T* p = &positions_[std::size_t{3} * vertex];
-  return {double{p[0]}, double{p[1]}, double{p[2]}};
-}
-
-template <class T>
-bool Flattener<T>::has_no_area(const Face& face) const {
-  const auto flat = [this](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
-    return a == b || b == c || c == a || is_collinear(position(a), position(b), position(c));
-  };
-  const auto& [a, b, c, d] = face.corner;
-  return flat(a, b, c) && (!face.is_quad() || flat(a, c, d));
 }
 
 // Faces that the instances will give, or more than kMaxFaces.
@@ -417,20 +333,6 @@ Status flatten(aiScene& scene, const std::vector<Instance>& instances, Flattener
   return {};
 }
 
-Error no_faces(const std::string& file, const ImportReport& report) {
-  std::string why = "no faces";
-  if (!report.skipped.empty()) why = fmt::format("all {} faces are bad", report.source_faces);
-  std::string also;
-  const auto add = [&also](std::size_t count, const char* what) {
-    if (count > 0) also += fmt::format("{}{} {}", also.empty() ? " (" : ", ", count, what);
-  };
-  add(report.points_skipped, "points");
-  add(report.lines_skipped, "lines");
-  add(report.empty_skipped, "faces without corners");
-  if (!also.empty()) also += ")";
-  return Error{Errc::kNoFaces, fmt::format("{}: {}{}", file, why, also)};
-}
-
 }  // namespace
 
 aiVector3D KnownFaults::marker(std::size_t fault) {
@@ -452,10 +354,7 @@ Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::st
     if (scene.mMeshes[i] != nullptr) free_attributes(*scene.mMeshes[i]);
   }
   const std::uint64_t faces = count_faces(scene, instances);
-  if (faces > kMaxFaces) {
-    return Error{Errc::kMeshTooLarge,
-                 fmt::format("{}: {} faces, more than {}", file, faces, kMaxFaces)};
-  }
+  if (Status status = check_face_count(faces, file); !status.ok()) return status;
   out.mesh.faces.reserve(faces);
   out.mesh.positions.precision = options.precision;
   Status status;
@@ -467,12 +366,7 @@ Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::st
     status = flatten(scene, instances, flattener);
   }
   if (!status.ok()) return status;
-  if (out.mesh.faces.empty()) return no_faces(file, out.report);
-  if (out.mesh.faces.size() > kMaxFaces) {
-    return Error{Errc::kMeshTooLarge, fmt::format("{}: {} faces after splitting, more than {}",
-                                                  file, out.mesh.faces.size(), kMaxFaces)};
-  }
-  return {};
+  return check_taken(file, out);
 }
 
 }  // namespace boxtree::cooker

@@ -10,17 +10,12 @@
 #include <assimp/vector3.h>
 
 #include <boxtree/cooker/import/exact_positions.h>
+#include <boxtree/cooker/import/face_intake.h>
 #include <boxtree/cooker/import/import.h>
 
 struct aiScene;
 
 namespace boxtree::cooker {
-
-/// Something wrong with one face.
-struct FaceFault {
-  Errc code;
-  std::string reason;
-};
 
 /// Faults that were found before assimp saw the file, and how assimp was told: a face that has one
 /// refers to a vertex whose position is marker(number of the fault).

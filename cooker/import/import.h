@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Mesh files in: the only door through which source meshes enter, built on assimp.
+// Mesh files in: the only door through which source meshes enter. Binary PLY and STL are read by
+// our own readers, everything else by assimp.
 #pragma once
 
 #include <cstddef>
@@ -33,7 +34,7 @@ struct ImportReport {
   std::size_t meshes = 0;           // mesh instances flattened into the result
   std::size_t meshes_unplaced = 0;  // of those, meshes that no node places: taken over as they are
   std::size_t source_faces = 0;     // polygons with three corners or more, as in the file
-  std::size_t source_vertices = 0;  // as assimp holds them, before welding
+  std::size_t source_vertices = 0;  // before welding; of formats without shared ones, corners
   std::size_t points_skipped = 0;
   std::size_t lines_skipped = 0;
   std::size_t empty_skipped = 0;  // faces without any corner
@@ -53,8 +54,8 @@ struct Imported {
   ImportReport report;
 };
 
-/// Reads `path` with assimp and flattens all its mesh instances into one mesh: instances in node
-/// order (depth first), faces in source order within each; face ids count polygons of three corners
+/// Reads `path` and flattens all its mesh instances into one mesh: instances in node order (depth
+/// first), faces in source order within each; face ids count polygons of three corners
 /// or more in that order. Node transforms (a file's up axis is one) are applied in double and
 /// rounded once; the identity leaves every bit alone; a mirroring one turns the winding round, so
 /// that faces still show their front. Vertices that are equal bit for bit are merged, unused ones
@@ -63,10 +64,10 @@ struct Imported {
 /// Degenerate faces stay.
 ///
 /// Errors name the file and the face or vertex: kFileNotFound, kFileUnreadable (a directory, a
-/// pipe, no permission), kImportFailed (empty, or not what its format asks for: assimp's own
-/// message), kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1 faces,
-/// or out of memory). No exception leaves it, nothing is printed by it, it reads and writes no
-/// global state: safe to call from several threads, in any locale.
+/// pipe, no permission), kImportFailed (empty, or not what its format asks for: often assimp's
+/// own message), kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1
+/// faces, or out of memory). No exception leaves it, nothing is printed by it, it reads and writes
+/// no global state: safe to call from several threads, in any locale.
 ///
 /// What assimp decides: Debian's build holds positions as f32. f64 positions of OBJ, OFF and PLY
 /// files go past it; those of other formats have the digits of f32. Decimal coordinates read as f32

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY files in double precision: assimp reads their doubles as f32.
+// PLY files of text in double precision: assimp reads their doubles as f32.
 #pragma once
 
 #include <string>
@@ -8,10 +8,10 @@
 
 namespace boxtree::cooker {
 
-/// Puts the positions of `file`, a PLY file, aside and writes their numbers in their places.
-/// Returns false and changes nothing when it does not understand the file well enough: lists before
-/// the vertices, coordinates in fewer than 32 bits, an early end. Positions that are not finite
-/// stay.
+/// Puts the positions of `file`, a PLY file of text, aside and writes their numbers in their
+/// places. Returns false and changes nothing when it does not understand the file well enough:
+/// lists before the vertices, coordinates in fewer than 32 bits, an early end. Positions that are
+/// not finite stay.
 bool number_ply_vertices(std::string& file, ExactPositions& exact);
 
 }  // namespace boxtree::cooker

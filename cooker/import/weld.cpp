@@ -38,14 +38,12 @@ std::uint64_t hash_bits(const T* position) {
 
 template <class T>
 Welder<T>::Welder(std::vector<T>& positions, std::size_t expected) : positions_(positions) {
-  assert(positions.empty());
   rehash(slots_for(expected));
 }
 
 template <class T>
 std::uint32_t Welder<T>::add(const std::array<T, 3>& position) {
-  const std::size_t count = positions_.size() / 3;
-  if (3 * (count + 1) > 2 * table_.size()) rehash(2 * table_.size());
+  if (3 * (count_ + 1) > 2 * table_.size()) rehash(2 * table_.size());
   const std::size_t mask = table_.size() - 1;
   std::size_t slot = hash_bits(position.data()) & mask;
   // Terminates: at least a third of the slots is free.
@@ -54,18 +52,28 @@ std::uint32_t Welder<T>::add(const std::array<T, 3>& position) {
     // Bits and not values: -0 is not +0 here. NOLINTNEXTLINE(*-suspicious-memory-comparison,cert-*)
     if (std::memcmp(other, position.data(), sizeof(position)) == 0) return table_[slot];
   }
-  assert(count < kFree);
-  table_[slot] = static_cast<std::uint32_t>(count);
-  positions_.insert(positions_.end(), position.begin(), position.end());
+  assert(count_ < kFree);
+  const std::size_t at = 3 * count_;
+  if (at < positions_.size()) {
+    std::copy(position.begin(), position.end(), &positions_[at]);
+  } else {
+    positions_.insert(positions_.end(), position.begin(), position.end());
+  }
+  table_[slot] = static_cast<std::uint32_t>(count_++);
   return table_[slot];
 }
 
 template <class T>
+void Welder<T>::prefetch(const std::array<T, 3>& position) const {
+  __builtin_prefetch(&table_[hash_bits(position.data()) & (table_.size() - 1)]);
+}
+
+template <class T>
 void Welder<T>::reserve(std::size_t more) {
-  const std::size_t slots = slots_for(positions_.size() / 3 + more);
+  const std::size_t slots = slots_for(count_ + more);
   if (slots > table_.size()) rehash(slots);
   // Never by less than doubling: many small calls must not copy the array each time.
-  const std::size_t wanted = positions_.size() + 3 * more;
+  const std::size_t wanted = 3 * (count_ + more);
   if (wanted > positions_.capacity()) {
     positions_.reserve(positions_.empty() ? wanted : std::max(wanted, 2 * positions_.size()));
   }
@@ -77,14 +85,33 @@ void Welder<T>::rehash(std::size_t slots) {
   table_ = std::vector<std::uint32_t>();
   table_.assign(slots, kFree);
   const std::size_t mask = slots - 1;
-  for (std::size_t vertex = 0; vertex < positions_.size() / 3; ++vertex) {
+  for (std::size_t vertex = 0; vertex < count_; ++vertex) {
     std::size_t slot = hash_bits(&positions_[3 * vertex]) & mask;
     while (table_[slot] != kFree) slot = (slot + 1) & mask;
     table_[slot] = static_cast<std::uint32_t>(vertex);
   }
 }
 
+template <class T>
+void weld_in_place(std::vector<T>& positions, std::span<std::uint32_t> numbers,
+                   std::size_t expected) {
+  // Far enough for a line of memory to arrive, near enough for it to stay.
+  constexpr std::size_t kAhead = 16;
+  Welder<T> welder(positions, expected);
+  const auto position = [&positions](std::size_t vertex) -> std::array<T, 3> {
+    return {positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]};
+  };
+  for (std::size_t vertex = 0; vertex < numbers.size(); ++vertex) {
+    if (vertex + kAhead < numbers.size()) welder.prefetch(position(vertex + kAhead));
+    // A vertex is never written beyond the place where it was read: at most that many were added.
+    if (numbers[vertex] != kWeldUnused) numbers[vertex] = welder.add(position(vertex));
+  }
+  positions.resize(3 * welder.size());
+}
+
 template class Welder<float>;
 template class Welder<double>;
+template void weld_in_place<float>(std::vector<float>&, std::span<std::uint32_t>, std::size_t);
+template void weld_in_place<double>(std::vector<double>&, std::span<std::uint32_t>, std::size_t);
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
@@ -60,6 +61,32 @@ TEST(Weld, AgreesWithMap) {
   expect_like_map<float>(1, 10);
   expect_like_map<float>(2, 1000);
   expect_like_map<double>(3, 30);
+}
+
+// In place: the same as adding the used ones to an array of their own.
+template <class T>
+void expect_in_place(unsigned seed, int values, std::size_t expected_vertices) {
+  std::mt19937 random(seed);
+  std::vector<T> positions, expected;
+  std::vector<std::uint32_t> numbers, expected_numbers;
+  Welder<T> welder(expected);
+  for (int i = 0; i < 20'000; ++i) {
+    const auto value = [&] { return static_cast<T>(static_cast<int>(random() % 1000) % values); };
+    const std::array<T, 3> position = {value(), value(), value()};
+    positions.insert(positions.end(), position.begin(), position.end());
+    const bool used = random() % 4 != 0;
+    numbers.push_back(used ? kWeldUsed : kWeldUnused);
+    expected_numbers.push_back(used ? welder.add(position) : kWeldUnused);
+  }
+  weld_in_place(positions, std::span(numbers), expected_vertices);
+  EXPECT_EQ(numbers, expected_numbers);
+  EXPECT_EQ(positions, expected);
+}
+
+TEST(Weld, InPlace) {
+  expect_in_place<float>(4, 10, 0);
+  expect_in_place<float>(5, 1000, 15'000);
+  expect_in_place<double>(6, 30, 100);
 }
 
 // Regular grids have few distinct bits; a poor hash would take minutes here.

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// A sweep over units of faces; stable division of the two orders that were not swept.
+#include <algorithm>
+#include <cassert>
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/build/unit_sweep.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// What a query that comes to so many faces has to look at: their leaves.
+double cost_of(std::size_t faces) {
+  return static_cast<double>(leaves_of(faces));
+}
+
+struct Key {
+  double centre;
+  std::uint32_t face;
+  std::uint16_t place;
+
+  [[nodiscard]] bool operator<(const Key& other) const {
+    return centre != other.centre ? centre < other.centre : face < other.face;
+  }
+};
+
+}  // namespace
+
+UnitSweep::UnitSweep(std::span<const FaceBox> faces) {
+  assert(faces.size() <= kMaxFaces);
+  std::copy(faces.begin(), faces.end(), faces_.begin());
+  std::array<Key, kMaxFaces> keys;
+  const auto end = keys.begin() + static_cast<std::ptrdiff_t>(faces.size());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (std::size_t i = 0; i < faces.size(); ++i) {
+      keys[i] = {centre(faces[i], axis), faces[i].face, static_cast<std::uint16_t>(i)};
+    }
+    std::sort(keys.begin(), end);
+    std::transform(keys.begin(), end, sorted_[axis].begin(),
+                   [](const Key& key) { return key.place; });
+  }
+}
+
+Box<float> UnitSweep::bounds(std::size_t first, std::size_t last) const {
+  Box<float> box = empty_box<float>();
+  for (std::size_t i = first; i < last; ++i) expand(box, faces_[sorted_[0][i]].box);
+  return box;
+}
+
+Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t unit) const {
+  const std::size_t count = last - first;
+  const std::size_t units = (count + unit - 1) / unit;
+  SplitCost best;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    std::array<Box<float>, kMaxFaces / kLeafFaces> box;  // of each unit
+    for (std::size_t u = 0; u < units; ++u) {
+      box[u] = empty_box<float>();
+      const std::size_t end = std::min(last, first + (u + 1) * unit);
+      for (std::size_t i = first + u * unit; i < end; ++i) {
+        expand(box[u], faces_[sorted_[axis][i]].box);
+      }
+    }
+    std::array<double, kMaxFaces / kLeafFaces> right_cost;  // of units from u on
+    Box<float> right = empty_box<float>();
+    for (std::size_t u = units; u-- > 1;) {
+      expand(right, box[u]);
+      right_cost[u] = half_area(right) * cost_of(count - u * unit);
+    }
+    Box<float> left = empty_box<float>();
+    for (std::size_t u = 1; u < units; ++u) {
+      expand(left, box[u - 1]);
+      const std::size_t faces = u * unit;
+      const SplitCost here{half_area(left) * cost_of(faces) + right_cost[u],
+                           imbalance(faces, count - faces), axis, faces};
+      if (here.improves_on(best)) best = here;
+    }
+  }
+  return {best.position, static_cast<std::uint32_t>(best.axis)};
+}
+
+void UnitSweep::divide(std::size_t first, std::size_t last, const Split& split) {
+  std::array<bool, kMaxFaces> goes_left;
+  for (std::size_t i = first; i < last; ++i) {
+    goes_left[sorted_[split.axis][i]] = i < first + split.left_count;
+  }
+  std::array<std::uint16_t, kMaxFaces> right;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (axis == split.axis) continue;
+    std::size_t lefts = first, rights = 0;
+    // Both are written and one is kept: which way a face goes cannot be foretold.
+    for (std::size_t i = first; i < last; ++i) {
+      const std::uint16_t place = sorted_[axis][i];
+      sorted_[axis][lefts] = place;
+      right[rights] = place;
+      lefts += goes_left[place] ? 1u : 0u;
+      rights += goes_left[place] ? 0u : 1u;
+    }
+    std::copy_n(right.begin(), rights, sorted_[axis].begin() + static_cast<std::ptrdiff_t>(lefts));
+  }
+}
+
+void UnitSweep::copy_to(std::size_t first, std::span<FaceBox> to) const {
+  for (std::size_t i = 0; i < to.size(); ++i) to[i] = faces_[sorted_[0][first + i]];
+  std::sort(to.begin(), to.end(),
+            [](const FaceBox& a, const FaceBox& b) { return a.face < b.face; });
+}
+
+}  // namespace boxtree::cooker

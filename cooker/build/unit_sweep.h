@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+// The last levels of a tree with full leaves: sets small enough to look at every division.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include <boxtree/cooker/build/splitter.h>
+#include <boxtree/format/codec_wide.h>
+
+namespace boxtree::cooker {
+
+/// A small set of faces, sorted along each axis once; its parts stay sorted when it is divided, so
+/// that all levels below together cost little more than one. The whole set is [0, size).
+class UnitSweep {
+ public:
+  static constexpr std::size_t kMaxFaces = 512;
+
+  /// Precondition: at most kMaxFaces faces.
+  explicit UnitSweep(std::span<const FaceBox> faces);
+
+  [[nodiscard]] Box<float> bounds(std::size_t first, std::size_t last) const;
+
+  /// Where the part [first, last) is best divided by the surface-area heuristic, along any axis, at
+  /// a multiple of `unit` faces. Precondition: more faces than `unit`, a multiple of kLeafFaces.
+  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t unit) const;
+
+  /// Divides [first, last): the faces with the lowest centres along the axis go left.
+  void divide(std::size_t first, std::size_t last, const Split& split);
+
+  /// Writes the faces of a part, by their numbers.
+  void copy_to(std::size_t first, std::span<FaceBox> to) const;
+
+ private:
+  std::array<FaceBox, kMaxFaces> faces_;
+  std::array<std::array<std::uint16_t, kMaxFaces>, 3> sorted_;  // places in faces_
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// One buffer over stdio, which passes large reads on.
+#define XXH_INLINE_ALL
+#include <algorithm>
+#include <cassert>
+#include <cerrno>
+#include <cstring>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <xxhash.h>
+
+#include <boxtree/cooker/import/source_stream.h>
+
+namespace boxtree::cooker {
+
+struct SourceStream::Hash {
+  XXH3_state_t state;
+};
+
+void SourceStream::FreeHash::operator()(Hash* hash) const {
+  delete hash;
+}
+
+Result<SourceStream> SourceStream::open(const std::filesystem::path& path) {
+  SourceStream stream;
+  stream.path_ = path;
+  stream.file_.reset(std::fopen(path.c_str(), "rb"));
+  std::error_code failed;
+  if (stream.file_) {
+    stream.unread_ = std::filesystem::file_size(path, failed);
+  } else {
+    failed = std::error_code(errno, std::generic_category());
+  }
+  if (failed) return Error{Errc::kFileUnreadable, path.string() + ": " + failed.message()};
+  stream.hash_.reset(new Hash);
+  XXH3_64bits_reset(&stream.hash_->state);
+  stream.buffer_.resize(kBufferBytes);
+  stream.at_ = stream.end_ = stream.buffer_.data();
+  stream.refill(static_cast<std::size_t>(std::min<std::uint64_t>(stream.unread_, kBufferBytes)));
+  return stream;
+}
+
+// Moves what is left to the front and fills up behind it.
+bool SourceStream::refill(std::size_t count) {
+  assert(count <= kBufferBytes);
+  if (count > left()) return false;
+  const auto kept = static_cast<std::size_t>(end_ - at_);
+  std::memmove(buffer_.data(), at_, kept);
+  const auto wanted =
+      static_cast<std::size_t>(std::min<std::uint64_t>(unread_, kBufferBytes - kept));
+  char* const behind = buffer_.data() + kept;
+  const std::size_t got = std::fread(behind, 1, wanted, file_.get());
+  XXH3_64bits_update(&hash_->state, behind, got);
+  unread_ -= got;
+  if (got < wanted) {
+    // Cannot be read, or somebody shortened it: either way there is no more.
+    if (std::ferror(file_.get()) != 0) error_ = errno;
+    unread_ = 0;
+  }
+  at_ = buffer_.data();
+  end_ = behind + got;
+  return kept + got >= count;
+}
+
+bool SourceStream::skip(std::uint64_t count) {
+  if (count > left()) return false;
+  while (count > 0) {
+    const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(count, kBufferBytes));
+    if (take(step) == nullptr) return false;
+    count -= step;
+  }
+  return true;
+}
+
+Error SourceStream::ended_in(std::string_view what) const {
+  if (error_ != 0) {
+    return Error{Errc::kFileUnreadable,
+                 path_.string() + ": " + std::generic_category().message(error_)};
+  }
+  return Error{Errc::kImportFailed, path_.string() + ": the file ends in " + std::string(what)};
+}
+
+Result<std::uint64_t> SourceStream::finish() {
+  if (!skip(left()) || error_ != 0) return ended_in("its last bytes");
+  return XXH3_64bits_digest(&hash_->state);
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// A source file read once, from front to back, and hashed on the way.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string_view>
+#include <vector>
+
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+/// Not a mapping: a file that somebody shortens meanwhile ends early instead of raising SIGBUS, and
+/// pages that were read do not count as ours.
+class SourceStream {
+ public:
+  /// The most that `take` gives at once, and what `ahead` shows of a longer file.
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
+
+  static Result<SourceStream> open(const std::filesystem::path& path);
+
+  /// What of the file is in memory and not yet taken: at the start kBufferBytes, or all of it.
+  [[nodiscard]] std::string_view ahead() const {
+    return {at_, static_cast<std::size_t>(end_ - at_)};
+  }
+
+  /// Bytes not yet taken.
+  [[nodiscard]] std::uint64_t left() const {
+    return unread_ + static_cast<std::uint64_t>(end_ - at_);
+  }
+
+  /// The next `count` bytes, valid until the next call; nullptr if the file has no more so many.
+  /// Precondition: count <= kBufferBytes.
+  [[nodiscard]] const char* take(std::size_t count) {
+    if (static_cast<std::size_t>(end_ - at_) < count && !refill(count)) return nullptr;
+    const char* const bytes = at_;
+    at_ += count;
+    return bytes;
+  }
+
+  /// Passes over `count` bytes; false if the file has no more so many.
+  [[nodiscard]] bool skip(std::uint64_t count);
+
+  /// What to say when `take` or `skip` failed: the file cannot be read, or ends too early.
+  [[nodiscard]] Error ended_in(std::string_view what) const;
+
+  /// Reads the rest; the answer is XXH3 (64 bits) over the whole file.
+  Result<std::uint64_t> finish();
+
+ private:
+  struct CloseFile {
+    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+  };
+  struct Hash;
+  struct FreeHash {
+    void operator()(Hash* hash) const;
+  };
+
+  SourceStream() = default;
+  bool refill(std::size_t count);
+
+  std::filesystem::path path_;
+  std::unique_ptr<std::FILE, CloseFile> file_;
+  std::unique_ptr<Hash, FreeHash> hash_;
+  std::vector<char> buffer_;
+  const char* at_ = nullptr;
+  const char* end_ = nullptr;
+  std::uint64_t unread_ = 0;  // bytes of the file that are not in the buffer yet
+  int error_ = 0;             // of the system, when reading failed
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Binary PLY and STL files of generated meshes.
+#pragma once
+
+#include <filesystem>
+
+#include <boxtree/cooker/import/source_mesh.h>
+
+namespace boxtree::bench {
+
+/// Writes `mesh`, triangles with f32 positions, as little-endian PLY or as STL, whichever the
+/// extension of `path` says. Throws std::runtime_error when that fails.
+void write_mesh(const cooker::SourceMesh& mesh, const std::filesystem::path& path);
+
+}  // namespace boxtree::bench
