@@ -81,16 +81,36 @@ bool enter(const EncodedTree& tree, const SourceMesh& mesh, const CookOptions& o
   return choose(cooked.candidates, options.goal) == cooked.candidates.size() - 1;
 }
 
-EncodedTree without_bytes(const SourceMesh& mesh, const BuildTree& build) {
+// What is cooked: a mesh, or what became of it on a grid.
+struct Source {
+  const SourceMesh& mesh;                        // as imported
+  const std::optional<QuantisedMesh> quantised;  // or nothing
+
+  [[nodiscard]] const SourceMesh& built() const { return quantised ? quantised->mesh : mesh; }
+  [[nodiscard]] Origin origin() const { return quantised ? Origin::kZero : Origin::kByPrecision; }
+};
+
+EncodedTree without_bytes(const Source& source, const BuildTree& build) {
+  const SourceMesh& mesh = source.mesh;
   EncodedTree tree;
   tree.name = mesh.name;
-  tree.origin = build.origin;
-  tree.scale_exponent = build.scale_exponent;
+  tree.origin = source.quantised ? source.quantised->origin : build.origin;
+  tree.scale_exponent =
+      build.scale_exponent + (source.quantised ? source.quantised->step_exponent : 0);
   tree.face_count = static_cast<std::uint32_t>(mesh.faces.size());
   tree.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
-  tree.degenerate_count = count_degenerate(mesh, build.frame());
+  tree.degenerate_count = count_degenerate(source.built(), build.frame());
   tree.positions_f64 = mesh.positions.precision == Precision::kF64;
   return tree;
+}
+
+EncodedGeometry encode_geometry(const Source& source, const CookOptions& options,
+                                std::vector<std::uint32_t> order, LeafOrder leaf_order) {
+  if (source.quantised) {
+    return encode_grid_geometry(*source.quantised, source.mesh, std::move(order), leaf_order,
+                                options.face_ids);
+  }
+  return encode_exact_geometry(source.mesh, order, options.face_ids);
 }
 
 // Codecs that share a build tree and its order of faces, so that only nodes differ. The build tree
@@ -101,22 +121,22 @@ struct Family {
 };
 
 // Codecs with one face a leaf.
-Family binary_family(const SourceMesh& mesh, const CookOptions& options,
+Family binary_family(const Source& source, const CookOptions& options,
                      const std::vector<CodecId>& codecs) {
-  const BuildTree build = build_tree(mesh, options.builder);
+  const BuildTree build = build_tree(source.built(), options.builder, source.origin());
   const bool external = options.geometry == GeometryId::kExternal;
-  Family family{without_bytes(mesh, build), {}};
+  Family family{without_bytes(source, build), {}};
   family.tree.faces_in_source_order = external;
   family.tree.geometry =
-      external ? encode_external_geometry(mesh, {})
-               : encode_exact_geometry(mesh, faces_in_tree_order(build), options.face_ids);
+      external ? encode_external_geometry(source.mesh, {})
+               : encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed);
   const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
   std::array<EncodedNodes, 3> plain;  // by PlainCut
   const auto walk_for = [&](std::size_t i) {
     const auto cut = static_cast<PlainCut>(i);
     const bool is_wanted = std::any_of(codecs.begin(), codecs.end(),
                                        [&](CodecId codec) { return plain_cut_of(codec) == cut; });
-    if (is_wanted) plain[i] = encode_plain(build, mesh, cut, order);
+    if (is_wanted) plain[i] = encode_plain(build, source.built(), cut, order);
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain.size(), 1),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -129,17 +149,18 @@ Family binary_family(const SourceMesh& mesh, const CookOptions& options,
 }
 
 // Codecs with full leaves, whose layout orders the faces.
-Family wide_family(const SourceMesh& mesh, const CookOptions& options) {
+Family wide_family(const Source& source, const CookOptions& options) {
   Family family;
   WideLayout layout;
   {
-    const BuildTree build = build_full_leaves(mesh);
-    family.tree = without_bytes(mesh, build);
+    const BuildTree build = build_full_leaves(source.built(), source.origin());
+    family.tree = without_bytes(source, build);
     layout = lay_out_wide(build);
   }
-  family.tree.geometry = options.geometry == GeometryId::kExternal
-                             ? encode_external_geometry(mesh, layout.face_order)
-                             : encode_exact_geometry(mesh, layout.face_order, options.face_ids);
+  family.tree.geometry =
+      options.geometry == GeometryId::kExternal
+          ? encode_external_geometry(source.mesh, layout.face_order)
+          : encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
   layout.face_order = {};
   family.nodes_of = [layout = std::move(layout)](CodecId codec) {
     return encode_wide(layout, codec);
@@ -164,6 +185,12 @@ void try_family(Family family, const std::vector<CodecId>& codecs, const SourceM
   if (leads) cooked.tree = std::move(tree);
 }
 
+nlohmann::ordered_json grid_record(const CookOptions& options) {
+  if (options.geometry != GeometryId::kGrid) return nullptr;
+  if (options.grid.tolerance) return {{"tolerance", *options.grid.tolerance}};
+  return {{"bits", options.grid.bits}};
+}
+
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
                         const std::vector<ImportReport>& imports) {
   nlohmann::ordered_json record;
@@ -175,6 +202,7 @@ std::string cook_record(const CookOptions& options, const std::vector<CookedTree
                        {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
                        {"widths", options.widths == FieldWidths::kExact ? "exact" : "estimated"},
                        {"geometry", geometry_name(options.geometry)},
+                       {"grid", grid_record(options)},
                        {"face_ids", options.face_ids},
                        {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
                        {"skip_bad", options.import.skip_bad}};
@@ -187,6 +215,19 @@ std::string cook_record(const CookOptions& options, const std::vector<CookedTree
   return record.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
+// One grid for all inputs, so that what touches still does. Each is imported for its bounds, and
+// later again: memory, not time, is what inputs cost.
+Result<Grid> scene_grid(const std::vector<std::filesystem::path>& inputs,
+                        const CookOptions& options) {
+  Eigen::AlignedBox3d bounds;
+  for (const std::filesystem::path& input : inputs) {
+    const Result<Imported> imported = import_mesh(input, options.import);
+    if (!imported) return imported.error();
+    bounds.extend(bounds_of(imported->mesh));
+  }
+  return choose_grid(bounds, options.grid);
+}
+
 // Keeps what the report tells of a tree and gives its bytes back.
 void release(CookedTree& cooked) {
   cooked.tree.nodes.bytes = {};
@@ -197,17 +238,37 @@ void release(CookedTree& cooked) {
 
 }  // namespace
 
-Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options) {
+Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
+                             const std::optional<Grid>& scene) {
   if (Status status = check_limits(mesh, options); !status) return status.error();
-  CookedTree cooked;
-  if (const auto codecs = wanted_codecs(false, mesh, options); !codecs.empty()) {
-    try_family(binary_family(mesh, options, codecs), codecs, mesh, options, cooked);
+  std::optional<QuantisedMesh> quantised;
+  if (options.geometry == GeometryId::kGrid) {
+    const Result<Grid> grid = scene ? *scene : choose_grid(bounds_of(mesh), options.grid);
+    if (!grid) return grid.error();
+    quantised = quantise(mesh, *grid);
+    const double tolerance = options.grid.tolerance.value_or(quantised->max_vertex_error);
+    if (quantised->max_vertex_error > tolerance) {
+      return Error{Errc::kMeshUnsupported,
+                   fmt::format("{}: double precision so far from zero moves a vertex by {}",
+                               mesh.name, quantised->max_vertex_error)};
+    }
   }
-  if (const auto codecs = wanted_codecs(true, mesh, options); !codecs.empty()) {
-    try_family(wide_family(mesh, options), codecs, mesh, options, cooked);
+  const Source source{mesh, std::move(quantised)};
+  CookedTree cooked;
+  if (const auto codecs = wanted_codecs(false, source.built(), options); !codecs.empty()) {
+    try_family(binary_family(source, options, codecs), codecs, mesh, options, cooked);
+  }
+  if (const auto codecs = wanted_codecs(true, source.built(), options); !codecs.empty()) {
+    try_family(wide_family(source, options), codecs, mesh, options, cooked);
   }
   if (!choose(cooked.candidates, options.goal)) {
     return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
+  }
+  if (source.quantised) {
+    const Frame frame(Eigen::Vector3d(cooked.tree.origin.data()), cooked.tree.scale_exponent);
+    const std::uint32_t before = count_degenerate(mesh, frame);
+    cooked.collapsed =
+        cooked.tree.degenerate_count - std::min(before, cooked.tree.degenerate_count);
   }
   if (!options.face_ids) {
     cooked.left_out.push_back(
@@ -229,6 +290,14 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
   const auto step = [&](const std::string& what) {
     if (progress) progress(what);
   };
+  const bool is_scene = options.geometry == GeometryId::kGrid && inputs.size() > 1;
+  std::optional<Grid> scene;
+  if (is_scene) {
+    step("measure the scene");
+    Result<Grid> grid = scene_grid(inputs, options);
+    if (!grid) return grid.error();
+    scene = *grid;
+  }
   CookReport report;
   std::vector<EncodedTree> trees;
   for (const std::filesystem::path& input : inputs) {
@@ -238,7 +307,7 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
     if (!imported) return imported.error();
     imported->mesh.name = input.stem().string();
     step("build " + name);
-    Result<CookedTree> cooked = cook_mesh(imported->mesh, options);
+    Result<CookedTree> cooked = cook_mesh(imported->mesh, options, scene);
     if (!cooked) return cooked.error();
     imported->mesh = {};
     trees.push_back(std::move(cooked->tree));

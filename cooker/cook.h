@@ -11,6 +11,7 @@
 #include <boxtree/cooker/build/build_tree.h>
 #include <boxtree/cooker/choose/choose.h>
 #include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/quantise/grid.h>
 #include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/format/blob.h>
 
@@ -22,6 +23,7 @@ struct CookOptions {
   Builder builder = Builder::kSah;
   FieldWidths widths = FieldWidths::kExact;
   GeometryId geometry = GeometryId::kExact;
+  GridChoice grid;                 // of geometry grid
   std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be asked
   bool face_ids = true;
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
@@ -37,14 +39,17 @@ struct LeftOut {
 
 struct CookedTree {
   EncodedTree tree;
+  std::uint32_t collapsed = 0;  // triangles that lost their area on the grid; they are kept
   std::vector<Candidate> candidates;
   std::vector<LeftOut> left_out;
 };
 
 /// Builds a mesh, encodes it by every codec asked for, proves each and keeps the best.
 /// Deterministic. Precondition: what import promises of a mesh. Errors: kMeshTooLarge;
-/// kMeshUnsupported when faces of an n-gon would have to stay external.
-Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options);
+/// kMeshUnsupported when faces of an n-gon would have to stay external, or a tolerance is too
+/// small. `scene`: the grid shared with other meshes; by default one for this mesh alone.
+Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
+                             const std::optional<Grid>& scene = {});
 
 /// The tree that cook_mesh makes in one codec, whatever `options` say of codecs.
 Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options = {});

@@ -25,6 +25,7 @@ enum class CodecId : std::uint16_t {
 enum class GeometryId : std::uint16_t {
   kExternal = 1,  // not in the file; the application gives its arrays when binding
   kExact = 2,     // f32 or f64 positions bit for bit, corners as 16 or 32-bit vertex numbers
+  kGrid = 3,      // corners rounded to a grid, in clusters of at most 128 faces (format/grid.h)
 };
 
 struct CodecInfo {
@@ -71,6 +72,8 @@ inline constexpr std::array kCodecs = {
       return "external";
     case GeometryId::kExact:
       return "exact";
+    case GeometryId::kGrid:
+      return "grid";
   }
   return "unknown";
 }

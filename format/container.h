@@ -46,8 +46,8 @@ static_assert(offsetof(FileHeader, checksum) == 56);
 enum class SectionKind : std::uint32_t {
   kTrees = 1,        // TreeRecord[], one a tree; owner kNoOwner
   kNodes = 2,        // the codec's nodes
-  kVertices = 3,     // geometry exact: positions
-  kCorners = 4,      // geometry exact: vertex numbers of each face
+  kVertices = 3,     // geometry exact: positions; grid: the bytes of clusters
+  kCorners = 4,      // geometry exact: vertex numbers of each face; grid: ClusterRecord[]
   kFaceIds = 5,      // source face number of each face
   kCertificate = 6,  // CertificateRecord
   kNames = 7,        // UTF-8 names of all trees, joined; owner kNoOwner

@@ -10,6 +10,10 @@
 namespace boxtree {
 namespace {
 
+// Grid coordinates have at most 33 bits and tree space 16 for the extent: no honest step of one is
+// farther than that from a unit of the other.
+constexpr int kMaxGridShift = 64;
+
 bool counts_fit(const TreeRecord& record) {
   const std::uint64_t faces = record.face_count;
   const std::uint32_t deepest = is_wide(record.codec) ? kMaxWideDepth : kMaxDepth;
@@ -50,13 +54,21 @@ bool geometry_fits(const TreeRecord& record) {
     const bool faces_are_named = in_source_order || record.face_id_bytes != 0;
     return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
   }
+  if (record.geometry == GeometryId::kGrid) {
+    return record.corner_bytes == 0 &&
+           (record.corners_per_face == 3 || record.corners_per_face == 4) &&
+           std::abs(record.grid_exponent) <= kMaxScaleExponent &&
+           std::abs(record.grid_exponent - record.scale_exponent) <= kMaxGridShift;
+  }
   return (record.corner_bytes == 2 || record.corner_bytes == 4) &&
          (record.corners_per_face == 3 || record.corners_per_face == 4);
 }
 
 bool reserve_is_zero(const TreeRecord& record) {
+  const bool has_grid = record.geometry == GeometryId::kGrid;
   return record.reserved0 == 0 && (record.flags & ~kTreeKnownFlags) == 0 &&
-         std::all_of(record.reserved1.begin(), record.reserved1.end(),
+         (has_grid || record.grid_exponent == 0) && record.reserved1 == 0 &&
+         std::all_of(record.reserved2.begin(), record.reserved2.end(),
                      [](std::uint64_t word) { return word == 0; });
 }
 

@@ -37,7 +37,7 @@ struct TreeRecord {
   std::uint32_t node_count;
   RootKind root;
   std::uint32_t depth;            // inner nodes on the longest path; at most kMaxDepth
-  std::uint8_t corner_bytes;      // 2 or 4; 0 when corners are external
+  std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is exact
   std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
   std::uint8_t face_id_bytes;     // 1, 2 or 4; 0 without a face_ids section
   std::uint8_t reserved0;
@@ -48,11 +48,14 @@ struct TreeRecord {
   std::array<double, 3> root_low;   // tree space
   std::array<double, 3> root_high;  // tree space
   std::uint64_t geometry_hash;      // XXH3-64 of the faces' corner positions; docs/FORMAT.md
-  std::array<std::uint64_t, 8> reserved1;
+  std::int32_t grid_exponent;       // geometry grid: its step is 2^grid_exponent; otherwise 0
+  std::uint32_t reserved1;
+  std::array<std::uint64_t, 7> reserved2;
 };
 static_assert(sizeof(TreeRecord) == 192 && std::is_trivially_copyable_v<TreeRecord>);
 static_assert(offsetof(TreeRecord, origin) == 48 && offsetof(TreeRecord, root_high) == 96);
 static_assert(offsetof(TreeRecord, geometry_hash) == 120);
+static_assert(offsetof(TreeRecord, grid_exponent) == 128);
 
 /// What the cooker proved about the tree after it had written it; `boxtree verify` proves it again.
 struct CertificateRecord {

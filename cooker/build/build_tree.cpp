@@ -52,10 +52,10 @@ Bounds bounds_of(const Positions& positions) {
 
 // f32 positions keep the origin at zero: they are then represented without any rounding. f64
 // positions are shifted to the centre, so that f32 boxes resolve them.
-void choose_frame(const Positions& positions, BuildTree& tree) {
+void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   if (positions.size() == 0) return;
   Bounds bounds = bounds_of(positions);
-  if (positions.precision == Precision::kF64) {
+  if (positions.precision == Precision::kF64 && origin == Origin::kByPrecision) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       tree.origin[k] = bounds.low[axis] / 2 + bounds.high[axis] / 2;
@@ -206,9 +206,9 @@ Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t 
           {bounds.high[0], bounds.high[1], bounds.high[2]}};
 }
 
-BuildTree build_tree(const SourceMesh& mesh, Builder builder) {
+BuildTree build_tree(const SourceMesh& mesh, Builder builder, Origin origin) {
   BuildTree tree;
-  choose_frame(mesh.positions, tree);
+  choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;
   std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
   tree.nodes.resize(2 * faces.size() - 1);
@@ -217,9 +217,9 @@ BuildTree build_tree(const SourceMesh& mesh, Builder builder) {
   return tree;
 }
 
-BuildTree build_full_leaves(const SourceMesh& mesh) {
+BuildTree build_full_leaves(const SourceMesh& mesh, Origin origin) {
   BuildTree tree;
-  choose_frame(mesh.positions, tree);
+  choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;
   std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
   tree.nodes.resize(2 * leaves_of(faces.size()) - 1);

@@ -64,6 +64,12 @@ struct BuildTree {
   return (faces + leaf_faces - 1) / leaf_faces;
 }
 
+/// Where tree space begins.
+enum class Origin : std::uint8_t {
+  kByPrecision,  // at zero for f32 positions, in the middle for f64 ones
+  kZero,
+};
+
 enum class Builder : std::uint8_t {
   kSah,    // binned surface-area heuristic over box centres
   kPaper,  // the paper's: volume heuristic over box minima
@@ -73,10 +79,12 @@ enum class Builder : std::uint8_t {
 /// not on threads, order of execution or standard library. Every face becomes exactly one leaf.
 /// Runs on the threads of the enclosing oneTBB arena.
 /// Precondition: finite positions, corners in range (what import promises).
-[[nodiscard]] BuildTree build_tree(const SourceMesh& mesh, Builder builder);
+[[nodiscard]] BuildTree build_tree(const SourceMesh& mesh, Builder builder,
+                                   Origin origin = Origin::kByPrecision);
 
 /// The same with leaves of kLeafFaces faces, all full but the last one from left to right, by the
 /// surface-area heuristic over divisions that allow it.
-[[nodiscard]] BuildTree build_full_leaves(const SourceMesh& mesh);
+[[nodiscard]] BuildTree build_full_leaves(const SourceMesh& mesh,
+                                          Origin origin = Origin::kByPrecision);
 
 }  // namespace boxtree::cooker

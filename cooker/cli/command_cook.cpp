@@ -12,6 +12,7 @@
 
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/cook.h>
+#include <boxtree/format/grid.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -29,6 +30,7 @@ struct Arguments {
   CookOptions options;
   bool exact = false;
   bool external = false;
+  bool has_grid = false;  // --grid-bits or --tolerance was given
   bool no_face_ids = false;
   bool strip = false;
   bool f64 = false;
@@ -97,7 +99,7 @@ Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
       {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
   json["cost"] = {
       {"ray", candidate.cost.ray}, {"box", candidate.cost.box}, {"pair", candidate.cost.pair}};
-  json["error"] = {{"max_vertex_error", 0.0}};  // both stores keep every bit of a position
+  json["error"] = {{"max_vertex_error", tree.geometry.max_vertex_error}};
   json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
   json["gates"] = {{"missed", candidate.gates.missed},
                    {"escapes", candidate.gates.escapes},
@@ -165,6 +167,13 @@ void print_report(const Arguments& arguments, const CookReport& report, double s
       fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
                  import.lines_skipped);
     }
+    if (cooked.tree.geometry.geometry == GeometryId::kGrid) {
+      fmt::print(
+          "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
+          "area and are kept\n",
+          cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
+          cooked.collapsed);
+    }
     if (import.degenerate_faces > 0) {
       fmt::print("  kept {} faces without area\n", import.degenerate_faces);
     }
@@ -190,6 +199,7 @@ int run(Arguments& arguments) {
   if (arguments.builder == "paper") options.builder = Builder::kPaper;
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
+  if (arguments.has_grid) options.geometry = GeometryId::kGrid;
   if (arguments.f64) options.import.precision = Precision::kF64;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
@@ -236,6 +246,22 @@ void add_cook_command(CLI::App& app, int& status) {
       ->capture_default_str();
   CLI::Option* exact = command.add_flag(
       "--exact", arguments->exact, "Keep every bit of every position (what is done by default)");
+  CLI::Option* tolerance = command.add_option_function<double>(
+      "--tolerance",
+      [arguments](double length) {
+        arguments->options.grid.tolerance = length;
+        arguments->has_grid = true;
+      },
+      "Round positions to a grid: no vertex moves farther, in units of the mesh");
+  tolerance->check(CLI::PositiveNumber)->excludes(exact);
+  CLI::Option* grid_bits = command.add_option_function<int>(
+      "--grid-bits",
+      [arguments](int bits) {
+        arguments->options.grid.bits = bits;
+        arguments->has_grid = true;
+      },
+      "Round positions to a grid of 2^N steps over the largest extent of all inputs");
+  grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
   command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
@@ -251,7 +277,9 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_flag("--external", arguments->external,
                         "Leave positions and corners to the application, which binds its own "
                         "arrays"))
-      ->excludes(exact);
+      ->excludes(exact)
+      ->excludes(tolerance)
+      ->excludes(grid_bits);
   rare(command.add_flag("--f64", arguments->f64,
                         "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));

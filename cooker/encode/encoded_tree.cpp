@@ -26,6 +26,7 @@ TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
   record.root_low = tree.nodes.root_box.low;
   record.root_high = tree.nodes.root_box.high;
   record.geometry_hash = tree.geometry.hash;
+  record.grid_exponent = tree.geometry.grid_exponent;
   return record;
 }
 
@@ -37,6 +38,7 @@ CertificateRecord certificate_of(const EncodedTree& tree) {
   certificate.face_count = tree.face_count;
   certificate.shrink_count = tree.nodes.shrink_count;
   certificate.degenerate_count = tree.degenerate_count;
+  certificate.max_vertex_error = tree.geometry.max_vertex_error;
   return certificate;
 }
 

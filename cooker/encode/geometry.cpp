@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <cstring>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include <boxtree/cooker/encode/face_ids.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
 
 namespace boxtree::cooker {
 namespace {
-
-std::uint64_t hash_of(const SourceMesh& mesh) {
-  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
-  return hash ? *hash : 0;  // import has checked every corner
-}
 
 template <class T>
 void append(std::vector<std::byte>& out, T value) {
@@ -41,6 +36,13 @@ void append_position(const Positions& positions, std::size_t vertex, std::vector
   }
 }
 
+}  // namespace
+
+std::uint64_t hash_of(const SourceMesh& mesh) {
+  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+  return hash ? *hash : 0;  // import has checked every corner
+}
+
 void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                      EncodedGeometry& out) {
   std::uint32_t largest = 0;
@@ -51,8 +53,6 @@ void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> orde
     append_number(out.face_ids, mesh.face_id(face), out.face_id_bytes);
   }
 }
-
-}  // namespace
 
 std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
   std::vector<std::uint32_t> order;

@@ -55,12 +55,42 @@ Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
+  if (is_grid()) return read_grid(first, count, out);
   if (mesh_.positions_f64) {
     return mesh_.corner_bytes == 2 ? read_as<double, std::uint16_t>(first, count, out)
                                    : read_as<double, std::uint32_t>(first, count, out);
   }
   return mesh_.corner_bytes == 2 ? read_as<float, std::uint16_t>(first, count, out)
                                  : read_as<float, std::uint32_t>(first, count, out);
+}
+
+Errc LeafReader::read_grid(std::uint32_t first, std::uint32_t count,
+                           TriangleBatch& out) const noexcept {
+  constexpr std::uint32_t kNone = 0xffffffffu;
+  std::uint32_t decoded = kNone;
+  GridLeaf leaf;
+  std::uint32_t triangles = 0;
+  for (std::uint32_t f = first; f < first + count; ++f) {
+    if (f / kLeafFaces != decoded) {
+      decoded = f / kLeafFaces;
+      if (!decode_grid_leaf(grid_, decoded, leaf)) return Errc::kVertexOutOfRange;
+    }
+    const std::array<std::uint8_t, 4>& corner = leaf.corner[f % kLeafFaces];
+    const std::uint32_t corner_count = corner[3] == GridLeaf::kNoCorner ? 3 : 4;
+    if (triangles + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
+    for (std::uint32_t second = 1; second + 1 < corner_count; ++second) {
+      const std::array<std::uint32_t, 3> named = {corner[0], corner[second], corner[second + 1]};
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          out.coordinate[c][k][triangles] =
+              static_cast<double>(leaf.position[named[c]][k]) * grid_step_;
+        }
+      }
+      out.face[triangles++] = f;
+    }
+  }
+  out.count = triangles;
+  return Errc::kOk;
 }
 
 template <class Scalar, class Corner>

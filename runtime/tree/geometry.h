@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include <boxtree/format/bytes.h>
+#include <boxtree/format/grid.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/format/result.h>
 #include <boxtree/runtime/primitive/triangle.h>
@@ -106,6 +107,12 @@ class LeafReader {
  public:
   LeafReader() = default;
   LeafReader(const MeshArrays& mesh, const Frame& frame) noexcept : mesh_(mesh), frame_(frame) {}
+  /// Geometry on a grid whose step is `step` in tree space, a power of two.
+  LeafReader(const GridView& grid, const Frame& frame, double step) noexcept
+      : frame_(frame), grid_(grid), grid_step_(step) {
+    mesh_.face_count = grid.face_count;
+    mesh_.corners_per_face = grid.corners_per_face;
+  }
 
   /// From now on face n of the tree is face order[n] of the mesh, numbers of `bytes` (1, 2 or 4)
   /// each: for arrays of an application, whose order is not the tree's.
@@ -114,7 +121,11 @@ class LeafReader {
     order_bytes_ = bytes;
   }
 
+  /// The arrays; with a grid, counts alone.
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
+  [[nodiscard]] bool is_grid() const noexcept { return grid_.clusters != nullptr; }
+  [[nodiscard]] const GridView& grid() const noexcept { return grid_; }
+  [[nodiscard]] double grid_step() const noexcept { return grid_step_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   /// Whether face n of the tree is face n of the mesh.
   [[nodiscard]] bool is_in_tree_order() const noexcept { return order_ == nullptr; }
@@ -130,8 +141,13 @@ class LeafReader {
   [[nodiscard]] Errc read_as(std::uint32_t first, std::uint32_t count,
                              TriangleBatch& out) const noexcept;
 
+  [[nodiscard]] Errc read_grid(std::uint32_t first, std::uint32_t count,
+                               TriangleBatch& out) const noexcept;
+
   MeshArrays mesh_;
   Frame frame_;
+  GridView grid_;
+  double grid_step_ = 0;
   const std::byte* order_ = nullptr;  // or null: the mesh is in the order of the tree
   std::uint8_t order_bytes_ = 0;
 };

@@ -67,6 +67,7 @@ Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
 }
 
 Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
+  if (record_.geometry == GeometryId::kGrid) return bind_grid(parts, place);
   const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
   const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
   const auto positions =
@@ -78,6 +79,19 @@ Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& pla
   leaves_ = LeafReader({*positions, stride, positions_f64, record_.vertex_count, *corners,
                         record_.corner_bytes, record_.corners_per_face, record_.face_count},
                        frame_);
+  return {};
+}
+
+Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
+  const auto clusters = sized(parts.corners, SectionKind::kCorners, place,
+                              clusters_of(record_.face_count), sizeof(ClusterRecord));
+  if (!clusters) return clusters.error();
+  if (record_.face_count > 0 && parts.vertices.empty()) {
+    return Error{Errc::kSectionMissing, place + "section vertices is absent"};
+  }
+  const GridView grid{*clusters, parts.vertices, record_.face_count, record_.corners_per_face};
+  leaves_ =
+      LeafReader(grid, frame_, std::ldexp(1.0, record_.grid_exponent - record_.scale_exponent));
   return {};
 }
 

@@ -29,6 +29,10 @@ class LeafFloats {
     direct_ = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
               mesh_.position_stride == kStride && reader_.is_in_tree_order() &&
               mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxDirectVertices;
+    if (reader_.is_grid()) {
+      scale_ = static_cast<float>(reader_.grid_step());
+      direct_ = mesh_.corners_per_face == 3;
+    }
   }
 
   /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
@@ -36,15 +40,16 @@ class LeafFloats {
   bool load(std::uint32_t first, std::uint32_t count) {
     first_ = first;
     count_ = count;
-    is_direct_ = direct_ && count == kLeafFaces && in_range(first, count, mesh_.face_count) &&
-                 (mesh_.corner_bytes == 2 ? gather<std::uint16_t>() : gather<std::uint32_t>());
+    is_direct_ =
+        direct_ && count == kLeafFaces && in_range(first, count, mesh_.face_count) && gather();
     return is_direct_ || convert();
   }
 
   /// Bounds how far the coordinates of a leaf are off: nothing when they were gathered, but for
   /// what underflows; half an ulp of the largest otherwise.
   [[nodiscard]] float corner_error() const {
-    return is_direct_ ? std::numeric_limits<float>::min() : rounding_;
+    const bool is_exact = is_direct_ && !reader_.is_grid();
+    return is_exact ? std::numeric_limits<float>::min() : rounding_;
   }
 
   /// Triangles of the leaf; lanes from there on are unspecified.
@@ -87,6 +92,17 @@ class LeafFloats {
       return true;
     }
     Triangle triangle;
+    if (reader_.is_grid()) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const auto& p = grid_leaf_.position[start_[3 * lane + c] / kRow];
+        for (std::size_t k = 0; k < 3; ++k) {
+          triangle.corner[c][static_cast<Eigen::Index>(k)] =
+              static_cast<double>(p[k]) * reader_.grid_step();
+        }
+      }
+      visit(triangle, first_ + lane, 0u);
+      return true;
+    }
     const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
     const double scale = reader_.frame().inverse_scale;
     bool is_finite = true;
@@ -111,10 +127,37 @@ class LeafFloats {
   // Three times the number of a vertex fits into 32 bits.
   static constexpr std::uint32_t kMaxDirectVertices = 1u << 30;
 
+  HWY_INLINE bool gather() {
+    if (reader_.is_grid()) return gather_grid();
+    return mesh_.corner_bytes == 2 ? gather_mesh<std::uint16_t>() : gather_mesh<std::uint32_t>();
+  }
+
+  // Floats from one vertex of a decoded leaf to the next.
+  static constexpr std::uint32_t kRow = 4;
+
+  HWY_INLINE bool gather_grid() {
+    if (first_ % kLeafFaces != 0 ||
+        !decode_grid_leaf(reader_.grid(), first_ / kLeafFaces, grid_leaf_)) {
+      return false;
+    }
+    HWY_ALIGN float row[kMaxLeafVertices * kRow];
+    for (std::uint32_t i = 0; i < grid_leaf_.vertex_count; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        row[kRow * i + k] = static_cast<float>(grid_leaf_.position[i][k]);
+      }
+      row[kRow * i + 3] = 0;
+    }
+    for (std::size_t f = 0; f < kLeafFaces; ++f) {
+      for (std::size_t c = 0; c < 3; ++c) start_[3 * f + c] = kRow * grid_leaf_.corner[f][c];
+    }
+    for (std::size_t c = 0; c < 3; ++c) transpose(row, start_ + c, c);
+    return true;
+  }
+
   // Three corners a face, in floats, in the tree's order, and scaled without rounding: the common
   // case. Four floats are read at once, so a leaf with the last vertex goes the other way.
   template <class Corner>
-  HWY_INLINE bool gather() {
+  HWY_INLINE bool gather_mesh() {
     const hn::Repartition<std::uint32_t, Floats> words;
     const hn::Rebind<Corner, decltype(words)> stored;
     const auto* corners = reinterpret_cast<const Corner*>(mesh_.corners) + std::size_t{first_} * 3;
@@ -209,6 +252,7 @@ class LeafFloats {
   HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
   HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
   TriangleBatch batch_;
+  GridLeaf grid_leaf_;
 };
 
 }  // namespace boxtree::HWY_NAMESPACE

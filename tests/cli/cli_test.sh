@@ -47,6 +47,25 @@ expect 0 "$boxtree" info cube.bxt --json
 same "$(jq -c '.trees[0].bounds' out)" '{"min":[0,0,0],"max":[1,1,1]}'
 same "$(jq -r '.trees[0].name' out)" cube
 
+# A grid: coarse enough to move vertices, fine enough for a tolerance, one of the two.
+expect 0 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --json
+same "$(jq -r '.trees[0].candidates[0].geometry' out)" grid
+same "$(jq -r '.trees[0].candidates[0].error.max_vertex_error' out)" 0
+expect 0 "$boxtree" verify grid.bxt
+expect 0 "$boxtree" query grid.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
+same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
+sed 's/^v 1 /v 1.1 /' cube.obj >uneven.obj
+expect 0 "$boxtree" cook uneven.obj cube.obj -o grid.bxt --tolerance 0.01 --json
+jq -e '[.trees[].candidates[0].error.max_vertex_error] | .[0] > 0 and max <= 0.01' out >/dev/null
+expect 0 "$boxtree" info grid.bxt --json
+jq -e '.trees | .[0].geometry == "grid" and .[0].max_vertex_error <= 0.01' out >/dev/null
+expect 0 "$boxtree" verify grid.bxt
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 7
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 31
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --tolerance 1
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --exact
+expect 5 "$boxtree" cook cube.obj -o grid.bxt --tolerance 1e-20
+
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
 same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
 expect 0 "$boxtree" query cube.bxt ray --origin 3,0.5,5 --direction 0,0,-1 --json

@@ -11,8 +11,17 @@
 namespace boxtree {
 namespace {
 
-std::vector<std::byte> small_file(CodecId codec) {
-  const Result<cooker::EncodedTree> cooked = cooker::cook_as(test::city(2, 1), codec);
+struct Encoding {
+  CodecId codec;
+  GeometryId geometry;
+};
+
+std::vector<std::byte> small_file(const Encoding& encoding) {
+  cooker::CookOptions options;
+  options.geometry = encoding.geometry;
+  options.grid.bits = 12;
+  const Result<cooker::EncodedTree> cooked =
+      cooker::cook_as(test::city(2, 1), encoding.codec, options);
   return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
 
@@ -31,7 +40,7 @@ void exercise(Bytes bytes) {
   static_cast<void>(overlap_pairs(*tree, Pose::Identity(), *tree, Pose::Identity(), all));
 }
 
-class Mutation : public testing::TestWithParam<CodecId> {};
+class Mutation : public testing::TestWithParam<Encoding> {};
 
 TEST_P(Mutation, EveryTruncationIsRefused) {
   const std::vector<std::byte> whole = small_file(GetParam());
@@ -65,7 +74,21 @@ TEST_P(Mutation, EveryFlippedBitWithGoodChecksumsIsAnsweredOrRefused) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, Mutation, testing::ValuesIn(test::all_codecs()), test::test_name);
+// Every codec with exact geometry; a codec of each kind of leaf with the grid.
+std::vector<Encoding> encodings() {
+  std::vector<Encoding> all;
+  for (const CodecId codec : test::all_codecs()) all.push_back({codec, GeometryId::kExact});
+  all.push_back({CodecId::kPlainF16, GeometryId::kGrid});
+  all.push_back({CodecId::kWide8, GeometryId::kGrid});
+  return all;
+}
+
+std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
+  const std::string codec = test::test_name({encoding.param.codec, encoding.index});
+  return codec + "_" + std::string(geometry_name(encoding.param.geometry));
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, Mutation, testing::ValuesIn(encodings()), encoding_name);
 
 }  // namespace
 }  // namespace boxtree

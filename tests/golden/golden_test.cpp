@@ -2,6 +2,7 @@
 // The golden files: what the cooker writes for scene.obj, byte for byte, and that files of every
 // released version open for ever. The .hex files are the specification in the flesh: they are
 // added to, never regenerated.
+#include <algorithm>
 #include <cctype>
 
 #include <gtest/gtest.h>
@@ -14,9 +15,25 @@ namespace {
 
 const std::filesystem::path kFolder = BOXTREE_GOLDEN_DIR;
 
-std::vector<std::byte> golden_bytes(CodecId codec) {
-  const std::string text =
-      test::read_text(kFolder / ("v1.0-" + std::string(codec_name(codec)) + ".hex"));
+// A golden file: what it is called, and how it is cooked.
+struct Kind {
+  std::string name;
+  CodecId codec;
+  GeometryId geometry;
+};
+
+std::vector<Kind> kinds() {
+  std::vector<Kind> kinds;
+  for (const CodecId codec : test::all_codecs()) {
+    kinds.push_back({std::string(codec_name(codec)), codec, GeometryId::kExact});
+  }
+  kinds.push_back({"plain-f16-grid", CodecId::kPlainF16, GeometryId::kGrid});
+  kinds.push_back({"wide8-grid", CodecId::kWide8, GeometryId::kGrid});
+  return kinds;
+}
+
+std::vector<std::byte> golden_bytes(const Kind& kind) {
+  const std::string text = test::read_text(kFolder / ("v1.0-" + kind.name + ".hex"));
   std::vector<std::byte> bytes;
   unsigned digits = 0;
   unsigned value = 0;
@@ -35,15 +52,18 @@ std::string scene_of(CodecId codec) {
   return is_wide(codec) ? "scene-wide.obj" : "scene.obj";
 }
 
-class Golden : public testing::TestWithParam<CodecId> {};
+class Golden : public testing::TestWithParam<Kind> {};
 
 TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
   const std::vector<std::byte> golden = golden_bytes(GetParam());
   ASSERT_FALSE(golden.empty()) << "no golden file";
-  Result<cooker::Imported> imported = cooker::import_mesh(kFolder / scene_of(GetParam()));
+  Result<cooker::Imported> imported = cooker::import_mesh(kFolder / scene_of(GetParam().codec));
   ASSERT_TRUE(imported.ok()) << imported.error().message();
   imported->mesh.name = "scene";
-  const std::vector<std::byte> cooked = test::cook_bytes(imported->mesh, GetParam());
+  cooker::CookOptions cook;
+  cook.geometry = GetParam().geometry;
+  cook.grid.bits = 16;
+  const std::vector<std::byte> cooked = test::cook_bytes(imported->mesh, GetParam().codec, cook);
   ASSERT_EQ(cooked.size(), golden.size());
   for (std::size_t i = 0; i < golden.size(); ++i) ASSERT_EQ(cooked[i], golden[i]) << "byte " << i;
 }
@@ -56,9 +76,9 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   ASSERT_TRUE(file.ok()) << file.error().message();
   const Result<Tree> tree = Tree::bind(*file);
   ASSERT_TRUE(tree.ok()) << tree.error().message();
-  EXPECT_EQ(tree->codec(), GetParam());
+  EXPECT_EQ(tree->codec(), GetParam().codec);
   EXPECT_EQ(tree->name(), "scene");
-  const std::uint32_t more = is_wide(GetParam()) ? 12 : 0;
+  const std::uint32_t more = is_wide(GetParam().codec) ? 12 : 0;
   EXPECT_EQ(tree->record().face_count, 8 + more);
   EXPECT_EQ(tree->record().triangle_count, 9 + more);
 
@@ -85,7 +105,13 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   EXPECT_EQ(touched, std::vector<std::uint32_t>{3});
 }
 
-INSTANTIATE_TEST_SUITE_P(Codecs, Golden, testing::ValuesIn(test::all_codecs()), test::test_name);
+std::string kind_name(const testing::TestParamInfo<Kind>& kind) {
+  std::string name = kind.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, Golden, testing::ValuesIn(kinds()), kind_name);
 
 }  // namespace
 }  // namespace boxtree

@@ -242,6 +242,110 @@ class Wide:
         return children
 
 
+class Grid:
+    """Geometry grid (section 8.1): corners of a face as grid coordinates."""
+
+    CLUSTER_FACES, LEAF_FACES, PADDING = 128, 8, 96
+
+    def __init__(self, tree):
+        clusters = -(-tree.face_count // self.CLUSTER_FACES)
+        expect(len(tree.corners) == 24 * clusters, "size of section corners")
+        self.tree = tree
+        self.decoded = {}
+        end = 0
+        for cluster in range(clusters):
+            offset, size = self.extent(cluster)
+            expect(offset == end, "clusters follow each other")
+            end = (offset + size + 7) // 8 * 8
+        padding = self.PADDING if clusters else 0
+        expect(len(tree.vertices) == end + padding and not any(tree.vertices[end:]),
+               "padding after the last cluster")
+
+    def record(self, cluster):
+        *origin, offset, count, wx, wy, wz, leaf_bytes, leaf_bits, zero = struct.unpack_from(
+            "<3iIH6B", self.tree.corners, 24 * cluster)
+        expect(zero == 0 and max(wx, wy, wz) <= 32 and leaf_bits <= 8 and 0 < count <= 512,
+               "a cluster's record")
+        leaves = min(16, -(-(self.tree.face_count - self.CLUSTER_FACES * cluster)
+                           // self.LEAF_FACES))
+        table = int.from_bytes(self.tree.vertices[8 * offset:8 * offset + 16], "little")
+        lengths = [leaf_bytes + ((table >> (leaf_bits * i)) & ((1 << leaf_bits) - 1))
+                   for i in range(leaves)]
+        return origin, 8 * offset, count, (wx, wy, wz), lengths, -(-leaves * leaf_bits // 8)
+
+    def extent(self, cluster):
+        _, offset, count, widths, lengths, table = self.record(cluster)
+        return offset, table + sum(lengths) + -(-count * sum(widths) // 8)
+
+    def leaf(self, number):
+        """The faces of a leaf as lists of grid points."""
+        origin, offset, count, widths, lengths, table = self.record(number // 16)
+        here = number % 16
+        data = self.tree.vertices
+        start = offset + table + sum(lengths[:here])
+        bits = int.from_bytes(data[start:start + lengths[here]], "little")
+        vertices = int.from_bytes(
+            data[offset + table + sum(lengths):sum(self.extent(number // 16))], "little")
+
+        def field(width):
+            nonlocal bits
+            value = bits & ((1 << width) - 1)
+            bits >>= width
+            return value
+
+        def below(limit):
+            return field(max(0, limit - 1).bit_length())
+
+        def point(vertex):
+            expect(vertex < count, "number of a vertex")
+            word, at = vertices >> (vertex * sum(widths)), []
+            for k in range(3):
+                at.append(origin[k] + (word & ((1 << widths[k]) - 1)))
+                word >>= widths[k]
+            return tuple(at)
+
+        fresh = below(count + 1)
+        named = []
+
+        def reference():
+            nonlocal fresh
+            if field(1):
+                named.append(fresh)
+                fresh += 1
+            elif field(1):
+                named.append(below(fresh))
+            else:
+                place = below(len(named))
+                expect(place < len(named), "a vertex that the leaf has named")
+                return named[place]
+            return named[-1]
+
+        faces = []
+        for f in range(min(self.LEAF_FACES, self.tree.face_count - self.LEAF_FACES * number)):
+            is_quad = self.tree.corners_per_face == 4 and field(1)
+            step = field(4) if f else 9
+            expect(step <= 9, "step of a strip")
+            if step == 9:
+                face = [reference(), reference(), reference()]
+            else:
+                edge, turn = divmod(step, 3)
+                face = [None] * 3
+                face[turn] = faces[-1][(edge + 1) % 3]
+                face[(turn + 1) % 3] = faces[-1][edge]
+                face[(turn + 2) % 3] = reference()
+            faces.append(face + [reference()] if is_quad else face)
+        expect(bits == 0, "zero bits after a leaf")
+        return [[point(vertex) for vertex in face] for face in faces]
+
+    def points(self, face):
+        number = face // self.LEAF_FACES
+        if number not in self.decoded:
+            self.decoded[number] = self.leaf(number)
+        step = 2.0 ** (self.tree.grid_exponent - self.tree.exponent)
+        return [tuple(q * step for q in point) for point in
+                self.decoded[number][face % self.LEAF_FACES]]
+
+
 CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Packed),
           4: ("packed-f16", Packed), 5: ("packed-f64", Packed), 6: ("dedup", Packed),
           7: ("wide8", Wide), 8: ("wide4", Wide)}
@@ -254,10 +358,13 @@ class Tree:
         (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,
          self.vertex_count, self.node_count, self.root_kind, self.depth, self.corner_bytes,
          self.corners_per_face, self.face_id_bytes, zero8, self.exponent, name_offset, name_bytes,
-         *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQ8Q", record)
+         *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQi4x7Q", record)
         self.origin, self.low, self.high = rest[0:3], tuple(rest[3:6]), tuple(rest[6:9])
-        expect(zero8 == 0 and not any(rest[10:]) and self.flags < 4, "zeros of a record")
-        expect(self.codec in CODECS and self.geometry in (1, 2), "codec and geometry")
+        self.grid_exponent = rest[10]
+        expect(zero8 == 0 and not any(rest[11:]) and not any(record[132:136]) and self.flags < 4,
+               "zeros of a record")
+        expect(self.codec in CODECS and self.geometry in (1, 2, 3), "codec and geometry")
+        expect(self.geometry == 3 or self.grid_exponent == 0, "a step without a grid")
         self.name = file.section(NAMES)[name_offset:name_offset + name_bytes].decode()
         self.nodes = file.section(NODES, index)
         self.vertices = file.section(VERTICES, index)
@@ -270,10 +377,15 @@ class Tree:
             expect(len(self.vertices) == self.vertex_count * stride, "size of section vertices")
             expect(len(self.corners) == self.face_count * self.corners_per_face
                    * self.corner_bytes, "size of section corners")
+        self.grid = Grid(self) if self.geometry == 3 else None
         expect(len(self.ids) == self.face_count * self.face_id_bytes, "size of section face_ids")
 
     def triangles(self, face):
         """Triangles of a face in tree space."""
+        points = self.grid.points(face) if self.grid else self.mesh_points(face)
+        return [(points[0], points[i], points[i + 1]) for i in range(1, len(points) - 1)]
+
+    def mesh_points(self, face):
         width = "<H" if self.corner_bytes == 2 else "<I"
         missing = (1 << (8 * self.corner_bytes)) - 1
         numbers = [struct.unpack_from(width, self.corners,
@@ -287,7 +399,7 @@ class Tree:
             expect(number < self.vertex_count, "a vertex number")
             p = struct.unpack_from("<3" + self.scalar, self.vertices, number * size)
             points.append(tuple((p[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3)))
-        return [(points[0], points[i], points[i + 1]) for i in range(1, len(points) - 1)]
+        return points
 
     def face_id(self, face):
         if self.flags & 1:
@@ -328,7 +440,7 @@ class Tree:
         for face in range(faces[0], faces[0] + faces[1]):
             expect(face < self.face_count and face not in found["faces"], "each face in one leaf")
             found["faces"][face] = self.face_id(face)
-            if self.geometry != 2:
+            if self.geometry == 1:
                 continue
             for triangle in self.triangles(face):
                 found["triangles"] += 1

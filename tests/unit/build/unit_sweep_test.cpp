@@ -40,9 +40,9 @@ Split naive_split(std::vector<FaceBox> faces, std::size_t unit) {
     for (std::size_t i = unit; i < faces.size(); i += unit) {
       Box<float> left = empty_box<float>(), right = empty_box<float>();
       for (std::size_t j = 0; j < faces.size(); ++j) expand(j < i ? left : right, faces[j].box);
-      const SplitCost here{
-          half_area(left) * leaves_of(i) + half_area(right) * leaves_of(faces.size() - i),
-          imbalance(i, faces.size() - i), axis, i};
+      const SplitCost here{half_area(left) * static_cast<double>(leaves_of(i)) +
+                               half_area(right) * static_cast<double>(leaves_of(faces.size() - i)),
+                           imbalance(i, faces.size() - i), axis, i};
       if (here.improves_on(best)) best = here;
     }
   }

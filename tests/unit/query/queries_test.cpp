@@ -32,7 +32,8 @@ constexpr int kPoints = 200;
 
 class Queries : public testing::TestWithParam<CodecId> {
  protected:
-  // Calls body(mesh, tree) for every kind of mesh and both builders.
+  // Calls body(mesh, tree) for every kind of mesh, both builders and both stores. With a grid, the
+  // mesh is the one on the grid: rounded here, not decoded.
   template <class Body>
   void for_each_mesh(Body body) {
     for (const SourceMesh& mesh : test::all_kinds()) {
@@ -43,7 +44,20 @@ class Queries : public testing::TestWithParam<CodecId> {
         const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
         body(mesh, cooked.tree);
       }
+      SCOPED_TRACE(mesh.name + " on a grid");
+      cooker::CookOptions options;
+      options.geometry = GeometryId::kGrid;
+      options.grid.bits = 12;
+      const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
+      body(rounded(mesh, cooked.tree.record().grid_exponent), cooked.tree);
     }
+  }
+
+  static SourceMesh rounded(SourceMesh mesh, int step_exponent) {
+    for (float& x : mesh.positions.f32) {
+      x = std::ldexp(std::floor(std::ldexp(x, -step_exponent) + 0.5f), step_exponent);
+    }
+    return mesh;
   }
 
   Eigen::Vector3d point_near(const Tree& tree) {

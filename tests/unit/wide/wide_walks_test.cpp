@@ -251,16 +251,14 @@ TEST(WideTargets, HoldPlainCodeAndEveryInstructionSetOfTheMachine) {
 }
 #endif
 
-class WideWalks : public testing::TestWithParam<std::size_t> {};
-
-TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodes) {
-  const SourceMesh mesh = meshes()[GetParam()];
+// Asks all three codecs of one mesh all kinds of questions.
+void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, std::uint64_t seed) {
   SCOPED_TRACE(mesh.name);
-  const test::CookedTree plain = test::cook_tree(mesh, CodecId::kPlainF32);
-  const test::CookedTree wide8 = test::cook_tree(mesh, CodecId::kWide8);
-  const test::CookedTree wide4 = test::cook_tree(mesh, CodecId::kWide4);
+  const test::CookedTree plain = test::cook_tree(mesh, CodecId::kPlainF32, options);
+  const test::CookedTree wide8 = test::cook_tree(mesh, CodecId::kWide8, options);
+  const test::CookedTree wide4 = test::cook_tree(mesh, CodecId::kWide4, options);
   const std::vector<const Tree*> trees = {&wide8.tree, &wide4.tree};
-  Questions questions(mesh, plain.tree, GetParam());
+  Questions questions(mesh, plain.tree, seed);
   // Answers of thousands of faces cost more than the queries do.
   const bool is_large = mesh.faces.size() > 10'000;
   expect_same(questions.rays(6000), plain.tree, trees, ask_ray);
@@ -273,6 +271,21 @@ TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodes) {
   std::vector<Pose> poses;
   for (int i = 0; i < (is_large ? 10 : 40); ++i) poses.push_back(questions.pose());
   expect_same(poses, plain.tree, trees, ask_pairs);
+}
+
+class WideWalks : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodes) {
+  expect_equal(meshes()[GetParam()], {}, GetParam());
+}
+
+TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodesOnAGrid) {
+  for (const int bits : {14, 30}) {  // exact in single precision, and not
+    cooker::CookOptions options;
+    options.geometry = GeometryId::kGrid;
+    options.grid.bits = bits;
+    expect_equal(meshes()[GetParam()], options, GetParam());
+  }
 }
 
 std::string mesh_name(const testing::TestParamInfo<std::size_t>& mesh) {

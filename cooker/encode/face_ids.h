@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// What all geometry stores say of the source: its faces' numbers and its hash.
+#pragma once
+
+#include <span>
+
+#include <boxtree/cooker/encode/encoded.h>
+
+namespace boxtree::cooker {
+
+/// Source numbers of the faces in `order`, in as few bytes as the largest takes.
+void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
+                     EncodedGeometry& out);
+
+/// geometry_hash of the mesh.
+[[nodiscard]] std::uint64_t hash_of(const SourceMesh& mesh);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Choice of a grid, and rounding to it: to nearest, halves up, on each axis for itself.
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/quantise/grid.h>
+#include <boxtree/format/grid.h>
+#include <boxtree/format/limits.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// The scale of a tree on the grid brings 1 to 2^30 steps of extent to 2^14: it differs from the
+// step by at most 16 binary orders.
+constexpr int kMaxStepExponent = kMaxScaleExponent - 16;
+
+// Halves the largest extent, as the whole of it may not be finite.
+double half_extent(const Eigen::AlignedBox3d& bounds) {
+  return (bounds.max() / 2 - bounds.min() / 2).maxCoeff();
+}
+
+// The smallest e with 2^e >= 2 x; x is positive.
+int exponent_above_twice(double x) {
+  int exponent = 0;
+  const double fraction = std::frexp(x, &exponent);
+  return fraction == 0.5 ? exponent : exponent + 1;
+}
+
+// A position in steps from the origin, not rounded. Halves where the difference overflows.
+double in_steps(double position, double origin, int step_exponent) {
+  const double difference = position - origin;
+  if (std::isfinite(difference)) return std::ldexp(difference, -step_exponent);
+  return std::ldexp(position / 2 - origin / 2, 1 - step_exponent);
+}
+
+}  // namespace
+
+Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
+  Eigen::AlignedBox3d bounds;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) bounds.extend(mesh.positions[i]);
+  return bounds;
+}
+
+Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice) {
+  Grid grid;
+  if (bounds.isEmpty()) return grid;
+  const double half = half_extent(bounds);
+  const int extent_exponent = half > 0 ? exponent_above_twice(half) : 0;
+  grid.step_exponent = extent_exponent - choice.bits;
+  if (choice.tolerance) {
+    // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all.
+    grid.step_exponent = std::ilogb(*choice.tolerance / 0.8661);
+    if (half > 0 && extent_exponent - grid.step_exponent > kMaxGridBits) {
+      return Error{
+          Errc::kMeshUnsupported,
+          fmt::format("a tolerance of {} asks for a grid of {} bits over an extent of {}; "
+                      "at most {} are possible, a tolerance of {}",
+                      *choice.tolerance, extent_exponent - grid.step_exponent, 2 * half,
+                      kMaxGridBits, 0.8661 * std::ldexp(1.0, extent_exponent - kMaxGridBits))};
+    }
+  }
+  grid.step_exponent = std::clamp(grid.step_exponent, -kMaxStepExponent, kMaxStepExponent);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    // Beyond 2^53 steps every double is a multiple of a step, or as good as one.
+    const double steps = std::floor(std::ldexp(bounds.min()[k], -grid.step_exponent));
+    grid.origin[k] = std::isfinite(steps) ? std::ldexp(steps, grid.step_exponent) : bounds.min()[k];
+  }
+  return grid;
+}
+
+QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
+  QuantisedMesh out;
+  out.step_exponent = grid.step_exponent;
+  out.mesh.name = mesh.name;
+  out.mesh.faces = mesh.faces;
+  out.mesh.face_ids = mesh.face_ids;
+  const std::size_t count = mesh.positions.size();
+  if (count == 0) return out;
+
+  const auto steps_of = [&](double position, std::size_t k) {
+    const double origin = grid.origin[static_cast<Eigen::Index>(k)];
+    return std::floor(in_steps(position, origin, grid.step_exponent) + 0.5);
+  };
+  const Eigen::AlignedBox3d bounds = bounds_of(mesh);
+  std::array<double, 3> middle;
+  double farthest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    const double low = steps_of(bounds.min()[axis], k);  // rounding is monotone
+    const double high = steps_of(bounds.max()[axis], k);
+    middle[k] = std::floor((low + high) / 2);
+    farthest = std::max({farthest, high - middle[k], middle[k] - low});
+    out.origin[k] = grid.origin[axis] + std::ldexp(middle[k], grid.step_exponent);
+  }
+  constexpr double kFloatHolds = 1 << std::numeric_limits<float>::digits;
+  const bool fits_float = farthest <= kFloatHolds;
+  Positions& positions = out.mesh.positions;
+  positions.precision = fits_float ? Precision::kF32 : Precision::kF64;
+  (fits_float ? positions.f32.resize(3 * count) : positions.f64.resize(3 * count));
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d source = mesh.positions[i];
+    Eigen::Vector3d moved;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double q = steps_of(source[axis], k) - middle[k];
+      if (fits_float) {
+        positions.f32[3 * i + k] = static_cast<float>(q);
+      } else {
+        positions.f64[3 * i + k] = q;
+      }
+      // As a reader computes it; half of it, so that nothing overflows.
+      const double decoded = std::ldexp(q, grid.step_exponent) + out.origin[k];
+      moved[axis] = decoded / 2 - source[axis] / 2;
+    }
+    out.max_vertex_error = std::max(out.max_vertex_error, 2 * moved.stableNorm());
+  }
+  return out;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// The grid store against rounding done here, vertex by vertex: what is decoded is the source on the
+// grid, face by face and corner by corner, in every codec.
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/quantise/grid.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::CookOptions;
+using cooker::SourceMesh;
+
+CookOptions on_grid(int bits) {
+  CookOptions options;
+  options.geometry = GeometryId::kGrid;
+  options.grid.bits = bits;
+  return options;
+}
+
+// Corners of every face by its source number, as the tree has them, in object space.
+std::map<std::uint32_t, std::vector<Eigen::Vector3d>> decoded_faces(const Tree& tree) {
+  std::map<std::uint32_t, std::vector<Eigen::Vector3d>> faces;
+  TriangleBatch batch;
+  for (std::uint32_t f = 0; f < tree.record().face_count; ++f) {
+    EXPECT_EQ(tree.leaves().read(f, 1, batch), Errc::kOk);
+    std::vector<Eigen::Vector3d>& corners = faces[tree.face_id(f)];
+    EXPECT_TRUE(corners.empty()) << "face " << tree.face_id(f) << " occurs twice";
+    for (const Eigen::Vector3d& corner : batch.triangle(0).corner) {
+      corners.push_back(tree.frame().to_object(corner));
+    }
+    if (batch.count == 2) corners.push_back(tree.frame().to_object(batch.triangle(1).corner[2]));
+  }
+  return faces;
+}
+
+class GridStore : public testing::TestWithParam<CodecId> {};
+
+TEST_P(GridStore, HoldsTheSourceRoundedToTheGrid) {
+  for (const SourceMesh& mesh : test::all_kinds()) {
+    for (const int bits : {8, 16, 24, 25, 30}) {
+      SCOPED_TRACE(mesh.name + ", " + std::to_string(bits) + " bits");
+      const cooker::EncodedTree encoded =
+          test::require(cooker::cook_as(mesh, GetParam(), on_grid(bits)));
+      const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), on_grid(bits));
+      const double step = std::ldexp(1.0, cooked.tree.record().grid_exponent);
+      const Eigen::AlignedBox3d bounds = cooker::bounds_of(mesh);
+      const double extent = bounds.diagonal().maxCoeff();
+      EXPECT_LE(extent, step * std::ldexp(1.0, bits));
+      EXPECT_GT(extent, step * std::ldexp(1.0, bits - 1) * (1 - 1e-12));
+      const auto faces = decoded_faces(cooked.tree);
+      ASSERT_EQ(faces.size(), mesh.faces.size());
+      double farthest = 0;
+      for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+        const std::vector<Eigen::Vector3d>& corners = faces.at(f);
+        ASSERT_EQ(corners.size(), mesh.faces[f].is_quad() ? 4u : 3u);
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+          const Eigen::Vector3d source = mesh.positions[mesh.faces[f].corner[c]];
+          for (Eigen::Index k = 0; k < 3; ++k) {
+            // The grid's origin is a multiple of its step, so rounding is to multiples.
+            ASSERT_EQ(corners[c][k], std::floor(source[k] / step + 0.5) * step);
+          }
+          farthest = std::max(farthest, (corners[c] - source).norm());
+        }
+      }
+      EXPECT_LE(encoded.geometry.max_vertex_error, 0.8661 * step);
+      EXPECT_NEAR(encoded.geometry.max_vertex_error, farthest, 1e-12 * farthest);
+      EXPECT_TRUE(cooker::verify_file(cooked.file).empty());
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, GridStore, testing::ValuesIn(test::all_codecs()), test::test_name);
+
+TEST(Grid, HoldsATolerance) {
+  const SourceMesh mesh = test::torus(40, 30);
+  for (const double tolerance : {0.3, 0.01, 1e-3, 3.3e-5, 1e-7}) {
+    CookOptions options = on_grid(8);
+    options.grid.tolerance = tolerance;
+    const cooker::EncodedTree tree = test::require(cooker::cook_as(mesh, CodecId::kWide4, options));
+    EXPECT_LE(tree.geometry.max_vertex_error, tolerance);
+    EXPECT_GT(tree.geometry.max_vertex_error, tolerance / 8);  // and is not finer than it must be
+  }
+  CookOptions options = on_grid(8);
+  options.grid.tolerance = 1e-12;
+  EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide4, options).code(), Errc::kMeshUnsupported);
+}
+
+TEST(Grid, KeepsAndCountsFacesThatCollapse) {
+  SourceMesh mesh = test::torus(200, 150);
+  const cooker::CookedTree cooked = test::require(cooker::cook_mesh(mesh, [] {
+    CookOptions options = on_grid(8);
+    options.codec = CodecId::kWide8;
+    return options;
+  }()));
+  EXPECT_GT(cooked.collapsed, 1000u);
+  EXPECT_EQ(cooked.tree.face_count, mesh.faces.size());
+  EXPECT_EQ(cooked.tree.degenerate_count, cooked.collapsed);  // a torus has none of its own
+}
+
+// Far from zero compared with its size, tiny, huge, flat, a single point.
+TEST(Grid, AnySizeAndPlace) {
+  const SourceMesh sphere = test::sphere(12, 16);
+  struct Case {
+    double scale;
+    Eigen::Vector3d shift;
+  };
+  for (const Case& at : {Case{1e-30, {0, 0, 0}}, Case{1e30, {0, 0, 0}}, Case{1, {1e9, -1e12, 3}},
+                         Case{1e-280, {0, 0, 0}}, Case{5e307, {0, 0, 0}}, Case{0, {1, 2, 3}}}) {
+    SourceMesh mesh = sphere;
+    mesh.positions = {cooker::Precision::kF64, {}, {}};
+    for (std::size_t i = 0; i < sphere.positions.size(); ++i) {
+      const Eigen::Vector3d p = sphere.positions[i] * at.scale + at.shift;
+      mesh.positions.f64.insert(mesh.positions.f64.end(), {p[0], p[1], p[2]});
+    }
+    const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide4, on_grid(20));
+    const auto faces = decoded_faces(cooked.tree);
+    const double allowed = std::max(std::ldexp(2 * at.scale, -20), 1e-15 * at.shift.norm());
+    for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+      for (std::size_t c = 0; c < faces.at(f).size(); ++c) {
+        const Eigen::Vector3d source = mesh.positions[mesh.faces[f].corner[c]];
+        ASSERT_LE((faces.at(f)[c] / 2 - source / 2).cwiseAbs().maxCoeff(), allowed);
+      }
+    }
+  }
+}
+
+// Two meshes that touch along an irrational line, cooked into one grid, still share their vertices.
+TEST(Grid, WhatTouchesStillTouches) {
+  SourceMesh left = test::terrain(12, 5);
+  for (float& x : left.positions.f32) x *= 0.7310585f;
+  SourceMesh right = left;
+  const Eigen::AlignedBox3d bounds = cooker::bounds_of(left);
+  for (std::size_t i = 0; i < right.positions.f32.size(); i += 3) {
+    right.positions.f32[i] = static_cast<float>(2 * bounds.max()[0]) - right.positions.f32[i];
+  }
+  Eigen::AlignedBox3d scene = bounds;
+  scene.extend(cooker::bounds_of(right));
+  CookOptions options = on_grid(12);
+  const cooker::Grid grid = test::require(cooker::choose_grid(scene, options.grid));
+  options.codec = CodecId::kWide8;
+  const std::vector<cooker::EncodedTree> trees = {
+      test::require(cooker::cook_mesh(left, options, grid)).tree,
+      test::require(cooker::cook_mesh(right, options, grid)).tree};
+  const std::vector<std::byte> bytes = cooker::serialize(trees);
+  const File file = test::require(File::open(Bytes(bytes)));
+  const Tree a = test::require(Tree::bind(file, 0));
+  const Tree b = test::require(Tree::bind(file, 1));
+  std::size_t shared = 0;
+  const auto of_b = decoded_faces(b);
+  for (const auto& [face, corners] : decoded_faces(a)) {
+    for (std::size_t c = 0; c < corners.size(); ++c) {
+      const double source = left.positions[left.faces[face].corner[c]][0];
+      if (source != bounds.max()[0]) continue;
+      ASSERT_EQ(corners[c], of_b.at(face)[c]);
+      ++shared;
+    }
+  }
+  EXPECT_GT(shared, 12u);
+  EXPECT_TRUE(first_contact(a, Pose::Identity(), b, Pose::Identity())->has_value());
+}
+
+}  // namespace
+}  // namespace boxtree
