@@ -9,9 +9,9 @@
 namespace boxtree {
 namespace {
 
-// Why no read leaves the section: the lengths of leaves take at most 16 bytes; a leaf starts inside
-// the bytes of its cluster, which end at least kClusterPadding before the section does, and has at
-// most 32 references of 11 bits, 8 steps of 5 and one number of 9: 401 bits.
+// Why no read leaves the section: where leaves start is told in at most 34 bytes; a leaf starts
+// inside the bytes of its cluster, which end at least kClusterPadding before the section does, and
+// has at most 32 references of 11 bits, 8 steps of 5 and one number of 9: 401 bits.
 static_assert(kClusterPadding >= 433 / 8 + 1 + 8);
 
 // Bits of a number below `count`.
@@ -26,23 +26,22 @@ class LeafBits {
  public:
   LeafBits(const std::byte* bytes, std::uint64_t position) : bytes_(bytes), position_(position) {}
 
-  void refill() {
-    window_ = load<std::uint64_t>(bytes_ + position_ / 8) >> (position_ % 8);
-    used_ = 0;
+  void refill() { window_ = load<std::uint64_t>(bytes_ + position_ / 8) >> (position_ % 8); }
+  [[nodiscard]] std::uint64_t window() const { return window_; }
+  void skip(std::uint32_t width) {
+    window_ >>= width;
+    position_ += width;
   }
   [[nodiscard]] std::uint32_t take(std::uint32_t width) {
-    const std::uint64_t field = window_ & low_bits(width);
-    window_ >>= width;
-    used_ += width;
-    return static_cast<std::uint32_t>(field);
+    const auto field = static_cast<std::uint32_t>(window_ & ((std::uint64_t{1} << width) - 1));
+    skip(width);
+    return field;
   }
-  void end_face() { position_ += used_; }
 
  private:
   const std::byte* bytes_;
   std::uint64_t position_;
   std::uint64_t window_ = 0;
-  std::uint32_t used_ = 0;
 };
 
 // The vertices that a leaf has named so far, by their numbers in the cluster.
@@ -53,33 +52,35 @@ class LeafVertices {
 
   // A reference: 1 for the vertex of the cluster that follows the last one named so; 01 and the
   // number of a vertex of the cluster before that one; 00 and the place of a vertex that this leaf
-  // has named before.
+  // has named before. Which of them comes is anybody's guess, so nothing here is a branch.
   [[nodiscard]] std::uint8_t take(LeafBits& bits) {
-    std::uint32_t vertex = next_;
-    if (bits.take(1) != 0) {
-      ++next_;
-    } else if (bits.take(1) != 0) {
-      vertex = bits.take(width_below(next_));
-    } else {
-      const std::uint32_t place = bits.take(width_below(count_));
-      sound_ &= place < count_;
-      return static_cast<std::uint8_t>(place);
-    }
-    sound_ &= vertex < vertex_count_;
+    const auto window = static_cast<std::uint32_t>(bits.window());
+    const std::uint32_t is_next = window & 1u;
+    const std::uint32_t is_new = is_next | ((window >> 1) & 1u);
+    const std::uint32_t width =
+        (is_next - 1) & (is_new != 0 ? width_below(next_) : width_below(count_));
+    const std::uint32_t field = (window >> 2) & ((1u << width) - 1);
+    bits.skip(2 - is_next + width);
+    const std::uint32_t vertex = is_next != 0 ? next_ : field;
+    const std::uint32_t place = is_new != 0 ? count_ : field;
     number_[count_] = static_cast<std::uint16_t>(vertex);
-    return static_cast<std::uint8_t>(count_++);
+    unsound_ |= (is_new & (vertex >= vertex_count_ ? 1u : 0u)) |
+                ((is_new ^ 1u) & (field >= count_ ? 1u : 0u));
+    count_ += is_new;
+    next_ += is_next;
+    return static_cast<std::uint8_t>(place);
   }
 
-  [[nodiscard]] bool sound() const { return sound_; }
+  [[nodiscard]] bool sound() const { return unsound_ == 0; }
   [[nodiscard]] std::uint32_t count() const { return count_; }
   [[nodiscard]] std::uint32_t number(std::uint32_t i) const { return number_[i]; }
 
  private:
-  std::array<std::uint16_t, kMaxLeafVertices> number_;
+  std::array<std::uint16_t, kMaxLeafVertices + 1> number_;  // the last is written and never read
   std::uint32_t count_ = 0;
   std::uint32_t next_;
   std::uint32_t vertex_count_;
-  bool sound_ = true;
+  std::uint32_t unsound_ = 0;
 };
 
 // The face after `previous`; false for a code that is none.
@@ -117,9 +118,12 @@ void read_positions(const ClusterRecord& cluster, const std::byte* bytes, std::u
       offset = {read_bits(bytes, at, width[0]), read_bits(bytes, at + width[0], width[1]),
                 read_bits(bytes, at + width[0] + width[1], width[2])};
     }
+    // Unsigned, so that corrupt sums wrap.
     for (std::size_t k = 0; k < 3; ++k) {
-      out.position[i][k] = cluster.origin[k] + static_cast<std::int64_t>(offset[k]);
+      out.position[i][k] = static_cast<std::int32_t>(static_cast<std::uint32_t>(cluster.origin[k]) +
+                                                     static_cast<std::uint32_t>(offset[k]));
     }
+    out.position[i][3] = 0;
   }
 }
 
@@ -128,30 +132,29 @@ void read_positions(const ClusterRecord& cluster, const std::byte* bytes, std::u
 bool decode_grid_leaf(const GridView& grid, std::uint32_t leaf, GridLeaf& out) noexcept {
   const auto cluster = load<ClusterRecord>(grid.clusters, leaf / kClusterLeaves);
   const std::uint64_t start = std::uint64_t{cluster.offset} * 8;
-  if (cluster.leaf_bits > 8 || !in_range(start, kClusterPadding, grid.bytes.size())) return false;
+  if (cluster.leaf_bits > 16 || !in_range(start, kClusterPadding, grid.bytes.size())) return false;
   const std::byte* const bytes = grid.bytes.data();
   const std::uint32_t faces_left = grid.face_count - leaf / kClusterLeaves * kClusterFaces;
   const std::uint32_t leaves = (std::min(faces_left, kClusterFaces) + kLeafFaces - 1) / kLeafFaces;
-  std::uint64_t leaf_at = 0;  // bytes after the start of the cluster
-  std::uint64_t vertices_at = (leaves * cluster.leaf_bits + 7) / 8;
-  for (std::uint32_t i = 0; i < leaves; ++i) {
-    if (i == leaf % kClusterLeaves) leaf_at = vertices_at;
-    vertices_at +=
-        cluster.leaf_bytes + read_bits(bytes, start * 8 + i * cluster.leaf_bits, cluster.leaf_bits);
-  }
+  const std::uint64_t first_leaf = ((leaves + 1) * cluster.leaf_bits + 7) / 8;
+  const auto start_of = [&](std::uint32_t i) {  // bytes after the start of the cluster
+    return first_leaf + i * cluster.leaf_bytes +
+           read_bits(bytes, start * 8 + i * cluster.leaf_bits, cluster.leaf_bits);
+  };
+  const std::uint64_t leaf_at = start_of(leaf % kClusterLeaves);
+  const std::uint64_t vertices_at = start_of(leaves);
   const std::uint32_t widest = std::max({cluster.width[0], cluster.width[1], cluster.width[2]});
   const std::uint64_t stride =
       std::uint64_t{cluster.width[0]} + cluster.width[1] + cluster.width[2];
   const std::uint64_t size = vertices_at + (cluster.vertex_count * stride + 7) / 8;
   constexpr std::uint32_t kMostVertices = kClusterFaces * 4;
   if (widest > 32 || cluster.vertex_count == 0 || cluster.vertex_count > kMostVertices ||
-      !in_range(start, size + kClusterPadding, grid.bytes.size())) {
+      leaf_at > vertices_at || !in_range(start, size + kClusterPadding, grid.bytes.size())) {
     return false;
   }
   LeafBits bits(bytes, (start + leaf_at) * 8);
   bits.refill();
   LeafVertices vertices(bits.take(width_below(cluster.vertex_count + 1u)), cluster.vertex_count);
-  bits.end_face();
   out.face_count = std::min(kLeafFaces, grid.face_count - leaf * kLeafFaces);
   for (std::uint32_t f = 0; f < out.face_count; ++f) {
     bits.refill();
@@ -159,7 +162,6 @@ bool decode_grid_leaf(const GridView& grid, std::uint32_t leaf, GridLeaf& out) n
                    f == 0 ? nullptr : &out.corner[f - 1], out.corner[f])) {
       return false;
     }
-    bits.end_face();
   }
   out.vertex_count = vertices.count();
   read_positions(cluster, bytes, (start + vertices_at) * 8, vertices, out);

@@ -27,15 +27,16 @@ inline constexpr int kMaxGridBits = 30;
 inline constexpr std::size_t kClusterPadding = 96;
 
 /// Where a cluster lies and how wide its fields are. Faces of cluster n: 128 n to 128 n + 127. Its
-/// bytes: the lengths of its leaves, less the least, in fields of leaf_bits; the leaves, each from
-/// a whole byte on; the offsets of its vertices.
+/// bytes: a field of leaf_bits for each leaf and one more; the leaves, each from a whole byte on;
+/// the offsets of its vertices. Leaf i starts i * leaf_bytes plus its field after these fields, and
+/// the offsets of vertices as one more leaf would, so that any leaf is found at once.
 struct ClusterRecord {
   std::array<std::int32_t, 3> origin;  // grid coordinates of the low corner
   std::uint32_t offset;                // of its bytes in the section, in units of 8 bytes
   std::uint16_t vertex_count;
   std::array<std::uint8_t, 3> width;  // bits of a vertex's offset on each axis, at most 32
-  std::uint8_t leaf_bytes;            // of the shortest leaf
-  std::uint8_t leaf_bits;             // at most 8
+  std::uint8_t leaf_bytes;            // least mean length of leaves from the first one on
+  std::uint8_t leaf_bits;             // at most 16
   std::uint8_t reserved;              // zero
 };
 static_assert(sizeof(ClusterRecord) == 24 && std::is_trivially_copyable_v<ClusterRecord>);
@@ -69,13 +70,13 @@ struct GridView {
 /// Most vertices that a leaf can have: every face a quad for itself.
 inline constexpr std::size_t kMaxLeafVertices = 4 * kLeafFaces;
 
-/// A decoded leaf.
+/// A decoded leaf. Positions of corrupt bytes may be any numbers.
 struct GridLeaf {
   static constexpr std::uint8_t kNoCorner = 0xff;
 
   std::uint32_t vertex_count = 0;
   std::uint32_t face_count = 0;
-  std::array<std::array<std::int64_t, 3>, kMaxLeafVertices> position;  // grid coordinates
+  std::array<std::array<std::int32_t, 4>, kMaxLeafVertices> position;  // grid coordinates and a 0
   std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;          // numbers of these vertices
 };
 

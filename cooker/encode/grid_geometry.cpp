@@ -160,13 +160,12 @@ class ClusterEncoder {
     number_.assign(vertices.count(), kUnnamed);
     stored_.clear();
     leaves_.clear();
-    lengths_.clear();
+    starts_ = {0};
     for (std::size_t first = 0; first < faces.size(); first += kLeafFaces) {
-      const std::size_t start = leaves_.size();
       write_leaf(faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)));
-      lengths_.push_back(leaves_.size() - start);
+      starts_.push_back(leaves_.size());
     }
-    write_lengths();
+    write_starts();
     out_.insert(out_.end(), leaves_.begin(), leaves_.end());
     write_positions(vertices);
     while (out_.size() % 8 != 0) out_.push_back(std::byte{0});
@@ -212,12 +211,17 @@ class ClusterEncoder {
     }
   }
 
-  void write_lengths() {
-    const auto [least, most] = std::minmax_element(lengths_.begin(), lengths_.end());
-    record_.leaf_bytes = static_cast<std::uint8_t>(*least);
-    record_.leaf_bits = static_cast<std::uint8_t>(std::bit_width(*most - *least));
+  void write_starts() {
+    std::size_t least = 255;
+    for (std::size_t i = 1; i < starts_.size(); ++i) least = std::min(least, starts_[i] / i);
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < starts_.size(); ++i) most = std::max(most, starts_[i] - i * least);
+    record_.leaf_bytes = static_cast<std::uint8_t>(least);
+    record_.leaf_bits = static_cast<std::uint8_t>(std::bit_width(most));
     BitWriter bits(out_);
-    for (const std::size_t length : lengths_) bits.put(length - *least, record_.leaf_bits);
+    for (std::size_t i = 0; i < starts_.size(); ++i) {
+      bits.put(starts_[i] - i * least, record_.leaf_bits);
+    }
   }
 
   void write_positions(const ClusterVertices& vertices) {
@@ -245,7 +249,7 @@ class ClusterEncoder {
   bool may_have_quads_;
   ClusterRecord record_{};
   std::vector<std::byte> leaves_;
-  std::vector<std::size_t> lengths_;   // of leaves, in bytes
+  std::vector<std::size_t> starts_;    // of leaves, and the end of the last
   std::vector<std::uint16_t> number_;  // where a vertex is stored in the cluster
   std::vector<std::uint16_t> stored_;  // vertices in the order in which they are stored
   std::vector<std::uint16_t> named_;   // vertices that the leaf has named so far

@@ -142,10 +142,9 @@ class LeafFloats {
     }
     HWY_ALIGN float row[kMaxLeafVertices * kRow];
     for (std::uint32_t i = 0; i < grid_leaf_.vertex_count; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < kRow; ++k) {
         row[kRow * i + k] = static_cast<float>(grid_leaf_.position[i][k]);
       }
-      row[kRow * i + 3] = 0;
     }
     for (std::size_t f = 0; f < kLeafFaces; ++f) {
       for (std::size_t c = 0; c < 3; ++c) start_[3 * f + c] = kRow * grid_leaf_.corner[f][c];

@@ -17,10 +17,8 @@ namespace {
 
 using test::require;
 
-cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder) {
-  cooker::CookOptions options;
-  options.builder = builder;
-  options.face_ids = false;
+cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec,
+                         const cooker::CookOptions& options) {
   return require(cooker::cook_as(mesh.source, codec, options));
 }
 
@@ -94,8 +92,8 @@ struct Listener {
 
 class BoxtreeSubject : public Subject {
  public:
-  BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, cooker::Builder builder)
-      : encoded_(cook(mesh, codec, builder)),
+  BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, const cooker::CookOptions& options)
+      : encoded_(cook(mesh, codec, options)),
         tree_(require(Tree::bind(cooker::parts_of(encoded_), 0, BindOptions()))) {}
 
   [[nodiscard]] SubjectBytes bytes() const override {
@@ -154,6 +152,7 @@ class BoxtreeSubject : public Subject {
 
   [[nodiscard]] std::optional<PairWork> pair_work(std::span<const Pose> poses, bool first_only,
                                                   CacheModel& cache) override {
+    if (encoded_.geometry.geometry == GeometryId::kGrid) return {};  // listens to arrays alone
     PairWork work;
     for (const Pose& pose : poses) {
       const auto relative = RelativePose::make(tree_, Pose::Identity(), tree_, pose);
@@ -177,8 +176,8 @@ class BoxtreeSubject : public Subject {
 // A compressed file has nothing but an opening time and a size: once open it is its plain-f32 tree.
 class BlobSubject : public Subject {
  public:
-  BlobSubject(const TriangleMesh& mesh, BlobMethod method, cooker::Builder builder)
-      : encoded_(cook(mesh, CodecId::kPlainF32, builder)),
+  BlobSubject(const TriangleMesh& mesh, BlobMethod method, const cooker::CookOptions& options)
+      : encoded_(cook(mesh, CodecId::kPlainF32, options)),
         file_(cooker::serialize(std::span(&encoded_, 1))),
         blob_(require(make_blob(file_, method))),
         tree_bytes_(static_cast<double>(require(compressed_size(encoded_.nodes.bytes, method)))) {}
@@ -209,17 +208,28 @@ class BlobSubject : public Subject {
 }  // namespace
 
 void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder) {
-  for (const CodecInfo& codec : kCodecs) {
-    libraries.push_back(
-        {"boxtree", std::string(codec.name), [id = codec.id, builder](const TriangleMesh& mesh) {
-           return std::make_unique<BoxtreeSubject>(mesh, id, builder);
-         }});
-  }
+  cooker::CookOptions options;
+  options.builder = builder;
+  options.face_ids = false;
+  const auto add = [&](const char* library, const std::string& variant, CodecId codec) {
+    libraries.push_back({library, variant, [codec, options](const TriangleMesh& mesh) {
+                           return std::make_unique<BoxtreeSubject>(mesh, codec, options);
+                         }});
+  };
+  for (const CodecInfo& codec : kCodecs) add("boxtree", std::string(codec.name), codec.id);
   for (const auto& [name, method] :
        {std::pair("blob-lzma", BlobMethod::kLzma), std::pair("blob-zstd", BlobMethod::kZstd)}) {
-    libraries.push_back({"boxtree", name, [method = method, builder](const TriangleMesh& mesh) {
-                           return std::make_unique<BlobSubject>(mesh, method, builder);
+    libraries.push_back({"boxtree", name, [method = method, options](const TriangleMesh& mesh) {
+                           return std::make_unique<BlobSubject>(mesh, method, options);
                          }});
+  }
+  // A library of its own, as its answers are those of the mesh on the grid.
+  options.geometry = GeometryId::kGrid;
+  for (const int bits : {24, 16}) {
+    options.grid.bits = bits;
+    for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+      add("boxtree-grid", std::string(codec_name(codec)) + "-" + std::to_string(bits), codec);
+    }
   }
 }
 

@@ -264,28 +264,29 @@ class Grid:
     def record(self, cluster):
         *origin, offset, count, wx, wy, wz, leaf_bytes, leaf_bits, zero = struct.unpack_from(
             "<3iIH6B", self.tree.corners, 24 * cluster)
-        expect(zero == 0 and max(wx, wy, wz) <= 32 and leaf_bits <= 8 and 0 < count <= 512,
+        expect(zero == 0 and max(wx, wy, wz) <= 32 and leaf_bits <= 16 and 0 < count <= 512,
                "a cluster's record")
         leaves = min(16, -(-(self.tree.face_count - self.CLUSTER_FACES * cluster)
                            // self.LEAF_FACES))
-        table = int.from_bytes(self.tree.vertices[8 * offset:8 * offset + 16], "little")
-        lengths = [leaf_bytes + ((table >> (leaf_bits * i)) & ((1 << leaf_bits) - 1))
-                   for i in range(leaves)]
-        return origin, 8 * offset, count, (wx, wy, wz), lengths, -(-leaves * leaf_bits // 8)
+        fields = -(-(leaves + 1) * leaf_bits // 8)
+        table = int.from_bytes(self.tree.vertices[8 * offset:8 * offset + fields], "little")
+        starts = [fields + leaf_bytes * i + ((table >> (leaf_bits * i)) & ((1 << leaf_bits) - 1))
+                  for i in range(leaves + 1)]
+        expect(starts[0] == fields and starts == sorted(starts), "leaves follow each other")
+        return origin, 8 * offset, count, (wx, wy, wz), starts
 
     def extent(self, cluster):
-        _, offset, count, widths, lengths, table = self.record(cluster)
-        return offset, table + sum(lengths) + -(-count * sum(widths) // 8)
+        _, offset, count, widths, starts = self.record(cluster)
+        return offset, starts[-1] + -(-count * sum(widths) // 8)
 
     def leaf(self, number):
         """The faces of a leaf as lists of grid points."""
-        origin, offset, count, widths, lengths, table = self.record(number // 16)
+        origin, offset, count, widths, starts = self.record(number // 16)
         here = number % 16
         data = self.tree.vertices
-        start = offset + table + sum(lengths[:here])
-        bits = int.from_bytes(data[start:start + lengths[here]], "little")
+        bits = int.from_bytes(data[offset + starts[here]:offset + starts[here + 1]], "little")
         vertices = int.from_bytes(
-            data[offset + table + sum(lengths):sum(self.extent(number // 16))], "little")
+            data[offset + starts[-1]:sum(self.extent(number // 16))], "little")
 
         def field(width):
             nonlocal bits
