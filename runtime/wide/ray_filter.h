@@ -38,14 +38,13 @@ struct RayFilter {
     error = float_above(bound);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      const double d = query.direction[axis];
       // Not so large that a plane's parameter overflows, and large enough that a ray which is
       // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
       constexpr double kLargest = 0x1p60;
-      near_high[k] = std::signbit(d) ? 1 : 0;
-      inverse[k] =
-          static_cast<float>(std::abs(d) * kLargest < 1 ? std::copysign(kLargest, d) : 1 / d);
+      near_high[k] = static_cast<std::uint32_t>(query.slab.near_side(k));
+      inverse[k] = static_cast<float>(std::clamp(query.slab.inverse(k), -kLargest, kLargest));
       margin[k] = error * std::abs(inverse[k]);
+      margins[k] = 2 * margin[k];
       origin[k] = static_cast<float>(from[axis]);
     }
     axis_x = static_cast<std::size_t>(query.shear.axis_x);
@@ -66,7 +65,8 @@ struct RayFilter {
   float error;
   std::array<std::uint32_t, 3> near_high;  // 1 where the ray comes from the high side, else 0
   std::array<float, 3> inverse;
-  std::array<float, 3> margin;  // of a plane's parameter
+  std::array<float, 3> margin;   // of a plane's parameter
+  std::array<float, 3> margins;  // of both planes of an axis
   std::array<float, 3> origin;
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;
