@@ -105,22 +105,6 @@ HWY_INLINE std::uint32_t take_smallest(std::uint32_t& bits, const float* key) {
   return smallest;
 }
 
-/// Writes keys of children, out of eight, that `bits` names, in order; room for eight is needed.
-/// Returns their number.
-HWY_INLINE std::size_t compress(const std::uint32_t* keys, std::uint32_t bits, std::uint32_t* out) {
-#if HWY_TARGET <= HWY_AVX3
-  const hn::Repartition<std::uint32_t, Floats> words;
-  alignas(8) const std::uint8_t mask[8] = {static_cast<std::uint8_t>(bits)};
-  hn::StoreU(hn::Compress(hn::Load(words, keys), hn::LoadMaskBits(words, mask)), words, out);
-#else
-  std::size_t count = 0;
-  for (std::uint32_t rest = bits; rest != 0; rest &= rest - 1) {
-    out[count++] = keys[std::countr_zero(rest)];
-  }
-#endif
-  return static_cast<std::size_t>(std::popcount(bits));
-}
-
 /// Entries of a stack that holds all but one child of each node on a path.
 template <class Node>
 inline constexpr std::size_t kWideStack = WideCodec<Node>::kDepthLimit*(kWideChildren - 1) + 1;

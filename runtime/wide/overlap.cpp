@@ -13,6 +13,7 @@
 
 #include <boxtree/runtime/wide/distance-inl.h>
 #include <boxtree/runtime/wide/leaf-inl.h>
+#include <boxtree/runtime/wide/prefetch-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -98,7 +99,12 @@ template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
   OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
-      : tree_(tree), codec_(codec), walk_(walk), filter_(tree, walk.shape), leaf_(tree) {}
+      : tree_(tree),
+        codec_(codec),
+        walk_(walk),
+        filter_(tree, walk.shape),
+        prefetch_(tree, codec),
+        leaf_(tree) {}
 
   Errc run(const Box<float>& root) {
     std::size_t size = 0;
@@ -121,6 +127,8 @@ class OverlapWalk {
         }
         verdict.touched &= all;
       }
+      prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
+      prefetch_.nodes(links, verdict.touched & links.inner_mask);
       const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
         const std::uint32_t first = first_face(links, i);
         const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
@@ -210,6 +218,7 @@ class OverlapWalk {
   const WideCodec<Node>& codec_;
   FaceWalk<Shape>& walk_;
   const Filter filter_;
+  const Prefetch<Node> prefetch_;
   LeafFloats leaf_;
   std::array<Entry, kWideStack<Node>> stack_;
 };

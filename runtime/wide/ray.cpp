@@ -11,7 +11,8 @@
 #include <hwy/highway.h>
 
 #include <boxtree/runtime/wide/leaf-inl.h>
-#include <boxtree/runtime/wide/node-inl.h>
+#include <boxtree/runtime/wide/prefetch-inl.h>
+#include <boxtree/runtime/wide/waiting-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -22,24 +23,19 @@ namespace {
 struct RayChildren {
   HWY_ALIGN float near[3][kWideChildren];
   HWY_ALIGN float far[3][kWideChildren];
-  std::uint32_t first_node;
-  std::uint32_t inner_mask;
-
-  [[nodiscard]] std::uint32_t node(std::uint32_t child) const {
-    return first_node + rank(inner_mask, child);
-  }
+  WideLinks links;
 };
 
 template <class Node>
 class RayWalk {
  public:
   RayWalk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query, const RayFilter& filter)
-      : codec_(codec), query_(query), filter_(filter), leaf_(tree) {
+      : codec_(codec), query_(query), filter_(filter), prefetch_(tree, codec), leaf_(tree) {
     bound_ = filter.bound(query.t_max);
   }
 
-  // Children of the node at depth n are in open_[n + 1], the root, as if it were a child, in
-  // open_[0]: what waits belongs to nodes on the path to the one at hand, each at another depth.
+  // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
+  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
   Errc run(const Box<float>& root) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<float, 2> side = {root.low[k], root.high[k]};
@@ -49,78 +45,34 @@ class RayWalk {
       open_[0].far[k][0] =
           (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
     }
-    std::size_t depth = 0;
-    std::uint32_t child = 0;
+    typename Waiting<Node>::Child at{0, 0};
     std::uint32_t number = 0;
-    std::size_t size = 0;
     std::uint64_t unexpanded = codec_.node_count;
     HWY_ALIGN float enter[kWideChildren];
     for (;;) {
       const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
       const WideLinks links = links_of(*node);
       if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
-      if (depth + 1 == open_.size()) return Errc::kDepthExceeded;
-      RayChildren& children = open_[depth + 1];
-      const std::uint32_t passing =
-          meet(*node, open_[depth], child, children, enter) & ((1u << links.child_count) - 1);
-      children.first_node = links.first_node;
-      children.inner_mask = links.inner_mask;
+      if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
+      RayChildren& children = open_[at.depth + 1];
+      const std::uint32_t passing = meet(*node, open_[at.depth], at.number, children, enter) &
+                                    ((1u << links.child_count) - 1);
+      children.links = links;
+      prefetch_.leaves(links, passing & ~links.inner_mask);
+      prefetch_.nodes(links, passing & links.inner_mask);
       for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
         const std::uint32_t i = take_smallest(leaves, enter);
         if (enter[i] > bound_) break;
         const std::uint32_t face = first_face(links, i);
         if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
       }
-      size += push(passing & links.inner_mask, enter, depth + 1, size);
-      std::uint32_t key;
-      do {
-        if (size == 0) return Errc::kOk;
-        key = waiting_key_[--size];
-        // Less its last bits, the key is at most where the ray enters: nothing is lost.
-      } while (std::bit_cast<float>(key & ~kChildBits) > bound_);
-      depth = waiting_depth_[size];
-      child = key & kChildBits;
-      number = open_[depth].node(child);
+      waiting_.push(passing & links.inner_mask, enter, at.depth + 1);
+      if (!waiting_.pop(bound_, at)) return Errc::kOk;
+      number = node_number(open_[at.depth].links, at.number);
     }
   }
 
  private:
-  // The low bits of a key name the child; the others are those of the float where the ray enters
-  // it, which is not negative, so that keys compare as the floats do.
-  static constexpr std::uint32_t kChildBits = kWideChildren - 1;
-
-  // Puts children on top of the stack, the nearest last.
-  HWY_INLINE std::size_t push(std::uint32_t children, const float* enter, std::size_t depth,
-                              std::size_t size) {
-    const Floats d;
-    const hn::Repartition<std::uint32_t, Floats> words;
-    HWY_ALIGN std::uint32_t keys[kWideChildren];
-    for (std::size_t part = 0; part < kParts; ++part) {
-      const auto bits = hn::BitCast(words, hn::Load(d, enter + part * kLanes));
-      const auto child = hn::Iota(words, static_cast<std::uint32_t>(part * kLanes));
-      hn::Store(hn::Or(hn::And(bits, hn::Set(words, ~kChildBits)), child), words,
-                keys + part * kLanes);
-    }
-    const std::size_t count = compress(keys, children, waiting_key_ + size);
-    std::uint32_t* key = waiting_key_ + size;
-    for (std::size_t i = 0; i < kWideChildren; ++i) {
-      waiting_depth_[size + i] = static_cast<std::uint8_t>(depth);
-    }
-    if (count == 2) {
-      const std::uint32_t a = key[0], b = key[1];
-      key[0] = std::max(a, b);
-      key[1] = std::min(a, b);
-    } else if (count > 2) {
-      for (std::size_t i = 1; i < count; ++i) {
-        const std::uint32_t at = key[i];
-        std::size_t place = i;
-        for (; place > 0 && key[place - 1] < at; --place) key[place] = key[place - 1];
-        key[place] = at;
-      }
-    }
-    return count;
-  }
-
   // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
   // widened by the margins; the steps between its planes are those of the box itself.
   HWY_INLINE std::uint32_t meet(const Node& node, const RayChildren& parent, std::uint32_t child,
@@ -218,11 +170,10 @@ class RayWalk {
   const WideCodec<Node>& codec_;
   RayQuery& query_;
   const RayFilter& filter_;
+  const Prefetch<Node> prefetch_;
   float bound_;
   LeafFloats leaf_;
-  // Nodes that wait, with room for all lanes of a vector at the top.
-  std::uint32_t waiting_key_[kWideStack<Node> + 2 * kWideChildren];
-  std::uint8_t waiting_depth_[kWideStack<Node> + 2 * kWideChildren];  // of the parent's children
+  Waiting<Node> waiting_;
   std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
 };
 
@@ -254,14 +205,18 @@ namespace {
 HWY_EXPORT(walk_ray_wide8);
 HWY_EXPORT(walk_ray_wide4);
 
+bool is_for_vectors(const Tree& tree, const RayQuery& query) {
+  return tree.record().root == RootKind::kSubtree && RayFilter::is_near(query);
+}
+
 }  // namespace
 
 Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
-  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
   return HWY_DYNAMIC_DISPATCH(walk_ray_wide8)(tree, codec, query);
 }
 Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
-  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
   return HWY_DYNAMIC_DISPATCH(walk_ray_wide4)(tree, codec, query);
 }
 
