@@ -54,7 +54,7 @@ class PointWalk {
       prefetch_.leaves(links, passing & ~links.inner_mask);
       prefetch_.nodes(links, passing & links.inner_mask);
       for (;;) {
-        typename Waiting<Node>::Child at;
+        typename decltype(waiting_)::Child at;
         if (!waiting_.pop(bound_, at)) return Errc::kOk;
         const PointChildren& of = open_[at.depth];
         if (((of.links.inner_mask >> at.number) & 1u) != 0) {
@@ -129,7 +129,7 @@ class PointWalk {
   float bound_;     // of squared distances
   float distance_;  // of distances
   LeafFloats leaf_;
-  Waiting<Node> waiting_;
+  Waiting<WideCodec<Node>::kDepthLimit> waiting_;
   std::array<PointChildren, WideCodec<Node>::kDepthLimit> open_;
 };
 

@@ -45,7 +45,7 @@ class RayWalk {
       open_[0].far[k][0] =
           (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
     }
-    typename Waiting<Node>::Child at{0, 0};
+    typename decltype(waiting_)::Child at{0, 0};
     std::uint32_t number = 0;
     std::uint64_t unexpanded = codec_.node_count;
     HWY_ALIGN float enter[kWideChildren];
@@ -173,7 +173,7 @@ class RayWalk {
   const Prefetch<Node> prefetch_;
   float bound_;
   LeafFloats leaf_;
-  Waiting<Node> waiting_;
+  Waiting<WideCodec<Node>::kDepthLimit + 1> waiting_;
   std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
 };
 

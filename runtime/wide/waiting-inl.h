@@ -17,8 +17,8 @@ namespace boxtree::HWY_NAMESPACE {
 
 /// Children of the nodes on one path, all of one depth together. A word is the bits of the child's
 /// key, a float that is not negative, so that words compare as keys do; the lowest bits name the
-/// child instead.
-template <class Node>
+/// child instead. Room for the children of `kDepths` nodes.
+template <std::size_t kDepths>
 class Waiting {
  public:
   struct Child {
@@ -70,7 +70,8 @@ class Waiting {
 
  private:
   static constexpr std::int32_t kChildBits = kWideChildren - 1;
-  static constexpr std::size_t kMost = WideCodec<Node>::kDepthLimit * kWideChildren;
+  static constexpr std::size_t kMost = kDepths * kWideChildren;
+  static_assert(kDepths <= 256);
 
   std::size_t size_ = 0;
   std::int32_t word_[kMost];
