@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Ray queries over any codec.
-#include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include <boxtree/runtime/query/ray_query.h>
 #include <boxtree/runtime/wide/walks.h>
@@ -9,16 +11,22 @@
 namespace boxtree {
 namespace {
 
+// An origin that is not finite is not within reach either.
 bool is_valid(const Ray& ray) {
-  return ray.origin.allFinite() && ray.direction.allFinite() && !ray.direction.isZero(0) &&
-         ray.t_min >= 0 && ray.t_min <= ray.t_max;  // false for NaN
+  return ray.direction.allFinite() && !ray.direction.isZero(0) && ray.t_min >= 0 &&
+         ray.t_min <= ray.t_max;  // false for NaN
 }
 
 // The power of two that brings the largest component of the direction into [1/2, 1) of tree space.
 // Directions of any length then behave alike, and t is converted without rounding.
 int direction_exponent(const Ray& ray) {
+  const double largest = ray.direction.cwiseAbs().maxCoeff();
+  if (largest >= std::numeric_limits<double>::min()) [[likely]] {  // a normal number
+    constexpr int kBias = std::numeric_limits<double>::max_exponent - 2;
+    return static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52) - kBias;
+  }
   int exponent = 0;
-  static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
+  static_cast<void>(std::frexp(largest, &exponent));
   return exponent;
 }
 

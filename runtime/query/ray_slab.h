@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include <Eigen/Core>
@@ -42,12 +43,12 @@ class RaySlab {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       const double d = direction[axis];
-      forward_[k] = !std::signbit(d);
-      inverse_[k] = std::abs(d) < 1 / kHuge ? (forward_[k] ? kHuge : -kHuge) : 1 / d;
-      const double before = origin[axis] + margin;
-      const double after = origin[axis] - margin;
-      near_origin_[k] = forward_[k] ? before : after;
-      far_origin_[k] = forward_[k] ? after : before;
+      near_side_[k] = std::signbit(d) ? 1 : 0;
+      inverse_[k] = std::abs(d) < 1 / kHuge ? std::copysign(kHuge, d) : 1 / d;
+      // No branch on a sign, here and below: it is as likely as not.
+      const double toward = std::copysign(margin, d);
+      near_origin_[k] = origin[axis] + toward;
+      far_origin_[k] = origin[axis] - toward;
     }
   }
 
@@ -55,17 +56,23 @@ class RaySlab {
   [[nodiscard]] SlabInterval intersect(const Box<S>& box) const noexcept {
     SlabInterval interval{-std::numeric_limits<double>::infinity(),
                           std::numeric_limits<double>::infinity()};
+    const std::array<const S*, 2> side = {box.low.data(), box.high.data()};
     for (std::size_t k = 0; k < 3; ++k) {
-      const double near_plane = forward_[k] ? box.low[k] : box.high[k];
-      const double far_plane = forward_[k] ? box.high[k] : box.low[k];
+      const double near_plane = side[near_side_[k]][k];
+      const double far_plane = side[1 - near_side_[k]][k];
       interval.enter = std::max(interval.enter, (near_plane - near_origin_[k]) * inverse_[k]);
       interval.leave = std::min(interval.leave, (far_plane - far_origin_[k]) * inverse_[k]);
     }
     return interval;
   }
 
+  /// 1 where the line comes from the high side of an axis, else 0.
+  [[nodiscard]] std::size_t near_side(std::size_t axis) const noexcept { return near_side_[axis]; }
+  /// 1 / direction, but finite.
+  [[nodiscard]] double inverse(std::size_t axis) const noexcept { return inverse_[axis]; }
+
  private:
-  std::array<bool, 3> forward_;
+  std::array<std::uint32_t, 3> near_side_;
   std::array<double, 3> inverse_;
   std::array<double, 3> near_origin_;
   std::array<double, 3> far_origin_;

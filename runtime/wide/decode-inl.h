@@ -29,9 +29,10 @@ struct ChildBoxes {
 };
 
 /// Part `part` of the children of `node`, whose decoded box is `box`; also written to `out`.
-/// One product and one sum, each rounded: the planes are part of the format.
-template <class Node>
-HWY_INLINE VectorBox decode(const Node& node, const Box<float>& box, std::size_t part,
+/// One product and one sum, each rounded: the planes are part of the format. A box has low[axis]
+/// and high[axis].
+template <class Node, class AnyBox>
+HWY_INLINE VectorBox decode(const Node& node, const AnyBox& box, std::size_t part,
                             ChildBoxes& out) {
   const Floats d;
   VectorBox boxes;

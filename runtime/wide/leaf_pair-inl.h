@@ -153,7 +153,7 @@ class LeafPairs {
           const Floats d;
           FloatVector x = hn::Set(d, map.translation[k]);
           for (std::size_t j = 0; j < 3; ++j) {
-            x = hn::MulAdd(hn::Set(d, map.linear[k][j]), second_.at(c, j, 0, offset / kLanes), x);
+            x = hn::MulAdd(hn::Set(d, map.linear[j][k]), second_.at(c, j, 0, offset / kLanes), x);
           }
           return x;
         });

@@ -105,10 +105,6 @@ HWY_INLINE std::uint32_t take_smallest(std::uint32_t& bits, const float* key) {
   return smallest;
 }
 
-/// Entries of a stack that holds all but one child of each node on a path.
-template <class Node>
-inline constexpr std::size_t kWideStack = WideCodec<Node>::kDepthLimit*(kWideChildren - 1) + 1;
-
 }  // namespace boxtree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

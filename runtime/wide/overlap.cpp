@@ -13,6 +13,7 @@
 
 #include <boxtree/runtime/wide/distance-inl.h>
 #include <boxtree/runtime/wide/leaf-inl.h>
+#include <boxtree/runtime/wide/prefetch-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -98,55 +99,72 @@ template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
   OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
-      : tree_(tree), codec_(codec), walk_(walk), filter_(tree, walk.shape), leaf_(tree) {}
+      : tree_(tree),
+        codec_(codec),
+        walk_(walk),
+        filter_(tree, walk.shape),
+        prefetch_(tree, codec),
+        leaf_(tree) {}
 
   Errc run(const Box<float>& root) {
-    std::size_t size = 0;
-    stack_[size++] = {root, 0, false};
+    Box<float> box = root;
+    std::uint32_t number = 0;
+    bool inside = false;
+    std::size_t depth = 0;
     std::uint64_t unexpanded = codec_.node_count;
-    ChildBoxes children;
-    while (size > 0) {
-      const Entry entry = stack_[--size];
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + entry.node;
-      const WideLinks links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, entry.node, links)) return Errc::kNodeCorrupt;
-      const std::uint32_t all = (1u << links.child_count) - 1;
-      Verdict verdict{all, all};
-      if (!entry.inside) {
-        verdict = {0, 0};
-        for (std::size_t part = 0; part < kParts; ++part) {
-          const Verdict of_part = filter_.judge(decode(*node, entry.box, part, children));
-          verdict.touched |= of_part.touched << (part * kLanes);
-          verdict.inside |= of_part.inside << (part * kLanes);
-        }
-        verdict.touched &= all;
-      }
+    for (;;) {
+      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
+      if (depth == open_.size()) return Errc::kDepthExceeded;
+      Children& children = open_[depth];
+      const WideLinks links = children.links = links_of(*node);
+      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Verdict verdict = judge(*node, box, inside, children.boxes);
+      prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
+      prefetch_.nodes(links, verdict.touched & links.inner_mask);
       const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
         const std::uint32_t first = first_face(links, i);
         const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
-        const bool inside = ((verdict.inside >> i) & 1u) != 0;
-        return inside ? report_all(first, count) : visit_leaf(first, count);
+        return ((verdict.inside >> i) & 1u) != 0 ? report_all(first, count)
+                                                 : visit_leaf(first, count);
       });
       if (!go_on) return Errc::kOk;
-      const std::uint32_t inner = verdict.touched & links.inner_mask;
-      if (stack_.size() - size < static_cast<std::size_t>(std::popcount(inner))) {
-        return Errc::kDepthExceeded;
-      }
-      for_each_bit(inner, [&](std::uint32_t i) {
-        stack_[size++] = {children.box(i), node_number(links, i),
-                          ((verdict.inside >> i) & 1u) != 0};
-        return true;
-      });
+      children.waiting = verdict.touched & links.inner_mask;
+      children.inside = verdict.inside;
+      depth += children.waiting != 0 ? 1 : 0;
+      if (depth == 0) return Errc::kOk;
+      // The place of a node whose last child is taken is free for that child's own children.
+      Children& last = open_[depth - 1];
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(last.waiting));
+      box = last.boxes.box(i);
+      number = node_number(last.links, i);
+      inside = ((last.inside >> i) & 1u) != 0;
+      last.waiting &= last.waiting - 1;
+      depth -= last.waiting == 0 ? 1 : 0;
     }
-    return Errc::kOk;
   }
 
  private:
-  struct Entry {
-    Box<float> box;  // unspecified when inside
-    std::uint32_t node;
-    bool inside;
+  // The children of an open node; those that wait are nodes.
+  struct Children {
+    ChildBoxes boxes;  // unspecified when the node is inside the shape
+    WideLinks links;
+    std::uint32_t waiting;
+    std::uint32_t inside;
   };
+
+  HWY_INLINE Verdict judge(const Node& node, const Box<float>& box, bool inside,
+                           ChildBoxes& children) const {
+    const std::uint32_t all = (1u << links_of(node).child_count) - 1;
+    if (inside) return {all, all};
+    Verdict verdict{0, 0};
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const Verdict of_part = filter_.judge(decode(node, box, part, children));
+      verdict.touched |= of_part.touched << (part * kLanes);
+      verdict.inside |= of_part.inside << (part * kLanes);
+    }
+    verdict.touched &= all;
+    return verdict;
+  }
 
   bool report(std::uint32_t face) {
     walk_.stopped = !walk_.visitor(face_ref(tree_, face));
@@ -210,8 +228,9 @@ class OverlapWalk {
   const WideCodec<Node>& codec_;
   FaceWalk<Shape>& walk_;
   const Filter filter_;
+  const Prefetch<Node> prefetch_;
   LeafFloats leaf_;
-  std::array<Entry, kWideStack<Node>> stack_;
+  std::array<Children, WideCodec<Node>::kDepthLimit> open_;
 };
 
 template <class Filter, class Node, class Shape>

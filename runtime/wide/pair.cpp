@@ -12,77 +12,122 @@
 
 #include <boxtree/runtime/wide/decode-inl.h>
 #include <boxtree/runtime/wide/leaf_pair-inl.h>
+#include <boxtree/runtime/wide/waiting-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
-// A node or leaf of one tree with its decoded box.
-struct PairPart {
-  Box<float> box;
-  std::uint32_t number;  // of the node, or of the leaf's first face
-  bool is_leaf;
-};
-
-struct PairEntry {
-  PairPart first;
-  PairPart second;
-};
+// Vectors of three axes; what the fourth lane holds means nothing. Written and read as a whole, so
+// that no read waits for several writes.
+using Axes = hn::CappedTag<float, 4>;
+inline constexpr std::size_t kAxisLanes = hn::MaxLanes(Axes());
 
 struct Centered {
-  std::array<float, 3> center;
-  std::array<float, 3> half;
+  alignas(16) float center[4];
+  alignas(16) float half[4];
+
+  [[nodiscard]] float extent() const { return half[0] + half[1] + half[2]; }
 };
 
-HWY_INLINE Centered centered(const Box<float>& box) {
-  Centered result;
-  for (std::size_t k = 0; k < 3; ++k) {
-    result.center[k] = (box.low[k] + box.high[k]) * 0.5f;
-    result.half[k] = (box.high[k] - box.low[k]) * 0.5f;
+// A node or leaf of one tree.
+struct PairPart {
+  alignas(16) float low[4];
+  alignas(16) float high[4];
+  Centered centered;     // the same box
+  std::uint32_t number;  // of the node, or of the leaf's first face
+  bool is_leaf;
+
+  [[nodiscard]] Box<float> box() const {
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
   }
-  return result;
+};
+
+// Element `i` of the arrays of each axis.
+HWY_INLINE void gather(const float (&axes)[3][kWideChildren], std::uint32_t i, float* out) {
+#if HWY_TARGET == HWY_SCALAR
+  for (std::size_t k = 0; k < 4; ++k) out[k] = axes[std::min<std::size_t>(k, 2)][i];
+#else
+  const Axes d;
+  const auto xy = hn::OddEven(hn::Set(d, axes[1][i]), hn::Set(d, axes[0][i]));
+  hn::Store(hn::ConcatUpperLower(d, hn::Set(d, axes[2][i]), xy), d, out);
+#endif
+}
+
+HWY_INLINE void set_box(const ChildBoxes& boxes, std::uint32_t i, PairPart& part) {
+  gather(boxes.low, i, part.low);
+  gather(boxes.high, i, part.high);
+  const Axes d;
+  for (std::size_t k = 0; k < 4; k += kAxisLanes) {
+    const auto low = hn::Load(d, part.low + k), high = hn::Load(d, part.high + k);
+    const auto one_half = hn::Set(d, 0.5f);
+    hn::Store(hn::Mul(hn::Add(low, high), one_half), d, part.centered.center + k);
+    hn::Store(hn::Mul(hn::Sub(high, low), one_half), d, part.centered.half + k);
+  }
 }
 
 // The image of a box, widened by the error of the map.
-HWY_INLINE Centered image_of(const Centered& box, const FloatMap& map) {
-  Centered image;
-  for (std::size_t k = 0; k < 3; ++k) {
-    image.center[k] = map.translation[k];
-    image.half[k] = map.error[k];
+HWY_INLINE void set_image(const Centered& box, const FloatMap& map, Centered& image) {
+  const Axes d;
+  for (std::size_t k = 0; k < 4; k += kAxisLanes) {
+    auto center = hn::LoadU(d, map.translation.data() + k);
+    auto half = hn::LoadU(d, map.error.data() + k);
     for (std::size_t j = 0; j < 3; ++j) {
-      image.center[k] += map.linear[k][j] * box.center[j];
-      image.half[k] += map.absolute[k][j] * box.half[j];
+      center =
+          hn::MulAdd(hn::LoadU(d, map.linear[j].data() + k), hn::Set(d, box.center[j]), center);
+      half = hn::MulAdd(hn::LoadU(d, map.absolute[j].data() + k), hn::Set(d, box.half[j]), half);
     }
+    hn::Store(center, d, image.center + k);
+    hn::Store(half, d, image.half + k);
   }
-  return image;
 }
+
+// The children of a node of one tree, and the part of the other tree that they are compared with.
+struct PairChildren {
+  ChildBoxes boxes;
+  WideLinks links;
+  std::uint32_t side;  // 0: children of the first tree
+  const PairPart* other;
+  const Centered* other_image;  // in the children's space
+  // The child at hand, and its image in the other part's space; deeper levels refer to them.
+  PairPart child;
+  Centered child_image;
+};
 
 template <class Node>
 class WidePairWalk {
  public:
   WidePairWalk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
                const WideCodec<Node>& second_codec, const RelativePose& pose, PairVisitor visitor)
-      : first_codec_(first_codec),
-        second_codec_(second_codec),
+      : codec_{&first_codec, &second_codec},
         filter_(first, second, pose),
+        map_{&filter_.to_second, &filter_.to_first},
         leaves_(first, second, pose, filter_, visitor),
         unmet_(most_pairs(first.record(), second.record())) {}
 
+  // The pairs of a path are in open_, each with its siblings; first the roots, the first one as if
+  // it were a child.
   Result<Visit> run(const Box<float>& first_root, const Box<float>& second_root) {
-    stack_[size_++] = {{first_root, 0, false}, {second_root, 0, false}};
-    while (size_ > 0) {
-      const PairEntry entry = stack_[--size_];
-      if (unmet_-- == 0) return Errc::kNodeCorrupt;
-      const Centered first = centered(entry.first.box), second = centered(entry.second.box);
-      const Centered second_image = image_of(second, filter_.to_first);
-      // The larger box is taken apart, a leaf never. A pair is met once: only one of the pairs
-      // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
-      const bool take_first =
-          !entry.first.is_leaf && (entry.second.is_leaf || extent(first) > extent(second_image));
-      const bool go_on = take_first
-                             ? take_apart<true>(entry, second_image, second)
-                             : take_apart<false>(entry, image_of(first, filter_.to_second), first);
-      if (!go_on) break;
+    ChildBoxes second_boxes;
+    PairChildren& roots = open_[0];
+    for (std::size_t k = 0; k < 3; ++k) {
+      roots.boxes.low[k][0] = first_root.low[k];
+      roots.boxes.high[k][0] = first_root.high[k];
+      second_boxes.low[k][0] = second_root.low[k];
+      second_boxes.high[k][0] = second_root.high[k];
+    }
+    PairPart second;
+    set_box(second_boxes, 0, second);
+    second.number = 0;
+    second.is_leaf = false;
+    Centered second_image;
+    set_image(second.centered, filter_.to_first, second_image);
+    roots.links = {0, 0, 1, 1};
+    roots.side = 0;
+    roots.other = &second;
+    roots.other_image = &second_image;
+    Position at{0, 0};
+    while (meet(at) && waiting_.pop(std::numeric_limits<float>::infinity(), at)) {
     }
     if (error_ != Errc::kOk) return error_;
     if (leaves_.error() != Errc::kOk) return leaves_.error();
@@ -90,86 +135,120 @@ class WidePairWalk {
   }
 
  private:
-  static float extent(const Centered& box) { return box.half[0] + box.half[1] + box.half[2]; }
+  static constexpr std::size_t kDepths = 2 * WideCodec<Node>::kDepthLimit + 1;
+  using Position = typename Waiting<kDepths>::Child;
 
-  // Compares the children of one side with the other side: `image` is the other's box in this
-  // side's space, `other` in its own.
-  template <bool kFirst>
-  HWY_INLINE bool take_apart(const PairEntry& entry, const Centered& image, const Centered& other) {
-    const WideCodec<Node>& codec = kFirst ? first_codec_ : second_codec_;
-    const PairPart& parent = kFirst ? entry.first : entry.second;
-    const Node* node = reinterpret_cast<const Node*>(codec.nodes) + parent.number;
-    const WideLinks links = links_of(*node);
-    if (!is_sound(codec, parent.number, links)) {
-      error_ = Errc::kNodeCorrupt;
-      return false;
+  // Takes apart a pair whose boxes may overlap, not both of them leaves. False to end the walk.
+  HWY_INLINE bool meet(const Position& at) {
+    PairChildren& from = open_[at.depth];
+    PairPart& child = from.child;
+    set_box(from.boxes, at.number, child);
+    child.is_leaf = ((from.links.inner_mask >> at.number) & 1u) == 0;
+    child.number =
+        child.is_leaf ? first_face(from.links, at.number) : node_number(from.links, at.number);
+    if (unmet_-- == 0) return fail(Errc::kNodeCorrupt);
+    if (at.depth + 1 == kDepths) return fail(Errc::kDepthExceeded);
+    set_image(child.centered, *map_[from.side], from.child_image);
+    return from.side == 0 ? choose<0>(from, at.depth + 1) : choose<1>(from, at.depth + 1);
+  }
+
+  // The larger box is taken apart, a leaf never. A pair is met once: only one of the pairs
+  // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose. Branches,
+  // not selections, although they are hard to predict: with those the node is only known, and read,
+  // after all of the above, which costs more.
+  template <std::uint32_t kSide>
+  HWY_INLINE bool choose(const PairChildren& from, std::size_t depth) {
+    const PairPart& first = kSide == 0 ? from.child : *from.other;
+    const PairPart& second = kSide == 0 ? *from.other : from.child;
+    const Centered& first_image = kSide == 0 ? from.child_image : *from.other_image;
+    const Centered& second_image = kSide == 0 ? *from.other_image : from.child_image;
+    PairChildren& to = open_[depth];
+    if (!first.is_leaf && (second.is_leaf || first.centered.extent() > second_image.extent())) {
+      to.side = 0;
+      to.other = &second;
+      to.other_image = &second_image;
+      return take_apart(first, to, depth);
     }
-    const FloatMap& map = kFirst ? filter_.to_second : filter_.to_first;
-    ChildBoxes children;
+    to.side = 1;
+    to.other = &first;
+    to.other_image = &first_image;
+    return take_apart(second, to, depth);
+  }
+
+  HWY_INLINE bool take_apart(const PairPart& parent, PairChildren& to, std::size_t depth) {
+    const WideCodec<Node>& codec = *codec_[to.side];
+    const Node* node = reinterpret_cast<const Node*>(codec.nodes) + parent.number;
+    to.links = links_of(*node);
+    if (!is_sound(codec, parent.number, to.links)) return fail(Errc::kNodeCorrupt);
     std::uint32_t near = 0;
+    HWY_ALIGN float key[kWideChildren];
     for (std::size_t part = 0; part < kParts; ++part) {
-      near |= overlap(decode(*node, parent.box, part, children), map, image, other)
+      near |= overlap(decode(*node, parent, part, to.boxes), *map_[to.side], *to.other_image,
+                      to.other->centered, key + part * kLanes)
               << (part * kLanes);
     }
-    return for_each_bit(near & ((1u << links.child_count) - 1), [&](std::uint32_t i) {
-      const bool is_leaf = ((links.inner_mask >> i) & 1u) == 0;
-      const PairPart child{children.box(i), is_leaf ? first_face(links, i) : node_number(links, i),
-                           is_leaf};
-      return kFirst ? meet({child, entry.second}) : meet({entry.first, child});
+    near &= (1u << to.links.child_count) - 1;
+    if (!to.other->is_leaf) {
+      waiting_.push(near, key, depth);
+      return true;
+    }
+    // Pairs of leaves need not wait.
+    waiting_.push(near & to.links.inner_mask, key, depth);
+    return for_each_bit(near & ~to.links.inner_mask, [&](std::uint32_t i) {
+      const NodeRef child = leaf_of(first_face(to.links, i), codec);
+      const NodeRef other = leaf_of(to.other->number, *codec_[1 - to.side]);
+      return to.side == 0 ? leaves_.visit(child, to.boxes.box(i), other)
+                          : leaves_.visit(other, to.other->box(), child);
     });
   }
 
-  // Bit i: box i overlaps the image of the other box, and its own image overlaps the other box.
+  // Bit i: box i overlaps the image of the other box, and its own image overlaps the other box. The
+  // keys are smaller the deeper the two reach into each other: a contact is found early there.
   static HWY_INLINE std::uint32_t overlap(const VectorBox& box, const FloatMap& map,
-                                          const Centered& image, const Centered& other) {
+                                          const Centered& image, const Centered& other,
+                                          float* key) {
     const Floats d;
     const FloatVector half_one = hn::Set(d, 0.5f);
     FloatVector center[3], half[3];
+    FloatVector outside = hn::Set(d, -std::numeric_limits<float>::infinity());
     for (std::size_t k = 0; k < 3; ++k) {
       center[k] = hn::Mul(hn::Add(box.low[k], box.high[k]), half_one);
       half[k] = hn::Mul(hn::Sub(box.high[k], box.low[k]), half_one);
     }
-    auto apart = hn::Gt(hn::Abs(hn::Sub(center[0], hn::Set(d, image.center[0]))),
-                        hn::Add(half[0], hn::Set(d, image.half[0])));
     for (std::size_t k = 0; k < 3; ++k) {
-      apart = hn::Or(apart, hn::Gt(hn::Abs(hn::Sub(center[k], hn::Set(d, image.center[k]))),
-                                   hn::Add(half[k], hn::Set(d, image.half[k]))));
+      const FloatVector between = hn::Sub(center[k], hn::Set(d, image.center[k]));
+      outside =
+          hn::Max(outside, hn::Sub(hn::Abs(between), hn::Add(half[k], hn::Set(d, image.half[k]))));
       FloatVector image_center = hn::Set(d, map.translation[k] - other.center[k]);
       FloatVector image_half = hn::Set(d, map.error[k] + other.half[k]);
       for (std::size_t j = 0; j < 3; ++j) {
-        image_center = hn::MulAdd(hn::Set(d, map.linear[k][j]), center[j], image_center);
-        image_half = hn::MulAdd(hn::Set(d, map.absolute[k][j]), half[j], image_half);
+        image_center = hn::MulAdd(hn::Set(d, map.linear[j][k]), center[j], image_center);
+        image_half = hn::MulAdd(hn::Set(d, map.absolute[j][k]), half[j], image_half);
       }
-      apart = hn::Or(apart, hn::Gt(hn::Abs(image_center), image_half));
+      outside = hn::Max(outside, hn::Sub(hn::Abs(image_center), image_half));
     }
-    return bits_of(hn::Not(apart));
+    hn::Store(hn::Max(hn::Zero(d), hn::Add(outside, hn::Set(d, 2 * other.extent()))), d, key);
+    // What overflowed is no number, and keeps nothing apart.
+    return bits_of(hn::Not(hn::Gt(outside, hn::Zero(d))));
   }
 
-  // A pair whose boxes may overlap: its triangles now, or its children later.
-  HWY_INLINE bool meet(const PairEntry& entry) {
-    if (entry.first.is_leaf && entry.second.is_leaf) {
-      const auto leaf = [](const PairPart& part, const WideCodec<Node>& codec) {
-        return NodeRef{part.number, std::min(kLeafFaces, codec.face_count - part.number)};
-      };
-      return leaves_.visit(leaf(entry.first, first_codec_), entry.first.box,
-                           leaf(entry.second, second_codec_));
-    }
-    if (size_ == stack_.size()) {
-      error_ = Errc::kDepthExceeded;
-      return false;
-    }
-    stack_[size_++] = entry;
-    return true;
+  static NodeRef leaf_of(std::uint32_t first, const WideCodec<Node>& codec) {
+    return {first, std::min(kLeafFaces, codec.face_count - first)};
   }
 
-  const WideCodec<Node>& first_codec_;
-  const WideCodec<Node>& second_codec_;
+  bool fail(Errc error) {
+    error_ = error;
+    return false;
+  }
+
+  const WideCodec<Node>* codec_[2];
   const PairFilter filter_;
+  const FloatMap* map_[2];  // from each tree's space to the other's
   LeafPairs leaves_;
   std::uint64_t unmet_;
   Errc error_ = Errc::kOk;
-  std::size_t size_ = 0;
-  std::array<PairEntry, 2 * kWideStack<Node>> stack_;
+  Waiting<kDepths> waiting_;
+  PairChildren open_[kDepths];
 };
 
 template <class Node>

@@ -28,8 +28,8 @@ struct FloatMap {
       for (std::size_t j = 0; j < 3; ++j) {
         const auto column = static_cast<Eigen::Index>(j);
         const double m = map.linear(row, column);
-        linear[i][j] = static_cast<float>(m);
-        absolute[i][j] = float_above(std::abs(m));
+        linear[j][i] = static_cast<float>(m);
+        absolute[j][i] = float_above(std::abs(m));
         magnitude += std::abs(m) * reach[column];
       }
       translation[i] = static_cast<float>(map.translation[row]);
@@ -41,10 +41,11 @@ struct FloatMap {
     }
   }
 
-  std::array<std::array<float, 3>, 3> linear;    // [row][column]
-  std::array<std::array<float, 3>, 3> absolute;  // magnitudes, rounded up
-  std::array<float, 3> translation;
-  std::array<float, 3> error;  // of an image compared with a box, on each axis
+  // Columns of three rows, and a fourth of zeros for vectors.
+  std::array<std::array<float, 4>, 3> linear{};    // [column][row]
+  std::array<std::array<float, 4>, 3> absolute{};  // magnitudes, rounded up
+  std::array<float, 4> translation{};
+  std::array<float, 4> error{};  // of an image compared with a box, on each axis
 };
 
 /// Two trees in relative pose.

@@ -10,66 +10,62 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
+#include <boxtree/runtime/wide/prefetch-inl.h>
 #include <boxtree/runtime/wide/triangle_distance-inl.h>
+#include <boxtree/runtime/wide/waiting-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
-// An inner node that waits, with its decoded box.
-struct PointEntry {
-  Box<float> box;
-  float key;
-  std::uint32_t node;
+// The children of an open node.
+struct PointChildren {
+  ChildBoxes boxes;
+  WideLinks links;
 };
 
 template <class Node>
 class PointWalk {
  public:
   PointWalk(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query)
-      : codec_(codec), query_(query), filter_(tree, query.point), leaf_(tree) {
+      : codec_(codec),
+        query_(query),
+        filter_(tree, query.point),
+        prefetch_(tree, codec),
+        leaf_(tree) {
     set_bound();
   }
 
+  // The children of a node at depth n are in open_[n]. Leaves wait among the nodes: what is nearer
+  // comes first.
   Errc run(const Box<float>& root) {
-    std::size_t size = 0;
-    PointEntry entry{root, 0, 0};
+    Box<float> box = root;
+    std::size_t depth = 0;
+    std::uint32_t number = 0;
     std::uint64_t unexpanded = codec_.node_count;
-    ChildBoxes children;
-    HWY_ALIGN float key[kWideChildren];
     for (;;) {
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + entry.node;
+      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
       const WideLinks links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, entry.node, links)) return Errc::kNodeCorrupt;
-      std::uint32_t passing = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const FloatVector bound =
-            nearest_squared(filter_, decode(*node, entry.box, part, children));
-        hn::Store(bound, Floats(), key + part * kLanes);
-        passing |= bits_of(hn::Le(bound, hn::Set(Floats(), bound_))) << (part * kLanes);
-      }
-      passing &= (1u << links.child_count) - 1;
-      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
-        const std::uint32_t i = take_smallest(leaves, key);
-        if (key[i] > bound_) break;
-        const std::uint32_t face = first_face(links, i);
+      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      if (depth == open_.size()) return Errc::kDepthExceeded;
+      open_[depth].links = links;
+      const std::uint32_t passing =
+          meet(*node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1);
+      prefetch_.leaves(links, passing & ~links.inner_mask);
+      prefetch_.nodes(links, passing & links.inner_mask);
+      for (;;) {
+        typename decltype(waiting_)::Child at;
+        if (!waiting_.pop(bound_, at)) return Errc::kOk;
+        const PointChildren& of = open_[at.depth];
+        if (((of.links.inner_mask >> at.number) & 1u) != 0) {
+          box = of.boxes.box(at.number);
+          number = node_number(of.links, at.number);
+          depth = at.depth + 1;
+          break;
+        }
+        const std::uint32_t face = first_face(of.links, at.number);
         if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
       }
-      const std::size_t bottom = size;
-      const bool has_room = for_each_bit(passing & links.inner_mask, [&](std::uint32_t i) {
-        if (size == stack_.size()) return false;
-        std::size_t place = size++;
-        for (; place > bottom && stack_[place - 1].key < key[i]; --place) {
-          stack_[place] = stack_[place - 1];
-        }
-        stack_[place] = {children.box(i), key[i], node_number(links, i)};
-        return true;
-      });
-      if (!has_room) return Errc::kDepthExceeded;
-      do {
-        if (size == 0) return Errc::kOk;
-        entry = stack_[--size];
-      } while (entry.key > bound_);
     }
   }
 
@@ -77,6 +73,21 @@ class PointWalk {
   void set_bound() {
     bound_ = PointFilter::above(query_.best);
     distance_ = float_above(std::sqrt(query_.best)) * (1 + std::numeric_limits<float>::epsilon());
+  }
+
+  // Lets those of a node's children wait that may be near enough; bit i is child i.
+  HWY_INLINE std::uint32_t meet(const Node& node, const Box<float>& box, ChildBoxes& children,
+                                std::size_t depth, std::uint32_t all) {
+    HWY_ALIGN float key[kWideChildren];
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const FloatVector bound = nearest_squared(filter_, decode(node, box, part, children));
+      hn::Store(bound, Floats(), key + part * kLanes);
+      passing |= bits_of(hn::Le(bound, hn::Set(Floats(), bound_))) << (part * kLanes);
+    }
+    passing &= all;
+    waiting_.push(passing, key, depth);
+    return passing;
   }
 
   bool visit_leaf(std::uint32_t first, std::uint32_t count) {
@@ -114,10 +125,12 @@ class PointWalk {
   const WideCodec<Node>& codec_;
   PointQuery& query_;
   const PointFilter filter_;
+  const Prefetch<Node> prefetch_;
   float bound_;     // of squared distances
   float distance_;  // of distances
   LeafFloats leaf_;
-  std::array<PointEntry, kWideStack<Node>> stack_;
+  Waiting<WideCodec<Node>::kDepthLimit> waiting_;
+  std::array<PointChildren, WideCodec<Node>::kDepthLimit> open_;
 };
 
 template <class Node>

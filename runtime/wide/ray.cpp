@@ -11,116 +11,94 @@
 #include <hwy/highway.h>
 
 #include <boxtree/runtime/wide/leaf-inl.h>
-#include <boxtree/runtime/wide/node-inl.h>
+#include <boxtree/runtime/wide/prefetch-inl.h>
+#include <boxtree/runtime/wide/waiting-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
-// A box as the ray sees it: the parameters of its planes. Those of a child follow from them as its
-// planes do from those of its parent, so no box is ever decoded.
-struct RayBox {
-  std::array<float, 3> near;
-  std::array<float, 3> far;
-};
-
-struct RayEntry {
-  RayBox box;
-  float key;  // where the ray enters
-  std::uint32_t node;
+// The children of an open node as the ray sees them: the parameters of their planes. They follow
+// from those of their parent as its planes do, so no box is ever decoded.
+struct RayChildren {
+  HWY_ALIGN float near[3][kWideChildren];
+  HWY_ALIGN float far[3][kWideChildren];
+  WideLinks links;
 };
 
 template <class Node>
 class RayWalk {
  public:
   RayWalk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query, const RayFilter& filter)
-      : codec_(codec), query_(query), filter_(filter), leaf_(tree) {
+      : codec_(codec), query_(query), filter_(filter), prefetch_(tree, codec), leaf_(tree) {
     bound_ = filter.bound(query.t_max);
   }
 
+  // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
+  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
   Errc run(const Box<float>& root) {
-    RayEntry entry{{}, 0, 0};
     for (std::size_t k = 0; k < 3; ++k) {
       const std::array<float, 2> side = {root.low[k], root.high[k]};
       const std::uint32_t near_high = filter_.near_high[k];
-      entry.box.near[k] = (side[near_high] - filter_.origin[k]) * filter_.inverse[k];
-      entry.box.far[k] = (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k];
+      open_[0].near[k][0] =
+          (side[near_high] - filter_.origin[k]) * filter_.inverse[k] - filter_.margin[k];
+      open_[0].far[k][0] =
+          (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
     }
-    std::size_t size = 0;
+    typename decltype(waiting_)::Child at{0, 0};
+    std::uint32_t number = 0;
     std::uint64_t unexpanded = codec_.node_count;
-    Children children;
+    HWY_ALIGN float enter[kWideChildren];
     for (;;) {
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + entry.node;
+      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
       const WideLinks links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, entry.node, links)) return Errc::kNodeCorrupt;
-      const std::uint32_t passing =
-          meet(*node, entry.box, children) & ((1u << links.child_count) - 1);
+      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
+      RayChildren& children = open_[at.depth + 1];
+      const std::uint32_t passing = meet(*node, open_[at.depth], at.number, children, enter) &
+                                    ((1u << links.child_count) - 1);
+      children.links = links;
+      prefetch_.leaves(links, passing & ~links.inner_mask);
+      prefetch_.nodes(links, passing & links.inner_mask);
       for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
-        const std::uint32_t i = take_smallest(leaves, children.key);
-        if (children.key[i] > bound_) break;
+        const std::uint32_t i = take_smallest(leaves, enter);
+        if (enter[i] > bound_) break;
         const std::uint32_t face = first_face(links, i);
         if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
       }
-      // The nearest inner child is next; the others wait, and see whether they still matter.
-      std::uint32_t inner = passing & links.inner_mask;
-      if (inner != 0) {
-        auto nearest = static_cast<std::uint32_t>(std::countr_zero(inner));
-        for (inner &= inner - 1; inner != 0; inner &= inner - 1) {
-          const auto i = static_cast<std::uint32_t>(std::countr_zero(inner));
-          const bool is_nearer = children.key[i] < children.key[nearest];
-          const std::uint32_t later = is_nearer ? nearest : i;
-          nearest = is_nearer ? i : nearest;
-          if (size == stack_.size()) return Errc::kDepthExceeded;
-          stack_[size++] = entry_of(children, links, later);
-        }
-        entry = entry_of(children, links, nearest);
-        if (entry.key <= bound_) continue;
-      }
-      do {
-        if (size == 0) return Errc::kOk;
-        entry = stack_[--size];
-      } while (entry.key > bound_);
+      waiting_.push(passing & links.inner_mask, enter, at.depth + 1);
+      if (!waiting_.pop(bound_, at)) return Errc::kOk;
+      number = node_number(open_[at.depth].links, at.number);
     }
   }
 
  private:
-  // Parameters of all children's planes, and where the ray enters each.
-  struct Children {
-    HWY_ALIGN float near[3][kWideChildren];
-    HWY_ALIGN float far[3][kWideChildren];
-    HWY_ALIGN float key[kWideChildren];
-  };
-
-  static HWY_INLINE RayEntry entry_of(const Children& children, const WideLinks& links,
-                                      std::uint32_t i) {
-    return {{{children.near[0][i], children.near[1][i], children.near[2][i]},
-             {children.far[0][i], children.far[1][i], children.far[2][i]}},
-            children.key[i],
-            node_number(links, i)};
-  }
-
-  // Bit i: the ray meets child i before the bound.
-  HWY_INLINE std::uint32_t meet(const Node& node, const RayBox& box, Children& out) const {
+  // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
+  // widened by the margins; the steps between its planes are those of the box itself.
+  HWY_INLINE std::uint32_t meet(const Node& node, const RayChildren& parent, std::uint32_t child,
+                                RayChildren& out, float* enters) const {
     const Floats d;
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
       FloatVector enter = hn::Zero(d);
       FloatVector leave = hn::Set(d, bound_);
       for (std::size_t k = 0; k < 3; ++k) {
+        const FloatVector near_of_box = hn::Set(d, parent.near[k][child]);
+        const FloatVector far_of_box = hn::Set(d, parent.far[k][child]);
         const FloatVector step =
-            hn::Set(d, (box.far[k] - box.near[k]) * (1 / Node::kStepsOfExtent));
+            hn::Mul(hn::Sub(hn::Sub(far_of_box, near_of_box), hn::Set(d, filter_.margins[k])),
+                    hn::Set(d, 1 / Node::kStepsOfExtent));
         const std::uint32_t near_high = filter_.near_high[k];
-        const FloatVector margin = hn::Set(d, filter_.margin[k]);
         const FloatVector near =
-            hn::MulAdd(steps_of(codes(node, near_high, k), part), step, hn::Set(d, box.near[k]));
-        const FloatVector far = hn::NegMulAdd(steps_of(codes(node, 1 - near_high, k), part), step,
-                                              hn::Set(d, box.far[k]));
+            hn::MulAdd(steps_of(codes(node, near_high, k), part), step, near_of_box);
+        const FloatVector far =
+            hn::NegMulAdd(steps_of(codes(node, 1 - near_high, k), part), step, far_of_box);
         hn::Store(near, d, out.near[k] + part * kLanes);
         hn::Store(far, d, out.far[k] + part * kLanes);
-        enter = hn::Max(enter, hn::Sub(near, margin));
-        leave = hn::Min(leave, hn::Add(far, margin));
+        enter = hn::Max(enter, near);
+        leave = hn::Min(leave, far);
       }
-      hn::Store(enter, d, out.key + part * kLanes);
+      hn::Store(enter, d, enters + part * kLanes);
       passing |= bits_of(hn::Le(enter, leave)) << (part * kLanes);
     }
     return passing;
@@ -192,9 +170,11 @@ class RayWalk {
   const WideCodec<Node>& codec_;
   RayQuery& query_;
   const RayFilter& filter_;
+  const Prefetch<Node> prefetch_;
   float bound_;
   LeafFloats leaf_;
-  std::array<RayEntry, kWideStack<Node>> stack_;
+  Waiting<WideCodec<Node>::kDepthLimit + 1> waiting_;
+  std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
 };
 
 template <class Node>
@@ -225,14 +205,18 @@ namespace {
 HWY_EXPORT(walk_ray_wide8);
 HWY_EXPORT(walk_ray_wide4);
 
+bool is_for_vectors(const Tree& tree, const RayQuery& query) {
+  return tree.record().root == RootKind::kSubtree && RayFilter::is_near(query);
+}
+
 }  // namespace
 
 Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
-  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
   return HWY_DYNAMIC_DISPATCH(walk_ray_wide8)(tree, codec, query);
 }
 Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
-  if (tree.record().root != RootKind::kSubtree) return traverse_nearest(tree, codec, query);
+  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
   return HWY_DYNAMIC_DISPATCH(walk_ray_wide4)(tree, codec, query);
 }
 

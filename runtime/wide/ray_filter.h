@@ -17,35 +17,43 @@ namespace boxtree {
 /// The ray starts anew where it enters the root box, so that errors grow with the tree and not with
 /// the distance it comes from. A parameter s of the filter is a parameter start + s of the query.
 ///
-/// `error` bounds, on every axis, how far a coordinate relative to the ray can be off. With u =
-/// 2^-24 and M = |origin| + reach: 16u M for origin and direction (moved, rounded to float), for
-/// the distance of a plane or corner from the origin, its product with a reciprocal that was
-/// rounded twice, and the sums after it; 8u M a level for boxes, whose planes are computed from
-/// those of their parents along the ray as the reader does in space, each way with four roundings;
-/// and 64u' (|origin of the query| + reach), u' = 2^-53, for what the query's own tests give away
-/// (see RaySlab). Boxes are widened by `error` on every side.
+/// `error` bounds, on every axis, how far a coordinate relative to the ray can be off. Let u =
+/// 2^-24 and M = 2 reach: no extent and no distance of two points in the root box is larger, and
+/// where the ray enters lies in it but for what the query's own tests give away. With that, 16u M
+/// for origin and direction (moved, rounded to float), for the distance of a plane or corner from
+/// the origin, its product with a reciprocal that was rounded twice, and the sums after it; 8u M a
+/// level for boxes, whose planes are computed from those of their parents along the ray as the
+/// reader does in space, each way with four roundings, three of the extent and one of the distance;
+/// and 64u'
+/// (|origin of the query| + reach), u' = 2^-53, for what the query's own tests give away (see
+/// RaySlab). Boxes are widened by `error` on every side.
 struct RayFilter {
-  /// `enter`: where the query's slab test enters the root box.
+  /// Whether single precision tells the parts of a tree apart for a ray from there: not from so far
+  /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
+  /// and no parameter overflows.
+  [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
+    return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach_of(query.tree).maxCoeff();
+  }
+
+  /// `enter`: where the query's slab test enters the root box. Precondition: is_near(query).
   RayFilter(const RayQuery& query, double enter) noexcept : start(std::max(enter, query.t_min)) {
     constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
     constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
     const double reach = reach_of(query.tree).maxCoeff();
     const Eigen::Vector3d from = query.origin + start * query.direction;
-    const double bound =
-        (16 + 8.0 * query.tree.record().depth) * kUnit * (from.cwiseAbs().maxCoeff() + reach) +
-        64 * kUnitDouble * (query.origin.cwiseAbs().maxCoeff() + reach) +
-        double{std::numeric_limits<float>::min()};
+    const double bound = (16 + 8.0 * query.tree.record().depth) * kUnit * (2 * reach) +
+                         64 * kUnitDouble * (query.origin.cwiseAbs().maxCoeff() + reach) +
+                         double{std::numeric_limits<float>::min()};
     error = float_above(bound);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
-      const double d = query.direction[axis];
       // Not so large that a plane's parameter overflows, and large enough that a ray which is
       // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
       constexpr double kLargest = 0x1p60;
-      near_high[k] = std::signbit(d) ? 1 : 0;
-      inverse[k] =
-          static_cast<float>(std::abs(d) * kLargest < 1 ? std::copysign(kLargest, d) : 1 / d);
+      near_high[k] = static_cast<std::uint32_t>(query.slab.near_side(k));
+      inverse[k] = static_cast<float>(std::clamp(query.slab.inverse(k), -kLargest, kLargest));
       margin[k] = error * std::abs(inverse[k]);
+      margins[k] = 2 * margin[k];
       origin[k] = static_cast<float>(from[axis]);
     }
     axis_x = static_cast<std::size_t>(query.shear.axis_x);
@@ -66,7 +74,8 @@ struct RayFilter {
   float error;
   std::array<std::uint32_t, 3> near_high;  // 1 where the ray comes from the high side, else 0
   std::array<float, 3> inverse;
-  std::array<float, 3> margin;  // of a plane's parameter
+  std::array<float, 3> margin;   // of a plane's parameter
+  std::array<float, 3> margins;  // of both planes of an axis
   std::array<float, 3> origin;
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;

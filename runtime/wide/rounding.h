@@ -12,10 +12,10 @@ namespace boxtree {
 /// largest. Not for NaN.
 [[nodiscard]] inline float float_above(double x) noexcept {
   const auto nearest = static_cast<float>(x);
-  if (double{nearest} >= x) return nearest;
-  const auto bits = std::bit_cast<std::uint32_t>(nearest);
-  if (nearest == 0) return std::numeric_limits<float>::denorm_min();
-  return std::bit_cast<float>(nearest > 0 ? bits + 1 : bits - 1);
+  // No branch: which way a number was rounded is as likely as not. Zero is -0 where it is above x.
+  const auto bits = std::bit_cast<std::int32_t>(nearest);
+  const std::int32_t is_below = double{nearest} < x ? 1 : 0;
+  return std::bit_cast<float>(bits + (bits < 0 ? -is_below : is_below));
 }
 
 /// A float that is not above x, likewise.

@@ -59,6 +59,10 @@ class Questions {
       if (i % 19 == 0) ray.direction *= std::ldexp(1.0, -300);
       if (i % 23 == 0) ray.t_max = unit();
       if (i % 29 == 0) ray.t_min = unit() * std::min(1.0, ray.t_max);
+      if (i % 31 == 0) {
+        ray.direction = axis();
+        ray.origin = point() - std::ldexp(box_.diagonal().norm(), i % 150) * ray.direction;
+      }
       if (ray.direction.isZero(0)) ray.direction = {1, 0, 0};
       rays.push_back(ray);
     }

@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// Asks for what a walk will read soon, all of it at once: in a large tree each node and leaf is a
+// cache miss, and those of one node's children need not wait for each other.
+#if defined(BOXTREE_RUNTIME_WIDE_PREFETCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WIDE_PREFETCH_INL_H
+#undef BOXTREE_RUNTIME_WIDE_PREFETCH_INL_H
+#else
+#define BOXTREE_RUNTIME_WIDE_PREFETCH_INL_H
+#endif
+
+#include <hwy/cache_control.h>
+
+#include <boxtree/runtime/tree/tree.h>
+#include <boxtree/runtime/wide/node-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+/// Only ever touches addresses of the tree's arrays, and those as hints.
+template <class Node>
+class Prefetch {
+ public:
+  Prefetch(const Tree& tree, const WideCodec<Node>& codec)
+      : nodes_(reinterpret_cast<const Node*>(codec.nodes)), corners_(tree.leaves().mesh().corners) {
+    const MeshArrays& mesh = tree.leaves().mesh();
+    if (corners_ != nullptr) face_bytes_ = mesh.corners_per_face * mesh.corner_bytes;
+  }
+
+  /// Children of a node that are nodes or leaves: bit i is child i. Precondition: the node is
+  /// sound.
+  HWY_INLINE void nodes(const WideLinks& links, std::uint32_t children) const {
+    for (; children != 0; children &= children - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+      hwy::Prefetch(nodes_ + node_number(links, child));
+    }
+  }
+  HWY_INLINE void leaves(const WideLinks& links, std::uint32_t children) const {
+    constexpr std::size_t kLine = 64;
+    for (; children != 0; children &= children - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+      const std::byte* corners = corners_ + std::size_t{first_face(links, child)} * face_bytes_;
+      hwy::Prefetch(corners);
+      hwy::Prefetch(corners + kLine);
+    }
+  }
+
+ private:
+  const Node* nodes_;
+  const std::byte* corners_;
+  std::size_t face_bytes_ = 0;
+};
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif
