@@ -23,9 +23,10 @@ class UnitSweep {
 
   [[nodiscard]] Box<float> bounds(std::size_t first, std::size_t last) const;
 
-  /// Where the part [first, last) is best divided by the surface-area heuristic, along any axis, at
-  /// a multiple of `unit` faces. Precondition: more faces than `unit`, a multiple of kLeafFaces.
-  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t unit) const;
+  /// Where the part [first, last), which is to become `roots` children of a wide node, is best
+  /// divided by the surface-area heuristic, along any axis, into full leaves and nodes on the left.
+  /// Precondition: more faces than kLeafFaces, two roots to eight.
+  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t roots) const;
 
   /// Divides [first, last): the faces with the lowest centres along the axis go left.
   void divide(std::size_t first, std::size_t last, const Split& split);
