@@ -11,6 +11,10 @@
 namespace boxtree::cooker {
 namespace {
 
+// Below this many faces a subtree is built by one thread: a task costs about a microsecond, a
+// subtree of this size some hundred.
+constexpr std::size_t kParallelFaces = 2048;
+
 class Recursion {
  public:
   Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes, SplitRule rule)

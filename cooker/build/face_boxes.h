@@ -15,8 +15,4 @@ void choose_frame(const Positions& positions, BuildTree& tree);
 /// The boxes of all faces in tree space, in the order of the mesh.
 [[nodiscard]] std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame);
 
-/// Below this many faces a subtree is built by one thread: a task costs about a microsecond, a
-/// subtree of this size some hundred.
-inline constexpr std::size_t kParallelFaces = 2048;
-
 }  // namespace boxtree::cooker

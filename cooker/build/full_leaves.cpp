@@ -36,17 +36,16 @@ class Recursion {
       return;
     }
     const Split split = choose_split(set);
-    const auto [left, right] = sides(set, split);
-    if (set.count() >= kParallelFaces) {
-      tbb::parallel_invoke([&] { build(left); }, [&] { build(right); });
-    } else {
-      build(left);
-      build(right);
-    }
-    nodes_[set.node] = inner_node(nodes_, set.node, right.node, split.axis);
+    const Sides parts = sides(set, split);
+    tbb::parallel_invoke([&] { build(parts.left); }, [&] { build(parts.right); });
+    nodes_[set.node] = inner_node(nodes_, set.node, parts.right.node, split.axis);
   }
 
  private:
+  struct Sides {
+    Set left, right;
+  };
+
   // The same for a part of a small set, whose faces stand from `base` on. Within a leaf they follow
   // their numbers.
   void build_swept(UnitSweep& sweep, std::size_t base, const Set& set) {
@@ -60,10 +59,10 @@ class Recursion {
                             ? sweep.best_split(first, last, children_of(set.roots))
                             : Split{half(set) * kLeafFaces, widest_axis(sweep.bounds(first, last))};
     sweep.divide(first, last, split);
-    const auto [left, right] = sides(set, split);
-    build_swept(sweep, base, left);
-    build_swept(sweep, base, right);
-    nodes_[set.node] = inner_node(nodes_, set.node, right.node, split.axis);
+    const Sides parts = sides(set, split);
+    build_swept(sweep, base, parts.left);
+    build_swept(sweep, base, parts.right);
+    nodes_[set.node] = inner_node(nodes_, set.node, parts.right.node, split.axis);
   }
 
   // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
@@ -86,7 +85,7 @@ class Recursion {
   }
 
   // The left side stands behind its parent, the right one behind all of the left.
-  static std::pair<Set, Set> sides(const Set& set, const Split& split) {
+  static Sides sides(const Set& set, const Split& split) {
     const std::size_t left_leaves = split.left_count / kLeafFaces;
     const std::size_t middle = set.first + split.left_count;
     const std::size_t roots = children_of(set.roots);

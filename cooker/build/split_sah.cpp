@@ -10,12 +10,17 @@
 namespace boxtree::cooker {
 namespace {
 
-// 32 bins are within 1 % of a full sweep's cost on scanned and CAD meshes; below the sweep limit
-// sorting is cheaper than clearing bins.
-constexpr std::size_t kBins = 32;
+// Trees with one face a leaf: 32 bins are within 1 % of a full sweep's cost on scanned and CAD
+// meshes; below the sweep limit sorting is cheaper than clearing bins.
+constexpr std::size_t kFewBins = 32;
 constexpr std::size_t kSweepLimit = 24;
 
+// Trees with full leaves bin only what is too large for UnitSweep: there clearing many bins costs
+// nothing beside filling them, and queries visit 1 to 2 % fewer nodes for it.
+constexpr std::size_t kManyBins = 256;
+
 // Maps centres of one axis to bins; monotone, so that bins divide space.
+template <std::size_t kBins>
 struct Binning {
   double low = 0;
   double scale = 0;  // zero: all centres coincide
@@ -26,8 +31,9 @@ struct Binning {
   }
 };
 
-std::array<Binning, 3> binnings(std::span<const FaceBox> faces) {
-  std::array<Binning, 3> result;
+template <std::size_t kBins>
+std::array<Binning<kBins>, 3> binnings(std::span<const FaceBox> faces) {
+  std::array<Binning<kBins>, 3> result;
   for (std::size_t k = 0; k < 3; ++k) {
     double low = centre(faces[0], k);
     double high = low;
@@ -46,6 +52,7 @@ struct Bin {
   std::size_t count = 0;
 };
 
+template <std::size_t kBins>
 SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
   std::array<double, kBins> right_cost;  // of bins [i, kBins)
   std::array<std::size_t, kBins> right_count;
@@ -72,8 +79,9 @@ SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
 }
 
 // Where bins are best divided, if there is a difference between any.
+template <std::size_t kBins>
 struct BinnedSplit {
-  Binning binning;
+  Binning<kBins> binning;
   std::size_t axis;
   std::size_t position;                   // first bin that goes right
   std::size_t left_count;                 // faces before it
@@ -81,8 +89,9 @@ struct BinnedSplit {
   std::array<std::size_t, kBins> counts;  // of faces, along the axis
 };
 
-std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
-  const std::array<Binning, 3> binning = binnings(faces);
+template <std::size_t kBins>
+std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
+  const std::array<Binning<kBins>, 3> binning = binnings<kBins>(faces);
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const FaceBox& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -98,7 +107,7 @@ std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
     if (here.improves_on(best)) best = here;
   }
   if (!std::isfinite(best.cost)) return std::nullopt;
-  BinnedSplit split{binning[best.axis], best.axis, best.position, 0, 0, 0, {}};
+  BinnedSplit<kBins> split{binning[best.axis], best.axis, best.position, 0, 0, 0, {}};
   Box<float> left = empty_box<float>(), right = empty_box<float>();
   for (std::size_t i = 0; i < kBins; ++i) {
     const Bin& bin = bins[best.axis][i];
@@ -112,7 +121,7 @@ std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
 }
 
 std::optional<Split> split_binned(std::span<FaceBox> faces) {
-  const std::optional<BinnedSplit> best = best_binned(faces);
+  const auto best = best_binned<kFewBins>(faces);
   if (!best) return std::nullopt;
   std::partition(faces.begin(), faces.end(), [&](const FaceBox& face) {
     return best->binning.bin(centre(face, best->axis)) < best->position;
@@ -158,7 +167,8 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
 
 // The first `count` faces along the axis go left. Bins divide space, so that only the bin in which
 // the count ends needs to be looked at face by face.
-Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit& bins) {
+template <std::size_t kBins>
+Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit<kBins>& bins) {
   std::size_t before = 0, bin = 0;
   while (before + bins.counts[bin] <= count) before += bins.counts[bin++];
   const auto bin_of = [&](const FaceBox& face) {
@@ -184,7 +194,8 @@ constexpr std::array<double, kWideChildren> kLevelsOfRoots = {0, 0,         1,  
 
 // The leaves on the left near to the best boundary of bins whose share of the roots suits the areas
 // of the two sides best.
-std::size_t full_side_near(const BinnedSplit& best, std::size_t leaves, std::size_t roots) {
+std::size_t full_side_near(const BinnedSplit<kManyBins>& best, std::size_t leaves,
+                           std::size_t roots) {
   const std::size_t near = std::clamp<std::size_t>((best.left_count + kLeafFaces / 2) / kLeafFaces,
                                                    kReach + 1, leaves - kReach - 1);
   std::size_t chosen = near;
@@ -209,7 +220,7 @@ std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& /*bou
 }
 
 std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces, std::size_t roots) {
-  const std::optional<BinnedSplit> best = best_binned(faces);
+  const auto best = best_binned<kManyBins>(faces);
   if (!best) return std::nullopt;
   const std::size_t left = full_side_near(*best, leaves_of(faces.size()), roots);
   return split_bins_at(faces, left * kLeafFaces, *best);

@@ -22,17 +22,16 @@ struct Key {
 
 }  // namespace
 
-UnitSweep::UnitSweep(std::span<const FaceBox> faces) {
+UnitSweep::UnitSweep(std::span<const FaceBox> faces) : faces_(faces.begin(), faces.end()) {
   assert(faces.size() <= kMaxFaces);
-  std::copy(faces.begin(), faces.end(), faces_.begin());
-  std::array<Key, kMaxFaces> keys;
-  const auto end = keys.begin() + static_cast<std::ptrdiff_t>(faces.size());
+  std::vector<Key> keys(faces.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < faces.size(); ++i) {
       keys[i] = {centre(faces[i], axis), faces[i].face, static_cast<std::uint16_t>(i)};
     }
-    std::sort(keys.begin(), end);
-    std::transform(keys.begin(), end, sorted_[axis].begin(),
+    std::sort(keys.begin(), keys.end());
+    sorted_[axis].resize(keys.size());
+    std::transform(keys.begin(), keys.end(), sorted_[axis].begin(),
                    [](const Key& key) { return key.place; });
   }
 }

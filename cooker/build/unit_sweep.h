@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <boxtree/cooker/build/splitter.h>
 #include <boxtree/format/codec_wide.h>
@@ -16,7 +17,7 @@ namespace boxtree::cooker {
 /// that all levels below together cost little more than one. The whole set is [0, size).
 class UnitSweep {
  public:
-  static constexpr std::size_t kMaxFaces = 512;
+  static constexpr std::size_t kMaxFaces = 4096;
 
   /// Precondition: at most kMaxFaces faces.
   explicit UnitSweep(std::span<const FaceBox> faces);
@@ -35,8 +36,8 @@ class UnitSweep {
   void copy_to(std::size_t first, std::span<FaceBox> to) const;
 
  private:
-  std::array<FaceBox, kMaxFaces> faces_;
-  std::array<std::array<std::uint16_t, kMaxFaces>, 3> sorted_;  // places in faces_
+  std::vector<FaceBox> faces_;
+  std::array<std::vector<std::uint16_t>, 3> sorted_;  // places in faces_
 };
 
 }  // namespace boxtree::cooker

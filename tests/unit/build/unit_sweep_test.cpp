@@ -85,7 +85,7 @@ void expect_like_naive(UnitSweep& sweep, std::size_t first, std::vector<FaceBox>
 }
 
 TEST(UnitSweep, DividesLikeANaiveSweepDownToTheLeaves) {
-  for (const std::size_t count : {9u, 64u, 65u, 100u, 511u, 512u}) {
+  for (const std::size_t count : {9u, 64u, 65u, 100u, 511u, 512u, 1500u}) {
     for (unsigned seed = 0; seed < 4; ++seed) {
       SCOPED_TRACE(count);
       const std::vector<FaceBox> faces = random_boxes(seed, count, seed % 2 == 1);
@@ -99,7 +99,7 @@ TEST(UnitSweep, DividesLikeANaiveSweepDownToTheLeaves) {
 // centres, as many as fill nodes.
 TEST(SplitSahFullLeaves, LeftSideIsTheLowestFullNodes) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    std::vector<FaceBox> faces = random_boxes(seed, 600 + 37 * seed, seed % 2 == 1);
+    std::vector<FaceBox> faces = random_boxes(seed, 5000 + 37 * seed, seed % 2 == 1);
     std::vector<FaceBox> sorted = faces;
     const std::size_t roots = 2 + seed % 7;
     const std::optional<Split> split = split_sah_full_leaves(faces, roots);
