@@ -4,18 +4,23 @@
 #include <array>
 #include <cmath>
 
+#include <boxtree/cooker/build/full_nodes.h>
 #include <boxtree/cooker/build/splitter.h>
-#include <boxtree/format/codec_wide.h>
 
 namespace boxtree::cooker {
 namespace {
 
-// 32 bins are within 1 % of a full sweep's cost on scanned and CAD meshes; below the sweep limit
-// sorting is cheaper than clearing bins.
-constexpr std::size_t kBins = 32;
+// Trees with one face a leaf: 32 bins are within 1 % of a full sweep's cost on scanned and CAD
+// meshes; below the sweep limit sorting is cheaper than clearing bins.
+constexpr std::size_t kFewBins = 32;
 constexpr std::size_t kSweepLimit = 24;
 
+// Trees with full leaves bin only what is too large for UnitSweep: there clearing many bins costs
+// nothing beside filling them, and queries visit 1 to 2 % fewer nodes for it.
+constexpr std::size_t kManyBins = 256;
+
 // Maps centres of one axis to bins; monotone, so that bins divide space.
+template <std::size_t kBins>
 struct Binning {
   double low = 0;
   double scale = 0;  // zero: all centres coincide
@@ -26,8 +31,9 @@ struct Binning {
   }
 };
 
-std::array<Binning, 3> binnings(std::span<const FaceBox> faces) {
-  std::array<Binning, 3> result;
+template <std::size_t kBins>
+std::array<Binning<kBins>, 3> binnings(std::span<const FaceBox> faces) {
+  std::array<Binning<kBins>, 3> result;
   for (std::size_t k = 0; k < 3; ++k) {
     double low = centre(faces[0], k);
     double high = low;
@@ -46,6 +52,7 @@ struct Bin {
   std::size_t count = 0;
 };
 
+template <std::size_t kBins>
 SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
   std::array<double, kBins> right_cost;  // of bins [i, kBins)
   std::array<std::size_t, kBins> right_count;
@@ -72,16 +79,19 @@ SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
 }
 
 // Where bins are best divided, if there is a difference between any.
+template <std::size_t kBins>
 struct BinnedSplit {
-  Binning binning;
+  Binning<kBins> binning;
   std::size_t axis;
   std::size_t position;                   // first bin that goes right
   std::size_t left_count;                 // faces before it
+  double left_area, right_area;           // of what lies on either side
   std::array<std::size_t, kBins> counts;  // of faces, along the axis
 };
 
-std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
-  const std::array<Binning, 3> binning = binnings(faces);
+template <std::size_t kBins>
+std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
+  const std::array<Binning<kBins>, 3> binning = binnings<kBins>(faces);
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const FaceBox& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -97,16 +107,21 @@ std::optional<BinnedSplit> best_binned(std::span<const FaceBox> faces) {
     if (here.improves_on(best)) best = here;
   }
   if (!std::isfinite(best.cost)) return std::nullopt;
-  BinnedSplit split{binning[best.axis], best.axis, best.position, 0, {}};
+  BinnedSplit<kBins> split{binning[best.axis], best.axis, best.position, 0, 0, 0, {}};
+  Box<float> left = empty_box<float>(), right = empty_box<float>();
   for (std::size_t i = 0; i < kBins; ++i) {
-    split.counts[i] = bins[best.axis][i].count;
-    if (i < best.position) split.left_count += split.counts[i];
+    const Bin& bin = bins[best.axis][i];
+    split.counts[i] = bin.count;
+    if (i < best.position) split.left_count += bin.count;
+    expand(i < best.position ? left : right, bin.bounds);
   }
+  split.left_area = half_area(left);
+  split.right_area = half_area(right);
   return split;
 }
 
 std::optional<Split> split_binned(std::span<FaceBox> faces) {
-  const std::optional<BinnedSplit> best = best_binned(faces);
+  const auto best = best_binned<kFewBins>(faces);
   if (!best) return std::nullopt;
   std::partition(faces.begin(), faces.end(), [&](const FaceBox& face) {
     return best->binning.bin(centre(face, best->axis)) < best->position;
@@ -125,13 +140,6 @@ auto by_centre(std::size_t axis) {
 
 void sort_by_centre(std::span<FaceBox> faces, std::size_t axis) {
   std::sort(faces.begin(), faces.end(), by_centre(axis));
-}
-
-// The first `count` faces along an axis go left.
-Split split_at(std::span<FaceBox> faces, std::size_t count, std::size_t axis) {
-  std::nth_element(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(count), faces.end(),
-                   by_centre(axis));
-  return {count, static_cast<std::uint32_t>(axis)};
 }
 
 std::optional<Split> split_sweep(std::span<FaceBox> faces) {
@@ -159,7 +167,8 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
 
 // The first `count` faces along the axis go left. Bins divide space, so that only the bin in which
 // the count ends needs to be looked at face by face.
-Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit& bins) {
+template <std::size_t kBins>
+Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit<kBins>& bins) {
   std::size_t before = 0, bin = 0;
   while (before + bins.counts[bin] <= count) before += bins.counts[bin++];
   const auto bin_of = [&](const FaceBox& face) {
@@ -176,13 +185,32 @@ Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSpl
   return {count, static_cast<std::uint32_t>(bins.axis)};
 }
 
-// The best boundary of bins, moved to the nearest multiple of a unit.
-std::optional<Split> bin_units(std::span<FaceBox> faces, std::size_t unit) {
-  const std::optional<BinnedSplit> best = best_binned(faces);
-  if (!best) return std::nullopt;
-  const std::size_t last = (faces.size() - 1) / unit;  // at least one: there are two units or more
-  const std::size_t units = std::clamp<std::size_t>((best->left_count + unit / 2) / unit, 1, last);
-  return split_bins_at(faces, units * unit, *best);
+// Of seven sides in a row each number of roots has one.
+constexpr std::size_t kReach = (kWideChildren - 1) / 2;
+
+// What roots are worth to a side: with each doubling a level less lies below, so log2 of them.
+constexpr std::array<double, kWideChildren> kLevelsOfRoots = {0, 0,         1,         1.5849625,
+                                                              2, 2.3219281, 2.5849625, 2.8073549};
+
+// The leaves on the left near to the best boundary of bins whose share of the roots suits the areas
+// of the two sides best.
+std::size_t full_side_near(const BinnedSplit<kManyBins>& best, std::size_t leaves,
+                           std::size_t roots) {
+  const std::size_t near = std::clamp<std::size_t>((best.left_count + kLeafFaces / 2) / kLeafFaces,
+                                                   kReach + 1, leaves - kReach - 1);
+  std::size_t chosen = near;
+  double highest = -1;
+  for (std::size_t left = near - kReach; left <= near + kReach; ++left) {
+    const std::size_t left_roots = roots_on_left(left, leaves, roots);
+    if (left_roots == 0) continue;
+    const double worth = best.left_area * kLevelsOfRoots[left_roots] +
+                         best.right_area * kLevelsOfRoots[roots - left_roots];
+    if (worth > highest) {
+      highest = worth;
+      chosen = left;
+    }
+  }
+  return chosen;
 }
 
 }  // namespace
@@ -191,26 +219,30 @@ std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& /*bou
   return faces.size() <= kSweepLimit ? split_sweep(faces) : split_binned(faces);
 }
 
-std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces, const Box<float>& /*bounds*/) {
-  return bin_units(faces, kNodeFaces);
+std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces, std::size_t roots) {
+  const auto best = best_binned<kManyBins>(faces);
+  if (!best) return std::nullopt;
+  const std::size_t left = full_side_near(*best, leaves_of(faces.size()), roots);
+  return split_bins_at(faces, left * kLeafFaces, *best);
 }
 
-Split median_of(std::size_t faces, const Box<float>& bounds, std::size_t unit) {
-  std::size_t axis = 0;
+std::uint32_t widest_axis(const Box<float>& bounds) {
+  std::uint32_t axis = 0;
   double widest = -1;
-  for (std::size_t k = 0; k < 3; ++k) {
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const double extent = double{bounds.high[k]} - bounds.low[k];
     if (extent > widest) {
       widest = extent;
       axis = k;
     }
   }
-  return {std::max<std::size_t>(1, faces / unit / 2) * unit, static_cast<std::uint32_t>(axis)};
+  return axis;
 }
 
-Split split_median(std::span<FaceBox> faces, const Box<float>& bounds, std::size_t unit) {
-  const Split split = median_of(faces.size(), bounds, unit);
-  return split_at(faces, split.left_count, split.axis);
+Split split_at(std::span<FaceBox> faces, std::size_t count, std::uint32_t axis) {
+  std::nth_element(faces.begin(), faces.begin() + static_cast<std::ptrdiff_t>(count), faces.end(),
+                   by_centre(axis));
+  return {count, axis};
 }
 
 }  // namespace boxtree::cooker

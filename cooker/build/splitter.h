@@ -2,13 +2,14 @@
 // What the two builders share: a split rule is a function from a set of faces to two smaller sets.
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <limits>
 #include <optional>
 #include <span>
 
 #include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/format/codec_wide.h>
 
 namespace boxtree::cooker {
 
@@ -42,10 +43,6 @@ struct SplitCost {
   }
 };
 
-/// Faces of a wide node above leaves. Sets of more than that are divided at multiples of it, so
-/// that nodes above leaves, which are seven of eight, come out full.
-inline constexpr std::size_t kNodeFaces = std::size_t{kLeafFaces} * kWideChildren;
-
 /// Where a set was divided: faces [0, left_count) go left. Both sides are not empty.
 struct Split {
   std::size_t left_count;
@@ -60,17 +57,33 @@ using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<f
 [[nodiscard]] std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& bounds);
 [[nodiscard]] std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds);
 
-/// Divides so that the left side fills whole nodes of kNodeFaces; the right side keeps the rest.
-/// For large sets: UnitSweep divides those that it takes. Precondition: more faces than kNodeFaces.
+/// Divides a set that is to become `roots` children of a wide node so that leaves and nodes on the
+/// left come out full; the right side keeps the rest. For large sets: UnitSweep divides those that
+/// it takes. Precondition: more leaves than roots, two roots to eight.
 [[nodiscard]] std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces,
-                                                         const Box<float>& bounds);
+                                                         std::size_t roots);
 
-/// Where to halve so many faces with these bounds: along the widest axis, into a left side of a
-/// multiple of `unit` faces. Precondition: more faces than `unit`.
-[[nodiscard]] Split median_of(std::size_t faces, const Box<float>& bounds, std::size_t unit);
+/// The axis along which a box is longest.
+[[nodiscard]] std::uint32_t widest_axis(const Box<float>& bounds);
 
-/// Halves the set there by box centre, ties by face number: always succeeds, and bounds the depth.
-[[nodiscard]] Split split_median(std::span<FaceBox> faces, const Box<float>& bounds,
-                                 std::size_t unit = 1);
+/// The first `count` faces by box centre along an axis, ties by face number, go left. Always
+/// succeeds, and with half of the faces bounds the depth.
+[[nodiscard]] Split split_at(std::span<FaceBox> faces, std::size_t count, std::uint32_t axis);
+
+/// Levels that an even halving takes down to single ones. Precondition: at least one.
+[[nodiscard]] constexpr std::uint32_t halvings(std::size_t count) {
+  return static_cast<std::uint32_t>(std::bit_width(count - 1));
+}
+
+/// The node `node` above its two finished children, of which the left one follows it.
+[[nodiscard]] inline BuildNode inner_node(std::span<const BuildNode> nodes, std::size_t node,
+                                          std::size_t right, std::uint32_t axis) {
+  const BuildNode& on_left = nodes[node + 1];
+  const BuildNode& on_right = nodes[right];
+  Box<float> bounds = on_left.bounds;
+  expand(bounds, on_right.bounds);
+  const std::uint32_t height = 1 + std::max(on_left.height(), on_right.height());
+  return {bounds, static_cast<std::uint32_t>(right), axis | height << 8};
+}
 
 }  // namespace boxtree::cooker

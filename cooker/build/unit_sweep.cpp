@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A sweep over units of faces; stable division of the two orders that were not swept.
+// A sweep over leaves; stable division of the two orders that were not swept.
 #include <algorithm>
 #include <cassert>
 
 #include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/build/full_nodes.h>
 #include <boxtree/cooker/build/unit_sweep.h>
 
 namespace boxtree::cooker {
 namespace {
-
-// What a query that comes to so many faces has to look at: their leaves.
-double cost_of(std::size_t faces) {
-  return static_cast<double>(leaves_of(faces));
-}
 
 struct Key {
   double centre;
@@ -26,17 +22,16 @@ struct Key {
 
 }  // namespace
 
-UnitSweep::UnitSweep(std::span<const FaceBox> faces) {
+UnitSweep::UnitSweep(std::span<const FaceBox> faces) : faces_(faces.begin(), faces.end()) {
   assert(faces.size() <= kMaxFaces);
-  std::copy(faces.begin(), faces.end(), faces_.begin());
-  std::array<Key, kMaxFaces> keys;
-  const auto end = keys.begin() + static_cast<std::ptrdiff_t>(faces.size());
+  std::vector<Key> keys(faces.size());
   for (std::size_t axis = 0; axis < 3; ++axis) {
     for (std::size_t i = 0; i < faces.size(); ++i) {
       keys[i] = {centre(faces[i], axis), faces[i].face, static_cast<std::uint16_t>(i)};
     }
-    std::sort(keys.begin(), end);
-    std::transform(keys.begin(), end, sorted_[axis].begin(),
+    std::sort(keys.begin(), keys.end());
+    sorted_[axis].resize(keys.size());
+    std::transform(keys.begin(), keys.end(), sorted_[axis].begin(),
                    [](const Key& key) { return key.place; });
   }
 }
@@ -47,30 +42,32 @@ Box<float> UnitSweep::bounds(std::size_t first, std::size_t last) const {
   return box;
 }
 
-Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t unit) const {
+Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t roots) const {
   const std::size_t count = last - first;
-  const std::size_t units = (count + unit - 1) / unit;
+  const std::size_t leaves = leaves_of(count);
   SplitCost best;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::array<Box<float>, kMaxFaces / kLeafFaces> box;  // of each unit
-    for (std::size_t u = 0; u < units; ++u) {
-      box[u] = empty_box<float>();
-      const std::size_t end = std::min(last, first + (u + 1) * unit);
-      for (std::size_t i = first + u * unit; i < end; ++i) {
-        expand(box[u], faces_[sorted_[axis][i]].box);
+    std::array<Box<float>, kMaxFaces / kLeafFaces> box;  // of each leaf
+    for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
+      box[leaf] = empty_box<float>();
+      const std::size_t end = std::min(last, first + (leaf + 1) * kLeafFaces);
+      for (std::size_t i = first + leaf * kLeafFaces; i < end; ++i) {
+        expand(box[leaf], faces_[sorted_[axis][i]].box);
       }
     }
-    std::array<double, kMaxFaces / kLeafFaces> right_cost;  // of units from u on
+    // A query that comes to a side has its leaves to look at.
+    std::array<double, kMaxFaces / kLeafFaces> right_cost;  // of leaves from this one on
     Box<float> right = empty_box<float>();
-    for (std::size_t u = units; u-- > 1;) {
-      expand(right, box[u]);
-      right_cost[u] = half_area(right) * cost_of(count - u * unit);
+    for (std::size_t leaf = leaves; leaf-- > 1;) {
+      expand(right, box[leaf]);
+      right_cost[leaf] = half_area(right) * static_cast<double>(leaves - leaf);
     }
     Box<float> left = empty_box<float>();
-    for (std::size_t u = 1; u < units; ++u) {
-      expand(left, box[u - 1]);
-      const std::size_t faces = u * unit;
-      const SplitCost here{half_area(left) * cost_of(faces) + right_cost[u],
+    for (std::size_t leaf = 1; leaf < leaves; ++leaf) {
+      expand(left, box[leaf - 1]);
+      if (roots_on_left(leaf, leaves, roots) == 0) continue;
+      const std::size_t faces = leaf * kLeafFaces;
+      const SplitCost here{half_area(left) * static_cast<double>(leaf) + right_cost[leaf],
                            imbalance(faces, count - faces), axis, faces};
       if (here.improves_on(best)) best = here;
     }

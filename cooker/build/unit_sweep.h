@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include <boxtree/cooker/build/splitter.h>
 #include <boxtree/format/codec_wide.h>
@@ -16,16 +17,17 @@ namespace boxtree::cooker {
 /// that all levels below together cost little more than one. The whole set is [0, size).
 class UnitSweep {
  public:
-  static constexpr std::size_t kMaxFaces = 512;
+  static constexpr std::size_t kMaxFaces = 4096;
 
   /// Precondition: at most kMaxFaces faces.
   explicit UnitSweep(std::span<const FaceBox> faces);
 
   [[nodiscard]] Box<float> bounds(std::size_t first, std::size_t last) const;
 
-  /// Where the part [first, last) is best divided by the surface-area heuristic, along any axis, at
-  /// a multiple of `unit` faces. Precondition: more faces than `unit`, a multiple of kLeafFaces.
-  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t unit) const;
+  /// Where the part [first, last), which is to become `roots` children of a wide node, is best
+  /// divided by the surface-area heuristic, along any axis, into full leaves and nodes on the left.
+  /// Precondition: more faces than kLeafFaces, two roots to eight.
+  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t roots) const;
 
   /// Divides [first, last): the faces with the lowest centres along the axis go left.
   void divide(std::size_t first, std::size_t last, const Split& split);
@@ -34,8 +36,8 @@ class UnitSweep {
   void copy_to(std::size_t first, std::span<FaceBox> to) const;
 
  private:
-  std::array<FaceBox, kMaxFaces> faces_;
-  std::array<std::array<std::uint16_t, kMaxFaces>, 3> sorted_;  // places in faces_
+  std::vector<FaceBox> faces_;
+  std::array<std::vector<std::uint16_t>, 3> sorted_;  // places in faces_
 };
 
 }  // namespace boxtree::cooker

@@ -9,13 +9,19 @@
 namespace boxtree::cooker {
 namespace {
 
-// What a node's bytes weigh against visits to it, in areas of the root.
-constexpr double kNodeCost = 1e-4;
+// What the bytes of all nodes together weigh: as much as so many visits more in each query. Each
+// node has its share of that, so that small and large meshes are treated alike.
+constexpr double kVisitsForBytes = 2;
+
+// As many nodes as hold so many leaves when all are full.
+double full_nodes(std::size_t leaves) {
+  return static_cast<double>(leaves) / (kWideChildren - 1);
+}
 
 class Layouter {
  public:
   Layouter(const BuildTree& tree, WideLayout& out)
-      : tree_(tree), collapse_(tree, kNodeCost), out_(out) {}
+      : tree_(tree), collapse_(tree, kVisitsForBytes / full_nodes(out.leaf_count)), out_(out) {}
 
   void run() {
     out_.nodes.resize(1);

@@ -87,6 +87,48 @@ TEST(WideCollapse, NoChoiceOfChildrenIsCheaper) {
   }
 }
 
+std::size_t nodes_below(const BuildTree& tree, const WideCollapse& collapse, std::uint32_t node) {
+  if (tree.nodes[node].is_leaf()) return 0;
+  std::vector<std::uint32_t> children;
+  collapse.children_of(node, children);
+  std::size_t nodes = 1;
+  for (const std::uint32_t child : children) nodes += nodes_below(tree, collapse, child);
+  return nodes;
+}
+
+// Where bytes are all that counts, every node has eight children but for what does not come out
+// even. Faces that all lie in one place have no area and no order, and are divided all the same.
+TEST(WideCollapse, NodesAreAsFewAsLeavesAllow) {
+  std::vector<SourceMesh> all = meshes();
+  for (const unsigned faces : {500u, 513u, 1000u, 5003u, 20000u}) {
+    all.push_back(test::soup(faces, faces));
+    SourceMesh duplicates = test::soup(1, faces);
+    duplicates.faces.resize(faces, duplicates.faces[0]);
+    duplicates.face_ids.resize(faces);
+    all.push_back(duplicates);
+  }
+  for (const SourceMesh& mesh : all) {
+    const BuildTree tree = build_full_leaves(mesh);
+    const std::size_t leaves = leaves_of(mesh.faces.size());
+    if (leaves < 2) continue;
+    const WideCollapse collapse(tree, 1e6);
+    EXPECT_EQ(nodes_below(tree, collapse, 0), (leaves - 1 + 6) / 7)
+        << mesh.name << ", " << mesh.faces.size() << " faces";
+  }
+}
+
+// The same with the weights of the cooker: 64 and 32 bytes a node, 1.3 and 0.65 a triangle.
+TEST(WideLayout, TreesAreSmall) {
+  for (const unsigned faces : {1000u, 4000u, 20000u}) {
+    for (const SourceMesh& mesh : {test::soup(faces, 1), test::sphere(50, faces / 100)}) {
+      const WideLayout layout = lay_out_wide(build_full_leaves(mesh));
+      EXPECT_LE(static_cast<double>(layout.nodes.size()) * sizeof(Wide8Node),
+                1.3 * static_cast<double>(mesh.faces.size()))
+          << mesh.name << ", " << mesh.faces.size() << " faces";
+    }
+  }
+}
+
 TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
   for (const SourceMesh& mesh : meshes()) {
     const WideLayout layout = lay_out_wide(build_full_leaves(mesh));

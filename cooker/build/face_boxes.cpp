@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Frame from the bounds of positions; boxes rounded outward.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <boxtree/cooker/build/face_boxes.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// The largest extent comes to lie in [2^14, 2^15): f16 cuts then reach down to 2^-39 of it.
+constexpr int kExtentExponent = 14;
+
+float round_down(double value) {
+  const auto nearest = static_cast<float>(value);
+  return double{nearest} <= value
+             ? nearest
+             : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
+}
+
+float round_up(double value) {
+  return -round_down(-value);
+}
+
+struct Bounds {
+  Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+};
+
+Bounds bounds_of(const Positions& positions) {
+  Bounds bounds;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const Eigen::Vector3d p = positions[i];
+    bounds.low = bounds.low.cwiseMin(p);
+    bounds.high = bounds.high.cwiseMax(p);
+  }
+  return bounds;
+}
+
+Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
+  const Box<double> bounds = face_bounds(mesh, frame, face);
+  Box<float> box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    box.low[k] = round_down(bounds.low[k]);
+    box.high[k] = round_up(bounds.high[k]);
+  }
+  return box;
+}
+
+}  // namespace
+
+void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
+  if (positions.size() == 0) return;
+  Bounds bounds = bounds_of(positions);
+  if (positions.precision == Precision::kF64 && origin == Origin::kByPrecision) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      tree.origin[k] = bounds.low[axis] / 2 + bounds.high[axis] / 2;
+      bounds.low[axis] -= tree.origin[k];
+      bounds.high[axis] -= tree.origin[k];
+    }
+  }
+  double size = (bounds.high / 2 - bounds.low / 2).maxCoeff();  // halves, so that nothing overflows
+  int halved = 1;
+  if (size == 0) {  // a single point: its coordinates set the scale
+    size = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+    halved = 0;
+  }
+  if (size == 0) return;
+  tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,
+                                   kMaxScaleExponent);
+}
+
+Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
+  const Face& corners = mesh.faces[face];
+  const std::size_t count = corners.is_quad() ? 4 : 3;
+  Bounds bounds;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector3d p = frame.to_tree(mesh.positions[corners.corner[i]]);
+    bounds.low = bounds.low.cwiseMin(p);
+    bounds.high = bounds.high.cwiseMax(p);
+  }
+  return {{bounds.low[0], bounds.low[1], bounds.low[2]},
+          {bounds.high[0], bounds.high[1], bounds.high[2]}};
+}
+
+std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame) {
+  std::vector<FaceBox> faces(mesh.faces.size());
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        faces[i] = {face_box(mesh, frame, i), static_cast<std::uint32_t>(i)};
+                      }
+                    });
+  return faces;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: MIT
+// Where every build starts: the frame of a tree and the boxes of its faces.
+#pragma once
+
+#include <vector>
+
+#include <boxtree/cooker/build/build_tree.h>
+
+namespace boxtree::cooker {
+
+/// Sets the frame. f32 positions keep the origin at zero: they are then represented without any
+/// rounding. f64 positions are shifted to the centre, so that f32 boxes resolve them.
+void choose_frame(const Positions& positions, Origin origin, BuildTree& tree);
+
+/// The boxes of all faces in tree space, in the order of the mesh.
+[[nodiscard]] std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame);
+
+}  // namespace boxtree::cooker
