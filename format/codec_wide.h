@@ -52,10 +52,13 @@ struct Wide8Node {
 };
 static_assert(sizeof(Wide8Node) == 64 && std::is_trivially_copyable_v<Wide8Node>);
 
-/// wide4: the same in half a cache line. Codes are squared, because planes crowd near the sides
-/// of the box that they lie in.
+/// wide4: the same in half a cache line. Steps grow from code to code, because planes crowd near
+/// the sides of the box that they lie in, and end at 0.85 of its extent, because few planes lie
+/// beyond: of all c * (c + a) / n these numbers gave the smallest boxes on scanned, CAD and
+/// generated meshes.
 struct Wide4Node {
   static constexpr std::uint32_t kLargestCode = 15;
+  static constexpr std::uint32_t kFirstSteps = 24;  // by how much steps do not start at zero
 
   std::array<std::uint32_t, 3> low;   // [axis], child i in bits 4i to 4i + 3
   std::array<std::uint32_t, 3> high;  // likewise
@@ -69,13 +72,14 @@ struct Wide4Node {
     return (high[axis] >> (4 * child)) & 15u;
   }
   [[nodiscard]] static constexpr float steps(std::uint32_t code) noexcept {
-    return static_cast<float>(code * code);
+    return static_cast<float>(code * (code + kFirstSteps));
   }
   /// A code of at least so many steps. For writers.
   [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
-    return static_cast<std::uint32_t>(std::sqrt(steps)) + 1;
+    constexpr float kHalf = kFirstSteps / 2;
+    return static_cast<std::uint32_t>(std::sqrt(steps + kHalf * kHalf) - kHalf) + 1;
   }
-  static constexpr float kStepsOfExtent = 225;
+  static constexpr float kStepsOfExtent = 688;
 };
 static_assert(sizeof(Wide4Node) == 32 && std::is_trivially_copyable_v<Wide4Node>);
 

@@ -43,8 +43,9 @@ HWY_INLINE FloatVector steps_of(const std::uint32_t* codes, std::size_t part) {
   const hn::Rebind<std::int32_t, Floats> integers;
   const auto shift = hn::ShiftLeft<2>(hn::Iota(words, static_cast<std::uint32_t>(part * kLanes)));
   const auto code = hn::And(hn::Shr(hn::Set(words, *codes), shift), hn::Set(words, 15u));
-  const FloatVector steps = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
-  return hn::Mul(steps, steps);
+  const FloatVector number = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
+  return hn::Mul(number,
+                 hn::Add(number, hn::Set(Floats(), static_cast<float>(Wide4Node::kFirstSteps))));
 }
 
 /// The codes of the low (side 0) or high (side 1) planes of an axis.

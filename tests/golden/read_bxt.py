@@ -219,13 +219,13 @@ class Wide:
     def expand(self, ref, box):
         codes, next_node, next_leaf, mask, count = self.fields(ref)
         expect(1 <= count <= 8 and mask >> count == 0, "children of a node")
-        of_extent = 255 if self.is_wide8 else 225
+        of_extent = 255 if self.is_wide8 else 688
         children = []
         for i in range(count):
             low, high = [], []
             for k in range(3):
                 step = f32(f32(box[1][k] - box[0][k]) * f32(1 / of_extent))
-                steps = [codes[side][k][i] if self.is_wide8 else codes[side][k][i] ** 2
+                steps = [codes[side][k][i] * (1 if self.is_wide8 else codes[side][k][i] + 24)
                          for side in range(2)]
                 low.append(f32(box[0][k] + f32(steps[0] * step)))
                 high.append(f32(box[1][k] - f32(steps[1] * step)))
