@@ -64,7 +64,7 @@ class Recursion {
 
 }  // namespace
 
-BuildTree build_tree(const SourceMesh& mesh, Builder builder) {
+BuildTree build_tree(const SourceMesh& mesh, Builder builder, Origin origin) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;
