@@ -131,7 +131,7 @@ void read_positions(const ClusterRecord& cluster, const std::byte* bytes, std::u
 
 bool decode_grid_leaf(const GridView& grid, std::uint32_t leaf, GridLeaf& out) noexcept {
   const auto cluster = load<ClusterRecord>(grid.clusters, leaf / kClusterLeaves);
-  const std::uint64_t start = std::uint64_t{cluster.offset} * 8;
+  const std::uint64_t start = cluster.offset * kClusterUnit;
   if (cluster.leaf_bits > 16 || !in_range(start, kClusterPadding, grid.bytes.size())) return false;
   const std::byte* const bytes = grid.bytes.data();
   const std::uint32_t faces_left = grid.face_count - leaf / kClusterLeaves * kClusterFaces;

@@ -18,6 +18,9 @@ namespace boxtree {
 inline constexpr std::uint32_t kClusterLeaves = 16;
 inline constexpr std::uint32_t kClusterFaces = kClusterLeaves * kLeafFaces;
 
+/// Clusters start at multiples of so many bytes: 32 bits then reach all faces that a tree can have.
+inline constexpr std::uint64_t kClusterUnit = 4;
+
 /// Bits of a grid over the largest extent: what writers offer and readers may rely on.
 inline constexpr int kMinGridBits = 8;
 inline constexpr int kMaxGridBits = 30;
@@ -32,7 +35,7 @@ inline constexpr std::size_t kClusterPadding = 96;
 /// the offsets of vertices as one more leaf would, so that any leaf is found at once.
 struct ClusterRecord {
   std::array<std::int32_t, 3> origin;  // grid coordinates of the low corner
-  std::uint32_t offset;                // of its bytes in the section, in units of 8 bytes
+  std::uint32_t offset;                // of its bytes in the section, in units of kClusterUnit bytes
   std::uint16_t vertex_count;
   std::array<std::uint8_t, 3> width;  // bits of a vertex's offset on each axis, at most 32
   std::uint8_t leaf_bytes;            // least mean length of leaves from the first one on

@@ -168,7 +168,7 @@ class ClusterEncoder {
     write_starts();
     out_.insert(out_.end(), leaves_.begin(), leaves_.end());
     write_positions(vertices);
-    while (out_.size() % 8 != 0) out_.push_back(std::byte{0});
+    while (out_.size() % kClusterUnit != 0) out_.push_back(std::byte{0});
     return record_;
   }
 
@@ -295,7 +295,7 @@ Block encode_block(const SourceMesh& mesh, std::span<std::uint32_t> order, bool 
       if (leaf_order == LeafOrder::kFree) order_as_strip(std::span(faces).subspan(leaf, count));
     }
     for (std::size_t i = 0; i < faces.size(); ++i) of_cluster[i] = faces[i].source;
-    const auto offset = static_cast<std::uint32_t>(block.bytes.size() / 8);
+    const auto offset = static_cast<std::uint32_t>(block.bytes.size() / kClusterUnit);
     block.records.push_back(encoder.encode(faces, vertices));
     block.records.back().offset = offset;
     block.vertex_count += vertices.count();
@@ -334,7 +334,7 @@ EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised, const Sourc
   for (const Block& block : blocks) bytes += block.bytes.size();
   if (!blocks.empty()) out.vertices.reserve(bytes);
   for (Block& block : blocks) {
-    const auto offset = static_cast<std::uint32_t>(out.vertices.size() / 8);
+    const auto offset = static_cast<std::uint32_t>(out.vertices.size() / kClusterUnit);
     for (ClusterRecord& record : block.records) record.offset += offset;
     const Bytes records = std::as_bytes(std::span(block.records));
     out.corners.insert(out.corners.end(), records.begin(), records.end());

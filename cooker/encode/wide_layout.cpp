@@ -37,7 +37,7 @@ class Layouter {
     collapse_.children_of(source, children);
 
     WideLayout::Node node{};
-    node.links = {static_cast<std::uint32_t>(out_.nodes.size()), next_leaf_, 0,
+    node.links = {static_cast<std::uint32_t>(out_.nodes.size()), 0, 0,
                   static_cast<std::uint32_t>(children.size())};
     std::uint32_t leaves = 0;
     bool holds_partial_leaf = false;
@@ -51,24 +51,34 @@ class Layouter {
         node.links.inner_mask |= 1u << i;
       }
     }
-    // The leaf that is not full must have the last number of all. It is the last one from left to
-    // right, so the last one among these, too.
-    if (holds_partial_leaf) {
-      node.links.first_leaf = out_.leaf_count - leaves;
-    } else {
-      next_leaf_ += leaves;
-    }
     out_.nodes[number] = node;
     out_.nodes.resize(out_.nodes.size() + children.size() - leaves);
 
+    // Leaves of a node have consecutive numbers. They come where its first one is met from left to
+    // right, between what is below the children beside it: neighbours in number are neighbours in
+    // space, which geometry in clusters lives on.
+    bool are_placed = false;
     std::uint32_t next_node = node.links.first_node;
-    std::uint32_t next_leaf = node.links.first_leaf;
     for (const std::uint32_t child : children) {
-      if (tree_.nodes[child].is_leaf()) {
-        place_leaf(next_leaf++, child);
-      } else {
+      if (!tree_.nodes[child].is_leaf()) {
         fill(next_node++, child, depth + 1);
+      } else if (!are_placed) {
+        place_leaves(number, children, leaves, holds_partial_leaf);
+        are_placed = true;
       }
+    }
+  }
+
+  // The leaf that is not full must have the last number of all. It is the last one from left to
+  // right, so the last one among its siblings, too.
+  void place_leaves(std::uint32_t number, const std::vector<std::uint32_t>& children,
+                    std::uint32_t leaves, bool hold_partial_leaf) {
+    const std::uint32_t first = hold_partial_leaf ? out_.leaf_count - leaves : next_leaf_;
+    if (!hold_partial_leaf) next_leaf_ += leaves;
+    out_.nodes[number].links.first_leaf = first;
+    std::uint32_t next = first;
+    for (const std::uint32_t child : children) {
+      if (tree_.nodes[child].is_leaf()) place_leaf(next++, child);
     }
   }
 

@@ -256,7 +256,7 @@ class Grid:
         for cluster in range(clusters):
             offset, size = self.extent(cluster)
             expect(offset == end, "clusters follow each other")
-            end = (offset + size + 7) // 8 * 8
+            end = (offset + size + 3) // 4 * 4
         padding = self.PADDING if clusters else 0
         expect(len(tree.vertices) == end + padding and not any(tree.vertices[end:]),
                "padding after the last cluster")
@@ -269,11 +269,11 @@ class Grid:
         leaves = min(16, -(-(self.tree.face_count - self.CLUSTER_FACES * cluster)
                            // self.LEAF_FACES))
         fields = -(-(leaves + 1) * leaf_bits // 8)
-        table = int.from_bytes(self.tree.vertices[8 * offset:8 * offset + fields], "little")
+        table = int.from_bytes(self.tree.vertices[4 * offset:4 * offset + fields], "little")
         starts = [fields + leaf_bytes * i + ((table >> (leaf_bits * i)) & ((1 << leaf_bits) - 1))
                   for i in range(leaves + 1)]
         expect(starts[0] == fields and starts == sorted(starts), "leaves follow each other")
-        return origin, 8 * offset, count, (wx, wy, wz), starts
+        return origin, 4 * offset, count, (wx, wy, wz), starts
 
     def extent(self, cluster):
         _, offset, count, widths, starts = self.record(cluster)

@@ -251,6 +251,67 @@ TEST_P(Queries, PairsDependOnTheRelativePoseAlone) {
   }
 }
 
+SourceMesh scaled(SourceMesh mesh, double scale) {
+  for (float& x : mesh.positions.f32) x = static_cast<float>(x * scale);
+  return mesh;
+}
+
+// A power of two rounds nothing: the same faces, and every length scaled to the bit.
+TEST_P(Queries, ScalingByAPowerOfTwoScalesTheAnswers) {
+  const SourceMesh mesh = test::torus(40, 30);
+  const test::CookedTree unit_size = test::cook_tree(mesh, GetParam());
+  for (const int exponent : {-100, -13, 7, 13, 60}) {
+    const double scale = std::ldexp(1.0, exponent);
+    const test::CookedTree other = test::cook_tree(scaled(mesh, scale), GetParam());
+    for (int i = 0; i < 100; ++i) {
+      const Eigen::Vector3d from = point_near(unit_size.tree);
+      const Eigen::Vector3d direction = point_near(unit_size.tree) - from;
+      const auto hit = *closest_hit(unit_size.tree, {from, direction});
+      const auto other_hit = *closest_hit(other.tree, {scale * from, scale * direction});
+      ASSERT_EQ(hit.has_value(), other_hit.has_value());
+      if (hit) {
+        ASSERT_EQ(hit->face.id, other_hit->face.id);
+        ASSERT_EQ(hit->t, other_hit->t);
+      }
+      const auto closest = *closest_point(unit_size.tree, from);
+      const auto other_closest = *closest_point(other.tree, scale * from);
+      ASSERT_EQ(closest->face.id, other_closest->face.id);
+      ASSERT_EQ(scale * closest->distance, other_closest->distance);
+    }
+  }
+}
+
+// Any other factor moves vertices by a rounding; answers are those of the moved mesh.
+TEST_P(Queries, ScaledMeshesEqualBruteForce) {
+  for (const double scale : {1e-4, 1.0, 100.0, 1e4}) {
+    SCOPED_TRACE(scale);
+    const SourceMesh mesh = scaled(test::torus(12, 9), scale);
+    const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+    for (int turn = 0; turn < 10; ++turn) {
+      Pose pose = random_pose(random_, turn);
+      pose.translation() *= scale;
+      ASSERT_EQ(found_pairs(cooked.tree, Pose::Identity(), cooked.tree, pose),
+                touching_pairs(mesh, mesh, pose));
+    }
+    for (int i = 0; i < 100; ++i) {
+      const Ray ray{point_near(cooked.tree), point_near(cooked.tree) - point_near(cooked.tree)};
+      const RayShear shear(ray.origin, ray.direction);
+      double best = std::numeric_limits<double>::infinity();
+      for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+        for (const Triangle& triangle : triangles_of(mesh, f)) {
+          const auto hit = intersect_ray_triangle(shear, triangle);
+          if (hit && hit->t >= 0) best = std::min(best, hit->t);
+        }
+      }
+      const auto hit = *closest_hit(cooked.tree, ray);
+      ASSERT_EQ(hit.has_value(), best < std::numeric_limits<double>::infinity());
+      if (hit) {
+        ASSERT_NEAR(hit->t, best, 1e-12 * (1 + best));
+      }
+    }
+  }
+}
+
 // A visitor that stops is not asked again.
 TEST_P(Queries, VisitorsCanStop) {
   const test::CookedTree cooked = test::cook_tree(test::city(9, 2), GetParam());
