@@ -260,7 +260,7 @@ SourceMesh scaled(SourceMesh mesh, double scale) {
 TEST_P(Queries, ScalingByAPowerOfTwoScalesTheAnswers) {
   const SourceMesh mesh = test::torus(40, 30);
   const test::CookedTree unit_size = test::cook_tree(mesh, GetParam());
-  for (const int exponent : {-100, -13, 7, 13, 60}) {
+  for (const int exponent : {-60, -13, 7, 13, 60}) {
     const double scale = std::ldexp(1.0, exponent);
     const test::CookedTree other = test::cook_tree(scaled(mesh, scale), GetParam());
     for (int i = 0; i < 100; ++i) {
