@@ -21,7 +21,9 @@ template <class Node>
 class Prefetch {
  public:
   Prefetch(const Tree& tree, const WideCodec<Node>& codec)
-      : nodes_(reinterpret_cast<const Node*>(codec.nodes)), corners_(tree.leaves().mesh().corners) {
+      : nodes_(reinterpret_cast<const Node*>(codec.nodes)),
+        corners_(tree.leaves().mesh().corners),
+        clusters_(tree.leaves().grid().clusters) {
     const MeshArrays& mesh = tree.leaves().mesh();
     if (corners_ != nullptr) face_bytes_ = mesh.corners_per_face * mesh.corner_bytes;
   }
@@ -38,15 +40,20 @@ class Prefetch {
     constexpr std::size_t kLine = 64;
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
-      const std::byte* corners = corners_ + std::size_t{first_face(links, child)} * face_bytes_;
-      hwy::Prefetch(corners);
-      hwy::Prefetch(corners + kLine);
+      const std::size_t face = first_face(links, child);
+      if (clusters_ != nullptr) {
+        hwy::Prefetch(clusters_ + face / kClusterFaces * sizeof(ClusterRecord));
+      } else {
+        hwy::Prefetch(corners_ + face * face_bytes_);
+        hwy::Prefetch(corners_ + face * face_bytes_ + kLine);
+      }
     }
   }
 
  private:
   const Node* nodes_;
   const std::byte* corners_;
+  const std::byte* clusters_;  // or null: no grid
   std::size_t face_bytes_ = 0;
 };
 
