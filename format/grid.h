@@ -35,7 +35,7 @@ inline constexpr std::size_t kClusterPadding = 96;
 /// the offsets of vertices as one more leaf would, so that any leaf is found at once.
 struct ClusterRecord {
   std::array<std::int32_t, 3> origin;  // grid coordinates of the low corner
-  std::uint32_t offset;                // of its bytes in the section, in units of kClusterUnit bytes
+  std::uint32_t offset;  // of its bytes in the section, in units of kClusterUnit bytes
   std::uint16_t vertex_count;
   std::array<std::uint8_t, 3> width;  // bits of a vertex's offset on each axis, at most 32
   std::uint8_t leaf_bytes;            // least mean length of leaves from the first one on

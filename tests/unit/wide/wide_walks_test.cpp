@@ -265,7 +265,7 @@ void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, st
   Questions questions(mesh, plain.tree, seed);
   // Answers of thousands of faces cost more than the queries do.
   const bool is_large = mesh.faces.size() > 10'000;
-  expect_same(questions.rays(6000), plain.tree, trees, ask_ray);
+  expect_same(questions.rays(is_large ? 1500 : 6000), plain.tree, trees, ask_ray);
   expect_same(questions.boxes(is_large ? 50 : 1500), plain.tree, trees, ask_box);
   const auto spheres = questions.spheres(is_large ? 50 : 1500);
   expect_same(spheres, plain.tree, trees, ask_sphere);
