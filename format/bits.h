@@ -24,6 +24,13 @@ inline constexpr std::size_t kBitPadding = 8;
   return static_cast<std::uint8_t>(largest == 0 ? 1 : std::bit_width(largest));
 }
 
+/// Bits of a number below `count`; none when there is at most one such number. Odd and never zero
+/// inside, so that no branch is needed.
+[[nodiscard]] constexpr std::uint32_t width_below(std::uint32_t count) noexcept {
+  const std::uint32_t odd = (2 * count - (count != 0 ? 1u : 0u)) | 1u;
+  return static_cast<std::uint32_t>(std::bit_width(odd)) - 1;
+}
+
 /// The field of `width` bits that starts `position` bits after `bytes`; the first bit is the least
 /// significant one. Precondition: width <= 57, and kBitPadding bytes follow the field.
 [[nodiscard]] inline std::uint64_t read_bits(const std::byte* bytes, std::uint64_t position,

@@ -7,6 +7,7 @@
 #define BOXTREE_RUNTIME_WIDE_LEAF_INL_H
 #endif
 
+#include <boxtree/format/grid_leaf.h>
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/tree/tree.h>
 #include <boxtree/runtime/wide/decode-inl.h>
@@ -94,7 +95,7 @@ class LeafFloats {
     Triangle triangle;
     if (reader_.is_grid()) {
       for (std::size_t c = 0; c < 3; ++c) {
-        const auto& p = grid_leaf_.position[start_[3 * lane + c] / kRow];
+        const std::int32_t* const p = grid_point_ + grid_start(lane, c);
         for (std::size_t k = 0; k < 3; ++k) {
           triangle.corner[c][static_cast<Eigen::Index>(k)] =
               static_cast<double>(p[k]) * reader_.grid_step();
@@ -136,21 +137,40 @@ class LeafFloats {
   static constexpr std::uint32_t kRow = 4;
 
   HWY_INLINE bool gather_grid() {
+    GridOffsets offsets;
     if (first_ % kLeafFaces != 0 ||
-        !decode_grid_leaf(reader_.grid(), first_ / kLeafFaces, grid_leaf_)) {
+        !read_grid_faces<false>(reader_.grid(), first_ / kLeafFaces, grid_faces_, offsets)) {
       return false;
     }
-    HWY_ALIGN float row[kMaxLeafVertices * kRow];
-    for (std::uint32_t i = 0; i < grid_leaf_.vertex_count; ++i) {
-      for (std::size_t k = 0; k < kRow; ++k) {
-        row[kRow * i + k] = static_cast<float>(grid_leaf_.position[i][k]);
-      }
+    read_grid_points(offsets);
+    for (std::size_t c = 0; c < 3; ++c) {
+      transpose(
+          grid_point_, [&](std::size_t face) { return grid_start(face, c); }, c);
     }
-    for (std::size_t f = 0; f < kLeafFaces; ++f) {
-      for (std::size_t c = 0; c < 3; ++c) start_[3 * f + c] = kRow * grid_leaf_.corner[f][c];
-    }
-    for (std::size_t c = 0; c < 3; ++c) transpose(row, start_ + c, c);
     return true;
+  }
+
+  // Where a corner of a face begins in grid_point_.
+  HWY_INLINE std::size_t grid_start(std::size_t face, std::size_t corner) const {
+    return std::size_t{kRow} * grid_faces_.corner[face][corner];
+  }
+
+  HWY_INLINE void read_grid_points(const GridOffsets& offsets) {
+    const std::byte* const bytes = reader_.grid().bytes.data();
+    const auto [x_width, y_width, z_width] = offsets.width;
+    for (std::uint32_t i = 0; i < grid_faces_.vertex_count; ++i) {
+      const std::uint64_t at =
+          offsets.start + std::uint64_t{grid_faces_.vertex[i]} * offsets.stride;
+      const std::uint64_t offset[3] = {read_bits(bytes, at, x_width),
+                                       read_bits(bytes, at + x_width, y_width),
+                                       read_bits(bytes, at + x_width + y_width, z_width)};
+      // Unsigned, so that corrupt sums wrap.
+      for (std::size_t k = 0; k < 3; ++k) {
+        grid_point_[kRow * i + k] = static_cast<std::int32_t>(
+            static_cast<std::uint32_t>(offsets.origin[k]) + static_cast<std::uint32_t>(offset[k]));
+      }
+      grid_point_[kRow * i + 3] = 0;
+    }
   }
 
   // Three corners a face, in floats, in the tree's order, and scaled without rounding: the common
@@ -168,7 +188,10 @@ class LeafFloats {
     }
     if (!hn::AllTrue(words, hn::Lt(largest, hn::Set(words, mesh_.vertex_count - 1)))) return false;
     const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
-    for (std::size_t c = 0; c < 3; ++c) transpose(positions, start_ + c, c);
+    for (std::size_t c = 0; c < 3; ++c) {
+      transpose(
+          positions, [&](std::size_t face) { return start_[3 * face + c]; }, c);
+    }
     return true;
   }
   template <class D, class V>
@@ -180,45 +203,57 @@ class LeafFloats {
     }
   }
 
+  // Corner `corner` of all faces; that of face i is start(i) numbers after `rows`: floats, or whole
+  // numbers that become floats here.
 #if HWY_TARGET == HWY_SCALAR
-  void transpose(const float* positions, const std::uint32_t* start, std::size_t corner) {
+  template <class Number, class Start>
+  void transpose(const Number* rows, const Start& start, std::size_t corner) {
     for (std::size_t i = 0; i < kLeafFaces; ++i) {
       for (std::size_t axis = 0; axis < 3; ++axis) {
-        coordinate_[corner][axis][i] = positions[start[3 * i] + axis] * scale_;
+        coordinate_[corner][axis][i] = static_cast<float>(rows[start(i) + axis]) * scale_;
       }
     }
   }
 #else
-  // Corner `corner` of all faces; start[3 i] is where that of face i begins.
-  HWY_INLINE void transpose(const float* positions, const std::uint32_t* start,
-                            std::size_t corner) {
+  template <class Number, class Start>
+  HWY_INLINE void transpose(const Number* rows, const Start& start, std::size_t corner) {
+    const hn::Rebind<Number, Floats> d;
     const FloatVector scale = hn::Set(Floats(), scale_);
     const hn::Repartition<std::uint64_t, Floats> pairs;
     for (std::size_t part = 0; part < kParts; ++part) {
-      const std::uint32_t* rows = start + 3 * part * kLanes;
+      const std::size_t face = part * kLanes;
       // Of each block of four rows: x0 x1 y0 y1, z0 z1 - -, and so on, to x0 x1 x2 x3.
-      const FloatVector r0 = blocks(positions, rows), r1 = blocks(positions, rows + 3);
-      const FloatVector r2 = blocks(positions, rows + 6), r3 = blocks(positions, rows + 9);
-      const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(Floats(), r0, r1));
-      const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(Floats(), r2, r3));
-      const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(Floats(), r0, r1));
-      const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(Floats(), r2, r3));
+      const auto r0 = blocks(rows, start, face), r1 = blocks(rows, start, face + 1);
+      const auto r2 = blocks(rows, start, face + 2), r3 = blocks(rows, start, face + 3);
+      const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
+      const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
+      const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
+      const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
-        hn::Store(hn::Mul(hn::BitCast(Floats(), values), scale), Floats(),
-                  &coordinate_[corner][axis][part * kLanes]);
+        hn::Store(hn::Mul(to_floats(hn::BitCast(d, values)), scale), Floats(),
+                  &coordinate_[corner][axis][face]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
       store(1, hn::InterleaveUpper(pairs, xy01, xy23));
       store(2, hn::InterleaveLower(pairs, z01, z23));
     }
   }
+  static HWY_INLINE FloatVector to_floats(FloatVector values) {
+    return values;
+  }
+  static HWY_INLINE FloatVector to_floats(hn::Vec<hn::Rebind<std::int32_t, Floats>> values) {
+    return hn::ConvertTo(Floats(), values);
+  }
 
-  // The row at start[0] and, in the next block, the one four faces on.
-  static HWY_INLINE FloatVector blocks(const float* positions, const std::uint32_t* start) {
-    const hn::CappedTag<float, 4> four;
-    const auto row = hn::LoadU(four, positions + start[0]);
+  // The row of a face and, in the next block, of the one four faces on.
+  template <class Number, class Start>
+  static HWY_INLINE hn::Vec<hn::Rebind<Number, Floats>> blocks(const Number* rows,
+                                                               const Start& start,
+                                                               std::size_t face) {
+    const hn::CappedTag<Number, 4> four;
+    const auto row = hn::LoadU(four, rows + start(face));
 #if HWY_MAX_BYTES >= 32
-    return hn::Combine(Floats(), hn::LoadU(four, positions + start[12]), row);
+    return hn::Combine(hn::Rebind<Number, Floats>(), hn::LoadU(four, rows + start(face + 4)), row);
 #else
     return row;
 #endif
@@ -251,7 +286,8 @@ class LeafFloats {
   HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
   HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
   TriangleBatch batch_;
-  GridLeaf grid_leaf_;
+  GridLeafFaces grid_faces_;
+  HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and nothing
 };
 
 }  // namespace boxtree::HWY_NAMESPACE

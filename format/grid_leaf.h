@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: MIT
+// Which vertices the faces of one leaf of the grid store have: the half of its decoding that goes
+// bit by bit (encoder: cooker/encode/grid_geometry.cpp; the format: docs/FORMAT.md 8.1). Inlined by
+// force, because walks compile it for instruction sets of their own.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include <boxtree/format/bits.h>
+#include <boxtree/format/grid.h>
+
+#define BOXTREE_ALWAYS_INLINE [[gnu::always_inline]] inline
+
+namespace boxtree {
+
+/// The faces of a leaf, by places in a list of the vertices that it names.
+struct GridLeafFaces {
+  std::uint32_t face_count = 0;
+  std::uint32_t vertex_count = 0;
+  std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;  // places, or kNoCorner
+  std::array<std::uint16_t, kMaxLeafVertices + 1> vertex;  // of the cluster; the last is no one's
+};
+
+/// Where the offsets of a cluster's vertices lie.
+struct GridOffsets {
+  std::array<std::int32_t, 3> origin;
+  std::array<std::uint32_t, 3> width;
+  std::uint32_t stride = 0;  // bits from one vertex to the next
+  std::uint64_t start = 0;   // bit of the first one
+};
+
+namespace grid_detail {
+
+// Why no read leaves the section: where leaves start is told in at most 34 bytes; a leaf starts
+// inside the bytes of its cluster, which end at least kClusterPadding before the section does, and
+// has at most 32 references of 12 bits, 8 steps of 5 and one number of 10: 434 bits.
+static_assert(kClusterPadding >= 434 / 8 + 1 + 8);
+
+// Reads the fields of a leaf one after the other. What a window holds after a refill, at least 57
+// bits, is enough for the first face and the number before it (10 + 1 + 4 x 12), one face of four
+// corners (1 + 4 + 4 x 12), or three faces that continue a strip (4 + 12 each).
+class LeafBits {
+ public:
+  LeafBits(const std::byte* bytes, std::uint64_t position) : bytes_(bytes), position_(position) {}
+
+  BOXTREE_ALWAYS_INLINE void refill() {
+    window_ = load<std::uint64_t>(bytes_ + position_ / 8) >> (position_ % 8);
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t window() const { return window_; }
+  BOXTREE_ALWAYS_INLINE void skip(std::uint32_t width) {
+    window_ >>= width;
+    position_ += width;
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t take(std::uint32_t width) {
+    const auto field = static_cast<std::uint32_t>(window_ & ((std::uint64_t{1} << width) - 1));
+    skip(width);
+    return field;
+  }
+
+ private:
+  const std::byte* bytes_;
+  std::uint64_t position_;
+  std::uint64_t window_ = 0;
+};
+
+// `one` where `bit` is 1, `other` where it is 0. Not an operator ?:, which compilers make a branch
+// of, although nobody can guess these bits.
+BOXTREE_ALWAYS_INLINE std::uint32_t select(std::uint32_t bit, std::uint32_t one,
+                                           std::uint32_t other) {
+  return other ^ ((one ^ other) & (0u - bit));
+}
+
+// The vertices that a leaf has named so far.
+class LeafVertices {
+ public:
+  BOXTREE_ALWAYS_INLINE LeafVertices(std::uint32_t first_new, std::uint32_t vertex_count,
+                                     GridLeafFaces& out)
+      : out_(out), next_(first_new), vertex_count_(vertex_count) {}
+
+  // A reference: 1 for the vertex of the cluster that follows the last one named so; 01 and the
+  // number of a vertex of the cluster before that one; 00 and the place of a vertex that this leaf
+  // has named before. Which of them comes is anybody's guess, so nothing here is a branch. On any
+  // bytes a reference has at most 12 bits: numbers are below the 512 that a cluster may have and 32
+  // more that a leaf may name.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t take(LeafBits& bits) {
+    const auto window = static_cast<std::uint32_t>(bits.window());
+    const std::uint32_t is_next = window & 1u;
+    const std::uint32_t is_new = (window | (window >> 1)) & 1u;
+    // Both widths are known before the reference is: what follows waits for nothing but its kind.
+    const std::uint32_t width =
+        select(is_new, width_below(next_), width_below(count_)) & (is_next - 1);
+    const std::uint32_t field = (window >> 2) & ((1u << width) - 1);
+    bits.skip(2 - is_next + width);
+    const std::uint32_t vertex = select(is_next, next_, field);
+    const std::uint32_t place = select(is_new, count_, field);
+    out_.vertex[count_] = static_cast<std::uint16_t>(vertex);
+    count_ += is_new;
+    next_ += is_next;
+    // Both differences are negative, or the reference is none. (The place of a vertex that was
+    // named before is less than the number of vertices in any case.)
+    negative_ &= (vertex - vertex_count_) & (place - count_);
+    return place;
+  }
+
+  [[nodiscard]] bool are_sound() const { return (negative_ >> 31) != 0; }
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+
+ private:
+  GridLeafFaces& out_;
+  std::uint32_t count_ = 0;
+  std::uint32_t next_;
+  std::uint32_t vertex_count_;
+  std::uint32_t negative_ = 0xffffffffu;  // its highest bit
+};
+
+// Finds leaf `leaf` and the offsets of its cluster; the bit where the leaf starts, or false.
+BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t leaf,
+                                          std::uint32_t& vertex_count, GridOffsets& offsets,
+                                          std::uint64_t& leaf_start) {
+  const auto cluster = load<ClusterRecord>(grid.clusters, leaf / kClusterLeaves);
+  const std::uint64_t start = cluster.offset * kClusterUnit;
+  if (cluster.leaf_bits > 16 || !in_range(start, kClusterPadding, grid.bytes.size())) return false;
+  const std::byte* const bytes = grid.bytes.data();
+  const std::uint32_t leaves =
+      leaves_in_cluster(grid.face_count - leaf / kClusterLeaves * kClusterFaces);
+  const std::uint64_t first_leaf = ((leaves + 1) * cluster.leaf_bits + 7) / 8;
+  // Bytes after the start of the cluster, of a leaf and of what follows the last one.
+  std::uint64_t at[2];
+  const std::uint32_t number[2] = {leaf % kClusterLeaves, leaves};
+  for (std::size_t i = 0; i < 2; ++i) {
+    at[i] = first_leaf + number[i] * cluster.leaf_bytes +
+            read_bits(bytes, start * 8 + number[i] * cluster.leaf_bits, cluster.leaf_bits);
+  }
+  const std::uint64_t leaf_at = at[0], vertices_at = at[1];
+  offsets.origin = cluster.origin;
+  offsets.width = {cluster.width[0], cluster.width[1], cluster.width[2]};
+  const std::uint32_t widest = std::max({offsets.width[0], offsets.width[1], offsets.width[2]});
+  offsets.stride = offsets.width[0] + offsets.width[1] + offsets.width[2];
+  const std::uint64_t size =
+      vertices_at + (std::uint64_t{cluster.vertex_count} * offsets.stride + 7) / 8;
+  constexpr std::uint32_t kMostVertices = kClusterFaces * 4;
+  if (widest > 32 || cluster.vertex_count == 0 || cluster.vertex_count > kMostVertices ||
+      leaf_at > vertices_at || !in_range(start, size + kClusterPadding, grid.bytes.size())) {
+    return false;
+  }
+  vertex_count = cluster.vertex_count;
+  offsets.start = (start + vertices_at) * 8;
+  leaf_start = (start + leaf_at) * 8;
+  return true;
+}
+
+// The corners of a face, a byte each from the lowest on.
+inline constexpr std::uint32_t kCornerBits = 8;
+inline constexpr std::uint32_t kTriangleBits = 3 * kCornerBits;
+
+// By how many bits a step turns: the corners of the face before, so that the shared edge comes
+// first, and those of this face into their places.
+struct StripTurn {
+  std::uint8_t before;
+  std::uint8_t after;
+};
+inline constexpr auto kStripTurns = [] {
+  std::array<StripTurn, StripStep::kApart> turns{};
+  for (std::uint32_t edge = 0; edge < 3; ++edge) {
+    for (std::uint32_t turn = 0; turn < 3; ++turn) {
+      turns[StripStep::code(edge, turn)] = {
+          static_cast<std::uint8_t>(edge * kCornerBits),
+          static_cast<std::uint8_t>((3 - turn) % 3 * kCornerBits)};
+    }
+  }
+  return turns;
+}();
+
+// Turns three corners down by a whole number of them.
+BOXTREE_ALWAYS_INLINE std::uint32_t turned(std::uint32_t corners, std::uint32_t bits) {
+  const std::uint64_t twice = corners | (std::uint64_t{corners} << kTriangleBits);
+  return static_cast<std::uint32_t>(twice >> bits) & ((1u << kTriangleBits) - 1);
+}
+
+// Three references.
+BOXTREE_ALWAYS_INLINE std::uint32_t take_triangle(LeafBits& bits, LeafVertices& vertices) {
+  std::uint32_t corners = vertices.take(bits);
+  corners |= vertices.take(bits) << kCornerBits;
+  corners |= vertices.take(bits) << (2 * kCornerBits);
+  return corners;
+}
+
+// The triangle after `previous`, or the first of a quad; false for a code that is none.
+template <bool kMayBeQuad>
+BOXTREE_ALWAYS_INLINE bool take_next(LeafBits& bits, LeafVertices& vertices,
+                                     std::uint32_t& corners) {
+  const std::uint32_t step = bits.take(StripStep::kBits);
+  if (step >= StripStep::kApart) {
+    if (step > StripStep::kApart) return false;
+    bits.refill();
+    corners = take_triangle(bits, vertices);
+    if (!kMayBeQuad) bits.refill();
+    return true;
+  }
+  const std::uint32_t edge = turned(corners, kStripTurns[step].before);
+  const std::uint32_t swapped = ((edge >> kCornerBits) & 0xffu) | ((edge & 0xffu) << kCornerBits);
+  const std::uint32_t third = vertices.take(bits) << (2 * kCornerBits);
+  corners = turned(swapped | third, kStripTurns[step].after);
+  return true;
+}
+
+// The corners of a face, with the fourth one of a quad.
+BOXTREE_ALWAYS_INLINE std::array<std::uint8_t, 4> with_fourth(std::uint32_t corners, bool is_quad,
+                                                              LeafBits& bits,
+                                                              LeafVertices& vertices) {
+  const std::uint32_t fourth = is_quad ? vertices.take(bits) : GridLeaf::kNoCorner;
+  return std::bit_cast<std::array<std::uint8_t, 4>>(corners | (fourth << kTriangleBits));
+}
+
+}  // namespace grid_detail
+
+/// Reads the faces of leaf `leaf` and where its cluster's offsets lie. Otherwise as
+/// decode_grid_leaf; the vertices named are vertices of the cluster.
+template <bool kMayBeQuad>
+BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
+                                           GridLeafFaces& out, GridOffsets& offsets) noexcept {
+  using namespace grid_detail;
+  std::uint32_t vertex_count;
+  std::uint64_t leaf_start;
+  if (!find_grid_leaf(grid, leaf, vertex_count, offsets, leaf_start)) return false;
+  LeafBits bits(grid.bytes.data(), leaf_start);
+  bits.refill();
+  const std::uint32_t first_new = bits.take(width_below(vertex_count + 1));
+  if (first_new > vertex_count) return false;
+  LeafVertices vertices(first_new, vertex_count, out);
+  out.face_count = std::min(kLeafFaces, grid.face_count - leaf * kLeafFaces);
+  bool is_quad = kMayBeQuad && bits.take(1) != 0;
+  std::uint32_t corners = take_triangle(bits, vertices);
+  out.corner[0] = with_fourth(corners, is_quad, bits, vertices);
+  constexpr std::uint32_t kRefills = kMayBeQuad ? 0xff : 0b10010010;  // before which faces
+  for (std::uint32_t f = 1; f < out.face_count; ++f) {
+    if (((kRefills >> f) & 1u) != 0) bits.refill();
+    is_quad = kMayBeQuad && bits.take(1) != 0;
+    if (!take_next<kMayBeQuad>(bits, vertices, corners)) return false;
+    out.corner[f] = with_fourth(corners, is_quad, bits, vertices);
+  }
+  out.vertex_count = vertices.count();
+  return vertices.are_sound();
+}
+
+}  // namespace boxtree
+
+#undef BOXTREE_ALWAYS_INLINE
