@@ -73,6 +73,8 @@ class Tree {
   [[nodiscard]] const TreeRecord& record() const noexcept { return record_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   [[nodiscard]] bool empty() const noexcept { return record_.root == RootKind::kEmpty; }
+  /// Whether the root is a node: not so for trees without faces, or of one leaf.
+  [[nodiscard]] bool has_nodes() const noexcept { return record_.root == RootKind::kSubtree; }
   [[nodiscard]] bool has_face_ids() const noexcept;
 
   /// The root with its stored box. Precondition: !empty().

@@ -46,28 +46,30 @@ class BoxFilter {
     const Floats d;
     auto touched =
         hn::And(hn::Le(box.low[0], hn::Set(d, high_[0])), hn::Ge(box.high[0], hn::Set(d, low_[0])));
-    auto inside = hn::And(hn::Ge(box.low[0], hn::Set(d, inner_low_[0])),
-                          hn::Le(box.high[0], hn::Set(d, inner_high_[0])));
     for (std::size_t k = 1; k < 3; ++k) {
       touched = hn::And(touched, hn::And(hn::Le(box.low[k], hn::Set(d, high_[k])),
                                          hn::Ge(box.high[k], hn::Set(d, low_[k]))));
-      inside = hn::And(inside, hn::And(hn::Ge(box.low[k], hn::Set(d, inner_low_[k])),
-                                       hn::Le(box.high[k], hn::Set(d, inner_high_[k]))));
     }
-    return {bits_of(touched), bits_of(inside)};
+    return {bits_of(touched), bits_of(contained(box.low, box.high))};
   }
 
   HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    const Floats d;
-    auto inside = hn::Ge(point[0], hn::Set(d, inner_low_[0]));
-    for (std::size_t k = 0; k < 3; ++k) {
-      inside = hn::And(inside, hn::And(hn::Ge(point[k], hn::Set(d, inner_low_[k])),
-                                       hn::Le(point[k], hn::Set(d, inner_high_[k]))));
-    }
-    return bits_of(inside);
+    return bits_of(contained(point, point));
   }
 
  private:
+  HWY_INLINE hn::Mask<Floats> contained(const FloatVector (&low)[3],
+                                        const FloatVector (&high)[3]) const {
+    const Floats d;
+    auto inside = hn::And(hn::Ge(low[0], hn::Set(d, inner_low_[0])),
+                          hn::Le(high[0], hn::Set(d, inner_high_[0])));
+    for (std::size_t k = 1; k < 3; ++k) {
+      inside = hn::And(inside, hn::And(hn::Ge(low[k], hn::Set(d, inner_low_[k])),
+                                       hn::Le(high[k], hn::Set(d, inner_high_[k]))));
+    }
+    return inside;
+  }
+
   std::array<float, 3> low_, high_;
   std::array<float, 3> inner_low_, inner_high_;
 };
@@ -268,30 +270,28 @@ HWY_EXPORT(box_wide4);
 HWY_EXPORT(sphere_wide8);
 HWY_EXPORT(sphere_wide4);
 
-bool has_nodes(const Tree& tree) {
-  return tree.record().root == RootKind::kSubtree;
+bool is_for_vectors(const Tree& tree, const SphereQuery& query) {
+  return tree.has_nodes() && PointFilter::is_near(tree, query.center);
 }
 
 }  // namespace
 
 Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& walk) {
-  if (!has_nodes(tree)) return traverse_overlap(tree, codec, walk);
+  if (!tree.has_nodes()) return traverse_overlap(tree, codec, walk);
   return HWY_DYNAMIC_DISPATCH(box_wide8)(tree, codec, walk);
 }
 Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& walk) {
-  if (!has_nodes(tree)) return traverse_overlap(tree, codec, walk);
+  if (!tree.has_nodes()) return traverse_overlap(tree, codec, walk);
   return HWY_DYNAMIC_DISPATCH(box_wide4)(tree, codec, walk);
 }
 Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec,
                   FaceWalk<SphereQuery>& walk) {
-  const bool near = PointFilter::is_near(tree, walk.shape.center);
-  if (!has_nodes(tree) || !near) return traverse_overlap(tree, codec, walk);
+  if (!is_for_vectors(tree, walk.shape)) return traverse_overlap(tree, codec, walk);
   return HWY_DYNAMIC_DISPATCH(sphere_wide8)(tree, codec, walk);
 }
 Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec,
                   FaceWalk<SphereQuery>& walk) {
-  const bool near = PointFilter::is_near(tree, walk.shape.center);
-  if (!has_nodes(tree) || !near) return traverse_overlap(tree, codec, walk);
+  if (!is_for_vectors(tree, walk.shape)) return traverse_overlap(tree, codec, walk);
   return HWY_DYNAMIC_DISPATCH(sphere_wide4)(tree, codec, walk);
 }
 

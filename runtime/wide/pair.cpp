@@ -281,7 +281,7 @@ HWY_EXPORT(pair_wide8);
 HWY_EXPORT(pair_wide4);
 
 bool have_nodes(const Tree& first, const Tree& second) {
-  return first.record().root == RootKind::kSubtree && second.record().root == RootKind::kSubtree;
+  return first.has_nodes() && second.has_nodes();
 }
 
 }  // namespace

@@ -158,7 +158,7 @@ HWY_EXPORT(point_wide8);
 HWY_EXPORT(point_wide4);
 
 bool is_for_vectors(const Tree& tree, const PointQuery& query) {
-  return tree.record().root == RootKind::kSubtree && PointFilter::is_near(tree, query.point);
+  return tree.has_nodes() && PointFilter::is_near(tree, query.point);
 }
 
 }  // namespace

@@ -206,7 +206,7 @@ HWY_EXPORT(walk_ray_wide8);
 HWY_EXPORT(walk_ray_wide4);
 
 bool is_for_vectors(const Tree& tree, const RayQuery& query) {
-  return tree.record().root == RootKind::kSubtree && RayFilter::is_near(query);
+  return tree.has_nodes() && RayFilter::is_near(query);
 }
 
 }  // namespace
