@@ -24,10 +24,10 @@ inline constexpr std::size_t kBitPadding = 8;
   return static_cast<std::uint8_t>(largest == 0 ? 1 : std::bit_width(largest));
 }
 
-/// Bits of a number below `count`; none when there is at most one such number. Odd and never zero
-/// inside, so that no branch is needed.
-[[nodiscard]] constexpr std::uint32_t width_below(std::uint32_t count) noexcept {
-  const std::uint32_t odd = (2 * count - (count != 0 ? 1u : 0u)) | 1u;
+/// Bits that a field for numbers below `count` takes: none when there is but one, or none at all.
+/// Odd and never zero inside, so that no branch is needed. Precondition: count < 2^63.
+[[nodiscard]] constexpr std::uint32_t width_below(std::uint64_t count) noexcept {
+  const std::uint64_t odd = (2 * count - (count != 0 ? 1u : 0u)) | 1u;
   return static_cast<std::uint32_t>(std::bit_width(odd)) - 1;
 }
 

@@ -170,13 +170,9 @@ class ClusterEncoder {
  private:
   static constexpr std::uint16_t kUnnamed = 0xffff;
 
-  static std::uint32_t width_of(std::size_t count) {
-    return width_below(static_cast<std::uint32_t>(count));
-  }
-
   void write_leaf(std::span<const ClusterFace> faces) {
     BitWriter bits(leaves_);
-    bits.put(stored_.size(), width_of(number_.size() + 1));
+    bits.put(stored_.size(), width_below(number_.size() + 1));
     named_.clear();
     for (std::size_t f = 0; f < faces.size(); ++f) {
       const ClusterFace& face = faces[f];
@@ -196,7 +192,7 @@ class ClusterEncoder {
     const auto named = std::find(named_.begin(), named_.end(), vertex);
     if (named != named_.end()) {
       bits.put(0, 2);
-      bits.put(static_cast<std::uint64_t>(named - named_.begin()), width_of(named_.size()));
+      bits.put(static_cast<std::uint64_t>(named - named_.begin()), width_below(named_.size()));
       return;
     }
     named_.push_back(vertex);
@@ -206,7 +202,7 @@ class ClusterEncoder {
       bits.put(1, 1);
     } else {
       bits.put(2, 2);  // the first bit is the least significant
-      bits.put(number_[vertex], width_of(stored_.size()));
+      bits.put(number_[vertex], width_below(stored_.size()));
     }
   }
 
