@@ -49,12 +49,6 @@ static_assert(offsetof(ClusterRecord, width) == 18 && offsetof(ClusterRecord, le
   return faces / kClusterFaces + (faces % kClusterFaces != 0 ? 1 : 0);
 }
 
-/// Leaves of a cluster that starts so many faces before the last one's end.
-[[nodiscard]] constexpr std::uint32_t leaves_in_cluster(std::uint32_t faces_left) noexcept {
-  const std::uint32_t faces = faces_left < kClusterFaces ? faces_left : kClusterFaces;
-  return (faces + kLeafFaces - 1) / kLeafFaces;
-}
-
 /// How a face of a strip follows from the one before, whose corners are p: it shares the edge from
 /// p[(edge + 1) % 3] to p[edge], which are its corners `turn` and `turn` + 1 (modulo 3), and brings
 /// the third. Code 9 shares nothing and brings all three. Larger codes are corrupt.

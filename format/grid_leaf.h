@@ -125,8 +125,8 @@ BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t le
   const std::uint64_t start = cluster.offset * kClusterUnit;
   if (cluster.leaf_bits > 16 || !in_range(start, kClusterPadding, grid.bytes.size())) return false;
   const std::byte* const bytes = grid.bytes.data();
-  const std::uint32_t leaves =
-      leaves_in_cluster(grid.face_count - leaf / kClusterLeaves * kClusterFaces);
+  const std::uint32_t faces_left = grid.face_count - leaf / kClusterLeaves * kClusterFaces;
+  const auto leaves = static_cast<std::uint32_t>(leaves_of(std::min(faces_left, kClusterFaces)));
   const std::uint64_t first_leaf = ((leaves + 1) * cluster.leaf_bits + 7) / 8;
   // Bytes after the start of the cluster, of a leaf and of what follows the last one.
   std::uint64_t at[2];

@@ -3,6 +3,7 @@
 // stacks and loops are sized by them, so raising one is a new format version.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 namespace boxtree {
@@ -35,6 +36,11 @@ inline constexpr std::uint32_t kMaxWideDepth = 64;
 
 /// Faces in a leaf of the wide codecs; only the last leaf of a tree may hold fewer.
 inline constexpr std::uint32_t kLeafFaces = 8;
+
+/// Leaves that so many faces take when all but the last are full.
+[[nodiscard]] constexpr std::size_t leaves_of(std::size_t faces) noexcept {
+  return (faces + kLeafFaces - 1) / kLeafFaces;
+}
 
 /// Triangles in one leaf: each of its faces may be a quad.
 inline constexpr std::uint32_t kMaxLeafTriangles = 2 * kLeafFaces;

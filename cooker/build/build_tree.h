@@ -58,12 +58,6 @@ struct BuildTree {
 /// The bounds of a face in tree space, as a reader computes its corners.
 [[nodiscard]] Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face);
 
-/// Leaves that so many faces take when all but the last are full.
-[[nodiscard]] constexpr std::size_t leaves_of(std::size_t faces,
-                                              std::size_t leaf_faces = kLeafFaces) {
-  return (faces + leaf_faces - 1) / leaf_faces;
-}
-
 /// Where tree space begins.
 enum class Origin : std::uint8_t {
   kByPrecision,  // at zero for f32 positions, in the middle for f64 ones
