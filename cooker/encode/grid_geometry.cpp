@@ -143,13 +143,14 @@ class BitWriter {
   std::uint64_t at_;
 };
 
+// Appends clusters to `out`, one after another.
 class ClusterEncoder {
  public:
-  // Appends the bytes of a cluster; faces may change places within their leaves.
   ClusterEncoder(std::vector<std::byte>& out, bool may_have_quads)
       : out_(out), may_have_quads_(may_have_quads) {}
 
-  ClusterRecord encode(std::span<ClusterFace> faces, const ClusterVertices& vertices) {
+  // Appends the bytes of a cluster. Its record lacks their offset, which the caller knows.
+  ClusterRecord encode(std::span<const ClusterFace> faces, const ClusterVertices& vertices) {
     record_ = {};
     record_.vertex_count = vertices.count();
     number_.assign(vertices.count(), kUnnamed);
