@@ -30,7 +30,6 @@ struct Arguments {
   CookOptions options;
   bool exact = false;
   bool external = false;
-  bool has_grid = false;  // --grid-bits or --tolerance was given
   bool no_face_ids = false;
   bool strip = false;
   bool f64 = false;
@@ -199,7 +198,6 @@ int run(Arguments& arguments) {
   if (arguments.builder == "paper") options.builder = Builder::kPaper;
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
-  if (arguments.has_grid) options.geometry = GeometryId::kGrid;
   if (arguments.f64) options.import.precision = Precision::kF64;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
@@ -246,20 +244,12 @@ void add_cook_command(CLI::App& app, int& status) {
       ->capture_default_str();
   CLI::Option* exact = command.add_flag(
       "--exact", arguments->exact, "Keep every bit of every position (what is done by default)");
-  CLI::Option* tolerance = command.add_option_function<double>(
-      "--tolerance",
-      [arguments](double length) {
-        arguments->options.grid.tolerance = length;
-        arguments->has_grid = true;
-      },
+  CLI::Option* tolerance = command.add_option(
+      "--tolerance", arguments->options.grid.tolerance,
       "Round positions to a grid: no vertex moves farther, in units of the mesh");
   tolerance->check(CLI::PositiveNumber)->excludes(exact);
-  CLI::Option* grid_bits = command.add_option_function<int>(
-      "--grid-bits",
-      [arguments](int bits) {
-        arguments->options.grid.bits = bits;
-        arguments->has_grid = true;
-      },
+  CLI::Option* grid_bits = command.add_option(
+      "--grid-bits", arguments->options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
   command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
@@ -286,7 +276,11 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
-  command.callback([arguments, &status] { status = run(*arguments); });
+  command.callback([arguments, tolerance, grid_bits, &status] {
+    const bool has_grid = tolerance->count() + grid_bits->count() > 0;
+    if (has_grid) arguments->options.geometry = GeometryId::kGrid;
+    status = run(*arguments);
+  });
 }
 
 }  // namespace boxtree::cooker
