@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/binary_ply.h>
+#include <boxtree/cooker/import/direct_import.h>
 #include <boxtree/cooker/import/face_intake.h>
 #include <boxtree/cooker/import/ply_header.h>
 #include <boxtree/cooker/import/source_stream.h>
@@ -320,13 +321,6 @@ void Reader<T>::weld() {
   }
 }
 
-template <class T>
-Status read_positions_as(SourceStream& stream, const Layout& layout,
-                         const std::filesystem::path& path, const ImportOptions& options,
-                         std::vector<T>& positions, Imported& out) {
-  return Reader<T>(stream, layout, path.string(), options, positions, out).read();
-}
-
 }  // namespace
 
 Result<bool> import_binary_ply(const std::filesystem::path& path, const ImportOptions& options,
@@ -343,18 +337,9 @@ Result<bool> import_binary_ply(const std::filesystem::path& path, const ImportOp
   if (!find_parts(layout)) return false;
   static_cast<void>(stream->take(layout.header.bytes));
 
-  out.report.meshes = 1;
-  out.report.files_read = {path.lexically_normal()};
-  Positions& positions = out.mesh.positions;
-  positions.precision = options.precision;
-  const Status status = options.precision == Precision::kF32
-                            ? read_positions_as(*stream, layout, path, options, positions.f32, out)
-                            : read_positions_as(*stream, layout, path, options, positions.f64, out);
-  if (!status.ok()) return status.error();
-  const Result<std::uint64_t> hash = stream->finish();
-  if (!hash.ok()) return hash.error();
-  out.report.content_hash = hash.value();
-  return true;
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    return Reader<T>(*stream, layout, path.string(), options, positions, out).read();
+  });
 }
 
 }  // namespace boxtree::cooker

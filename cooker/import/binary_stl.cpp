@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/binary_stl.h>
+#include <boxtree/cooker/import/direct_import.h>
 #include <boxtree/cooker/import/face_intake.h>
 #include <boxtree/cooker/import/source_stream.h>
 #include <boxtree/cooker/import/weld.h>
@@ -132,13 +133,6 @@ Status Reader<T>::take_triangle(const char* triangle, std::uint32_t face_id) {
   return {};
 }
 
-template <class T>
-Status read_positions_as(SourceStream& stream, std::uint32_t count,
-                         const std::filesystem::path& path, const ImportOptions& options,
-                         std::vector<T>& positions, Imported& out) {
-  return Reader<T>(stream, path.string(), options, positions, out).read(count);
-}
-
 }  // namespace
 
 Result<bool> import_binary_stl(const std::filesystem::path& path, const ImportOptions& options,
@@ -158,18 +152,9 @@ Result<bool> import_binary_stl(const std::filesystem::path& path, const ImportOp
   if (count == 0) return false;
   static_cast<void>(stream->take(kHeaderBytes));
 
-  out.report.meshes = 1;
-  out.report.files_read = {path.lexically_normal()};
-  Positions& positions = out.mesh.positions;
-  positions.precision = options.precision;
-  const Status status = options.precision == Precision::kF32
-                            ? read_positions_as(*stream, count, path, options, positions.f32, out)
-                            : read_positions_as(*stream, count, path, options, positions.f64, out);
-  if (!status.ok()) return status.error();
-  const Result<std::uint64_t> hash = stream->finish();
-  if (!hash.ok()) return hash.error();
-  out.report.content_hash = hash.value();
-  return true;
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    return Reader<T>(*stream, path.string(), options, positions, out).read(count);
+  });
 }
 
 }  // namespace boxtree::cooker
