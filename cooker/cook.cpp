@@ -10,6 +10,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <boxtree/cooker/build/face_boxes.h>
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
@@ -20,6 +21,11 @@
 
 namespace boxtree::cooker {
 namespace {
+
+std::uint64_t hash_of(const SourceMesh& mesh) {
+  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+  return hash ? *hash : 0;  // import has checked every corner
+}
 
 std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
   std::uint32_t count = 0;
@@ -85,30 +91,32 @@ bool enter(const EncodedTree& tree, const SourceMesh& mesh, const CookOptions& o
 struct Source {
   const SourceMesh& mesh;                        // as imported
   const std::optional<QuantisedMesh> quantised;  // or nothing
+  EncodedTree known;                             // what every tree of it says, but for its bytes
+
+  Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid);
 
   [[nodiscard]] const SourceMesh& built() const { return quantised ? quantised->mesh : mesh; }
   [[nodiscard]] Origin origin() const { return quantised ? Origin::kZero : Origin::kByPrecision; }
 };
 
-EncodedTree without_bytes(const Source& source, const BuildTree& build) {
-  const SourceMesh& mesh = source.mesh;
-  EncodedTree tree;
-  tree.name = mesh.name;
-  tree.origin = source.quantised ? source.quantised->origin : build.origin;
-  tree.scale_exponent =
-      build.scale_exponent + (source.quantised ? source.quantised->step_exponent : 0);
-  tree.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-  tree.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
-  tree.degenerate_count = count_degenerate(source.built(), build.frame());
-  tree.positions_f64 = mesh.positions.precision == Precision::kF64;
-  return tree;
+Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
+    : mesh(imported), quantised(std::move(on_grid)) {
+  BuildTree unbuilt;  // with the frame that all builders choose
+  choose_frame(built().positions, origin(), unbuilt);
+  known.name = mesh.name;
+  known.origin = quantised ? quantised->origin : unbuilt.origin;
+  known.scale_exponent = unbuilt.scale_exponent + (quantised ? quantised->step_exponent : 0);
+  known.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  known.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
+  known.degenerate_count = count_degenerate(built(), unbuilt.frame());
+  known.geometry_hash = hash_of(mesh);
+  known.positions_f64 = mesh.positions.precision == Precision::kF64;
 }
 
 EncodedGeometry encode_geometry(const Source& source, const CookOptions& options,
                                 std::vector<std::uint32_t> order, LeafOrder leaf_order) {
   if (source.quantised) {
-    return encode_grid_geometry(*source.quantised, source.mesh, std::move(order), leaf_order,
-                                options.face_ids);
+    return encode_grid_geometry(*source.quantised, std::move(order), leaf_order, options.face_ids);
   }
   return encode_exact_geometry(source.mesh, order, options.face_ids);
 }
@@ -125,7 +133,7 @@ Family binary_family(const Source& source, const CookOptions& options,
                      const std::vector<CodecId>& codecs) {
   const BuildTree build = build_tree(source.built(), options.builder, source.origin());
   const bool external = options.geometry == GeometryId::kExternal;
-  Family family{without_bytes(source, build), {}};
+  Family family{source.known, {}};
   family.tree.faces_in_source_order = external;
   family.tree.geometry =
       external ? encode_external_geometry(source.mesh, {})
@@ -150,13 +158,8 @@ Family binary_family(const Source& source, const CookOptions& options,
 
 // Codecs with full leaves, whose layout orders the faces.
 Family wide_family(const Source& source, const CookOptions& options) {
-  Family family;
-  WideLayout layout;
-  {
-    const BuildTree build = build_full_leaves(source.built(), source.origin());
-    family.tree = without_bytes(source, build);
-    layout = lay_out_wide(build);
-  }
+  Family family{source.known, {}};
+  WideLayout layout = lay_out_wide(build_full_leaves(source.built(), source.origin()));
   family.tree.geometry =
       options.geometry == GeometryId::kExternal
           ? encode_external_geometry(source.mesh, layout.face_order)
@@ -253,7 +256,7 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
                                mesh.name, quantised->max_vertex_error)};
     }
   }
-  const Source source{mesh, std::move(quantised)};
+  const Source source(mesh, std::move(quantised));
   CookedTree cooked;
   if (const auto codecs = wanted_codecs(false, source.built(), options); !codecs.empty()) {
     try_family(binary_family(source, options, codecs), codecs, mesh, options, cooked);

@@ -63,7 +63,6 @@ struct EncodedGeometry {
   std::uint8_t corner_bytes = 0;
   std::uint8_t corners_per_face = 0;
   std::uint8_t face_id_bytes = 0;
-  std::uint64_t hash = 0;       // geometry_hash of the source mesh
   int grid_exponent = 0;        // geometry grid: of its step in object space
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
@@ -80,14 +79,13 @@ struct EncodedGeometry {
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
 
 /// Faces in `order`, but for their places within groups of kLeafFaces, as clusters on a grid (see
-/// format/grid.h). `source` is the mesh that was quantised.
+/// format/grid.h).
 [[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
-                                                   const SourceMesh& source,
                                                    std::vector<std::uint32_t> order,
                                                    LeafOrder leaf_order, bool face_ids);
 
-/// Nothing but the hash that recognises the mesh again and, unless `order` is empty, the face ids
-/// through which a reader finds the application's faces.
+/// Nothing but, unless `order` is empty, the face ids through which a reader finds the
+/// application's faces.
 [[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
                                                        std::span<const std::uint32_t> order);
 

@@ -25,7 +25,7 @@ TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
   record.origin = tree.origin;
   record.root_low = tree.nodes.root_box.low;
   record.root_high = tree.nodes.root_box.high;
-  record.geometry_hash = tree.geometry.hash;
+  record.geometry_hash = tree.geometry_hash;
   record.grid_exponent = tree.geometry.grid_exponent;
   return record;
 }

@@ -21,6 +21,7 @@ struct EncodedTree {
   std::uint32_t face_count = 0;
   std::uint32_t triangle_count = 0;
   std::uint32_t degenerate_count = 0;
+  std::uint64_t geometry_hash = 0;  // of the source mesh, by which a reader recognises it
   bool faces_in_source_order = false;
   bool positions_f64 = false;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all geometry stores say of the source: its faces' numbers and its hash.
+// What all geometry stores say of the source: its faces' numbers.
 #pragma once
 
 #include <span>
@@ -11,8 +11,5 @@ namespace boxtree::cooker {
 /// Source numbers of the faces in `order`, in as few bytes as the largest takes.
 void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                      EncodedGeometry& out);
-
-/// geometry_hash of the mesh.
-[[nodiscard]] std::uint64_t hash_of(const SourceMesh& mesh);
 
 }  // namespace boxtree::cooker

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include <boxtree/cooker/encode/face_ids.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/format/bytes.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -38,11 +38,6 @@ void append_position(const Positions& positions, std::size_t vertex, std::vector
 
 }  // namespace
 
-std::uint64_t hash_of(const SourceMesh& mesh) {
-  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
-  return hash ? *hash : 0;  // import has checked every corner
-}
-
 void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                      EncodedGeometry& out) {
   std::uint32_t largest = 0;
@@ -67,7 +62,6 @@ EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::span<const st
                                       bool face_ids) {
   EncodedGeometry out;
   out.geometry = GeometryId::kExact;
-  out.hash = hash_of(mesh);
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;
@@ -99,7 +93,6 @@ EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
   EncodedGeometry out;
   out.geometry = GeometryId::kExternal;
   out.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
-  out.hash = hash_of(mesh);
   if (!order.empty()) encode_face_ids(mesh, order, out);
   return out;
 }

@@ -301,7 +301,7 @@ Block encode_block(const SourceMesh& mesh, std::span<std::uint32_t> order, bool 
 
 }  // namespace
 
-EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised, const SourceMesh& source,
+EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
                                      std::vector<std::uint32_t> order, LeafOrder leaf_order,
                                      bool face_ids) {
   const SourceMesh& mesh = quantised.mesh;
@@ -311,7 +311,6 @@ EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised, const Sourc
   out.geometry = GeometryId::kGrid;
   out.grid_exponent = quantised.step_exponent;
   out.max_vertex_error = quantised.max_vertex_error;
-  out.hash = hash_of(source);
   out.corners_per_face = may_have_quads ? 4 : 3;
 
   constexpr std::size_t kBlockFaces = std::size_t{64} * kClusterFaces;
