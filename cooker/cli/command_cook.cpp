@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
 #include <chrono>
+#include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <fstream>
 #include <memory>
 #include <sys/resource.h>
@@ -184,6 +186,12 @@ void print_report(const Arguments& arguments, const CookReport& report, double s
              arguments.output.string(), seconds);
 }
 
+// What is wrong with a length, for CLI11, whose own PositiveNumber lets NaN pass.
+std::string length_fault(const std::string& text) {
+  const double length = std::strtod(text.c_str(), nullptr);
+  return length > 0 && std::isfinite(length) ? "" : text + " is no length";
+}
+
 int run(Arguments& arguments) {
   CookOptions& options = arguments.options;
   if (arguments.codec == "blob-lzma") options.blob = BlobMethod::kLzma;
@@ -247,7 +255,7 @@ void add_cook_command(CLI::App& app, int& status) {
   CLI::Option* tolerance = command.add_option(
       "--tolerance", arguments->options.grid.tolerance,
       "Round positions to a grid: no vertex moves farther, in units of the mesh");
-  tolerance->check(CLI::PositiveNumber)->excludes(exact);
+  tolerance->check(length_fault, "POSITIVE")->excludes(exact);
   CLI::Option* grid_bits = command.add_option(
       "--grid-bits", arguments->options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");

@@ -47,13 +47,20 @@ Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
 
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice) {
   Grid grid;
+  if (choice.tolerance && !(*choice.tolerance > 0 && std::isfinite(*choice.tolerance))) {
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("a tolerance of {} is no length", *choice.tolerance)};
+  }
   if (bounds.isEmpty()) return grid;
   const double half = half_extent(bounds);
   const int extent_exponent = half > 0 ? exponent_above_twice(half) : 0;
   grid.step_exponent = extent_exponent - choice.bits;
   if (choice.tolerance) {
-    // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all.
-    grid.step_exponent = std::ilogb(*choice.tolerance / 0.8661);
+    // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all. The
+    // quotient must not overflow, and steps above the limit are cut down to it in any case.
+    constexpr double kLargest = 0x1p1000;
+    static_assert(kMaxStepExponent < 1000);
+    grid.step_exponent = std::ilogb(std::min(*choice.tolerance, kLargest) / 0.8661);
     if (half > 0 && extent_exponent - grid.step_exponent > kMaxGridBits) {
       return Error{
           Errc::kMeshUnsupported,

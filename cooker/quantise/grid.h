@@ -29,7 +29,8 @@ struct Grid {
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh);
 
 /// A grid over `bounds` of all meshes that go into one file. Its origin is a multiple of its step
-/// where double can hold one. kMeshUnsupported when a tolerance asks for more than kMaxGridBits.
+/// where double can hold one. kMeshUnsupported when a tolerance asks for more than kMaxGridBits, or
+/// is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
 
 /// A mesh on the grid, in grid steps around a middle of its own: whole numbers, so that float holds

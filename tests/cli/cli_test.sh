@@ -64,6 +64,7 @@ expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 7
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 31
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --exact
+for length in 0 -1 inf nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --tolerance=$length; done
 expect 5 "$boxtree" cook cube.obj -o grid.bxt --tolerance 1e-20
 
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json

@@ -2,6 +2,7 @@
 // The grid store against rounding done here, vertex by vertex: what is decoded is the source on the
 // grid, face by face and corner by corner, in every codec.
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -92,6 +93,27 @@ TEST(Grid, HoldsATolerance) {
   CookOptions options = on_grid(8);
   options.grid.tolerance = 1e-12;
   EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide4, options).code(), Errc::kMeshUnsupported);
+}
+
+// ilogb of what is no length is no exponent: differences from it overflow.
+TEST(Grid, ToleranceThatIsNoLengthIsRefused) {
+  const SourceMesh mesh = test::torus(8, 6);
+  CookOptions options = on_grid(8);
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (const double tolerance : {std::nan(""), 0.0, -1.0, kInfinity, -kInfinity}) {
+    options.grid.tolerance = tolerance;
+    EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide8, options).code(), Errc::kMeshUnsupported)
+        << tolerance;
+  }
+  options.grid.tolerance = std::numeric_limits<double>::min();
+  EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide8, options).code(), Errc::kMeshUnsupported);
+  SourceMesh small = mesh;
+  for (float& x : small.positions.f32) x *= 0x1p-20f;
+  options.grid.tolerance = std::numeric_limits<double>::max();
+  const test::CookedTree cooked = test::cook_tree(small, CodecId::kWide8, options);
+  for (const auto& [face, corners] : decoded_faces(cooked.tree)) {
+    for (const Eigen::Vector3d& corner : corners) EXPECT_EQ(corner, corners[0]) << face;
+  }
 }
 
 TEST(Grid, KeepsAndCountsFacesThatCollapse) {
