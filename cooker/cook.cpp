@@ -87,6 +87,13 @@ bool enter(const EncodedTree& tree, const SourceMesh& mesh, const CookOptions& o
   return choose(cooked.candidates, options.goal) == cooked.candidates.size() - 1;
 }
 
+// A tree of nothing yet, with the frame that all builders choose.
+BuildTree unbuilt_tree(const SourceMesh& mesh, Origin origin) {
+  BuildTree tree;
+  choose_frame(mesh.positions, origin, tree);
+  return tree;
+}
+
 // What is cooked: a mesh, or what became of it on a grid.
 struct Source {
   const SourceMesh& mesh;                        // as imported
@@ -101,8 +108,7 @@ struct Source {
 
 Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
     : mesh(imported), quantised(std::move(on_grid)) {
-  BuildTree unbuilt;  // with the frame that all builders choose
-  choose_frame(built().positions, origin(), unbuilt);
+  const BuildTree unbuilt = unbuilt_tree(built(), origin());
   known.name = mesh.name;
   known.origin = quantised ? quantised->origin : unbuilt.origin;
   known.scale_exponent = unbuilt.scale_exponent + (quantised ? quantised->step_exponent : 0);
@@ -268,7 +274,8 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
     return Error{Errc::kInternal, mesh.name + ": no encoding passes its gates"};
   }
   if (source.quantised) {
-    const Frame frame(Eigen::Vector3d(cooked.tree.origin.data()), cooked.tree.scale_exponent);
+    // In a frame of its own: that of the grid may be far too coarse to tell triangles from points.
+    const Frame frame = unbuilt_tree(mesh, Origin::kByPrecision).frame();
     const std::uint32_t before = count_degenerate(mesh, frame);
     cooked.collapsed =
         cooked.tree.degenerate_count - std::min(before, cooked.tree.degenerate_count);

@@ -128,6 +128,15 @@ TEST(Grid, KeepsAndCountsFacesThatCollapse) {
   EXPECT_EQ(cooked.tree.degenerate_count, cooked.collapsed);  // a torus has none of its own
 }
 
+TEST(Grid, CountsAllAsCollapsedOnAGridThatIsFarLargerThanTheMesh) {
+  const SourceMesh mesh = test::torus(8, 6);
+  CookOptions options = on_grid(8);
+  options.grid.tolerance = 1e250;
+  options.codec = CodecId::kWide8;
+  const cooker::CookedTree cooked = test::require(cooker::cook_mesh(mesh, options));
+  EXPECT_EQ(cooked.collapsed, mesh.triangle_count());
+}
+
 // Far from zero compared with its size, tiny, huge, flat, a single point.
 TEST(Grid, AnySizeAndPlace) {
   const SourceMesh sphere = test::sphere(12, 16);
