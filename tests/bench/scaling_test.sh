@@ -15,7 +15,7 @@ for codec in wide8 wide4; do
     { echo "unexpected rows"; cat "$work/$codec.json"; exit 1; }
   [ "$(jq '[.rows[] | select(.ray_hits > 0 and .ray_ns > 0 and .pair_hits > 0 and .pair_first_us > 0)] | length' \
     "$work/$codec.json")" -eq 4 ] || { echo "no answers"; cat "$work/$codec.json"; exit 1; }
-  [ "$(grep -o '<svg' "$work/$codec.html" | wc -l)" -eq 2 ] || { echo "expected two plots"; exit 1; }
+  [ "$(grep -o '<svg' "$work/$codec.html" | wc -l)" -eq 3 ] || { echo "expected three plots"; exit 1; }
 done
 
 # Codecs differ in time, never in answers.
