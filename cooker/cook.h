@@ -8,24 +8,15 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/choose/choose.h>
+#include <boxtree/cooker/choose/search.h>
 #include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/quantise/grid.h>
 #include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/format/blob.h>
 
 namespace boxtree::cooker {
 
-struct CookOptions {
-  std::optional<CodecId> codec;  // nothing: the best of all [default]
-  Goal goal = Goal::kBalance;
-  Builder builder = Builder::kSah;
-  FieldWidths widths = FieldWidths::kExact;
-  GeometryId geometry = GeometryId::kExact;
-  GridChoice grid;                 // of geometry grid
+struct CookOptions : SearchOptions {
   std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be asked
-  bool face_ids = true;
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
   ImportOptions import;
 };
@@ -40,14 +31,12 @@ struct LeftOut {
 struct CookedTree {
   EncodedTree tree;
   std::uint32_t collapsed = 0;  // triangles that lost their area on the grid; they are kept
-  std::vector<Candidate> candidates;
+  Contest contest;
   std::vector<LeftOut> left_out;
 };
 
-/// Builds a mesh, encodes it by every codec asked for, proves each and keeps the best.
-/// Deterministic. Precondition: what import promises of a mesh. Errors: kMeshTooLarge;
-/// kMeshUnsupported when faces of an n-gon would have to stay external, or a tolerance is too
-/// small. `scene`: the grid shared with other meshes; by default one for this mesh alone.
+/// Tries the encodings of a mesh and keeps the one that is wished for. Preconditions and errors as
+/// of try_encodings and choose.
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
                              const std::optional<Grid>& scene = {});
 

@@ -71,6 +71,8 @@ constexpr std::array kTable = {
              5},
     ErrcInfo{Errc::kMeshUnsupported, "mesh_unsupported",
              "the mesh cannot be stored in the way asked for", 5},
+    ErrcInfo{Errc::kBudgetUnreachable, "budget_unreachable",
+             "no encoding keeps to the bytes and the time asked for", 1},
     ErrcInfo{Errc::kInternal, "internal", "a defect in boxtree itself; please report it", 4},
 };
 

@@ -66,6 +66,7 @@ enum class Errc : std::uint16_t {
   kMeshIndexOutOfRange = 73,
   kMeshTooLarge = 74,
   kMeshUnsupported = 75,
+  kBudgetUnreachable = 76,
 
   // 90: our own bug; please report.
   kInternal = 90,

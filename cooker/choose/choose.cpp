@@ -1,57 +1,199 @@
 // SPDX-License-Identifier: MIT
-// One number a candidate, the smallest wins.
-#include <cmath>
+// One number a candidate, the smallest wins. Sums, products and quotients alone: what a library's
+// logarithm or root says differs between machines.
+#include <algorithm>
+#include <array>
+#include <limits>
+
+#include <fmt/format.h>
 
 #include <boxtree/cooker/choose/choose.h>
 
 namespace boxtree::cooker {
 namespace {
 
-double score(const Candidate& candidate, Goal goal) {
-  const auto bytes = static_cast<double>(candidate.tree_bytes + candidate.geometry_bytes);
-  // Geometric mean of the three kinds, so that none is drowned by the units of another.
-  const double visits = std::cbrt(candidate.cost.ray) * std::cbrt(candidate.cost.box) *
-                        std::cbrt(candidate.cost.pair);
+constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr std::array kStores = {GeometryId::kExternal, GeometryId::kExact, GeometryId::kGrid};
+
+struct Judged {
+  double bytes = 0;  // a triangle
+  double slowdown = 0;
+  double score = kNone;  // infinite for what fails its gates or a budget
+};
+
+double score_of(double bytes, double slowdown, Goal goal) {
   switch (goal) {
     case Goal::kMemory:
       return bytes;
     case Goal::kSpeed:
-      return visits;
+      return slowdown;
     case Goal::kBalance:
       break;
   }
-  return bytes * visits;
+  return bytes * slowdown;
 }
 
-const char* reason(Goal goal) {
-  switch (goal) {
+std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
+  const std::vector<double> slower = slowdowns(tree.candidates);
+  std::vector<Judged> judged;
+  for (std::size_t i = 0; i < tree.candidates.size(); ++i) {
+    const Candidate& candidate = tree.candidates[i];
+    Judged of{
+        static_cast<double>(candidate.bytes()) / std::max(1.0, static_cast<double>(tree.triangles)),
+        slower[i], kNone};
+    const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kNone) &&
+                           of.slowdown <= wishes.max_slowdown.value_or(kNone);
+    if (candidate.gates.pass() && in_budget)
+      of.score = score_of(of.bytes, of.slowdown, wishes.goal);
+    judged.push_back(of);
+  }
+  return judged;
+}
+
+// The best candidate with a geometry store; nothing when none may be chosen.
+std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Judged>& judged,
+                                   GeometryId store) {
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (tree.candidates[i].geometry != store || judged[i].score == kNone) continue;
+    if (!best || judged[i].score < judged[*best].score) best = i;
+  }
+  return best;
+}
+
+// Fewest bytes and least slowdown that a tree can have, each with its candidate.
+std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
+  std::optional<std::size_t> smallest, fastest;
+  for (std::size_t i = 0; i < judged.size(); ++i) {
+    if (!tree.candidates[i].gates.pass()) continue;
+    if (!smallest || judged[i].bytes < judged[*smallest].bytes) smallest = i;
+    if (!fastest || judged[i].slowdown < judged[*fastest].slowdown) fastest = i;
+  }
+  const auto told = [&](std::size_t i) {
+    return fmt::format("{} with geometry {} takes {:.2f} B/tri and {:.2f} times the least time",
+                       codec_name(tree.candidates[i].codec),
+                       geometry_name(tree.candidates[i].geometry), judged[i].bytes,
+                       judged[i].slowdown);
+  };
+  return smallest == fastest ? told(*smallest) : told(*smallest) + "; " + told(*fastest);
+}
+
+Error refusal(const Contest& tree, const std::vector<Judged>& judged, const Wishes& wishes) {
+  const bool any_passes = std::any_of(tree.candidates.begin(), tree.candidates.end(),
+                                      [](const Candidate& c) { return c.gates.pass(); });
+  if (!any_passes) return {Errc::kInternal, "no encoding passes its gates"};
+  std::string wanted;
+  if (wishes.max_bytes_per_triangle) {
+    wanted += fmt::format("at most {} B/tri", *wishes.max_bytes_per_triangle);
+  }
+  if (wishes.max_slowdown) {
+    wanted += fmt::format("{}at most {} times the least time", wanted.empty() ? "" : " and ",
+                          *wishes.max_slowdown);
+  }
+  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, judged)};
+}
+
+std::string reason(const Candidate& candidate, const Judged& judged, const Candidate& chosen,
+                   const Wishes& wishes) {
+  if (!candidate.gates.pass()) {
+    return fmt::format("fails its gates: {} faces missed, {} boxes escaped", candidate.gates.missed,
+                       candidate.gates.escapes);
+  }
+  if (judged.bytes > wishes.max_bytes_per_triangle.value_or(kNone))
+    return "over the budget of bytes";
+  if (judged.slowdown > wishes.max_slowdown.value_or(kNone)) return "over the budget of time";
+  if (candidate.geometry != chosen.geometry && judged.score == kNone) return "another geometry";
+  switch (wishes.goal) {
     case Goal::kMemory:
       return "more bytes";
     case Goal::kSpeed:
-      return "more expected visits";
+      return "more time";
     case Goal::kBalance:
       break;
   }
-  return "larger product of bytes and expected visits";
+  return "larger product of bytes and time";
 }
 
 }  // namespace
 
-std::optional<std::size_t> choose(std::span<Candidate> candidates, Goal goal) {
-  std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].gates.pass()) continue;
-    if (!best || score(candidates[i], goal) < score(candidates[*best], goal)) best = i;
+const char* goal_name(Goal goal) noexcept {
+  switch (goal) {
+    case Goal::kMemory:
+      return "memory";
+    case Goal::kSpeed:
+      return "speed";
+    case Goal::kBalance:
+      break;
   }
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    Candidate& candidate = candidates[i];
-    candidate.rejected = i == best ? "" : reason(goal);
-    if (candidate.gates.pass()) continue;
-    candidate.rejected = "fails its gates: " + std::to_string(candidate.gates.missed) +
-                         " faces missed, " + std::to_string(candidate.gates.escapes) +
-                         " boxes escaped";
+  return "balance";
+}
+
+std::vector<double> slowdowns(std::span<const Candidate> candidates) {
+  QueryCost fastest;
+  fastest.fill(kNone);
+  for (const Candidate& candidate : candidates) {
+    if (!candidate.gates.pass()) continue;
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      fastest[kind] = std::min(fastest[kind], candidate.cost[kind]);
+    }
   }
-  return best;
+  std::vector<double> slower;
+  for (const Candidate& candidate : candidates) {
+    double sum = 0;
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      // Of an empty tree nothing costs anything.
+      sum += fastest[kind] > 0 ? candidate.cost[kind] / fastest[kind] : 1;
+    }
+    slower.push_back(sum / kQueryKinds);
+  }
+  return slower;
+}
+
+Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes) {
+  std::vector<std::vector<Judged>> judged;
+  for (const Contest& tree : trees) judged.push_back(judge(tree, wishes));
+
+  std::vector<std::size_t> chosen;
+  double least = kNone;
+  for (const GeometryId store : kStores) {
+    std::vector<std::size_t> of_store;
+    double triangles = 0, bytes = 0, slowdown = 0;
+    for (std::size_t t = 0; t < trees.size(); ++t) {
+      const auto best = best_of(trees[t], judged[t], store);
+      if (!best) break;
+      of_store.push_back(*best);
+      // At least one, so that trees without faces have a say as well.
+      const double weight = std::max(1.0, static_cast<double>(trees[t].triangles));
+      triangles += weight;
+      bytes += weight * judged[t][*best].bytes;
+      slowdown += weight * judged[t][*best].slowdown;
+    }
+    if (of_store.size() < trees.size()) continue;
+    const double score = score_of(bytes / triangles, slowdown / triangles, wishes.goal);
+    if (chosen.empty() || score < least) {
+      chosen = std::move(of_store);
+      least = score;
+    }
+  }
+  if (chosen.empty()) {
+    // Of the tree for which nothing is possible; if there is none, of the first: no store suits
+    // all.
+    std::size_t worst = 0;
+    for (std::size_t t = trees.size(); t-- > 0;) {
+      const bool possible = std::any_of(judged[t].begin(), judged[t].end(),
+                                        [](const Judged& j) { return j.score != kNone; });
+      if (!possible) worst = t;
+    }
+    return refusal(trees[worst], judged[worst], wishes);
+  }
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
+      Candidate& candidate = trees[t].candidates[i];
+      const Candidate& winner = trees[t].candidates[chosen[t]];
+      candidate.rejected = i == chosen[t] ? "" : reason(candidate, judged[t][i], winner, wishes);
+    }
+  }
+  return chosen;
 }
 
 }  // namespace boxtree::cooker

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Choosing among encodings of the same tree, by bytes and by expected work, never by a clock.
+// Choosing among encodings of the same tree, by bytes and by counted work, never by a clock.
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
+#include <boxtree/cooker/choose/cost.h>
 #include <boxtree/cooker/proof/gates.h>
 
 namespace boxtree::cooker {
@@ -14,19 +17,53 @@ namespace boxtree::cooker {
 /// What the user values.
 enum class Goal : std::uint8_t { kMemory, kSpeed, kBalance };
 
-/// One encoding that was tried.
-struct Candidate {
-  CodecId codec;
-  std::uint64_t tree_bytes = 0;
-  std::uint64_t geometry_bytes = 0;
-  ExpectedVisits cost;
-  Gates gates;
-  std::string rejected;  // why it was not chosen; empty for the chosen one
+[[nodiscard]] const char* goal_name(Goal goal) noexcept;
+
+/// What is asked of a choice. Among the candidates that keep to both budgets: the fewest bytes, the
+/// least slowdown, or the smallest product of both.
+struct Wishes {
+  Goal goal = Goal::kBalance;
+  std::optional<double> max_bytes_per_triangle;  // nodes and geometry
+  std::optional<double> max_slowdown;            // of the fastest candidate, see slowdowns()
 };
 
-/// Number of the best candidate that passes its gates: fewest bytes, fewest expected visits over
-/// ray, box and pair, or the smallest product of both; ties go to the earlier one. Nothing when
-/// none passes. Fills Candidate::rejected of the others.
-std::optional<std::size_t> choose(std::span<Candidate> candidates, Goal goal);
+/// One encoding that was tried.
+struct Candidate {
+  CodecId codec{};
+  GeometryId geometry = GeometryId::kExact;
+  std::uint64_t tree_bytes = 0;
+  std::uint64_t geometry_bytes = 0;
+  double max_vertex_error = 0;  // object space
+  WorkOfKinds work{};
+  QueryCost cost{};
+  Gates gates;
+  std::string rejected;  // why it was not chosen; empty for the chosen one
+
+  [[nodiscard]] std::uint64_t bytes() const { return tree_bytes + geometry_bytes; }
+};
+
+/// One encoding that cannot win, and why.
+struct NotTried {
+  CodecId codec{};
+  GeometryId geometry = GeometryId::kExact;
+  std::string why;
+};
+
+/// The candidates of one tree.
+struct Contest {
+  std::uint32_t triangles = 0;
+  std::vector<Candidate> candidates;
+  std::vector<NotTried> not_tried;
+};
+
+/// How many times as long each candidate takes as the fastest one that passes its gates: the mean
+/// over the kinds of queries of the ratios of costs, each kind against its own fastest.
+[[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates);
+
+/// Chooses for trees that share a file, one candidate each, all with the same geometry store, so
+/// that what touches still does. Fills Candidate::rejected of the others; ties go to the earlier
+/// candidate. Returns the number of the chosen candidate of each tree. Errors: kInternal when
+/// nothing passes its gates; kBudgetUnreachable, naming the nearest that is possible.
+Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes);
 
 }  // namespace boxtree::cooker

@@ -6,7 +6,9 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/choose/calibrate.h>
 #include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/report/measure.h>
 #include <boxtree/runtime/boxtree.h>
 
@@ -16,6 +18,7 @@ namespace {
 struct Arguments {
   std::vector<std::filesystem::path> files;
   std::size_t runs = 5;
+  bool calibrate = false;
   bool quick = false;
   bool json = false;
 };
@@ -69,7 +72,54 @@ void print_row(const Json& row) {
              row["open_alone_us"].get<double>());
 }
 
+Json to_json(const CodecCost& cost) {
+  Json json = {{"codec", codec_name(cost.codec)}, {"geometry", geometry_name(cost.geometry)}};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    const StepCost& step = cost.of_kind[kind];
+    json[kQueryNames[kind]] = {
+        {"question_ns", step.question}, {"node_ns", step.node}, {"leaf_ns", step.leaf}};
+  }
+  return json;
+}
+
+// A row for each codec and store: nanoseconds of a question, a node and a leaf for each kind.
+void print_row(const CodecCost& cost) {
+  fmt::print("{:<10} {:<5}", codec_name(cost.codec), geometry_name(cost.geometry));
+  for (const StepCost& step : cost.of_kind) {
+    fmt::print("  {:8.1f} {:6.2f} {:6.2f}", step.question, step.node, step.leaf);
+  }
+  fmt::print("\n");
+}
+
+int run_calibration(const Arguments& arguments) {
+  std::vector<SourceMesh> meshes;
+  for (const std::filesystem::path& path : arguments.files) {
+    Result<Imported> imported = import_mesh(path);
+    if (!imported) return fail(imported.error());
+    imported->mesh.name = path.stem().string();
+    meshes.push_back(std::move(imported->mesh));
+  }
+  const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
+  if (!calibration) return fail(calibration.error());
+  Json costs = Json::array();
+  for (const CodecCost& cost : calibration->costs) {
+    if (arguments.json) {
+      costs.push_back(to_json(cost));
+    } else {
+      print_row(cost);
+    }
+  }
+  if (arguments.json) {
+    print({{"worst_ratio", calibration->worst_ratio}, {"costs", costs}});
+  } else {
+    fmt::print("modelled and measured times differ by at most {:.2f} times\n",
+               calibration->worst_ratio);
+  }
+  return 0;
+}
+
 int run(const Arguments& arguments) {
+  if (arguments.calibrate) return run_calibration(arguments);
   Json rows = Json::array();
   for (const std::filesystem::path& path : arguments.files) {
     const Result<File> file = File::open(path);
@@ -96,6 +146,10 @@ void add_bench_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("bench", "Time queries on .bxt files");
   command.add_option("files", arguments->files, "Files with geometry inside")->required();
+  command
+      .add_flag("--calibrate", arguments->calibrate,
+                "Measure the constants that auto chooses by; the files are meshes then")
+      ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();

@@ -91,16 +91,27 @@ double per_triangle(std::uint64_t bytes, const EncodedTree& tree) {
              : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
 }
 
-Json candidate_json(const Candidate& candidate, const EncodedTree& tree) {
+Json work_json(const WorkOfKinds& work) {
+  Json json;
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    json[kQueryNames[kind]] = {{"nodes", work[kind].nodes}, {"leaves", work[kind].leaves}};
+  }
+  return json;
+}
+
+Json candidate_json(const Candidate& candidate, double slowdown, const EncodedTree& tree) {
   Json json;
   json["codec"] = codec_name(candidate.codec);
-  json["geometry"] = geometry_name(tree.geometry.geometry);
+  json["geometry"] = geometry_name(candidate.geometry);
   json["bytes_per_triangle"] = {
       {"tree", per_triangle(candidate.tree_bytes, tree)},
       {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
-  json["cost"] = {
-      {"ray", candidate.cost.ray}, {"box", candidate.cost.box}, {"pair", candidate.cost.pair}};
-  json["error"] = {{"max_vertex_error", tree.geometry.max_vertex_error}};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    json["cost"][kQueryNames[kind]] = candidate.cost[kind];
+  }
+  json["slowdown"] = slowdown;
+  json["work"] = work_json(candidate.work);
+  json["error"] = {{"max_vertex_error", candidate.max_vertex_error}};
   json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
   json["gates"] = {{"missed", candidate.gates.missed},
                    {"escapes", candidate.gates.escapes},
@@ -133,10 +144,19 @@ Json report_json(const Arguments& arguments, const CookReport& report, double se
     const CookedTree& cooked = report.trees[i];
     Json tree = {{"name", cooked.tree.name},
                  {"triangles", cooked.tree.triangle_count},
-                 {"chosen", codec_name(cooked.tree.nodes.codec)}};
+                 {"chosen", codec_name(cooked.tree.nodes.codec)},
+                 {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)}};
     tree["candidates"] = Json::array();
-    for (const Candidate& candidate : cooked.candidates) {
-      tree["candidates"].push_back(candidate_json(candidate, cooked.tree));
+    const std::vector<double> slower = slowdowns(cooked.contest.candidates);
+    for (std::size_t c = 0; c < slower.size(); ++c) {
+      tree["candidates"].push_back(
+          candidate_json(cooked.contest.candidates[c], slower[c], cooked.tree));
+    }
+    tree["not_tried"] = Json::array();
+    for (const NotTried& other : cooked.contest.not_tried) {
+      tree["not_tried"].push_back({{"codec", codec_name(other.codec)},
+                                   {"geometry", geometry_name(other.geometry)},
+                                   {"why", other.why}});
     }
     tree["left_out"] = Json::array();
     for (const LeftOut& part : cooked.left_out) {
@@ -152,18 +172,44 @@ Json report_json(const Arguments& arguments, const CookReport& report, double se
   return json;
 }
 
+// What was tried and what was not, with the reasons.
+void print_contest(const CookedTree& cooked) {
+  const std::vector<Candidate>& candidates = cooked.contest.candidates;
+  const std::vector<double> slower = slowdowns(candidates);
+  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>5} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
+             "geometry", "tree B/tri", "with geom.", "times", "ray ns", "box ns", "point ns",
+             "pairs us", "error");
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    fmt::print(
+        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
+        "  {:>9.2g}{}{}\n",
+        candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
+        geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
+        per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.cost[0],
+        candidate.cost[1], candidate.cost[2], candidate.cost[3] / 1000, candidate.max_vertex_error,
+        candidate.rejected.empty() ? "" : "  ", candidate.rejected);
+  }
+  // Codecs that share a reason stand together.
+  const std::vector<NotTried>& others = cooked.contest.not_tried;
+  for (std::size_t i = 0; i < others.size();) {
+    std::string names;
+    const NotTried& first = others[i];
+    for (; i < others.size() && others[i].why == first.why; ++i) {
+      if (others[i].geometry != first.geometry) break;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", codec_name(others[i].codec));
+    }
+    fmt::print("    not tried, geometry {}: {}: {}\n", geometry_name(first.geometry), names,
+               first.why);
+  }
+}
+
 void print_report(const Arguments& arguments, const CookReport& report, double seconds) {
   for (std::size_t i = 0; i < report.trees.size(); ++i) {
     const CookedTree& cooked = report.trees[i];
     const ImportReport& import = report.imports[i];
     fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
-    for (const Candidate& candidate : cooked.candidates) {
-      fmt::print("  {} {:<10} {:6.2f} B/tri tree, {:6.2f} with geometry{}{}\n",
-                 candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
-                 per_triangle(candidate.tree_bytes, cooked.tree),
-                 per_triangle(candidate.tree_bytes + candidate.geometry_bytes, cooked.tree),
-                 candidate.rejected.empty() ? "" : "; not chosen: ", candidate.rejected);
-    }
+    print_contest(cooked);
     if (import.points_skipped + import.lines_skipped > 0) {
       fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
                  import.lines_skipped);
@@ -186,10 +232,10 @@ void print_report(const Arguments& arguments, const CookReport& report, double s
              arguments.output.string(), seconds);
 }
 
-// What is wrong with a length, for CLI11, whose own PositiveNumber lets NaN pass.
-std::string length_fault(const std::string& text) {
-  const double length = std::strtod(text.c_str(), nullptr);
-  return length > 0 && std::isfinite(length) ? "" : text + " is no length";
+// What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
+std::string positive_fault(const std::string& text) {
+  const double number = std::strtod(text.c_str(), nullptr);
+  return number > 0 && std::isfinite(number) ? "" : text + " is not above zero";
 }
 
 int run(Arguments& arguments) {
@@ -201,12 +247,17 @@ int run(Arguments& arguments) {
   } else if (arguments.codec != "auto") {
     options.codec = find_codec(arguments.codec);
   }
-  if (arguments.goal == "memory") options.goal = Goal::kMemory;
-  if (arguments.goal == "speed") options.goal = Goal::kSpeed;
+  if (arguments.goal == "memory") options.wishes.goal = Goal::kMemory;
+  if (arguments.goal == "speed") options.wishes.goal = Goal::kSpeed;
   if (arguments.builder == "paper") options.builder = Builder::kPaper;
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
+  // The grid of 24 bits that is tried by default would cost f64 positions digits that were asked
+  // for.
+  const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
+  options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
+                         !options.blob && is_grid_welcome;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
 
@@ -250,16 +301,25 @@ void add_cook_command(CLI::App& app, int& status) {
   command.add_option("--for", arguments->goal, "What auto minimises")
       ->check(CLI::IsMember({"memory", "speed", "balance"}))
       ->capture_default_str();
-  CLI::Option* exact = command.add_flag(
-      "--exact", arguments->exact, "Keep every bit of every position (what is done by default)");
+  CLI::Option* exact =
+      command.add_flag("--exact", arguments->exact,
+                       "Keep every bit of every position [else auto may choose a grid of 24 bits]");
   CLI::Option* tolerance = command.add_option(
       "--tolerance", arguments->options.grid.tolerance,
-      "Round positions to a grid: no vertex moves farther, in units of the mesh");
-  tolerance->check(length_fault, "POSITIVE")->excludes(exact);
+      "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
+  tolerance->check(positive_fault, "POSITIVE")->excludes(exact);
   CLI::Option* grid_bits = command.add_option(
       "--grid-bits", arguments->options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
+  command
+      .add_option("--max-bytes-per-triangle", arguments->options.wishes.max_bytes_per_triangle,
+                  "Choose nothing larger, nodes and geometry together")
+      ->check(positive_fault, "POSITIVE");
+  command
+      .add_option("--max-slowdown", arguments->options.wishes.max_slowdown,
+                  "Choose nothing slower, in times of the fastest candidate")
+      ->check(positive_fault, "POSITIVE");
   command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
@@ -284,9 +344,10 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
-  command.callback([arguments, tolerance, grid_bits, &status] {
-    const bool has_grid = tolerance->count() + grid_bits->count() > 0;
-    if (has_grid) arguments->options.geometry = GeometryId::kGrid;
+  rare(command.add_flag("--try-all", arguments->options.try_all,
+                        "Try also what cannot win, for the table"));
+  command.callback([arguments, grid_bits, &status] {
+    if (grid_bits->count() > 0) arguments->options.geometry = GeometryId::kGrid;
     status = run(*arguments);
   });
 }

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <boxtree/cooker/report/workload.h>
+#include <boxtree/cooker/choose/workload.h>
 #include <boxtree/format/result.h>
 
 namespace boxtree::cooker {

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/report/workload.h>
+#include <boxtree/cooker/choose/workload.h>
 
 #include "tests/bench/cache_model.h"
 #include "tests/bench/triangle_mesh.h"

@@ -56,7 +56,10 @@ expect 0 "$boxtree" query grid.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --
 same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
 sed 's/^v 1 /v 1.1 /' cube.obj >uneven.obj
 expect 0 "$boxtree" cook uneven.obj cube.obj -o grid.bxt --tolerance 0.01 --json
-jq -e '[.trees[].candidates[0].error.max_vertex_error] | .[0] > 0 and max <= 0.01' out >/dev/null
+jq -e '[.trees[].candidates[] | select(.geometry == "grid") | .error.max_vertex_error] | .[0] > 0 and max <= 0.01' out >/dev/null
+same "$(jq -c '[.trees[].candidates[] | select(.geometry == "exact") | .error.max_vertex_error] | unique' out)" '[0]'
+# One geometry for all trees of a file.
+same "$(jq -r '[.trees[].chosen_geometry] | unique | length' out)" 1
 expect 0 "$boxtree" info grid.bxt --json
 jq -e '.trees | .[0].geometry == "grid" and .[0].max_vertex_error <= 0.01' out >/dev/null
 expect 0 "$boxtree" verify grid.bxt
@@ -65,7 +68,21 @@ expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 31
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --exact
 for length in 0 -1 inf nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --tolerance=$length; done
-expect 5 "$boxtree" cook cube.obj -o grid.bxt --tolerance 1e-20
+# Finer than any grid: exact geometry keeps to it.
+expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 1e-20 --json
+same "$(jq -r '.trees[0].chosen_geometry' out)" exact
+same "$(jq -r '[.trees[0].not_tried[].geometry] | unique[0]' out)" grid
+# Budgets are kept, or refused with what is possible.
+for goal in memory speed balance; do
+  expect 0 "$boxtree" cook cube.obj -o grid.bxt --for "$goal" --max-bytes-per-triangle 100 --json
+  jq -e '.trees[0].candidates[] | select(.rejected == null) | .bytes_per_triangle.total <= 100' out >/dev/null
+  expect 0 "$boxtree" cook cube.obj -o grid.bxt --for "$goal" --max-slowdown 1.5 --json
+  jq -e '.trees[0].candidates[] | select(.rejected == null) | .slowdown <= 1.5' out >/dev/null
+done
+expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-bytes-per-triangle 1
+grep -q 'budget_unreachable: wanted at most 1 B/tri; .* takes .* B/tri' err
+[ ! -e refused.bxt ]
+for budget in 0 -1 nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --max-slowdown=$budget; done
 
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
 same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'

@@ -60,6 +60,7 @@ constexpr Row kPinned[] = {
     {73, "mesh_index_out_of_range", 3},
     {74, "mesh_too_large", 5},
     {75, "mesh_unsupported", 5},
+    {76, "budget_unreachable", 1},
     {90, "internal", 4},
 };
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <numbers>
 
-#include <boxtree/cooker/report/workload.h>
+#include <boxtree/cooker/choose/workload.h>
 
 namespace boxtree::cooker {
 namespace {

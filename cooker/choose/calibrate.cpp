@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The same questions, counted and timed.
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/choose/calibrate.h>
+#include <boxtree/cooker/choose/search.h>
+#include <boxtree/cooker/report/measure.h>
+#include <boxtree/runtime/boxtree.h>
+
+namespace boxtree::cooker {
+namespace {
+
+template <class Question>
+double nanoseconds(const std::vector<Question>& questions, std::size_t runs, Status& status,
+                   const std::function<Errc(const Question&)>& ask) {
+  const double seconds = median_seconds(runs, [&] {
+    for (const Question& question : questions) {
+      if (const Errc error = ask(question); error != Errc::kOk) status = error;
+    }
+  });
+  return 1e9 * seconds / static_cast<double>(questions.size());
+}
+
+Result<QueryCost> time_queries(const Tree& tree, const Workload& questions, std::size_t runs) {
+  Status status;
+  const auto go_on = [](const auto&) { return true; };
+  const QueryCost cost = {
+      nanoseconds<Ray>(questions.rays, runs, status,
+                       [&](const Ray& ray) { return closest_hit(tree, ray).code(); }),
+      nanoseconds<Eigen::AlignedBox3d>(
+          questions.boxes, runs, status,
+          [&](const Eigen::AlignedBox3d& box) { return overlap_box(tree, box, go_on).code(); }),
+      nanoseconds<Eigen::Vector3d>(
+          questions.points, runs, status,
+          [&](const Eigen::Vector3d& point) { return closest_point(tree, point).code(); }),
+      nanoseconds<Pose>(questions.poses, runs, status, [&](const Pose& pose) {
+        return overlap_pairs(tree, Pose::Identity(), tree, pose, go_on).code();
+      })};
+  if (!status) return status.error();
+  return cost;
+}
+
+struct Sample {
+  WorkOfKinds work;
+  QueryCost ns;
+};
+
+Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry,
+                      std::size_t runs) {
+  SearchOptions options;
+  options.codec = codec;
+  options.geometry = geometry;
+  Result<TriedTree> tried = try_encodings(mesh, options);
+  if (!tried) return tried.error();
+  const WorkOfKinds work = tried->contest.candidates.front().work;
+  const EncodedTree encoded = tried->take(0);
+  const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
+  if (!tree) return tree.error();
+  const Result<QueryCost> ns = time_queries(*tree, choice_questions(bounds_of(mesh)), runs);
+  if (!ns) return ns.error();
+  return Sample{work, *ns};
+}
+
+CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& samples) {
+  CodecCost cost{codec, geometry, {}};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    std::vector<Measured> measured;
+    for (const Sample& of_mesh : samples) {
+      measured.push_back({of_mesh.work[kind], of_mesh.ns[kind]});
+    }
+    cost.of_kind[kind] = fit_steps(measured);
+  }
+  return cost;
+}
+
+}  // namespace
+
+Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t runs,
+                              const std::function<void(const std::string& step)>& progress) {
+  if (std::all_of(meshes.begin(), meshes.end(), [](const auto& m) { return m.faces.empty(); })) {
+    return Errc::kNoFaces;
+  }
+  Calibration out;
+  for (const CodecInfo& codec : kCodecs) {
+    for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+      std::vector<Sample> samples;
+      for (const SourceMesh& mesh : meshes) {
+        if (mesh.faces.empty()) continue;
+        if (progress) {
+          progress(fmt::format("{}: {}, {}", mesh.name, codec.name, geometry_name(geometry)));
+        }
+        Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
+        if (!of_mesh) return of_mesh.error();
+        samples.push_back(*of_mesh);
+      }
+      out.costs.push_back(fit(codec.id, geometry, samples));
+      for (const Sample& of_mesh : samples) {
+        const QueryCost modelled =
+            cost_of(of_mesh.work, codec.id, geometry, std::span(&out.costs.back(), 1));
+        for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+          const double ratio = modelled[kind] / of_mesh.ns[kind];
+          out.worst_ratio = std::max({out.worst_ratio, ratio, 1 / ratio});
+        }
+      }
+    }
+  }
+  return out;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Measures the constants of cost.h on this machine.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/choose/cost.h>
+#include <boxtree/cooker/import/source_mesh.h>
+
+namespace boxtree::cooker {
+
+struct Calibration {
+  std::vector<CodecCost> costs;
+  /// Largest ratio of modelled and measured time, or its inverse, over all meshes and kinds.
+  double worst_ratio = 1;
+};
+
+/// Cooks each mesh with every codec and both geometry stores, asks it the questions that candidates
+/// are compared by, and fits the steps to the times: processor time of one thread, medians of
+/// `runs`. At least three meshes of different sizes make sense. Errors: those of cooking and
+/// queries; kNoFaces when no mesh has any.
+Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t runs,
+                              const std::function<void(const std::string& step)>& progress = {});
+
+}  // namespace boxtree::cooker

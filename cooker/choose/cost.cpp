@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A linear model, and the fit of its constants.
+#include <algorithm>
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+#include <boxtree/cooker/choose/cost.h>
+
+namespace boxtree::cooker {
+
+QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
+                  std::span<const CodecCost> costs) {
+  const GeometryId stored = geometry == GeometryId::kGrid ? geometry : GeometryId::kExact;
+  QueryCost cost{};
+  for (const CodecCost& known : costs) {
+    if (known.codec != codec || known.geometry != stored) continue;
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      const StepCost& step = known.of_kind[kind];
+      cost[kind] = step.question + work[kind].nodes * step.node + work[kind].leaves * step.leaf;
+    }
+  }
+  return cost;
+}
+
+StepCost fit_steps(std::span<const Measured> measured) {
+  // With so few unknowns, the best fit without negative steps is the best of all fits in which some
+  // steps are zero.
+  constexpr Eigen::Index kSteps = 3;
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(measured.size()), kSteps);
+  for (std::size_t i = 0; i < measured.size(); ++i) {
+    const Measured& m = measured[i];
+    rows.row(static_cast<Eigen::Index>(i)) =
+        Eigen::RowVector3d(1, m.work.nodes, m.work.leaves) / m.ns;
+  }
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(rows.rows());
+  Eigen::Vector3d best = Eigen::Vector3d::Zero();
+  double least = std::numeric_limits<double>::infinity();
+  for (unsigned kept = 1; kept < (1u << kSteps); ++kept) {
+    std::vector<Eigen::Index> columns;
+    for (Eigen::Index k = 0; k < kSteps; ++k) {
+      if (((kept >> k) & 1u) != 0) columns.push_back(k);
+    }
+    const Eigen::MatrixXd part = rows(Eigen::all, columns);
+    const Eigen::VectorXd steps = (part.transpose() * part).ldlt().solve(part.transpose() * ones);
+    const double error = (part * steps - ones).squaredNorm();
+    if (!(steps.minCoeff() >= 0) || !(error < least)) continue;
+    least = error;
+    best.setZero();
+    best(columns) = steps;
+  }
+  return {best[0], best[1], best[2]};
+}
+
+}  // namespace boxtree::cooker

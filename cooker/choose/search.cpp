@@ -1,0 +1,349 @@
+// SPDX-License-Identifier: MIT
+// Families of codecs, each over its own tree.
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <boxtree/cooker/build/face_boxes.h>
+#include <boxtree/cooker/choose/search.h>
+#include <boxtree/cooker/encode/encoders.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/primitive/triangle.h>
+
+namespace boxtree::cooker {
+namespace {
+
+std::uint64_t hash_of(const SourceMesh& mesh) {
+  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+  return hash ? *hash : 0;  // import has checked every corner
+}
+
+std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
+  std::uint32_t count = 0;
+  for (const Face& face : mesh.faces) {
+    const std::size_t corners = face.is_quad() ? 4 : 3;
+    const auto corner = [&](std::size_t i) {
+      return frame.to_tree(mesh.positions[face.corner[i]]);
+    };
+    for (std::size_t i = 1; i + 1 < corners; ++i) {
+      if (is_degenerate({{corner(0), corner(i), corner(i + 1)}})) ++count;
+    }
+  }
+  return count;
+}
+
+Status check_limits(const SourceMesh& mesh, const SearchOptions& options) {
+  if (mesh.faces.size() > kMaxFaces || mesh.positions.size() > kMaxVertices) {
+    return Error{Errc::kMeshTooLarge,
+                 fmt::format("{}: {} faces, {} vertices, limit {}", mesh.name, mesh.faces.size(),
+                             mesh.positions.size(), kMaxFaces)};
+  }
+  if (options.geometry != GeometryId::kExternal) return {};
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    if (mesh.face_id(i) == i) continue;
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}: geometry cannot stay external: face {} is split or follows a "
+                             "split or skipped face, so the application's faces are not the tree's",
+                             mesh.name, mesh.face_id(i))};
+  }
+  return {};
+}
+
+// A tree of nothing yet, with the frame that all builders choose.
+BuildTree unbuilt_tree(const SourceMesh& mesh, Origin origin) {
+  BuildTree tree;
+  choose_frame(mesh.positions, origin, tree);
+  return tree;
+}
+
+// What is cooked: a mesh, or what became of it on a grid.
+struct Source {
+  const SourceMesh& mesh;                        // as imported
+  const std::optional<QuantisedMesh> quantised;  // or nothing
+  EncodedTree known;                             // what every tree of it says, but for its bytes
+
+  Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid);
+
+  [[nodiscard]] const SourceMesh& built() const { return quantised ? quantised->mesh : mesh; }
+  [[nodiscard]] Origin origin() const { return quantised ? Origin::kZero : Origin::kByPrecision; }
+};
+
+Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
+    : mesh(imported), quantised(std::move(on_grid)) {
+  const BuildTree unbuilt = unbuilt_tree(built(), origin());
+  known.name = mesh.name;
+  known.origin = quantised ? quantised->origin : unbuilt.origin;
+  known.scale_exponent = unbuilt.scale_exponent + (quantised ? quantised->step_exponent : 0);
+  known.face_count = static_cast<std::uint32_t>(mesh.faces.size());
+  known.triangle_count = static_cast<std::uint32_t>(mesh.triangle_count());
+  known.degenerate_count = count_degenerate(built(), unbuilt.frame());
+  known.geometry_hash = hash_of(mesh);
+  known.positions_f64 = mesh.positions.precision == Precision::kF64;
+}
+
+EncodedGeometry encode_geometry(const Source& source, const SearchOptions& options,
+                                std::vector<std::uint32_t> order, LeafOrder leaf_order) {
+  if (source.quantised) {
+    return encode_grid_geometry(*source.quantised, std::move(order), leaf_order, options.face_ids);
+  }
+  return encode_exact_geometry(source.mesh, order, options.face_ids);
+}
+
+// Codecs that share a build tree and its order of faces, so that only nodes differ. The build tree
+// itself is gone: memory, not time, is what candidates cost.
+struct Family {
+  EncodedTree tree;  // all but the nodes
+  std::function<EncodedNodes(CodecId)> nodes_of;
+};
+
+// Codecs with one face a leaf.
+Family binary_family(const Source& source, const SearchOptions& options,
+                     const std::vector<CodecId>& codecs) {
+  const BuildTree build = build_tree(source.built(), options.builder, source.origin());
+  const bool external = options.geometry == GeometryId::kExternal;
+  Family family{source.known, {}};
+  family.tree.faces_in_source_order = external;
+  family.tree.geometry =
+      external ? encode_external_geometry(source.mesh, {})
+               : encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed);
+  const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
+  std::array<EncodedNodes, 3> plain;  // by PlainCut
+  const auto walk_for = [&](std::size_t i) {
+    const auto cut = static_cast<PlainCut>(i);
+    const bool is_wanted = std::any_of(codecs.begin(), codecs.end(),
+                                       [&](CodecId codec) { return plain_cut_of(codec) == cut; });
+    if (is_wanted) plain[i] = encode_plain(build, source.built(), cut, order);
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain.size(), 1),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) walk_for(i);
+                    });
+  family.nodes_of = [plain = std::move(plain), widths = options.widths](CodecId codec) {
+    return pack_nodes(plain[static_cast<std::size_t>(plain_cut_of(codec))], codec, widths);
+  };
+  return family;
+}
+
+// Codecs with full leaves, whose layout orders the faces.
+Family wide_family(const Source& source, const SearchOptions& options) {
+  Family family{source.known, {}};
+  WideLayout layout = lay_out_wide(build_full_leaves(source.built(), source.origin()));
+  family.tree.geometry =
+      options.geometry == GeometryId::kExternal
+          ? encode_external_geometry(source.mesh, layout.face_order)
+          : encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
+  layout.face_order = {};
+  family.nodes_of = [layout = std::move(layout)](CodecId codec) {
+    return encode_wide(layout, codec);
+  };
+  return family;
+}
+
+// Proves a candidate and counts what it takes.
+Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
+                          const Workload& questions) {
+  Candidate candidate{tree.nodes.codec,
+                      tree.geometry.geometry,
+                      tree.nodes.bytes.size(),
+                      tree.geometry.vertices.size() + tree.geometry.corners.size(),
+                      tree.geometry.max_vertex_error,
+                      {},
+                      {},
+                      check_gates(tree, arrays_of(mesh)),
+                      {}};
+  if (!candidate.gates.pass()) return candidate;
+  BindOptions bind;
+  bind.mesh = arrays_of(mesh);
+  const Result<Tree> bound = Tree::bind(parts_of(tree), 0, bind);
+  if (!bound) return bound.error();
+  const Result<WorkOfKinds> work = count_work(*bound, questions);
+  if (!work) return work.error();
+  candidate.work = *work;
+  candidate.cost = cost_of(*work, candidate.codec, candidate.geometry);
+  return candidate;
+}
+
+// One search: see try_encodings.
+class Search {
+ public:
+  Search(const SourceMesh& mesh, const SearchOptions& options, const std::optional<Grid>& scene)
+      : mesh_(mesh),
+        options_(options),
+        scene_(scene),
+        questions_(choice_questions(bounds_of(mesh))) {
+    out_.contest.triangles = static_cast<std::uint32_t>(mesh.triangle_count());
+  }
+
+  Result<TriedTree> run() {
+    const bool has_choice = options_.geometry == GeometryId::kExact && options_.may_use_grid;
+    if (!has_choice) {
+      if (Status status = try_store(options_.geometry); !status) return status.error();
+      return std::move(out_);
+    }
+    const bool for_memory = options_.wishes.goal == Goal::kMemory;
+    // What may win is tried first, so that the other can be left out.
+    const std::array stores = for_memory ? std::array{GeometryId::kGrid, GeometryId::kExact}
+                                         : std::array{GeometryId::kExact, GeometryId::kGrid};
+    for (const GeometryId store : stores) {
+      const std::string why = options_.try_all ? "" : why_not(store);
+      if (!why.empty()) {
+        leave_out(store, why);
+        continue;
+      }
+      const Status status = try_store(store);
+      if (status) continue;
+      if (store != GeometryId::kGrid) return status.error();
+      leave_out(store, status.error().detail);  // the scene has no grid that fine
+    }
+    return std::move(out_);
+  }
+
+ private:
+  void leave_out(GeometryId store, const std::string& why) {
+    for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+      if (options_.codec.value_or(codec) == codec) {
+        out_.contest.not_tried.push_back({codec, store, why});
+      }
+    }
+  }
+
+  // Why candidates with this geometry store cannot win; empty when they can.
+  [[nodiscard]] std::string why_not(GeometryId store) const {
+    const Wishes& wishes = options_.wishes;
+    if (store == GeometryId::kGrid && wishes.goal == Goal::kSpeed &&
+        !wishes.max_bytes_per_triangle) {
+      return "the same tree, but leaves take longer to read";
+    }
+    if (store != GeometryId::kExact || wishes.goal != Goal::kMemory || wishes.max_slowdown) {
+      return "";
+    }
+    std::uint64_t least = ~std::uint64_t{0};
+    for (const Candidate& candidate : out_.contest.candidates) {
+      if (candidate.gates.pass()) least = std::min(least, candidate.bytes());
+    }
+    const std::uint64_t positions = exact_geometry_bytes();
+    return positions < least
+               ? ""
+               : fmt::format("positions and corners alone take {} bytes, {} in all are enough",
+                             positions, least);
+  }
+
+  // Those of exact geometry, however faces are ordered.
+  [[nodiscard]] std::uint64_t exact_geometry_bytes() const {
+    std::vector<bool> used(mesh_.positions.size());
+    std::uint64_t vertices = 0;
+    for (const Face& face : mesh_.faces) {
+      for (std::size_t i = 0; i < (face.is_quad() ? 4u : 3u); ++i) {
+        vertices += used[face.corner[i]] ? 0u : 1u;
+        used[face.corner[i]] = true;
+      }
+    }
+    const std::uint64_t position = mesh_.positions.precision == Precision::kF64 ? 24 : 12;
+    const std::uint64_t corner = vertices <= 0x10000 ? 2 : 4;
+    return vertices * position + mesh_.faces.size() * 3 * corner;
+  }
+
+  Status try_store(GeometryId store) {
+    std::optional<QuantisedMesh> quantised;
+    if (store == GeometryId::kGrid) {
+      const Result<Grid> grid = scene_ ? *scene_ : choose_grid(bounds_of(mesh_), options_.grid);
+      if (!grid) return grid.error();
+      quantised = quantise(mesh_, *grid);
+      const double tolerance = options_.grid.tolerance.value_or(quantised->max_vertex_error);
+      if (quantised->max_vertex_error > tolerance) {
+        return Error{Errc::kMeshUnsupported,
+                     fmt::format("{}: double precision so far from zero moves a vertex by {}",
+                                 mesh_.name, quantised->max_vertex_error)};
+      }
+    }
+    const Source source(mesh_, std::move(quantised));
+    SearchOptions options = options_;
+    options.geometry = store;
+    if (const auto codecs = wanted_codecs(true, store); !codecs.empty()) {
+      if (Status status = try_family(wide_family(source, options), source, codecs); !status) {
+        return status;
+      }
+    }
+    if (const auto codecs = wanted_codecs(false, store); !codecs.empty()) {
+      return try_family(binary_family(source, options, codecs), source, codecs);
+    }
+    return {};
+  }
+
+  std::vector<CodecId> wanted_codecs(bool wide, GeometryId store) {
+    std::vector<CodecId> wanted;
+    for (const CodecInfo& codec : kCodecs) {
+      if (is_wide(codec.id) != wide || options_.codec.value_or(codec.id) != codec.id) continue;
+      const std::string why = options_.codec || options_.try_all ? "" : why_not(codec.id);
+      if (why.empty()) {
+        wanted.push_back(codec.id);
+      } else {
+        out_.contest.not_tried.push_back({codec.id, store, why});
+      }
+    }
+    return wanted;
+  }
+
+  // The same for a codec.
+  [[nodiscard]] std::string why_not(CodecId codec) const {
+    if (is_wide(codec)) return "";
+    if (codec == CodecId::kPackedF64 && mesh_.positions.precision != Precision::kF64) {
+      return "digits that the boxes of f32 positions do not have";
+    }
+    if (mesh_.faces.size() < kTryAllFaces) return "";
+    return "a face a leaf: more than ten times the bytes of nodes, and slower on every mesh "
+           "measured";
+  }
+
+  Status try_family(Family family, const Source& source, const std::vector<CodecId>& codecs) {
+    EncodedTree& tree = family.tree;
+    for (const CodecId codec : codecs) {
+      tree.nodes = family.nodes_of(codec);
+      Result<Candidate> candidate = examine(tree, mesh_, questions_);
+      if (!candidate) return candidate.error();
+      out_.contest.candidates.push_back(std::move(*candidate));
+      out_.nodes.push_back({out_.families.size(), std::exchange(tree.nodes, {})});
+    }
+    std::uint32_t collapsed = 0;
+    if (source.quantised) {
+      // In a frame of its own: that of the grid may be far too coarse to tell triangles from
+      // points.
+      const Frame frame = unbuilt_tree(mesh_, Origin::kByPrecision).frame();
+      const std::uint32_t before = count_degenerate(mesh_, frame);
+      collapsed = tree.degenerate_count - std::min(before, tree.degenerate_count);
+    }
+    out_.collapsed.push_back(collapsed);
+    out_.families.push_back(std::move(tree));
+    return {};
+  }
+
+  const SourceMesh& mesh_;
+  const SearchOptions& options_;
+  const std::optional<Grid>& scene_;
+  const Workload questions_;
+  TriedTree out_;
+};
+
+}  // namespace
+
+EncodedTree TriedTree::take(std::size_t candidate) {
+  EncodedTree tree = std::move(families[nodes[candidate].family]);
+  tree.nodes = std::move(nodes[candidate].nodes);
+  nodes.clear();
+  families.clear();
+  return tree;
+}
+
+Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,
+                                const std::optional<Grid>& scene) {
+  if (Status status = check_limits(mesh, options); !status) return status.error();
+  return Search(mesh, options, scene).run();
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// The search over encodings of one mesh: codec x geometry store. Each is encoded, proven and
+// measured by counting; what cannot win is left out, and listed.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <boxtree/cooker/build/build_tree.h>
+#include <boxtree/cooker/choose/choose.h>
+#include <boxtree/cooker/encode/encoded_tree.h>
+#include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/cooker/quantise/grid.h>
+
+namespace boxtree::cooker {
+
+struct SearchOptions {
+  std::optional<CodecId> codec;  // nothing: the best of all [default]
+  Wishes wishes;
+  Builder builder = Builder::kSah;
+  FieldWidths widths = FieldWidths::kExact;
+  GeometryId geometry = GeometryId::kExact;
+  bool may_use_grid = false;  // with geometry exact: a grid may be chosen as well
+  GridChoice grid;            // of geometry grid
+  bool try_all = false;       // also what cannot win
+  bool face_ids = true;
+};
+
+/// Below so many faces all codecs are tried: that takes no time. From there on, codecs with one
+/// face a leaf are not: each node of theirs is larger than ten of ours, and on every mesh measured
+/// they took 1.6 to 25 times as long (docs/MEASUREMENTS.md, "Our own codecs beside the others").
+inline constexpr std::size_t kTryAllFaces = 4096;
+
+/// The encodings of one mesh. Candidates that share a tree and an order of faces share all but
+/// their nodes.
+struct TriedTree {
+  struct Nodes {
+    std::size_t family;
+    EncodedNodes nodes;
+  };
+  Contest contest;
+  std::vector<Nodes> nodes;              // of each candidate
+  std::vector<EncodedTree> families;     // without nodes
+  std::vector<std::uint32_t> collapsed;  // of each family: triangles that lost their area on a grid
+
+  /// The tree of a candidate; the others are gone then.
+  [[nodiscard]] EncodedTree take(std::size_t candidate);
+};
+
+/// Deterministic. Precondition: what import promises of a mesh. `scene`: the grid shared with other
+/// meshes; by default one for this mesh alone. Errors: kMeshTooLarge; kMeshUnsupported when faces
+/// of an n-gon would have to stay external, or the only geometry allowed is a grid that cannot be
+/// as fine as asked.
+Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,
+                                const std::optional<Grid>& scene = {});
+
+}  // namespace boxtree::cooker

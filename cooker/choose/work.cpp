@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: MIT
+// The walks of the runtime, listened to. Any codec by the same walk: boxes of f32 codecs come and
+// go through double unchanged, so that it meets the nodes that a query meets.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <boxtree/cooker/choose/work.h>
+#include <boxtree/runtime/query/face_visit.h>
+#include <boxtree/runtime/query/pair_walk.h>
+#include <boxtree/runtime/query/point_query.h>
+#include <boxtree/runtime/query/ray_query.h>
+#include <boxtree/runtime/query/shape_query.h>
+
+namespace boxtree::cooker {
+namespace {
+
+struct Counts {
+  std::uint64_t nodes = 0;
+  std::uint64_t leaves = 0;
+};
+
+// Any codec, counting the nodes that are expanded.
+struct ListeningCodec {
+  using Scalar = double;
+  using Children = ChildSet<kWideChildren, double>;
+  static constexpr std::uint32_t kDepthLimit = kMaxDepth;
+
+  const Tree* tree;
+  Counts* counts;
+
+  static Result<ListeningCodec> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
+  [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }
+  [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
+    ++counts->nodes;
+    NodeChildren children;
+    if (tree->expand({box, ref, false}, children) != Errc::kOk) return false;
+    out.clear();
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      const Node& child = children.child[i];
+      out.add(child.box, child.ref, child.is_leaf);
+    }
+    return true;
+  }
+};
+
+template <class Query>
+struct Listening : Query {
+  Counts* counts;
+
+  [[nodiscard]] bool leaf(NodeRef ref) {
+    ++counts->leaves;
+    return Query::leaf(ref);
+  }
+};
+template <class Query>
+Listening(Query, Counts*) -> Listening<Query>;
+
+struct LeafPairCounter {
+  Counts* counts;
+
+  void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
+  void leaf_pair(NodeRef, NodeRef) noexcept { ++counts->leaves; }
+};
+
+Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {
+  int exponent = 0;
+  static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
+  Listening query{RayQuery(tree, ray, exponent, false), &counts};
+  const Errc walked = traverse_nearest(tree, ListeningCodec{&tree, &counts}, query);
+  return walked != Errc::kOk ? walked : query.error;
+}
+
+Errc ask(const Tree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
+  const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
+  const auto go_on = [](const FaceRef&) { return true; };
+  Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, Errc::kOk, false, {}}, &counts};
+  const Errc walked = traverse_overlap(tree, ListeningCodec{&tree, &counts}, query);
+  return walked != Errc::kOk ? walked : query.error;
+}
+
+Errc ask(const Tree& tree, const Eigen::Vector3d& point, Counts& counts) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  Listening query{PointQuery{tree, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}},
+                  &counts};
+  const Errc walked = traverse_nearest(tree, ListeningCodec{&tree, &counts}, query);
+  return walked != Errc::kOk ? walked : query.error;
+}
+
+Errc ask(const Tree& tree, const Pose& pose, Counts& counts) {
+  const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
+  if (!relative) return Errc::kInvalidPose;
+  const auto go_on = [](const FacePair&) { return true; };
+  const ListeningCodec codec{&tree, &counts};
+  return PairWalk(tree, codec, tree, codec, *relative, go_on, LeafPairCounter{&counts})
+      .run()
+      .code();
+}
+
+template <class Question>
+Result<Work> mean_work(const Tree& tree, const std::vector<Question>& questions) {
+  Counts counts;
+  for (const Question& question : questions) {
+    if (const Errc error = ask(tree, question, counts); error != Errc::kOk) return error;
+  }
+  const auto each = static_cast<double>(std::max<std::size_t>(questions.size(), 1));
+  return Work{static_cast<double>(counts.nodes) / each, static_cast<double>(counts.leaves) / each};
+}
+
+}  // namespace
+
+Workload choice_questions(const Eigen::AlignedBox3d& bounds) {
+  if (bounds.isEmpty()) return {};
+  Workload questions = make_workload(bounds, {400, 100, 100, 32});
+  // The third of every four poses is at 0.9 of the distance at which bounds touch.
+  std::vector<Pose> near;
+  for (std::size_t i = 2; i < questions.poses.size(); i += 4) near.push_back(questions.poses[i]);
+  questions.poses = std::move(near);
+  return questions;
+}
+
+Result<WorkOfKinds> count_work(const Tree& tree, const Workload& questions) {
+  WorkOfKinds work{};
+  if (tree.empty()) return work;
+  const auto enter = [&](QueryKind kind, const auto& of_kind) -> Status {
+    const Result<Work> mean = mean_work(tree, of_kind);
+    if (!mean) return mean.error();
+    work[static_cast<std::size_t>(kind)] = *mean;
+    return {};
+  };
+  if (Status status = enter(QueryKind::kRay, questions.rays); !status) return status.error();
+  if (Status status = enter(QueryKind::kBox, questions.boxes); !status) return status.error();
+  if (Status status = enter(QueryKind::kPoint, questions.points); !status) return status.error();
+  if (Status status = enter(QueryKind::kPair, questions.poses); !status) return status.error();
+  return work;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/choose/choose.h>
+
+#include "tests/support/require.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using test::require;
+
+// Of a tree of 100 triangles; every kind of query costs the same.
+Candidate candidate(CodecId codec, GeometryId geometry, std::uint64_t bytes, double cost) {
+  Candidate out;
+  out.codec = codec;
+  out.geometry = geometry;
+  out.tree_bytes = bytes / 2;
+  out.geometry_bytes = bytes - bytes / 2;
+  out.cost.fill(cost);
+  out.gates.certificate = true;
+  return out;
+}
+
+// Fast and large, slow and small, and one between that wins by the product: 1320, 1400, 1200.
+Contest contest() {
+  Contest tree{100, {}, {}};
+  tree.candidates = {candidate(CodecId::kWide8, GeometryId::kExact, 1320, 10),
+                     candidate(CodecId::kWide4, GeometryId::kExact, 700, 20),
+                     candidate(CodecId::kPackedF16, GeometryId::kExact, 800, 15)};
+  return tree;
+}
+
+std::size_t choice(Contest tree, const Wishes& wishes) {
+  return require(choose(std::span(&tree, 1), wishes)).front();
+}
+
+TEST(Choose, TakesTheSmallestTheFastestOrTheSmallestProduct) {
+  EXPECT_EQ(choice(contest(), {Goal::kMemory, {}, {}}), 1u);
+  EXPECT_EQ(choice(contest(), {Goal::kSpeed, {}, {}}), 0u);
+  EXPECT_EQ(choice(contest(), {Goal::kBalance, {}, {}}), 2u);
+}
+
+TEST(Choose, SlowdownIsTheMeanOverKinds) {
+  Contest tree = contest();
+  tree.candidates[1].cost = {10, 20, 30, 40};
+  EXPECT_EQ(slowdowns(tree.candidates), (std::vector<double>{1, 2.5, 1.5}));
+}
+
+TEST(Choose, WhatFailsItsGatesIsNeitherTakenNorAMeasure) {
+  Contest tree = contest();
+  tree.candidates[0].gates.missed = 3;
+  EXPECT_EQ(require(choose(std::span(&tree, 1), {Goal::kSpeed, {}, {}})).front(), 2u);
+  EXPECT_EQ(tree.candidates[0].rejected, "fails its gates: 3 faces missed, 0 boxes escaped");
+  EXPECT_EQ(tree.candidates[2].rejected, "");
+  EXPECT_EQ(slowdowns(tree.candidates)[2], 1);
+  for (Candidate& each : tree.candidates) each.gates.escapes = 1;
+  EXPECT_EQ(choose(std::span(&tree, 1), {}).code(), Errc::kInternal);
+}
+
+TEST(Choose, KeepsToBudgets) {
+  EXPECT_EQ(choice(contest(), {Goal::kSpeed, 8, {}}), 2u);
+  EXPECT_EQ(choice(contest(), {Goal::kSpeed, 7, {}}), 1u);
+  EXPECT_EQ(choice(contest(), {Goal::kMemory, {}, 1.5}), 2u);
+  EXPECT_EQ(choice(contest(), {Goal::kMemory, {}, 1}), 0u);
+  EXPECT_EQ(choice(contest(), {Goal::kBalance, 8, 1.5}), 2u);
+}
+
+TEST(Choose, RefusesWithTheNearestThatIsPossible) {
+  Contest tree = contest();
+  const auto bytes = choose(std::span(&tree, 1), {Goal::kSpeed, 6.5, {}});
+  EXPECT_EQ(bytes.code(), Errc::kBudgetUnreachable);
+  EXPECT_EQ(bytes.error().detail,
+            "wanted at most 6.5 B/tri; wide4 with geometry exact takes 7.00 B/tri and 2.00 times "
+            "the least time; wide8 with geometry exact takes 13.20 B/tri and 1.00 times the least "
+            "time");
+  const auto both = choose(std::span(&tree, 1), {Goal::kSpeed, 7, 1.2});
+  EXPECT_EQ(both.code(), Errc::kBudgetUnreachable);
+  EXPECT_NE(both.error().detail.find("at most 7 B/tri and at most 1.2 times"), std::string::npos);
+}
+
+// What touches still does: one geometry store for all trees of a file.
+TEST(Choose, TreesOfAFileShareAGeometryStore) {
+  Contest one{100, {}, {}}, other{100, {}, {}};
+  one.candidates = {candidate(CodecId::kWide8, GeometryId::kExact, 900, 10),
+                    candidate(CodecId::kWide8, GeometryId::kGrid, 1000, 10)};
+  other.candidates = {candidate(CodecId::kWide8, GeometryId::kExact, 1500, 10),
+                      candidate(CodecId::kWide8, GeometryId::kGrid, 700, 10)};
+  std::vector<Contest> trees = {one, other};
+  EXPECT_EQ(require(choose(trees, {Goal::kMemory, {}, {}})), (std::vector<std::size_t>{1, 1}));
+  trees[0].triangles = trees[1].triangles = 100;
+  trees[1].candidates[1].gates.missed = 1;
+  EXPECT_EQ(require(choose(trees, {Goal::kMemory, {}, {}})), (std::vector<std::size_t>{0, 0}));
+  trees[0].candidates[0].gates.missed = 1;
+  EXPECT_EQ(choose(trees, {Goal::kMemory, {}, {}}).code(), Errc::kBudgetUnreachable);
+}
+
+TEST(Choose, AnEmptyTreeCanBeChosenFor) {
+  Contest tree{0, {candidate(CodecId::kWide8, GeometryId::kExact, 0, 0)}, {}};
+  EXPECT_EQ(choice(tree, {}), 0u);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

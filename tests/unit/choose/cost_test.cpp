@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/choose/cost.h>
+
+namespace boxtree::cooker {
+namespace {
+
+TEST(Cost, IsASumOfSteps) {
+  const CodecCost known[] = {
+      {CodecId::kWide8, GeometryId::kExact, {{{100, 10, 1}, {0, 2, 0}, {0, 0, 3}, {7, 0, 0}}}}};
+  const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {1, 1}}};
+  const QueryCost expected = {152, 12, 24, 7};
+  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kExact, known), expected);
+  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kExternal, known), expected);
+}
+
+TEST(Cost, EveryCodecAndStoreHasConstants) {
+  const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
+  for (const CodecInfo& codec : kCodecs) {
+    for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+      for (const double ns : cost_of(work, codec.id, geometry)) EXPECT_GT(ns, 0) << codec.name;
+    }
+  }
+}
+
+TEST(FitSteps, FindsTheStepsThatMadeTheTimes) {
+  const StepCost truth{80, 15, 40};
+  std::vector<Measured> measured;
+  for (const Work work : {Work{3, 1}, Work{10, 2}, Work{40, 31}, Work{100, 12}}) {
+    measured.push_back(
+        {work, truth.question + work.nodes * truth.node + work.leaves * truth.leaf});
+  }
+  const StepCost found = fit_steps(measured);
+  EXPECT_NEAR(found.question, truth.question, 1e-6);
+  EXPECT_NEAR(found.node, truth.node, 1e-6);
+  EXPECT_NEAR(found.leaf, truth.leaf, 1e-6);
+}
+
+// The best line through these times goes down with the nodes; the best without negative steps does
+// not.
+TEST(FitSteps, NoStepIsNegative) {
+  const std::vector<Measured> measured = {{{1, 1}, 100}, {{10, 1}, 90}, {{20, 1}, 80}};
+  const StepCost found = fit_steps(measured);
+  EXPECT_GE(found.question, 0);
+  EXPECT_GE(found.node, 0);
+  EXPECT_GE(found.leaf, 0);
+  EXPECT_NEAR(found.question + found.leaf + 10 * found.node, 90, 5);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/choose/search.h>
+
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using test::require;
+
+SearchOptions options_for(Goal goal) {
+  SearchOptions options;
+  options.may_use_grid = true;
+  options.wishes.goal = goal;
+  return options;
+}
+
+Candidate winner(const SourceMesh& mesh, const SearchOptions& options) {
+  TriedTree tried = require(try_encodings(mesh, options));
+  const std::size_t chosen =
+      require(choose(std::span(&tried.contest, 1), options.wishes)).front();
+  return tried.contest.candidates[chosen];
+}
+
+// Large enough for codecs to be left out.
+SourceMesh large_mesh() {
+  return test::torus(100, 60);
+}
+
+TEST(Search, WhatIsLeftOutWouldNotHaveWon) {
+  const SourceMesh mesh = large_mesh();
+  ASSERT_GE(mesh.faces.size(), kTryAllFaces);
+  for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+    SearchOptions options = options_for(goal);
+    const TriedTree quick = require(try_encodings(mesh, options));
+    EXPECT_FALSE(quick.contest.not_tried.empty());
+    const Candidate chosen = winner(mesh, options);
+    options.try_all = true;
+    const TriedTree all = require(try_encodings(mesh, options));
+    EXPECT_GT(all.contest.candidates.size(), quick.contest.candidates.size());
+    const Candidate best = winner(mesh, options);
+    EXPECT_EQ(chosen.codec, best.codec) << goal_name(goal);
+    EXPECT_EQ(chosen.geometry, best.geometry) << goal_name(goal);
+  }
+}
+
+TEST(Search, SmallMeshesAreTriedWithEveryCodec) {
+  const TriedTree tried = require(try_encodings(test::torus(12, 8), options_for(Goal::kBalance)));
+  EXPECT_EQ(tried.contest.candidates.size(), 2 * (kCodecs.size() - 1));  // packed-f64 is for f64
+  for (const Candidate& candidate : tried.contest.candidates) {
+    EXPECT_TRUE(candidate.gates.pass()) << codec_name(candidate.codec);
+    EXPECT_GT(candidate.bytes(), 0u);
+  }
+}
+
+TEST(Search, ABudgetBringsBackWhatItNeeds) {
+  // The fastest is too large, so that a grid must be tried although it is slower.
+  SearchOptions options = options_for(Goal::kSpeed);
+  options.wishes.max_bytes_per_triangle = 10;
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kGrid);
+  options.wishes.max_bytes_per_triangle.reset();
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
+  // The smallest is too slow.
+  options = options_for(Goal::kMemory);
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kGrid);
+  options.wishes.max_slowdown = 1.01;
+  EXPECT_EQ(winner(large_mesh(), options).codec, CodecId::kWide8);
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
+}
+
+TEST(Search, AToleranceThatNoGridKeepsLeavesExactGeometry) {
+  SearchOptions options = options_for(Goal::kMemory);
+  options.grid.tolerance = 1e-300;
+  const TriedTree tried = require(try_encodings(large_mesh(), options));
+  EXPECT_TRUE(std::any_of(tried.contest.not_tried.begin(), tried.contest.not_tried.end(),
+                          [](const NotTried& n) { return n.geometry == GeometryId::kGrid; }));
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
+}
+
+TEST(Search, TakesOutOneTreeWhole) {
+  const SourceMesh mesh = test::torus(12, 8);
+  TriedTree tried = require(try_encodings(mesh, options_for(Goal::kBalance)));
+  for (std::size_t i = 0; i < tried.contest.candidates.size(); ++i) {
+    TriedTree copy = require(try_encodings(mesh, options_for(Goal::kBalance)));
+    const EncodedTree tree = copy.take(i);
+    const Candidate& candidate = tried.contest.candidates[i];
+    EXPECT_EQ(tree.nodes.codec, candidate.codec);
+    EXPECT_EQ(tree.geometry.geometry, candidate.geometry);
+    EXPECT_EQ(tree.nodes.bytes.size(), candidate.tree_bytes);
+    EXPECT_TRUE(Tree::bind(parts_of(tree), 0, {}).ok());
+  }
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/choose/work.h>
+#include <boxtree/cooker/cook.h>
+
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using test::require;
+
+struct Reached {
+  std::size_t nodes = 0;
+  std::size_t leaves = 0;
+};
+
+// Every box of the tree that a box overlaps, by recursion.
+void count(const Tree& tree, const Node& node, const Eigen::AlignedBox3d& box, Reached& reached) {
+  const Eigen::AlignedBox3d here(Eigen::Map<const Eigen::Vector3d>(node.box.low.data()),
+                                 Eigen::Map<const Eigen::Vector3d>(node.box.high.data()));
+  if (!here.intersects(box)) return;
+  if (node.is_leaf) {
+    ++reached.leaves;
+    return;
+  }
+  ++reached.nodes;
+  NodeChildren children;
+  ASSERT_EQ(tree.expand(node, children), Errc::kOk);
+  for (std::uint32_t i = 0; i < children.count; ++i) {
+    count(tree, children.child[i], box, reached);
+  }
+}
+
+TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
+  const SourceMesh mesh = test::torus(40, 24);
+  for (const CodecInfo& codec : kCodecs) {
+    const EncodedTree encoded = require(cook_as(mesh, codec.id));
+    const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+    Workload questions;
+    questions.boxes = choice_questions(bounds_of(mesh)).boxes;
+    Reached reached;
+    for (const Eigen::AlignedBox3d& box : questions.boxes) {
+      count(tree, tree.root(),
+            {tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())}, reached);
+    }
+    const auto boxes = static_cast<double>(questions.boxes.size());
+    const Work work = require(count_work(tree, questions))[1];
+    EXPECT_EQ(work.nodes, static_cast<double>(reached.nodes) / boxes) << codec.name;
+    EXPECT_EQ(work.leaves, static_cast<double>(reached.leaves) / boxes) << codec.name;
+    EXPECT_GT(reached.leaves, 0u);
+  }
+}
+
+TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
+  const SourceMesh mesh = test::torus(40, 24);
+  const Workload questions = choice_questions(bounds_of(mesh));
+  const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide4));
+  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  const WorkOfKinds first = require(count_work(tree, questions));
+  const WorkOfKinds second = require(count_work(tree, questions));
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    EXPECT_GT(first[kind].nodes, 0) << kQueryNames[kind];
+    EXPECT_GT(first[kind].leaves, 0) << kQueryNames[kind];
+    EXPECT_EQ(first[kind].nodes, second[kind].nodes);
+    EXPECT_EQ(first[kind].leaves, second[kind].leaves);
+  }
+}
+
+TEST(CountWork, ATreeWithoutFacesHasNone) {
+  const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
+  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  const Workload questions = choice_questions(bounds_of(test::torus(4, 4)));
+  for (const Work& work : require(count_work(tree, questions))) {
+    EXPECT_EQ(work.nodes, 0);
+    EXPECT_EQ(work.leaves, 0);
+  }
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
