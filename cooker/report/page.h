@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <boxtree/cooker/report/plot.h>
+
 namespace boxtree::cooker {
 
 /// Cells are text. The first columns hold words and are left-aligned, the others hold numbers.
@@ -14,22 +16,6 @@ struct PageTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
   std::size_t word_columns = 1;
-};
-
-/// Points over two axes, both linear and from their smallest to their largest value.
-struct PagePlot {
-  struct Point {
-    double x;
-    double y;
-    std::string label;
-  };
-  struct Series {
-    std::string name;
-    std::vector<Point> points;
-  };
-  std::string x_title;
-  std::string y_title;
-  std::vector<Series> series;  // at most four, told apart by colour and shape
 };
 
 struct PageSection {

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Plots: lines through all their points and inside the frame, files that need no page around them.
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/report/plot.h>
+
+namespace boxtree::cooker {
+namespace {
+
+PagePlot sample() {
+  return {
+      "x", "<y>", {{"a & b", {{0, -3, ""}, {1, 5, ""}, {2, 4, ""}}}, {"c", {{2, 0.1, ""}}}}, true};
+}
+
+TEST(Plot, LinesGoThroughTheirPointsInsideTheFrame) {
+  const std::string svg = to_svg_element(sample());
+  const std::regex line("points=\"([^\"]*)\"");
+  std::vector<std::size_t> counts;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), line), end; it != end; ++it) {
+    std::istringstream points((*it)[1]);
+    double x = 0;
+    double y = 0;
+    char comma = 0;
+    double last = -1;
+    counts.push_back(0);
+    while (points >> x >> comma >> y) {
+      EXPECT_TRUE(x > last && x <= 640 && y >= 0 && y <= 400) << x << ' ' << y;
+      last = x;
+      ++counts.back();
+    }
+  }
+  EXPECT_EQ(counts, (std::vector<std::size_t>{3, 1}));
+  EXPECT_EQ(svg.find("<circle"), std::string::npos) << "lines have no marks";
+}
+
+TEST(Plot, ZeroOnAnAxisIsZero) {
+  // Steps of 0.1 from below zero: added up they miss it.
+  const PagePlot plot{"x", "y", {{"s", {{-0.3, -0.3, ""}, {0.3, 0.3, ""}}}}, true};
+  const std::string svg = to_svg_element(plot);
+  EXPECT_NE(svg.find(">0</text>"), std::string::npos);
+  EXPECT_FALSE(std::regex_search(svg, std::regex(">[-0-9.]*e-[0-9]+</text>")));
+}
+
+TEST(Plot, FilesBringTheirColours) {
+  const std::string svg = to_svg_file(sample());
+  EXPECT_TRUE(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\" "));
+  const std::regex used("var\\((--c[0-9])\\)");
+  std::set<std::string> names;
+  for (std::sregex_iterator it(svg.begin(), svg.end(), used), end; it != end; ++it) {
+    names.insert((*it)[1]);
+  }
+  EXPECT_EQ(names, (std::set<std::string>{"--c0", "--c1"}));
+  for (const std::string& name : names) EXPECT_NE(svg.find(name + ":#"), std::string::npos);
+  EXPECT_NE(svg.find("a &amp; b"), std::string::npos);
+}
+
+TEST(Plot, NothingWithoutPoints) {
+  EXPECT_EQ(to_svg_element({"x", "y", {{"none", {}}}}), "");
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
