@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Bullet asks for the triangles near each moving body: a box query.
+#include "samples/bullet_drop/mapped_shape.h"
+
+#include <LinearMath/btAabbUtil2.h>
+#include <algorithm>
+
+namespace bullet_drop {
+namespace {
+
+btVector3 to_bullet(const Eigen::Vector3d& v) {
+  return {static_cast<btScalar>(v.x()), static_cast<btScalar>(v.y()), static_cast<btScalar>(v.z())};
+}
+
+Eigen::Vector3d from_bullet(const btVector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+}  // namespace
+
+MappedShape::MappedShape(const boxtree::Tree& tree) : tree_(tree) {
+  // Not CUSTOM_CONCAVE_SHAPE_TYPE: Bullet 3 takes that for its own signed distance fields.
+  m_shapeType = FAST_CONCAVE_MESH_PROXYTYPE;
+}
+
+void MappedShape::processAllTriangles(btTriangleCallback* callback, const btVector3& low,
+                                      const btVector3& high) const {
+  // Negative scales turn the box over.
+  const Eigen::Vector3d scale = from_bullet(scaling_);
+  const Eigen::Vector3d a = from_bullet(low).cwiseQuotient(scale);
+  const Eigen::Vector3d b = from_bullet(high).cwiseQuotient(scale);
+  std::vector<boxtree::FaceRef> faces;
+  const auto visit = boxtree::overlap_box(tree_, {a.cwiseMin(b), a.cwiseMax(b)},
+                                          [&faces](const boxtree::FaceRef& face) {
+                                            faces.push_back(face);
+                                            return true;
+                                          });
+  // A damaged file: no contact rather than a wrong one. An engine would report visit.error().
+  if (!visit) return;
+  std::sort(faces.begin(), faces.end(), [](const auto& x, const auto& y) { return x.id < y.id; });
+  boxtree::TriangleBatch batch;
+  for (const boxtree::FaceRef& face : faces) {
+    if (tree_.leaves().read(face.order, 1, batch) != boxtree::Errc::kOk) return;
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      btVector3 corners[3];
+      for (std::size_t k = 0; k < 3; ++k) {
+        corners[k] = to_bullet(tree_.frame().to_object(batch.triangle(i).corner[k])) * scaling_;
+      }
+      callback->processTriangle(corners, 0, static_cast<int>(face.id));
+    }
+  }
+}
+
+void MappedShape::getAabb(const btTransform& pose, btVector3& low, btVector3& high) const {
+  const Eigen::AlignedBox3d bounds = tree_.to_object(tree_.root().box);
+  btVector3 local_low = to_bullet(bounds.min()) * scaling_;
+  btVector3 local_high = to_bullet(bounds.max()) * scaling_;
+  const btVector3 other = local_low;
+  local_low.setMin(local_high);
+  local_high.setMax(other);
+  btTransformAabb(local_low, local_high, getMargin(), pose, low, high);
+}
+
+void MappedShape::calculateLocalInertia(btScalar /*mass*/, btVector3& inertia) const {
+  inertia.setZero();
+}
+
+}  // namespace bullet_drop
