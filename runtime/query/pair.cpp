@@ -41,7 +41,8 @@ Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tre
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
-  if (first.codec() != second.codec()) {
+  // Not by their records: a tree without nodes has none of any codec.
+  if (first.codec_view().index() != second.codec_view().index()) {
     return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, *pose, visitor).run();
   }
   return with_codec(first, [&]<class C>(const C& codec) {

@@ -2,6 +2,9 @@
 // From a tree to the type of its codec: once, at the entry of a query, never per node.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+#include <limits>
 #include <utility>
 #include <variant>
 
@@ -15,11 +18,19 @@ decltype(auto) with_codec(const Tree& tree, Visitor&& visitor) {
   return std::visit(std::forward<Visitor>(visitor), tree.codec_view());
 }
 
-/// The root box in the scalar of a codec. The cooker stores values of that scalar, so nothing is
-/// rounded; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
+/// The root box in the scalar of a codec, rounded outward. The cooker stores values of that scalar,
+/// so nothing is rounded but where a tree of f64 is a single leaf, which walks take for one of any
+/// codec; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
 template <class S>
 [[nodiscard]] Box<S> root_box(const Tree& tree) noexcept {
-  return box_cast<S>(Box<double>{tree.record().root_low, tree.record().root_high});
+  const Box<double> exact{tree.record().root_low, tree.record().root_high};
+  Box<S> box = box_cast<S>(exact);
+  constexpr S kInfinity = std::numeric_limits<S>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (box.low[k] > exact.low[k]) box.low[k] = std::nextafter(box.low[k], -kInfinity);
+    if (box.high[k] < exact.high[k]) box.high[k] = std::nextafter(box.high[k], kInfinity);
+  }
+  return box;
 }
 
 }  // namespace boxtree

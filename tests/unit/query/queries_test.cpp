@@ -2,6 +2,7 @@
 // Every query on every codec against brute force over the source mesh, by the leaf predicates
 // alone.
 #include <algorithm>
+#include <cmath>
 #include <random>
 #include <set>
 
@@ -325,6 +326,42 @@ TEST_P(Queries, VisitorsCanStop) {
     pairs = 0;
     ASSERT_EQ(*overlap_sphere(cooked.tree, {0, 0, 0}, 1e3, stop), Visit::kStopped);
     ASSERT_EQ(pairs, limit);
+  }
+}
+
+// A tree of one leaf has no nodes of its codec to be walked with.
+TEST_P(Queries, TreesOfOneLeafMeetAllOthers) {
+  const SourceMesh one = test::duplicates(1);
+  const SourceMesh many = test::city(9, 2);
+  const test::CookedTree leaf = test::cook_tree(one, GetParam());
+  const test::CookedTree nodes = test::cook_tree(many, GetParam());
+  const test::CookedTree none = test::cook_tree(SourceMesh(), GetParam());
+  const Pose here = Pose::Identity();
+  ASSERT_FALSE(touching_pairs(many, one, here).empty());
+  EXPECT_EQ(found_pairs(leaf.tree, here, nodes.tree, here), touching_pairs(one, many, here));
+  EXPECT_EQ(found_pairs(nodes.tree, here, leaf.tree, here), touching_pairs(many, one, here));
+  EXPECT_TRUE(found_pairs(none.tree, here, nodes.tree, here).empty());
+  EXPECT_TRUE(found_pairs(nodes.tree, here, none.tree, here).empty());
+}
+
+// The box of such a tree is f64 when its positions are, and walks that take f32 must not lose it.
+TEST_P(Queries, OneFaceInDoubleIsFoundAtItsCorners) {
+  for (const double divisor : {3.0, 5.0, 7.0, 11.0, 13.0}) {
+    SourceMesh mesh = test::duplicates(1);
+    mesh.positions.precision = cooker::Precision::kF64;
+    for (std::size_t i = 0; i < mesh.positions.f32.size(); ++i) {
+      const double factor = std::sqrt(divisor + static_cast<double>(i % 3));
+      mesh.positions.f64.push_back(double{mesh.positions.f32[i]} * factor);
+    }
+    mesh.positions.f32.clear();
+    const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Eigen::Vector3d corner = mesh.positions[i];
+      int found = 0;
+      const auto count = [&](const FaceRef&) { return ++found > 0; };
+      ASSERT_TRUE(overlap_box(cooked.tree, Eigen::AlignedBox3d(corner), count).ok());
+      EXPECT_EQ(found, 1) << "corner " << i << ", divisor " << divisor;
+    }
   }
 }
 
