@@ -103,6 +103,7 @@ Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions o
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress) {
+  const DefaultFloatState state;
   const auto step = [&](const std::string& what) {
     if (progress) progress(what);
   };

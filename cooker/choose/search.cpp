@@ -15,6 +15,7 @@
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/runtime/query/float_state.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -342,6 +343,7 @@ EncodedTree TriedTree::take(std::size_t candidate) {
 
 Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,
                                 const std::optional<Grid>& scene) {
+  const DefaultFloatState state;
   if (Status status = check_limits(mesh, options); !status) return status.error();
   return Search(mesh, options, scene).run();
 }

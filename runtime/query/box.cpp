@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Box queries over any codec.
 #include <boxtree/runtime/query/box.h>
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
 Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor) {
+  const DefaultFloatState state;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
   const BoxQuery query{tree.frame().to_tree(box.min()).cwiseMax(-kReach).cwiseMin(kReach),

@@ -2,6 +2,7 @@
 // Pair queries: one instance of the walk for each codec, and one for pairs of different codecs.
 #include <variant>
 
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/pair_walk.h>
 #include <boxtree/runtime/wide/pair_walks.h>
@@ -38,6 +39,7 @@ struct ErasedCodec {
 
 Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
                             const Pose& second_pose, PairVisitor visitor) {
+  const DefaultFloatState state;
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;

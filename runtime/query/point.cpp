@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
 Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen::Vector3d& point,
                                                   double max_distance) {
+  const DefaultFloatState state;
   const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
   if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/ray_query.h>
 #include <boxtree/runtime/wide/walks.h>
 
@@ -31,6 +32,7 @@ int direction_exponent(const Ray& ray) {
 }
 
 Result<std::optional<RayHit>> cast(const Tree& tree, const Ray& ray, bool stop_at_first) {
+  const DefaultFloatState state;
   if (!is_valid(ray) || !is_within_reach(tree.frame().to_tree(ray.origin))) {
     return Errc::kInvalidQuery;
   }

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/sphere.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
 Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
                              FaceVisitor visitor) {
+  const DefaultFloatState state;
   const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
   if (!(radius >= 0) || !std::isfinite(radius) || !is_within_reach(tree_center)) {
     return Errc::kInvalidQuery;

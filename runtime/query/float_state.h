@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// The state of the floating-point unit that every query computes in, whatever its caller has set.
+#pragma once
+
+#if defined(__SSE2__)
+#include <xmmintrin.h>
+#elif defined(__aarch64__)
+#include <cstdint>
+#endif
+
+namespace boxtree {
+
+/// For as long as it lives: rounding to nearest, subnormal numbers kept, no traps. Exact predicates
+/// need the first two; games often run without the second (FTZ, DAZ). Reading the state costs some
+/// nanoseconds, and it is written only where it is another one. Visitors are called in it.
+class DefaultFloatState {
+ public:
+#if defined(__SSE2__)
+  DefaultFloatState() noexcept : before_(_mm_getcsr()) {
+    if (is_default()) return;
+    _mm_setcsr(kDefault);
+    fence();
+  }
+  ~DefaultFloatState() {
+    if (is_default()) return;
+    fence();
+    _mm_setcsr(before_);
+  }
+
+ private:
+  static constexpr unsigned kDefault = 0x1f80;  // all exceptions masked, all else off
+  static constexpr unsigned kFlags = 0x3f;      // what happened so far
+
+  [[nodiscard]] bool is_default() const noexcept {
+    return (before_ & ~kFlags) == kDefault;
+  }
+
+  unsigned before_;
+#elif defined(__aarch64__)
+  DefaultFloatState() noexcept {
+    asm volatile("mrs %0, fpcr" : "=r"(before_));
+    if (before_ == 0) return;
+    asm volatile("msr fpcr, %0" : : "r"(std::uint64_t{0}) : "memory");
+  }
+  ~DefaultFloatState() {
+    if (before_ == 0) return;
+    asm volatile("msr fpcr, %0" : : "r"(before_) : "memory");
+  }
+
+ private:
+  std::uint64_t before_;
+#else
+  DefaultFloatState() noexcept = default;
+  ~DefaultFloatState() = default;
+
+ private:
+#endif
+  // Operands are loaded after, results stored before what changes the state.
+  static void fence() noexcept {
+    asm volatile("" : : : "memory");
+  }
+
+ public:
+  DefaultFloatState(const DefaultFloatState&) = delete;
+  DefaultFloatState& operator=(const DefaultFloatState&) = delete;
+};
+
+}  // namespace boxtree
