@@ -52,9 +52,13 @@ struct RayEdges {
                                        const ShearedCorner& c) noexcept;
 
 /// Where the line of the ray meets the triangle, from either side, at any t (the caller bounds it);
-/// nothing when it misses or the triangle is degenerate or edge-on. Two triangles that share an
-/// edge or corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are
-/// in [0, 1].
+/// nothing when it misses or the sheared triangle is edge-on. Two triangles that share an edge or
+/// corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are in [0,
+/// 1].
+///
+/// A triangle without area is edge-on but for the rounding of the shear, so a ray that goes through
+/// it to within that rounding may hit it. It must: where such triangles close a seam, between one
+/// long edge and the short ones beside it, they cover what rounding opens.
 ///
 /// Why there is no gap. An area is fl(fl(x1 y2) - fl(x2 y1)). Rounding is monotone, so its sign is
 /// exact or it is zero; zeros are computed again in exact arithmetic. So all signs are exact for

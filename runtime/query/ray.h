@@ -27,7 +27,7 @@ struct RayHit {
 /// The hit with the smallest t; of several at the same t the one with the smallest face id (order,
 /// if the file has no ids), so that all codecs and brute force agree. Both sides of a face count,
 /// edges and corners are part of it and no gap lies between faces that share them; a ray in the
-/// plane of a face does not hit it.
+/// plane of a face does not hit it, nor does any ray hit a face without area, but for rounding.
 /// Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
 /// interval, an origin more than 2^180 mesh extents away), and
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
