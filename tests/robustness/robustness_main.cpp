@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// boxtree_robustness: one line a case; exits with 7 when one does not keep its limit.
+#include <algorithm>
+#include <cstdio>
+#include <cstring>
+#include <fstream>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/robustness/run.h"
+
+namespace boxtree::robustness {
+namespace {
+
+constexpr int kDifferenceFound = 7;  // as the command line of the cooker has it
+
+struct Arguments {
+  bool full = false;
+  std::vector<std::string> only;
+  std::string json;
+};
+
+bool is_wanted(const Case& tested, const std::vector<std::string>& only) {
+  return only.empty() || std::find(only.begin(), only.end(), tested.id) != only.end();
+}
+
+int run(const Arguments& arguments) {
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  bool all_pass = true;
+  fmt::print("{:4} {:62} {:>10} {:>8}  {:28} {}\n", "id", "what", "figure", "limit", "of", "pass");
+  for (const Case& tested : all_cases()) {
+    if (!is_wanted(tested, arguments.only)) continue;
+    const Run found = run_case(tested, arguments.full);
+    const bool pass = found.passes(tested.limit);
+    all_pass &= pass;
+    fmt::print("{:4} {:62} {:>10.4g} {:>8.4g}  {:28} {}\n", tested.id, tested.what, found.figure(),
+               tested.limit, fmt::format("{} ({} checks)", tested.unit, found.checks()),
+               pass ? "pass" : "FAIL");
+    for (const std::string& complaint : found.complaints()) fmt::print("       {}\n", complaint);
+    std::fflush(stdout);
+    rows.push_back({{"id", tested.id},
+                    {"name", tested.name},
+                    {"what", tested.what},
+                    {"figure", found.figure()},
+                    {"limit", tested.limit},
+                    {"unit", tested.unit},
+                    {"checks", found.checks()},
+                    {"pass", pass},
+                    {"complaints", found.complaints()}});
+  }
+  if (!arguments.json.empty()) {
+    std::ofstream out(arguments.json);
+    out << nlohmann::ordered_json{{"full", arguments.full}, {"cases", rows}}.dump(2) << '\n';
+    out.close();
+    if (!out) {
+      fmt::print(stderr, "cannot write {}\n", arguments.json);
+      return 2;
+    }
+  }
+  return all_pass ? 0 : kDifferenceFound;
+}
+
+}  // namespace
+}  // namespace boxtree::robustness
+
+int main(int argc, char** argv) {
+  boxtree::robustness::Arguments arguments;
+  CLI::App app("The robustness suite: id, what, figure, limit, pass.");
+  app.add_option("CASE", arguments.only, "ids of the cases to run [all]");
+  app.add_flag("--full", arguments.full, "counts of a documented run: minutes, gigabytes");
+  app.add_option("--json", arguments.json, "also write the table there");
+  CLI11_PARSE(app, argc, argv);
+  return boxtree::robustness::run(arguments);
+}
