@@ -40,6 +40,9 @@ struct CookedTree {
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
                              const std::optional<Grid>& scene = {});
 
+/// What is reported of the candidate of a tree that was chosen.
+[[nodiscard]] CookedTree cooked_of(TriedTree tried, std::size_t chosen, const CookOptions& options);
+
 /// The tree that cook_mesh makes in one codec, whatever `options` say of codecs.
 Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options = {});
 
