@@ -135,10 +135,12 @@ Family binary_family(const Source& source, const SearchOptions& options,
 Family wide_family(const Source& source, const SearchOptions& options) {
   Family family{source.known, {}};
   WideLayout layout = lay_out_wide(build_full_leaves(source.built(), source.origin()));
+  const bool external = options.geometry == GeometryId::kExternal;
+  // Leaves name the application's faces through face ids, which no tree without faces has.
+  family.tree.faces_in_source_order = external && layout.face_order.empty();
   family.tree.geometry =
-      options.geometry == GeometryId::kExternal
-          ? encode_external_geometry(source.mesh, layout.face_order)
-          : encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
+      external ? encode_external_geometry(source.mesh, layout.face_order)
+               : encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
   layout.face_order = {};
   family.nodes_of = [layout = std::move(layout)](CodecId codec) {
     return encode_wide(layout, codec);

@@ -113,6 +113,15 @@ TEST_P(Trees, ExternalGeometryAnswersAsStoredGeometryDoes) {
   }
 }
 
+TEST_P(Trees, NoFacesAtAllMayStayExternal) {
+  const SourceMesh mesh;
+  const Arrays arrays(mesh);
+  BindOptions bind;
+  bind.mesh = arrays.view();
+  bind.verify_mesh = true;
+  EXPECT_TRUE(test::cook_tree(mesh, GetParam(), external(), bind).tree.empty());
+}
+
 TEST_P(Trees, ExternalGeometryIsAskedForAndRecognised) {
   const SourceMesh mesh = test::torus(8, 6);
   const std::vector<std::byte> bytes = test::cook_bytes(mesh, GetParam(), external());
