@@ -37,6 +37,22 @@ double in_steps(double position, double origin, int step_exponent) {
   return std::ldexp(position / 2 - origin / 2, 1 - step_exponent);
 }
 
+// Goes into the file, so by operations whose results IEEE 754 says to the bit, in one order:
+// Eigen's norms add in an order that depends on alignment and instruction set. Scaled by a power of
+// two, so that no square overflows and none that matters underflows.
+double length_of(const std::array<double, 3>& vector) {
+  double largest = 0;
+  for (const double x : vector) largest = std::max(largest, std::abs(x));
+  if (largest == 0) return 0;
+  const int exponent = std::ilogb(largest);
+  double squared = 0;
+  for (const double x : vector) {
+    const double scaled = std::ldexp(x, -exponent);
+    squared += scaled * scaled;
+  }
+  return std::ldexp(std::sqrt(squared), exponent);
+}
+
 }  // namespace
 
 Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
@@ -110,7 +126,7 @@ QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
   (fits_float ? positions.f32.resize(3 * count) : positions.f64.resize(3 * count));
   for (std::size_t i = 0; i < count; ++i) {
     const Eigen::Vector3d source = mesh.positions[i];
-    Eigen::Vector3d moved;
+    std::array<double, 3> moved;
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       const double q = steps_of(source[axis], k) - middle[k];
@@ -121,9 +137,9 @@ QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
       }
       // As a reader computes it; half of it, so that nothing overflows.
       const double decoded = std::ldexp(q, grid.step_exponent) + out.origin[k];
-      moved[axis] = decoded / 2 - source[axis] / 2;
+      moved[k] = decoded / 2 - source[axis] / 2;
     }
-    out.max_vertex_error = std::max(out.max_vertex_error, 2 * moved.stableNorm());
+    out.max_vertex_error = std::max(out.max_vertex_error, 2 * length_of(moved));
   }
   return out;
 }

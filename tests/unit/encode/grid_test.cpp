@@ -81,6 +81,23 @@ TEST_P(GridStore, HoldsTheSourceRoundedToTheGrid) {
 
 INSTANTIATE_TEST_SUITE_P(Codecs, GridStore, testing::ValuesIn(test::all_codecs()), test::test_name);
 
+// Steps of 3, 4 and 12 along the axes are 13 in all. Their squares are neither too large nor too
+// small for double, though those of the lengths are.
+TEST(Grid, SaysHowFarAVertexMovesToTheBit) {
+  for (const int exponent : {-900, 0, 900}) {
+    const double extent = std::ldexp(1.0, exponent);
+    const double step = extent / 4096;
+    SourceMesh mesh;
+    mesh.positions.precision = cooker::Precision::kF64;
+    mesh.positions.f64 = {
+        0, 0, 0, extent, extent, extent, step * 3 / 32, step * 4 / 32, step * 12 / 32};
+    mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+    const cooker::EncodedTree tree =
+        test::require(cooker::cook_as(mesh, CodecId::kWide4, on_grid(12)));
+    EXPECT_EQ(tree.geometry.max_vertex_error, step * 13 / 32);
+  }
+}
+
 TEST(Grid, HoldsATolerance) {
   const SourceMesh mesh = test::torus(40, 30);
   for (const double tolerance : {0.3, 0.01, 1e-3, 3.3e-5, 1e-7}) {
