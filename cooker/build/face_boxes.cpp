@@ -22,22 +22,27 @@ float round_down(double value) {
              : std::nextafter(nearest, -std::numeric_limits<float>::infinity());
 }
 
+// Never -0, see Bounds.
 float round_up(double value) {
-  return -round_down(-value);
+  return 0 - round_down(-value);
 }
 
+// Zeros are +0 here, whatever their sign was: which of -0 and +0 a minimum keeps depends on the
+// machine's instruction for it, and the bounds of all go into the file.
 struct Bounds {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
+
+  void include(const Eigen::Vector3d& point) {
+    const Eigen::Vector3d plus_zero = point.array() + 0.0;
+    low = low.cwiseMin(plus_zero);
+    high = high.cwiseMax(plus_zero);
+  }
 };
 
 Bounds bounds_of(const Positions& positions) {
   Bounds bounds;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    const Eigen::Vector3d p = positions[i];
-    bounds.low = bounds.low.cwiseMin(p);
-    bounds.high = bounds.high.cwiseMax(p);
-  }
+  for (std::size_t i = 0; i < positions.size(); ++i) bounds.include(positions[i]);
   return bounds;
 }
 
@@ -80,9 +85,7 @@ Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t 
   const std::size_t count = corners.is_quad() ? 4 : 3;
   Bounds bounds;
   for (std::size_t i = 0; i < count; ++i) {
-    const Eigen::Vector3d p = frame.to_tree(mesh.positions[corners.corner[i]]);
-    bounds.low = bounds.low.cwiseMin(p);
-    bounds.high = bounds.high.cwiseMax(p);
+    bounds.include(frame.to_tree(mesh.positions[corners.corner[i]]));
   }
   return {{bounds.low[0], bounds.low[1], bounds.low[2]},
           {bounds.high[0], bounds.high[1], bounds.high[2]}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Builders: every face a leaf, bounded depth, the paper's node ratio, the same for any thread
 // count.
+#include <cmath>
 #include <cstring>
 #include <limits>
 #include <set>
@@ -61,6 +62,30 @@ TEST_P(Builders, SameBytesForAnyThreadCount) {
   tbb::task_arena(4).execute(
       [&] { four = serialize(std::span(&cook_mesh(mesh, options)->tree, 1)); });
   EXPECT_EQ(one, four);
+}
+
+// Which of -0 and +0 a minimum keeps is up to the machine; arm64 kept others than x86-64 did.
+TEST_P(Builders, ZeroHasOneSignInBoundsAndOrigins) {
+  const std::vector<float> points = {-0.0f, 0.0f, -0.0f, 1.0f, -0.0f, 0.0f, 1.0f, 1.0f, -0.0f};
+  for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+    SourceMesh mesh;
+    mesh.positions.precision = precision;
+    if (precision == Precision::kF32) {
+      mesh.positions.f32 = points;
+    } else {
+      mesh.positions.f64.assign(points.begin(), points.end());
+    }
+    mesh.faces = {{{0, 1, 2, kNoCorner}}, {{2, 1, 0, kNoCorner}}};
+    for (const BuildTree& tree : {build_tree(mesh, GetParam()), build_full_leaves(mesh)}) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        EXPECT_FALSE(tree.origin[k] == 0 && std::signbit(tree.origin[k]));
+        for (const BuildNode& node : tree.nodes) {
+          EXPECT_FALSE(node.bounds.low[k] == 0 && std::signbit(node.bounds.low[k]));
+          EXPECT_FALSE(node.bounds.high[k] == 0 && std::signbit(node.bounds.high[k]));
+        }
+      }
+    }
+  }
 }
 
 // Paper, appendix A.2: merged nodes are 64 to 66 % of the original's inner nodes and leaves.
