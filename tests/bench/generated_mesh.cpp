@@ -154,7 +154,7 @@ void add_building(Canvas& canvas, const Building& building) {
             building.centre[1] + building.sine * x + building.cosine * y,
             building.centre[2] + along(2, k)};
   };
-  const auto [nx, ny, nz] = cells;
+  const std::size_t nx = cells[0], ny = cells[1], nz = cells[2];
   canvas.add_grid(nx, nz, [&](std::size_t a, std::size_t b) { return point(a, 0, b); });
   canvas.add_grid(nx, nz, [&](std::size_t a, std::size_t b) { return point(nx - a, ny, b); });
   canvas.add_grid(ny, nz, [&](std::size_t a, std::size_t b) { return point(0, ny - a, b); });
