@@ -8,5 +8,6 @@
 #include <boxtree/runtime/primitive/orientation.h>
 #include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/primitive/triangle_box.h>
+#include <boxtree/runtime/primitive/triangle_distance.h>
 #include <boxtree/runtime/primitive/triangle_ray.h>
 #include <boxtree/runtime/primitive/triangle_triangle.h>

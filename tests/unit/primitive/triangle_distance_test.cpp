@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// triangle_distance against a reference that shares no idea with it: the distance of a point to the
+// hull of all differences of corners, by a descent over the pairs of points in extended precision,
+// and against the exact overlap predicate.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <tests/unit/primitive/triangle_cases.h>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/runtime/primitive/predicates.h>
+
+namespace boxtree {
+namespace {
+
+using LongVector = Eigen::Matrix<long double, 3, 1>;
+
+constexpr int kPairsPerFamily = 4000;
+
+// Squared distance of the origin to the hull of points: every vertex, segment and triangle of the
+// set is tried, each by its own small linear system. A closest point lies in one of them unless the
+// origin is inside, and then no answer is below zero.
+long double squared_to_hull(const std::array<LongVector, 9>& d) {
+  long double best = d[0].squaredNorm();
+  for (std::size_t i = 0; i < 9; ++i) {
+    best = std::min(best, d[i].squaredNorm());
+    for (std::size_t j = 0; j < i; ++j) {
+      const LongVector e = d[j] - d[i];
+      const long double ee = e.squaredNorm();
+      if (ee > 0) {
+        const long double s = std::clamp(-e.dot(d[i]) / ee, 0.0L, 1.0L);
+        best = std::min(best, (d[i] + s * e).squaredNorm());
+      }
+      for (std::size_t k = 0; k < j; ++k) {
+        const LongVector f = d[k] - d[i];
+        const LongVector n = e.cross(f);
+        const long double nn = n.squaredNorm();
+        if (!(nn > 1e-24L * ee * f.squaredNorm())) continue;  // its segments are tried
+        const long double s = n.dot((-d[i]).cross(f)) / nn;
+        const long double t = n.dot(e.cross(-d[i])) / nn;
+        if (s < 0 || t < 0 || s + t > 1) continue;
+        best = std::min(best, (d[i] + s * e + t * f).squaredNorm());
+      }
+    }
+  }
+  return best;
+}
+
+double reference(const Triangle& p, const Triangle& q) {
+  std::array<LongVector, 9> differences;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      differences[3 * i + j] = q.corner[j].cast<long double>() - p.corner[i].cast<long double>();
+    }
+  }
+  return static_cast<double>(std::sqrt(squared_to_hull(differences)));
+}
+
+double largest_coordinate(const Triangle& p, const Triangle& q) {
+  double largest = 0;
+  for (const Triangle* t : {&p, &q}) {
+    for (const auto& c : t->corner) largest = std::max(largest, c.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+class TriangleDistanceFamily : public testing::TestWithParam<test::Family> {};
+
+void check(const Triangle& p, const Triangle& q) {
+  const TriangleDistance found = triangle_distance(p, q);
+  const double reach = largest_coordinate(p, q);
+  const bool touch = triangles_intersect(p, q);
+  // The reference is good to its own rounding, far below that of double.
+  const double expected = touch ? 0 : reference(p, q);
+  ASSERT_LE(found.lower, expected * (1 + 1e-17) + 1e-19 * reach);
+  ASSERT_GE(found.upper, expected - 1e-19 * reach);
+  // Two that touch under a small angle do so in a place that double finds only so well.
+  ASSERT_LE(found.upper - expected, (touch ? 1e-9 : 1e-14) * reach);
+  ASSERT_NEAR((found.second - found.first).norm(), found.upper, 1e-14 * reach);
+  const auto off = [](const Eigen::Vector3d& x, const Triangle& t) {
+    return reference({{x, x, x}}, t);
+  };
+  ASSERT_LE(off(found.first, p), 1e-13 * reach);
+  ASSERT_LE(off(found.second, q), 1e-13 * reach);
+  if (touch) {
+    ASSERT_EQ(found.lower, 0);
+  }
+}
+
+TEST_P(TriangleDistanceFamily, BoundsAreTrue) {
+  for (const std::int64_t range : {std::int64_t{64}, std::int64_t{1} << 20}) {
+    test::TriangleCases cases(0xd157 + static_cast<std::uint64_t>(range), range);
+    for (int i = 0; i < kPairsPerFamily; ++i) {
+      SCOPED_TRACE(i);
+      const auto [p, q] = cases.pair(GetParam());
+      check(p, q);
+      if (HasFatalFailure()) return;
+    }
+  }
+}
+
+// Apart by more than rounding, the bounds leave no doubt: far, near and very near.
+TEST_P(TriangleDistanceFamily, BoundsAreNarrow) {
+  test::TriangleCases cases(0xd158, 64);
+  double widest = 0;
+  int apart = 0;
+  for (int i = 0; i < kPairsPerFamily; ++i) {
+    auto [p, q] = cases.pair(GetParam());
+    const TriangleDistance here = triangle_distance(p, q);
+    if (here.lower == 0) continue;
+    ++apart;
+    for (const double share : {-8.0, 0.0, 0.9, 1 - 1e-6, 1 - 1e-10}) {
+      const Eigen::Vector3d shift = share * (here.second - here.first);
+      Triangle nearer = p;
+      for (auto& c : nearer.corner) c += shift;
+      const TriangleDistance found = triangle_distance(nearer, q);
+      widest = std::max(widest, (found.upper - found.lower) / largest_coordinate(nearer, q));
+    }
+  }
+  EXPECT_GT(apart, kPairsPerFamily / 10);
+  EXPECT_LT(widest, 1e-11);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, TriangleDistanceFamily, testing::ValuesIn(test::kFamilies),
+                         [](const auto& tested) {
+                           std::string name = test::name_of(tested.param);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// By hand: corner to face, corner to corner, edge to edge, edge to corner.
+TEST(TriangleDistance, KnownCases) {
+  const Triangle floor{{{{0, 0, 0}, {4, 0, 0}, {0, 4, 0}}}};
+  const auto expect = [&](const Triangle& other, double distance, const Eigen::Vector3d& first) {
+    const TriangleDistance found = triangle_distance(floor, other);
+    EXPECT_NEAR(found.lower, distance, 1e-13);
+    EXPECT_NEAR(found.upper, distance, 1e-13);
+    EXPECT_NEAR((found.first - first).norm(), 0, 1e-13);
+    const TriangleDistance swapped = triangle_distance(other, floor);
+    EXPECT_NEAR(swapped.upper, distance, 1e-13);
+    EXPECT_NEAR((swapped.second - first).norm(), 0, 1e-13);
+  };
+  expect({{{{1, 1, 2}, {1, 2, 5}, {2, 1, 5}}}}, 2, {1, 1, 0});
+  expect({{{{-3, -4, 0}, {-9, -9, 1}, {-9, -8, -1}}}}, 5, {0, 0, 0});
+  expect({{{{3, 3, -1}, {3, 3, 1}, {9, 9, 0}}}}, std::sqrt(2.0), {2, 2, 0});
+  expect({{{{2, -3, 0}, {1, -7, 1}, {3, -8, 2}}}}, 3, {2, 0, 0});
+  expect({{{{1, 1, 7}, {1, 1, 7}, {1, 1, 7}}}}, 7, {1, 1, 0});
+}
+
+// Rounding is relative: the same at every size that coordinates may have.
+TEST(TriangleDistance, DoesNotDependOnScale) {
+  test::TriangleCases cases(0x5ca1f, 1 << 20);
+  for (int i = 0; i < 2000; ++i) {
+    const auto [p, q] = cases.pair(test::kFamilies[static_cast<std::size_t>(i) % 8]);
+    const TriangleDistance here = triangle_distance(p, q);
+    for (const int exponent : {-200, -60, 60, 170}) {
+      const double scale = std::ldexp(1.0, exponent);
+      Triangle ps = p, qs = q;
+      for (auto& c : ps.corner) c *= scale;
+      for (auto& c : qs.corner) c *= scale;
+      const TriangleDistance there = triangle_distance(ps, qs);
+      ASSERT_EQ(there.lower, here.lower * scale) << i << ", 2^" << exponent;
+      ASSERT_EQ(there.upper, here.upper * scale) << i << ", 2^" << exponent;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace boxtree
