@@ -13,51 +13,12 @@
 
 #include <boxtree/runtime/primitive/predicates.h>
 
+#include "tests/support/triangle_reference.h"
+
 namespace boxtree {
 namespace {
 
-using LongVector = Eigen::Matrix<long double, 3, 1>;
-
 constexpr int kPairsPerFamily = 4000;
-
-// Squared distance of the origin to the hull of points: every vertex, segment and triangle of the
-// set is tried, each by its own small linear system. A closest point lies in one of them unless the
-// origin is inside, and then no answer is below zero.
-long double squared_to_hull(const std::array<LongVector, 9>& d) {
-  long double best = d[0].squaredNorm();
-  for (std::size_t i = 0; i < 9; ++i) {
-    best = std::min(best, d[i].squaredNorm());
-    for (std::size_t j = 0; j < i; ++j) {
-      const LongVector e = d[j] - d[i];
-      const long double ee = e.squaredNorm();
-      if (ee > 0) {
-        const long double s = std::clamp(-e.dot(d[i]) / ee, 0.0L, 1.0L);
-        best = std::min(best, (d[i] + s * e).squaredNorm());
-      }
-      for (std::size_t k = 0; k < j; ++k) {
-        const LongVector f = d[k] - d[i];
-        const LongVector n = e.cross(f);
-        const long double nn = n.squaredNorm();
-        if (!(nn > 1e-24L * ee * f.squaredNorm())) continue;  // its segments are tried
-        const long double s = n.dot((-d[i]).cross(f)) / nn;
-        const long double t = n.dot(e.cross(-d[i])) / nn;
-        if (s < 0 || t < 0 || s + t > 1) continue;
-        best = std::min(best, (d[i] + s * e + t * f).squaredNorm());
-      }
-    }
-  }
-  return best;
-}
-
-double reference(const Triangle& p, const Triangle& q) {
-  std::array<LongVector, 9> differences;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
-      differences[3 * i + j] = q.corner[j].cast<long double>() - p.corner[i].cast<long double>();
-    }
-  }
-  return static_cast<double>(std::sqrt(squared_to_hull(differences)));
-}
 
 double largest_coordinate(const Triangle& p, const Triangle& q) {
   double largest = 0;
@@ -74,14 +35,14 @@ void check(const Triangle& p, const Triangle& q) {
   const double reach = largest_coordinate(p, q);
   const bool touch = triangles_intersect(p, q);
   // The reference is good to its own rounding, far below that of double.
-  const double expected = touch ? 0 : reference(p, q);
+  const double expected = touch ? 0 : test::distance_in_extended_precision(p, q);
   ASSERT_LE(found.lower, expected * (1 + 1e-17) + 1e-19 * reach);
   ASSERT_GE(found.upper, expected - 1e-19 * reach);
   // Two that touch under a small angle do so in a place that double finds only so well.
   ASSERT_LE(found.upper - expected, (touch ? 1e-9 : 1e-14) * reach);
   ASSERT_NEAR((found.second - found.first).norm(), found.upper, 1e-14 * reach);
   const auto off = [](const Eigen::Vector3d& x, const Triangle& t) {
-    return reference({{x, x, x}}, t);
+    return test::distance_in_extended_precision(x, t);
   };
   ASSERT_LE(off(found.first, p), 1e-13 * reach);
   ASSERT_LE(off(found.second, q), 1e-13 * reach);

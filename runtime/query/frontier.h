@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// What a best-first walk has still to look at, in memory of fixed size.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+namespace boxtree {
+
+/// Pending entries, the one with the least key first; of equal keys the one that came last, so that
+/// a walk among boxes that all overlap goes down and not along. When the queue is full, what comes
+/// waits on a stack and is taken from there until that is empty: the walk is depth-first for a
+/// while, and no entry is lost. `Stack` must hold what a depth-first walk has pending.
+template <class Entry, std::size_t Queue, std::size_t Stack>
+class Frontier {
+ public:
+  /// Adds an entry with a key; entries with keys of `enough` and above will never be taken. False
+  /// when not even the stack has room: then the tree is deeper than any honest one.
+  [[nodiscard]] bool push(double key, double enough, const Entry& entry) noexcept {
+    if (queued_ == Queue && enough < swept_) sweep(enough);
+    if (stacked_ > 0 || queued_ == Queue) {
+      if (stacked_ == Stack) return false;
+      stack_[stacked_++] = {key, entry};
+      return true;
+    }
+    // Places of entries that were taken stay in the handles behind the queue, for reuse.
+    if (queued_ == places_)
+      handles_[places_].place = static_cast<std::uint32_t>(places_), ++places_;
+    Handle& handle = handles_[queued_++];
+    handle.key = key;
+    handle.number = pushed_++;
+    entries_[handle.place] = entry;
+    std::push_heap(handles_.begin(), end());
+    return true;
+  }
+
+  /// Takes the next entry whose key is below `enough`; false if there is none.
+  [[nodiscard]] bool pop(double enough, double& key, Entry& entry) noexcept {
+    while (stacked_ > 0) {
+      const Stacked& top = stack_[--stacked_];
+      if (!(top.key < enough)) {
+        least_left_ = std::min(least_left_, top.key);
+        continue;
+      }
+      key = top.key;
+      entry = top.entry;
+      return true;
+    }
+    if (queued_ == 0 || !(handles_.front().key < enough)) return false;
+    key = handles_.front().key;
+    entry = entries_[handles_.front().place];
+    std::pop_heap(handles_.begin(), end());
+    --queued_;
+    return true;
+  }
+
+  /// The least key of all that was pushed and not taken; infinity if there is none.
+  [[nodiscard]] double least_left() const noexcept {
+    double least = least_left_;
+    if (queued_ > 0) least = std::min(least, handles_.front().key);
+    for (std::size_t i = 0; i < stacked_; ++i) least = std::min(least, stack_[i].key);
+    return least;
+  }
+
+ private:
+  struct Handle {
+    double key;
+    std::uint32_t number;  // when it was pushed; only decides ties
+    std::uint32_t place;
+
+    // The standard library's heaps have the greatest in front.
+    friend bool operator<(const Handle& a, const Handle& b) noexcept {
+      return a.key != b.key ? a.key > b.key : a.number < b.number;
+    }
+  };
+  struct Stacked {
+    double key;
+    Entry entry;
+  };
+
+  [[nodiscard]] auto end() noexcept {
+    return handles_.begin() + static_cast<std::ptrdiff_t>(queued_);
+  }
+
+  // Drops what will never be taken. Once for each value of `enough`: it costs as much as the queue
+  // is long.
+  void sweep(double enough) noexcept {
+    swept_ = enough;
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < queued_; ++i) {
+      if (handles_[i].key < enough) {
+        std::swap(handles_[kept++], handles_[i]);
+      } else {
+        least_left_ = std::min(least_left_, handles_[i].key);
+      }
+    }
+    queued_ = kept;
+    std::make_heap(handles_.begin(), end());
+  }
+
+  std::size_t queued_ = 0;
+  std::size_t places_ = 0;  // of which a handle knows
+  std::size_t stacked_ = 0;
+  std::uint32_t pushed_ = 0;
+  double swept_ = std::numeric_limits<double>::infinity();
+  double least_left_ = std::numeric_limits<double>::infinity();
+  std::array<Handle, Queue> handles_;
+  std::array<Entry, Queue> entries_;
+  std::array<Stacked, Stack> stack_;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// The bounds behind WorldMetric, each with the error of computing it.
+//
+// Let u = 2^-53 and gamma_n = n u / (1 - n u) (Higham, "Accuracy and Stability", lemma 3.1). A sum
+// of three products is off by gamma_3 of the sum of their magnitudes.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/query/world_metric.h>
+
+namespace boxtree {
+namespace {
+
+constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+// Covers the roundings of computing a bound itself: fewer than 16 of them in each.
+constexpr double kMore = 1 + 32 * kUnit;
+constexpr double kLess = 1 - 32 * kUnit;
+// Above this, what was measured of an inverse says that it is none.
+constexpr double kTooSingular = 0.25;
+
+// An upper bound of the largest singular value of a matrix whose rows have length 1. With B = N
+// N^T, |N|^2 = |B| and |B|^4 = |B^4| <= the largest row sum of |B^4|, which for a symmetric 3x3
+// matrix is at most sqrt(3) |B^4|: less than 1.08 |N|, and |N| itself for orthogonal rows. B has
+// entries of at most 1 and a norm of at least 1, so each rounding of gamma_4 in B, B^2 and B^4
+// changes the norm by a factor of less than 1 + 16 u, raised to at most the fourth power: in all
+// below 1 + 256 u.
+double largest_stretch(const Eigen::Matrix3d& rows) noexcept {
+  const Eigen::Matrix3d b = rows * rows.transpose();
+  const Eigen::Matrix3d b2 = b * b;
+  const Eigen::Matrix3d b4 = b2 * b2;
+  const double largest_sum = b4.cwiseAbs().rowwise().sum().maxCoeff();
+  return std::sqrt(std::sqrt(std::sqrt(largest_sum))) * (1 + 256 * kUnit);
+}
+
+// Rows scaled to length 1, and the lengths.
+struct UnitRows {
+  explicit UnitRows(const Eigen::Matrix3d& matrix) : rows(matrix) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      length[k] = matrix.row(k).norm();
+      rows.row(k) /= length[k];
+    }
+  }
+  Eigen::Matrix3d rows;
+  Eigen::Vector3d length;
+};
+
+// Largest, over the axes, of what A - Y G makes of coordinates z with |z_j| <= bound_j |v|, in
+// units of |Y_k| |v|. The residual is measured with gamma_4 of the magnitudes that enter it.
+double relative_residual(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y,
+                         const Eigen::Vector3d& y_length, const Eigen::Matrix3d& g,
+                         const Eigen::Vector3d& bound) noexcept {
+  const Eigen::Matrix3d residual =
+      (y * g - a).cwiseAbs() + 8 * kUnit * (y.cwiseAbs() * g.cwiseAbs() + a.cwiseAbs());
+  double largest = 0;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const double relative = residual.row(k).dot(bound) / y_length[k] * kMore;
+    if (!(relative <= largest)) largest = relative;  // NaN is kept
+  }
+  return largest;
+}
+
+// Weights of the axes of A, given a bound of the coordinates of the first space. |a_k . z| is at
+// most |Y_k v| + |(A - Y G)_k z| <= (1 + r) |Y_k| |v|, and |D^-1 A z| <= (|D^-1 Y| + sqrt(3) r)
+// |v|.
+GapWeights weights_of(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y, const Eigen::Matrix3d& g,
+                      const Eigen::Vector3d& bound) noexcept {
+  GapWeights result;
+  const UnitRows unit(y);
+  const double residual = relative_residual(a, y, unit.length, g, bound);
+  if (!(residual < kTooSingular)) return result;  // weights of zero: no gap says anything
+  for (std::size_t k = 0; k < 3; ++k) {
+    result.weight[k] = kLess / (unit.length[static_cast<Eigen::Index>(k)] * (1 + residual));
+    if (!std::isfinite(result.weight[k])) return GapWeights();
+  }
+  const double stretch = largest_stretch(unit.rows) + 2 * residual;
+  result.combined = stretch > 1 ? 1 / (stretch * stretch) * kLess : kLess;
+  if (!(result.combined > 0)) result.combined = 0;
+  return result;
+}
+
+// 2^exponent * x, to the neighbour on the far side if that rounds to the wrong one.
+double scaled_down(double x, int exponent) noexcept {
+  const double result = std::ldexp(x, exponent);
+  if (x == std::numeric_limits<double>::infinity() || std::ldexp(result, -exponent) <= x) {
+    return result;
+  }
+  return std::nextafter(result, 0.0);
+}
+
+double scaled_up(double x, int exponent) noexcept {
+  const double result = std::ldexp(x, exponent);
+  if (std::ldexp(result, -exponent) >= x) return result;
+  return std::nextafter(result, std::numeric_limits<double>::infinity());
+}
+
+}  // namespace
+
+std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& first_pose,
+                                             const RelativePose& pose) noexcept {
+  WorldMetric metric;
+  const Eigen::Matrix3d linear = first_pose.linear();
+  const double size = linear.cwiseAbs().maxCoeff();
+  if (!(size > 0) || !std::isfinite(size)) return std::nullopt;
+  const int pose_exponent = std::ilogb(size);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      metric.linear_(i, j) = std::ldexp(linear(i, j), -pose_exponent);
+      // Entries so much smaller than the largest that they cannot be held beside it.
+      if (std::ldexp(metric.linear_(i, j), pose_exponent) != linear(i, j)) return std::nullopt;
+    }
+  }
+  metric.exponent_ = pose_exponent + first.record().scale_exponent;
+  const Eigen::Matrix3d& g = metric.linear_;
+
+  // The coordinates of z = x - y. From z = Y v - (Y G - I) z, with the residual measured in units
+  // of |Y_k|: |z_k| <= |Y_k| |v| / (1 - r).
+  const Eigen::Matrix3d identity = Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d inverse = g.inverse();
+  const Eigen::Vector3d length = inverse.rowwise().norm();
+  const double residual = relative_residual(identity, inverse, length, g, length);
+  if (residual < kTooSingular) {
+    const Eigen::Vector3d bound = length / (1 - residual) * kMore;
+    metric.in_first_ = weights_of(identity, inverse, g, bound);
+    const Eigen::Matrix3d& to_second = pose.to_second().linear;
+    metric.in_second_ = weights_of(to_second, to_second * inverse, g, bound);
+  }
+  // Images of the second tree's points are off by to_second_error; those of the first tree's, which
+  // the hull of a box holds as they are computed, by gamma_4 of the terms.
+  const Eigen::Vector3d terms = pose.to_second().linear.cwiseAbs() * reach_of(first) +
+                                pose.to_second().translation.cwiseAbs();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    metric.in_second_.margin[k] = (pose.to_second_error()[axis] + 8 * kUnit * terms[axis]) * kMore;
+  }
+
+  // |G z| = |(G C^-1) (C z)|, C the lengths of the columns.
+  const UnitRows columns(g.transpose());
+  for (std::size_t k = 0; k < 3; ++k) {
+    metric.column_[k] = columns.length[static_cast<Eigen::Index>(k)] * kMore;
+  }
+  metric.stretch_ = largest_stretch(columns.rows) * kMore;
+  // A rounded difference, three products and two sums: gamma_4 of at most row sum times largest
+  // magnitude in each of three components.
+  metric.image_error_ = 8 * kUnit * g.cwiseAbs().rowwise().sum().maxCoeff();
+  return metric;
+}
+
+double WorldMetric::length_below(double length) const noexcept {
+  return scaled_down(length, exponent_);
+}
+
+double WorldMetric::length_above(double length) const noexcept {
+  return scaled_up(length, exponent_);
+}
+
+double WorldMetric::from_world_above(double length) const noexcept {
+  return scaled_up(length, -exponent_);
+}
+
+}  // namespace boxtree

@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Distances in the world of what is compared in the spaces of two trees.
+//
+// A pair query brings the second tree's triangles into the first one's tree space and compares them
+// there. The world is the image of that space under a linear map G (the first pose and the scale of
+// the tree): points x and y of it are |G (x - y)| apart in the world. G may scale, mirror and
+// shear.
+//
+// Why gaps between boxes are lower bounds. Let z = x - y and v = G z, and let a row a of a matrix A
+// give a coordinate a . z: of the first space itself (A = I) or of the second (A = the map to it).
+// With Y = A G^-1, |a . z| = |Y_k v| <= |Y_k| |v|: a gap g_k of two boxes on axis k separates them
+// by at least g_k / |Y_k| in the world. Gaps on several axes together: let D = diag(|Y_k|). Then
+// |D^-1 A z| = |D^-1 Y v| <= |D^-1 Y| |v|, so |v| >= |D^-1 g| / |D^-1 Y|, whose denominator is 1
+// where the axes stay orthogonal in the world (rotation, mirror, scale along them) and at most
+// sqrt(3) where shear lays them on each other. The larger of the two bounds counts.
+// Y is computed with rounding; what is left of A - Y G is measured and added (world_metric.cpp).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+
+#include <boxtree/runtime/query/relative_pose.h>
+
+namespace boxtree {
+
+/// Lower bounds of distances from gaps between boxes in one space.
+struct GapWeights {
+  std::array<double, 3> weight{};  // world length of a unit gap on each axis, at least
+  double combined = 0;             // of squares: what is left of three gaps together
+  std::array<double, 3> margin{};  // by how much a gap may be too large
+
+  /// A lower bound of the squared distance of what two boxes hold. Never NaN: boxes without sense
+  /// are not apart.
+  template <class S, class T>
+  [[nodiscard]] double squared_distance(const Box<S>& a, const Box<T>& b) const noexcept {
+    double sum = 0;
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double apart =
+          std::max(double{a.low[k]} - double{b.high[k]}, double{b.low[k]} - double{a.high[k]});
+      const double gap = std::max(0.0, (apart - margin[k]) * weight[k]);
+      sum += gap * gap;
+      largest = std::max(largest, gap * gap);
+    }
+    return std::max(largest, combined * sum);
+  }
+};
+
+/// The world in which two trees are placed, in units of a power of two in which G is of size 1.
+class WorldMetric {
+ public:
+  /// Nothing where the powers of two of a pose are too far apart for any unit.
+  static std::optional<WorldMetric> make(const Tree& first, const Pose& first_pose,
+                                         const RelativePose& pose) noexcept;
+
+  /// Squared distances, from below, of boxes in the first tree's space...
+  [[nodiscard]] const GapWeights& in_first() const noexcept { return in_first_; }
+  /// ... and in the second's, of RelativePose::to_second().hull() and boxes of the second tree.
+  [[nodiscard]] const GapWeights& in_second() const noexcept { return in_second_; }
+
+  /// An upper bound of the distance of any two points of two boxes in the first tree's space.
+  template <class S, class T>
+  [[nodiscard]] double farthest(const Box<S>& a, const Box<T>& b) const noexcept {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double reach =
+          std::max(double{a.high[k]} - double{b.low[k]}, double{b.high[k]} - double{a.low[k]});
+      sum += (reach * column_[k]) * (reach * column_[k]);
+    }
+    return stretch_ * std::sqrt(sum);
+  }
+
+  /// Image of a difference of points of the first tree's space.
+  [[nodiscard]] Eigen::Vector3d to_world(const Eigen::Vector3d& z) const noexcept {
+    Eigen::Vector3d v;
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      v[i] = (linear_(i, 0) * z[0] + linear_(i, 1) * z[1]) + linear_(i, 2) * z[2];
+    }
+    return v;
+  }
+  /// How far the image of a computed difference of two points can be from the true one, per unit of
+  /// the largest magnitude in the computed difference.
+  [[nodiscard]] double image_error() const noexcept { return image_error_; }
+
+  /// A length in these units in the world's, rounded down or up.
+  [[nodiscard]] double length_below(double length) const noexcept;
+  [[nodiscard]] double length_above(double length) const noexcept;
+  /// A length of the world in these units, rounded up.
+  [[nodiscard]] double from_world_above(double length) const noexcept;
+  [[nodiscard]] int exponent() const noexcept { return exponent_; }
+
+ private:
+  Eigen::Matrix3d linear_;  // G in these units
+  int exponent_ = 0;        // a unit is 2^exponent
+  double image_error_ = 0;
+  GapWeights in_first_;
+  GapWeights in_second_;
+  std::array<double, 3> column_{};  // lengths of the columns of G
+  double stretch_ = 0;              // of G with columns of length 1, at least
+};
+
+}  // namespace boxtree

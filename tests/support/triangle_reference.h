@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// The distance of two triangles in extended precision, by a way that shares no idea with the code
+// under test.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <boxtree/runtime/primitive/triangle.h>
+
+namespace boxtree::test {
+
+using LongVector = Eigen::Matrix<long double, 3, 1>;
+using LongTriangle = std::array<LongVector, 3>;
+
+// Squared distance of the origin to the hull of points: every vertex, segment and triangle of the
+// set is tried, each by its own small linear system. A closest point lies in one of them unless the
+// origin is inside, and then no answer is below zero.
+inline long double squared_to_hull(const std::array<LongVector, 9>& d) {
+  long double best = d[0].squaredNorm();
+  for (std::size_t i = 0; i < 9; ++i) {
+    best = std::min(best, d[i].squaredNorm());
+    for (std::size_t j = 0; j < i; ++j) {
+      const LongVector e = d[j] - d[i];
+      const long double ee = e.squaredNorm();
+      if (ee > 0) {
+        const long double s = std::clamp(-e.dot(d[i]) / ee, 0.0L, 1.0L);
+        best = std::min(best, (d[i] + s * e).squaredNorm());
+      }
+      for (std::size_t k = 0; k < j; ++k) {
+        const LongVector f = d[k] - d[i];
+        const LongVector n = e.cross(f);
+        const long double nn = n.squaredNorm();
+        if (!(nn > 1e-24L * ee * f.squaredNorm())) continue;  // its segments are tried
+        const long double s = n.dot((-d[i]).cross(f)) / nn;
+        const long double t = n.dot(e.cross(-d[i])) / nn;
+        if (s < 0 || t < 0 || s + t > 1) continue;
+        best = std::min(best, (d[i] + s * e + t * f).squaredNorm());
+      }
+    }
+  }
+  return best;
+}
+
+/// The distance of the triangles, that is of the origin from the hull of the differences of their
+/// corners; of no use where they cross.
+inline long double distance_in_extended_precision(const LongTriangle& p, const LongTriangle& q) {
+  std::array<LongVector, 9> differences;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) differences[3 * i + j] = q[j] - p[i];
+  }
+  return std::sqrt(squared_to_hull(differences));
+}
+
+inline double distance_in_extended_precision(const Triangle& p, const Triangle& q) {
+  LongTriangle a, b;
+  for (std::size_t i = 0; i < 3; ++i) {
+    a[i] = p.corner[i].cast<long double>();
+    b[i] = q.corner[i].cast<long double>();
+  }
+  return static_cast<double>(distance_in_extended_precision(a, b));
+}
+
+/// How far a point is from a triangle.
+inline double distance_in_extended_precision(const Eigen::Vector3d& point, const Triangle& t) {
+  return distance_in_extended_precision(Triangle{{point, point, point}}, t);
+}
+
+}  // namespace boxtree::test

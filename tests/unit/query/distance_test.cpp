@@ -1,0 +1,368 @@
+// SPDX-License-Identifier: MIT
+// Distances of trees against brute force in extended precision over the decoded triangles: bounds
+// are true and as near as asked, for every codec, store, pose, error and budget.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/relative_pose.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/triangle_reference.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::SourceMesh;
+
+// Every triangle of a tree, in tree space, by the public way down.
+std::vector<Triangle> all_triangles(const Tree& tree) {
+  std::vector<Triangle> triangles;
+  std::vector<Node> pending{tree.root()};
+  while (!pending.empty()) {
+    const Node node = pending.back();
+    pending.pop_back();
+    if (node.is_leaf) {
+      TriangleBatch batch;
+      EXPECT_EQ(tree.leaf_triangles(node, batch), Errc::kOk);
+      for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
+      continue;
+    }
+    NodeChildren children;
+    EXPECT_EQ(tree.expand(node, children), Errc::kOk);
+    for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
+  }
+  return triangles;
+}
+
+struct Truth {
+  long double distance = std::numeric_limits<long double>::infinity();
+  long double size = 0;  // how far apart the farthest corners are: what rounding is relative to
+};
+
+// The distance in the world, of the second tree's triangles where double puts them in the first
+// one's space. Spheres around triangles rule out most pairs.
+Truth brute_force(const Tree& first, const Pose& first_pose, const Tree& second,
+                  const Pose& second_pose) {
+  const auto pose = RelativePose::make(first, first_pose, second, second_pose);
+  EXPECT_TRUE(pose.has_value());
+  const Eigen::Matrix<long double, 3, 3> to_world =
+      first_pose.linear().cast<long double>() * std::ldexp(1.0L, first.record().scale_exponent);
+  struct Placed {
+    Triangle local;
+    test::LongTriangle world;
+    test::LongVector center;
+    long double radius;
+  };
+  std::vector<Placed> p, q;
+  const auto place = [&](const Triangle& triangle) {
+    Placed placed;
+    placed.local = triangle;
+    placed.center.setZero();
+    for (std::size_t c = 0; c < 3; ++c) {
+      placed.world[c] = to_world * triangle.corner[c].cast<long double>();
+      placed.center += placed.world[c] / 3;
+    }
+    placed.radius = 0;
+    for (const auto& c : placed.world) {
+      placed.radius = std::max(placed.radius, (c - placed.center).norm());
+    }
+    return placed;
+  };
+  for (const Triangle& triangle : all_triangles(first)) p.push_back(place(triangle));
+  for (Triangle triangle : all_triangles(second)) {
+    for (auto& c : triangle.corner) c = pose->to_first().apply(c);
+    q.push_back(place(triangle));
+  }
+  Truth truth;
+  for (const Placed& a : p) {
+    for (const Placed& b : q) {
+      const long double centers = (a.center - b.center).norm();
+      truth.size = std::max(truth.size, centers + a.radius + b.radius);
+      if (centers - a.radius - b.radius > truth.distance) continue;
+      truth.distance =
+          triangles_intersect(a.local, b.local)
+              ? 0
+              : std::min(truth.distance, test::distance_in_extended_precision(a.world, b.world));
+    }
+  }
+  return truth;
+}
+
+struct Random {
+  std::mt19937_64 engine{11};
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(engine);
+  }
+  Eigen::Vector3d vector(double size) {
+    const double x = between(-size, size);
+    const double y = between(-size, size);
+    return {x, y, between(-size, size)};
+  }
+  // By turns a rotation, a scale, a mirror, a shear, a strong shear with uneven scales.
+  Pose pose(int turn, double distance) {
+    Pose pose = Pose::Identity();
+    pose.linear() = Eigen::Quaterniond(between(-1, 1), between(-1, 1), between(-1, 1), 0.3)
+                        .normalized()
+                        .toRotationMatrix();
+    if (turn % 5 == 1) pose.scale(Eigen::Vector3d(0.5, 2, 1.25));
+    if (turn % 5 == 2) pose.scale(Eigen::Vector3d(-1, 1, 1));
+    if (turn % 5 >= 3) {
+      Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
+      shear(0, 1) = turn % 5 == 3 ? 0.5 : 3;
+      shear(1, 2) = -0.75;
+      pose.linear() *= shear;
+    }
+    if (turn % 5 == 4) pose.scale(Eigen::Vector3d(1, 0.01, 0.3));
+    pose.translation() = vector(distance);
+    return pose;
+  }
+};
+
+void check_bounds(const Distance& found, const Truth& truth) {
+  ASSERT_LE(found.lower, truth.distance * (1 + 1e-17L) + 1e-18L * truth.size);
+  ASSERT_GE(found.upper, truth.distance - 1e-18L * truth.size);
+  ASSERT_LE(found.lower, found.upper);
+  ASSERT_EQ(found.witness.has_value(), std::isfinite(found.upper));
+}
+
+// Two points that far apart, each on the face that is named. `place` is the size of world
+// coordinates, which limits how well they can be told.
+void check_witness(const Distance& found, const SourceMesh& a, const Pose& a_pose,
+                   const SourceMesh& b, const Pose& b_pose, double place) {
+  const DistanceWitness& witness = *found.witness;
+  ASSERT_NEAR((witness.first - witness.second).norm(), found.upper, 1e-12 * place);
+  const auto off = [](const SourceMesh& mesh, const Pose& pose, const FaceRef& face,
+                      const Eigen::Vector3d& x) {
+    const cooker::Face& f = mesh.faces[face.id];
+    const auto at = [&](std::size_t i) -> Eigen::Vector3d {
+      return pose * mesh.positions[f.corner[i]];
+    };
+    double least = test::distance_in_extended_precision(x, Triangle{{at(0), at(1), at(2)}});
+    if (f.is_quad()) {
+      const Triangle half{{at(0), at(2), at(3)}};
+      least = std::min(least, test::distance_in_extended_precision(x, half));
+    }
+    return least;
+  };
+  ASSERT_LE(off(a, a_pose, witness.faces.first, witness.first), 1e-12 * place);
+  ASSERT_LE(off(b, b_pose, witness.faces.second, witness.second), 1e-12 * place);
+}
+
+struct Encoding {
+  CodecId codec;
+  GeometryId geometry;
+};
+
+class Distances : public testing::TestWithParam<Encoding> {
+ protected:
+  static test::CookedTree cook(const SourceMesh& mesh) {
+    cooker::CookOptions options;
+    options.geometry = GetParam().geometry;
+    options.grid.bits = 16;
+    return test::cook_tree(mesh, GetParam().codec, options);
+  }
+
+  // Each pair of a few meshes in each kind of pose, apart and touching. With a grid, faces of the
+  // source are not those that were asked, so `exact` tells whether they may be compared.
+  template <class Body>
+  void for_each_case(int poses, Body body) {
+    const std::vector<SourceMesh> meshes{test::torus(12, 8), test::city(9, 2), test::slivers(40, 4),
+                                         test::duplicates(1)};
+    Random random;
+    for (const SourceMesh& a : meshes) {
+      const test::CookedTree first = cook(a);
+      for (const SourceMesh& b : meshes) {
+        const test::CookedTree second = cook(b);
+        for (int turn = 0; turn < poses; ++turn) {
+          SCOPED_TRACE(a.name + " and " + b.name + ", turn " + std::to_string(turn));
+          const Pose first_pose = random.pose(turn, 3);
+          const Pose second_pose = random.pose(turn / 2 + 2, 12);
+          body(a, first.tree, first_pose, b, second.tree, second_pose);
+          if (HasFatalFailure()) return;
+        }
+      }
+    }
+  }
+};
+
+TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
+  int apart = 0;
+  for_each_case(10, [&](const SourceMesh& a, const Tree& first, const Pose& first_pose,
+                        const SourceMesh& b, const Tree& second, const Pose& second_pose) {
+    const Truth truth = brute_force(first, first_pose, second, second_pose);
+    apart += truth.distance > 0;
+    const auto size = static_cast<double>(truth.size);
+    std::uint64_t nodes = std::numeric_limits<std::uint64_t>::max();
+    for (const double error : {0.0, 1e-6, 1e-3, 0.01, 0.1, 0.5, 1.0}) {
+      SCOPED_TRACE(error);
+      const auto found = distance(first, first_pose, second, second_pose, {error, 0});
+      ASSERT_TRUE(found.ok());
+      ASSERT_TRUE(found->is_near_enough);
+      check_bounds(*found, truth);
+      ASSERT_LE(found->upper, found->lower * (1 + error) + 1e-12 * size);
+      ASSERT_LE(found->nodes_expanded, nodes);
+      nodes = found->nodes_expanded;
+      if (error == 0) {
+        ASSERT_EQ(found->upper == 0, truth.distance == 0);
+      }
+      if (GetParam().geometry == GeometryId::kExact) {
+        check_witness(*found, a, first_pose, b, second_pose, size + 50);
+      }
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    for (const double error : {0.001, 0.1, 10.0}) {
+      SCOPED_TRACE(error);
+      const auto found = distance(first, first_pose, second, second_pose, {0, error});
+      check_bounds(*found, truth);
+      ASSERT_LE(found->upper, found->lower + error + 1e-12 * size);
+    }
+  });
+  EXPECT_GT(apart, 50);
+}
+
+TEST_P(Distances, BudgetsEndTheSearchWithTrueBounds) {
+  int spent = 0;
+  for_each_case(5, [&](const SourceMesh&, const Tree& first, const Pose& first_pose,
+                       const SourceMesh&, const Tree& second, const Pose& second_pose) {
+    const Truth truth = brute_force(first, first_pose, second, second_pose);
+    double gap = std::numeric_limits<double>::infinity();
+    for (const std::uint64_t budget : {0u, 1u, 10u, 40u, 1000u}) {
+      SCOPED_TRACE(budget);
+      DistanceOptions options;
+      options.node_budget = budget;
+      const auto found = distance(first, first_pose, second, second_pose, options);
+      ASSERT_TRUE(found.ok());
+      check_bounds(*found, truth);
+      ASSERT_LE(found->nodes_expanded, budget);
+      if (!found->is_near_enough) {
+        ++spent;
+        ASSERT_EQ(found->nodes_expanded, budget);
+      }
+      ASSERT_LE(found->upper - found->lower, gap);  // more nodes never tell less
+      gap = found->upper - found->lower;
+      if (testing::Test::HasFatalFailure()) return;
+    }
+    ASSERT_FALSE(
+        distance(first, first_pose, second, second_pose, {0, 0, 1e300, 0})->witness.has_value());
+  });
+  EXPECT_GT(spent, 50);
+}
+
+TEST_P(Distances, NothingBeyondTheMaximalDistance) {
+  for_each_case(3, [&](const SourceMesh&, const Tree& first, const Pose& first_pose,
+                       const SourceMesh&, const Tree& second, const Pose& second_pose) {
+    const auto all = distance(first, first_pose, second, second_pose);
+    const auto within = [&](double most) {
+      DistanceOptions options;
+      options.max_distance = most;
+      return *distance(first, first_pose, second, second_pose, options);
+    };
+    const Distance found = within(1.001 * all->upper);
+    ASSERT_EQ(found.upper, all->upper);
+    ASSERT_TRUE(found.witness.has_value());
+    ASSERT_LE(found.nodes_expanded, all->nodes_expanded);
+    if (all->lower == 0) return;
+    const Distance nothing = within(0.999 * all->lower);
+    ASSERT_FALSE(nothing.witness.has_value());
+    ASSERT_TRUE(nothing.is_near_enough);
+    ASSERT_GE(nothing.lower, 0.999 * all->lower * (1 - 1e-12));
+    ASSERT_LE(nothing.lower, all->upper);
+    ASSERT_LE(nothing.nodes_expanded, all->nodes_expanded);
+  });
+}
+
+// Only the relation of the two poses counts, also a thousand kilometres away and with trees of
+// different codecs; and the distance is the same from either side.
+TEST_P(Distances, DependsOnTheRelativePoseAlone) {
+  const SourceMesh mesh = test::torus(12, 8);
+  const test::CookedTree a = cook(mesh);
+  const test::CookedTree b = test::cook_tree(test::city(4, 3), CodecId::kPackedF16);
+  Random random;
+  Pose away = Pose::Identity();
+  away.translation() = Eigen::Vector3d(0x1p20, -0x1p20, 0x1p19);
+  for (int i = 0; i < 20; ++i) {
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(0.5 * i, 0.25 * (i % 5), 0.125);  // exact when moved away
+    const auto here = distance(a.tree, Pose::Identity(), b.tree, pose);
+    Pose there = pose;
+    there.translation() += away.translation();
+    const auto far = distance(a.tree, away, b.tree, there);
+    ASSERT_EQ(here->lower, far->lower);
+    ASSERT_EQ(here->upper, far->upper);
+    const auto swapped = distance(b.tree, pose, a.tree, Pose::Identity());
+    ASSERT_NEAR(here->upper, swapped->upper, 1e-12 * 20);
+  }
+}
+
+std::vector<Encoding> encodings() {
+  std::vector<Encoding> all;
+  for (const CodecId codec : test::all_codecs()) {
+    all.push_back({codec, GeometryId::kExact});
+    all.push_back({codec, GeometryId::kGrid});
+  }
+  return all;
+}
+
+std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
+  const std::string codec = test::test_name({encoding.param.codec, encoding.index});
+  return codec + "_" + std::string(geometry_name(encoding.param.geometry));
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, Distances, testing::ValuesIn(encodings()), encoding_name);
+
+// A known distance, with each way of scaling the world.
+TEST(Distance, KnownCases) {
+  const test::CookedTree cubes = test::cook_tree(test::city(1, 2), CodecId::kWide8);
+  const Eigen::AlignedBox3d box = cubes.tree.to_object(cubes.tree.root().box);
+  for (const double scale : {0x1p-300, 1e-3, 1.0, 0x1p300}) {
+    Pose first = Pose::Identity();
+    first.linear() *= scale;
+    Pose second = first;
+    second.translation() = Eigen::Vector3d(scale * (box.sizes().x() + 2), 0, 0);
+    const auto found = distance(cubes.tree, first, cubes.tree, second);
+    ASSERT_TRUE(found.ok());
+    EXPECT_NEAR(found->lower / scale, 2, 1e-12);
+    EXPECT_NEAR(found->upper / scale, 2, 1e-12);
+    EXPECT_LE(found->lower, 2 * scale);
+    EXPECT_GE(found->upper, 2 * scale);
+  }
+}
+
+TEST(Distance, RefusesWhatHasNoMeaning) {
+  const test::CookedTree cube = test::cook_tree(test::city(1, 2), CodecId::kWide8);
+  const auto code = [&](const DistanceOptions& options) {
+    return distance(cube.tree, Pose::Identity(), cube.tree, Pose::Identity(), options).code();
+  };
+  EXPECT_EQ(code({-1, 0}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({NAN, 0}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, -1}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, NAN}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, 0, -1}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, 0, NAN}), Errc::kInvalidQuery);
+  Pose flat = Pose::Identity();
+  flat.linear().row(1).setZero();
+  EXPECT_EQ(distance(cube.tree, flat, cube.tree, Pose::Identity()).code(), Errc::kInvalidPose);
+  EXPECT_EQ(distance(cube.tree, Pose::Identity(), cube.tree, flat).code(), Errc::kInvalidPose);
+}
+
+// Trees of nodes and of one leaf are of one codec by name and of two by what is bound.
+TEST(Distance, OfATreeOfOneLeafAndOneOfNodes) {
+  const test::CookedTree leaf = test::cook_tree(test::duplicates(1), CodecId::kWide8);
+  const test::CookedTree nodes = test::cook_tree(test::torus(12, 8), CodecId::kWide8);
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(0, 0, 5);
+  const auto found = distance(nodes.tree, Pose::Identity(), leaf.tree, pose);
+  const auto swapped = distance(leaf.tree, pose, nodes.tree, Pose::Identity());
+  EXPECT_NEAR(found->upper, swapped->upper, 1e-12);
+  EXPECT_FALSE(first_contact(nodes.tree, Pose::Identity(), leaf.tree, pose)->has_value());
+}
+
+}  // namespace
+}  // namespace boxtree
