@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <boxtree/cooker/choose/work.h>
+#include <boxtree/runtime/query/erased_codec.h>
 #include <boxtree/runtime/query/face_visit.h>
 #include <boxtree/runtime/query/pair_walk.h>
 #include <boxtree/runtime/query/point_query.h>
@@ -22,26 +23,12 @@ struct Counts {
 };
 
 // Any codec, counting the nodes that are expanded.
-struct ListeningCodec {
-  using Scalar = double;
-  using Children = ChildSet<kWideChildren, double>;
-  static constexpr std::uint32_t kDepthLimit = kMaxDepth;
-
-  const Tree* tree;
+struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
-  static Result<ListeningCodec> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
-  [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
     ++counts->nodes;
-    NodeChildren children;
-    if (tree->expand({box, ref, false}, children) != Errc::kOk) return false;
-    out.clear();
-    for (std::uint32_t i = 0; i < children.count; ++i) {
-      const Node& child = children.child[i];
-      out.add(child.box, child.ref, child.is_leaf);
-    }
-    return true;
+    return ErasedCodec::expand(ref, box, out);
   }
 };
 
@@ -68,7 +55,7 @@ Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {
   int exponent = 0;
   static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
   Listening query{RayQuery(tree, ray, exponent, false), &counts};
-  const Errc walked = traverse_nearest(tree, ListeningCodec{&tree, &counts}, query);
+  const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 
@@ -76,7 +63,7 @@ Errc ask(const Tree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
   Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, Errc::kOk, false, {}}, &counts};
-  const Errc walked = traverse_overlap(tree, ListeningCodec{&tree, &counts}, query);
+  const Errc walked = traverse_overlap(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 
@@ -84,7 +71,7 @@ Errc ask(const Tree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   Listening query{PointQuery{tree, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}},
                   &counts};
-  const Errc walked = traverse_nearest(tree, ListeningCodec{&tree, &counts}, query);
+  const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 

@@ -5,6 +5,7 @@
 #include <boxtree/runtime/query/distance.h>
 #include <boxtree/runtime/query/distance_walk.h>
 #include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
@@ -49,6 +50,7 @@ Result<Distance> search(const Placed& placed, const A& first_codec, const B& sec
 
 Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
                           const Pose& second_pose, const DistanceOptions& options) {
+  const DefaultFloatState state;
   if (!options.is_valid()) return Errc::kInvalidQuery;
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);

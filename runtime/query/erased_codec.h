@@ -6,8 +6,8 @@
 
 namespace boxtree {
 
-// Any codec, found out at every node: for trees in different codecs, so that the number of
-// instantiations grows with the codecs and not with their square.
+/// Any codec, found out at every node: for trees in different codecs, so that the number of
+/// instantiations grows with the codecs and not with their square.
 struct ErasedCodec {
   using Scalar = double;
   using Children = ChildSet<kWideChildren, double>;
