@@ -17,16 +17,25 @@
 namespace boxtree::cooker {
 namespace {
 
+// Where a question meets all of a mesh, as when its faces lie on top of each other, a few say as
+// much as hundreds: from so many steps of a kind on, nothing more is asked, and the question at
+// hand ends.
+constexpr std::uint64_t kMostSteps = 1'000'000;
+
 struct Counts {
   std::uint64_t nodes = 0;
   std::uint64_t leaves = 0;
+
+  [[nodiscard]] bool are_enough() const { return nodes + leaves >= kMostSteps; }
 };
 
 // Any codec, counting the nodes that are expanded.
 struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
+  static Result<ListeningCodec> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
+    if (counts->are_enough()) return false;
     ++counts->nodes;
     return ErasedCodec::expand(ref, box, out);
   }
@@ -38,7 +47,7 @@ struct Listening : Query {
 
   [[nodiscard]] bool leaf(NodeRef ref) {
     ++counts->leaves;
-    return Query::leaf(ref);
+    return Query::leaf(ref) && !counts->are_enough();
   }
 };
 template <class Query>
@@ -88,10 +97,14 @@ Errc ask(const Tree& tree, const Pose& pose, Counts& counts) {
 template <class Question>
 Result<Work> mean_work(const Tree& tree, const std::vector<Question>& questions) {
   Counts counts;
+  std::size_t asked = 0;
   for (const Question& question : questions) {
-    if (const Errc error = ask(tree, question, counts); error != Errc::kOk) return error;
+    const Errc error = ask(tree, question, counts);
+    ++asked;
+    if (counts.are_enough()) break;  // and so ended the question, whatever it says
+    if (error != Errc::kOk) return error;
   }
-  const auto each = static_cast<double>(std::max<std::size_t>(questions.size(), 1));
+  const auto each = static_cast<double>(std::max<std::size_t>(asked, 1));
   return Work{static_cast<double>(counts.nodes) / each, static_cast<double>(counts.leaves) / each};
 }
 

@@ -29,8 +29,8 @@ using WorkOfKinds = std::array<Work, kQueryKinds>;
 /// candidate is judged by how many contacts the mesh has with itself.
 [[nodiscard]] Workload choice_questions(const Eigen::AlignedBox3d& bounds);
 
-/// Asks one tree everything and counts. Errors: those of the queries. A tree without faces has no
-/// work.
+/// Asks one tree everything and counts, up to a million nodes and leaves of a kind. Errors: those
+/// of the queries. A tree without faces has no work.
 Result<WorkOfKinds> count_work(const Tree& tree, const Workload& questions);
 
 }  // namespace boxtree::cooker

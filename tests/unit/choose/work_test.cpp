@@ -71,6 +71,17 @@ TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
   }
 }
 
+// Found by a robustness test: every question met every triangle, and pairs met every pair.
+TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
+  SourceMesh mesh = test::torus(3, 3);
+  mesh.faces.assign(200'000, mesh.faces.front());
+  const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide8));
+  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  for (const Work& work : require(count_work(tree, choice_questions(bounds_of(mesh))))) {
+    EXPECT_LE(work.nodes + work.leaves, 1'000'008);
+  }
+}
+
 TEST(CountWork, ATreeWithoutFacesHasNone) {
   const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
   const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
