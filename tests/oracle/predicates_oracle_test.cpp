@@ -1,62 +1,28 @@
 // SPDX-License-Identifier: MIT
 // orient3d, orient2d and triangles_intersect against CGAL in exact rational arithmetic, on doubles
 // with all their bits in use.
-#include <CGAL/Exact_predicates_exact_constructions_kernel.h>
-#include <CGAL/intersections.h>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <string>
 #include <tests/unit/primitive/triangle_cases.h>
-#include <variant>
 
 #include <gtest/gtest.h>
 
 #include <boxtree/runtime/primitive/predicates.h>
 
+#include "tests/oracle/cgal_judge.h"
+
 namespace boxtree {
 namespace {
 
-using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
-using Point = Kernel::Point_3;
-// CGAL's overlap tests ask for proper triangles; a degenerate one is handed over as what it is.
-using Shape = std::variant<Point, Kernel::Segment_3, Kernel::Triangle_3>;
+using Kernel = test::ExactKernel;
 
 constexpr int kPairsPerFamily = 20000;
 
-Point to_cgal(const Eigen::Vector3d& v) {
-  return {v[0], v[1], v[2]};
-}
-
-Shape to_cgal(const Triangle& t) {
-  std::array<Point, 3> c = {to_cgal(t.corner[0]), to_cgal(t.corner[1]), to_cgal(t.corner[2])};
-  if (!CGAL::collinear(c[0], c[1], c[2])) return Kernel::Triangle_3(c[0], c[1], c[2]);
-  std::sort(c.begin(), c.end());
-  if (c[0] == c[2]) return c[0];
-  return Kernel::Segment_3(c[0], c[2]);
-}
-
-bool cgal_meet(const Point& a, const Point& b) {
-  return a == b;
-}
-template <class T>
-bool cgal_meet(const Point& a, const T& b) {
-  return b.has_on(a);
-}
-template <class T>
-bool cgal_meet(const T& a, const Point& b) {
-  return a.has_on(b);
-}
-template <class T, class U>
-bool cgal_meet(const T& a, const U& b) {
-  return CGAL::do_intersect(a, b);
-}
-
-bool cgal_answer(const Triangle& p, const Triangle& q) {
-  return std::visit([](const auto& a, const auto& b) { return cgal_meet(a, b); }, to_cgal(p),
-                    to_cgal(q));
+Kernel::Point_3 to_cgal(const Eigen::Vector3d& v) {
+  return test::to_cgal<Kernel>(v);
 }
 
 // Gives integer coordinates the noise of real ones: a rotation with its rounding, which turns exact
@@ -103,7 +69,7 @@ TEST_P(PredicatesOracle, TrianglesIntersect) {
   for (int i = 0; i < kPairsPerFamily; ++i) {
     test::TrianglePair pair = cases.pair(GetParam());
     disturber.disturb(pair);
-    const bool expected = cgal_answer(pair.first, pair.second);
+    const bool expected = test::cgal_triangles_meet<Kernel>(pair.first, pair.second);
     meeting += expected;
     ASSERT_EQ(triangles_intersect(pair.first, pair.second), expected) << "pair " << i;
   }

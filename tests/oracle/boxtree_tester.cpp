@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: MIT
+// Ours: the predicate, and pair queries of two trees of one triangle each.
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/boxtree.h>
+#include <boxtree/runtime/primitive/predicates.h>
+
+#include "tests/oracle/pair_tester.h"
+#include "tests/support/require.h"
+
+namespace boxtree::test {
+namespace {
+
+cooker::EncodedTree cook_one(const Triangle& triangle, CodecId codec) {
+  cooker::SourceMesh mesh;
+  for (const Eigen::Vector3d& corner : triangle.corner) {
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      mesh.positions.f32.push_back(static_cast<float>(corner[k]));
+    }
+  }
+  mesh.faces.push_back({{0, 1, 2, cooker::kNoCorner}});
+  return require(cooker::cook_as(mesh, codec));
+}
+
+bool trees_meet(const Triangle& p, const Triangle& q, CodecId codec) {
+  const cooker::EncodedTree first = cook_one(p, codec), second = cook_one(q, codec);
+  const Tree a = require(Tree::bind(cooker::parts_of(first), 0, {}));
+  const Tree b = require(Tree::bind(cooker::parts_of(second), 0, {}));
+  return require(first_contact(a, Pose::Identity(), b, Pose::Identity())).has_value();
+}
+
+}  // namespace
+
+void add_boxtree_testers(std::vector<PairTester>& testers) {
+  testers.push_back({"boxtree", "predicate", triangles_intersect});
+  constexpr unsigned kEvery = 100;  // cooking takes its time
+  testers.push_back({"boxtree", "trees, 1 in 100",
+                     [turn = std::size_t{0}](const Triangle& p, const Triangle& q) mutable {
+                       return trees_meet(p, q, kCodecs[turn++ % kCodecs.size()].id);
+                     },
+                     kEvery});
+}
+
+}  // namespace boxtree::test
