@@ -2,7 +2,6 @@
 // boxtree_robustness: one line a case; exits with 7 when one does not keep its limit.
 #include <algorithm>
 #include <cstdio>
-#include <cstring>
 #include <fstream>
 
 #include <CLI/CLI.hpp>
@@ -14,7 +13,10 @@
 namespace boxtree::robustness {
 namespace {
 
-constexpr int kDifferenceFound = 7;  // as the command line of the cooker has it
+// As the command line of the cooker has them.
+constexpr int kUsage = 1;
+constexpr int kWriteFailed = 2;
+constexpr int kDifferenceFound = 7;
 
 struct Arguments {
   bool full = false;
@@ -26,7 +28,19 @@ bool is_wanted(const Case& tested, const std::vector<std::string>& only) {
   return only.empty() || std::find(only.begin(), only.end(), tested.id) != only.end();
 }
 
+// A case that is not there must not pass.
+bool all_known(const std::vector<std::string>& only) {
+  const std::vector<Case> cases = all_cases();
+  return std::all_of(only.begin(), only.end(), [&](const std::string& id) {
+    return std::any_of(cases.begin(), cases.end(), [&](const Case& c) { return c.id == id; });
+  });
+}
+
 int run(const Arguments& arguments) {
+  if (!all_known(arguments.only)) {
+    fmt::print(stderr, "no such case\n");
+    return kUsage;
+  }
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool all_pass = true;
   fmt::print("{:4} {:62} {:>10} {:>8}  {:28} {}\n", "id", "what", "figure", "limit", "of", "pass");
@@ -56,7 +70,7 @@ int run(const Arguments& arguments) {
     out.close();
     if (!out) {
       fmt::print(stderr, "cannot write {}\n", arguments.json);
-      return 2;
+      return kWriteFailed;
     }
   }
   return all_pass ? 0 : kDifferenceFound;
