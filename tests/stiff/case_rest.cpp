@@ -38,7 +38,7 @@ Setting setting_of(double stiffness, Stepper stepper, const Scale& scale) {
   constexpr double kImplicitStep = 1e-3;
   if (stepper == Stepper::kImplicit) setting.step_seconds = kImplicitStep;
   constexpr double kSeconds = 3;
-  const double most = scale.quick ? 1000 : 20000;
+  const double most = scale.quick ? 600 : 20000;
   setting.steps = static_cast<std::size_t>(std::min(kSeconds / setting.step_seconds, most));
   if (stepper == Stepper::kImplicit && scale.quick) setting.steps = 600;
   return setting;
@@ -66,8 +66,8 @@ World make_world(const Shape& level, const Shape& body, const Setting& setting) 
   const double omega = std::sqrt(kSprings * setting.stiffness / kMass);
   World world(level, {setting.stiffness, 2 * kDampingRatio * kMass * omega / kSprings},
               {0, 0, -kGravity});
-  // At most a millimetre, and no more than is fallen in 200 steps of 0.1 / omega.
-  const double fall_seconds = 20 / omega;
+  // At most a millimetre, and no more than is fallen while there is time to settle.
+  const double fall_seconds = (setting.steps > 1000 ? 20 : 10) / omega;
   const double drop = std::min(1e-3, kGravity * fall_seconds * fall_seconds / 2);
   for (unsigned i = 0; i < kSteps; ++i) {
     Body box = make_body(body, Eigen::Vector3d::Constant(kHalf), kMass);
@@ -165,13 +165,14 @@ Outcome add_control(const Shape& nearest, const Shape& body, const Setting& sett
   const std::string name =
       fmt::format("k {} N/m, control: f16 to nearest", power_name(setting.stiffness));
   using enum Row::Limit;
+  // Falling through, as chattering: a box in free fall has 1 g.
   const bool must_fail = setting.stiffness >= kNearestFails;
   const auto relation = must_fail ? kAtLeast : kNone;
   rows.push_back({"S1", name, fmt::format("restless boxes of {}", kSteps),
-                  static_cast<double>(outcome.restless), relation, 1});
-  rows.push_back({"S1", name, "rms acceleration, last half, g", outcome.rms_g, relation, 1});
-  rows.push_back({"S1", name, "corners on or off, last half", static_cast<double>(outcome.toggles),
-                  relation, 1});
+                  static_cast<double>(outcome.restless), relation, kSteps / 2});
+  rows.push_back({"S1", name, "rms acceleration, last half, g", outcome.rms_g, relation, 0.5});
+  rows.push_back(
+      {"S1", name, "corners on or off, last half", static_cast<double>(outcome.toggles), kNone, 0});
   rows.push_back({"S1", name, "deepest below rest, m", outcome.sink, kNone, 0});
   return outcome;
 }
@@ -227,8 +228,10 @@ CaseResult run_rest(const Scale& scale) {
     const Setting symplectic = setting_of(stiffness, Stepper::kSymplectic, scale);
     const Outcome right = add_rows(exact, symplectic, result.rows);
     const Outcome wrong = add_control(nearest, exact.bodies.front(), symplectic, result.rows);
-    static_cast<void>(
-        add_rows(exact, setting_of(stiffness, Stepper::kImplicit, scale), result.rows));
+    if (!scale.quick || stiffness == 1e3 || stiffness == 1e8) {
+      const Setting implicit = setting_of(stiffness, Stepper::kImplicit, scale);
+      static_cast<void>(add_rows(exact, implicit, result.rows));
+    }
     if (!scale.quick || stiffness == 1e8) {
       static_cast<void>(add_rows(grid, symplectic, result.rows));
     }

@@ -25,6 +25,14 @@ cooker::CookOptions options_of(const Store& store) {
   return options;
 }
 
+Eigen::AlignedBox3d bounds_in_world(std::span<const Triangle> triangles, const Pose& pose) {
+  Eigen::AlignedBox3d bounds;
+  for (const Triangle& triangle : triangles) {
+    for (const Eigen::Vector3d& corner : triangle.corner) bounds.extend(pose * corner);
+  }
+  return bounds;
+}
+
 // Reads every face through the tree, as a contact solver of an application would.
 void read_triangles(Shape& shape, const Tree& tree) {
   const std::uint32_t faces = tree.record().face_count;
@@ -44,6 +52,8 @@ void read_triangles(Shape& shape, const Tree& tree) {
   for (const auto& triangles : by_id) {
     shape.triangles.insert(shape.triangles.end(), triangles.begin(), triangles.end());
     shape.first.push_back(static_cast<std::uint32_t>(shape.triangles.size()));
+    shape.bounds.push_back(bounds_in_world(triangles, Pose::Identity()));
+    shape.whole.extend(shape.bounds.back());
   }
 }
 
@@ -57,18 +67,22 @@ Shape shape_of(std::string name, cooker::EncodedTree encoded) {
   return shape;
 }
 
-Eigen::AlignedBox3d bounds_in_world(std::span<const Triangle> triangles, const Pose& pose) {
-  Eigen::AlignedBox3d bounds;
-  for (const Triangle& triangle : triangles) {
-    for (const Eigen::Vector3d& corner : triangle.corner) bounds.extend(pose * corner);
-  }
-  return bounds;
+// A level does not move.
+bool is_in_place(const Pose& pose) {
+  return pose.matrix() == Pose::Identity().matrix();
 }
 
-void add_faces_in(const Eigen::AlignedBox3d& bounds, const Shape& shape, const Pose& pose,
+Eigen::AlignedBox3d bounds_in_world(const Shape& shape, const Pose& pose) {
+  return is_in_place(pose) ? shape.whole : bounds_in_world(shape.triangles, pose);
+}
+
+void add_faces_in(const Eigen::AlignedBox3d& box, const Shape& shape, const Pose& pose,
                   std::vector<std::uint32_t>& out) {
+  const bool in_place = is_in_place(pose);
   for (std::uint32_t face = 0; face < shape.face_count(); ++face) {
-    if (bounds.intersects(bounds_in_world(shape.face(face), pose))) out.push_back(face);
+    if (box.intersects(in_place ? shape.bounds[face] : bounds_in_world(shape.face(face), pose))) {
+      out.push_back(face);
+    }
   }
 }
 
@@ -158,10 +172,8 @@ void find_touching(const Shape& first, const Pose& first_pose, const Shape& seco
     sort_unique(out.second);
     return;
   }
-  const auto& all_first = first.triangles;
-  const auto& all_second = second.triangles;
-  add_faces_in(bounds_in_world(all_second, second_pose), first, first_pose, out.first);
-  add_faces_in(bounds_in_world(all_first, first_pose), second, second_pose, out.second);
+  add_faces_in(bounds_in_world(second, second_pose), first, first_pose, out.first);
+  add_faces_in(bounds_in_world(first, first_pose), second, second_pose, out.second);
 }
 
 }  // namespace boxtree::stiff

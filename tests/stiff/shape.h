@@ -33,6 +33,8 @@ struct Shape {
   // By face id: triangles of face i are [first[i], first[i + 1]), in object space.
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> first;
+  std::vector<Eigen::AlignedBox3d> bounds;  // of each face
+  Eigen::AlignedBox3d whole;
   double max_vertex_error = 0;
 
   [[nodiscard]] std::uint32_t face_count() const {
