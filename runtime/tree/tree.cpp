@@ -177,9 +177,14 @@ Eigen::AlignedBox3d Tree::to_object(const Box<double>& box) const noexcept {
   Eigen::Vector3d high;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
-    low[axis] = box.low[k] * frame_.scale + frame_.origin[axis];
-    high[axis] = box.high[k] * frame_.scale + frame_.origin[axis];
+    low[axis] = box.low[k] * frame_.scale;
+    high[axis] = box.high[k] * frame_.scale;
     if (frame_.origin[axis] == 0) continue;  // scaling by a power of two did not round
+    // Two roundings: a position whose difference from the origin was rounded into the box may lie
+    // less than an ulp of that difference outside, far more than one of its own near zero; and
+    // adding the origin rounds again.
+    low[axis] = std::nextafter(low[axis], -kInfinity) + frame_.origin[axis];
+    high[axis] = std::nextafter(high[axis], kInfinity) + frame_.origin[axis];
     low[axis] = std::nextafter(low[axis], -kInfinity);
     high[axis] = std::nextafter(high[axis], kInfinity);
   }

@@ -92,7 +92,8 @@ class Tree {
   /// Precondition: face < record().face_count.
   [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
 
-  /// A box of tree space in object space, rounded outward.
+  /// A box of tree space in object space, rounded outward: it holds every position of object space
+  /// that Frame::to_tree brings into `box`.
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
 
   // What the query templates read.

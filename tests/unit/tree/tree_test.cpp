@@ -192,6 +192,35 @@ TEST_P(Trees, DoublesFarFromTheOriginKeepTheirDigits) {
   EXPECT_GT(hits, 50);
 }
 
+// A difference from the frame's origin cannot hold the digits of a position near zero, so that it
+// may be rounded into a box from outside.
+TEST_P(Trees, BoxesOfObjectSpaceHoldThePositionsOfTheSource) {
+  SourceMesh mesh = test::torus(20, 12);
+  mesh.positions.precision = cooker::Precision::kF64;
+  for (const float x : mesh.positions.f32) mesh.positions.f64.push_back(1.1 * x + 0.3);
+  mesh.positions.f32.clear();
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  ASSERT_NE(cooked.tree.frame().origin, Eigen::Vector3d::Zero());
+  const std::function<void(const Node&, std::vector<Eigen::AlignedBox3d>)> walk_down =
+      [&](const Node& node, std::vector<Eigen::AlignedBox3d> above) {
+        above.push_back(cooked.tree.to_object(node.box));
+        NodeChildren children;
+        if (!node.is_leaf) {
+          ASSERT_EQ(cooked.tree.expand(node, children), Errc::kOk);
+        }
+        for (std::uint32_t i = 0; i < children.count; ++i) walk_down(children.child[i], above);
+        for (std::uint32_t i = 0; node.is_leaf && i < node.ref.second; ++i) {
+          const cooker::Face& face = mesh.faces[cooked.tree.face_id(node.ref.first + i)];
+          for (std::size_t corner = 0; corner < 3; ++corner) {
+            for (const Eigen::AlignedBox3d& box : above) {
+              ASSERT_TRUE(box.contains(mesh.positions[face.corner[corner]]));
+            }
+          }
+        }
+      };
+  walk_down(cooked.tree.root(), {});
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, Trees, testing::ValuesIn(test::all_codecs()), test::test_name);
 
 }  // namespace
