@@ -2,7 +2,9 @@
 // Files as commands open them: mapped, or decompressed if they are blobs.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <string>
 
 #include <boxtree/runtime/file/file.h>
 
@@ -15,5 +17,9 @@ struct OpenedFile {
 
 /// Errors as File::open and open_blob.
 Result<OpenedFile> open_file(const std::filesystem::path& path);
+
+/// The number of a tree that is named by its number or its name. A number need not be in the file:
+/// binding finds that out.
+Result<std::uint32_t> find_tree(const File& file, const std::string& which);
 
 }  // namespace boxtree::cooker

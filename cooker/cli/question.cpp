@@ -14,14 +14,6 @@
 namespace boxtree::cooker {
 namespace {
 
-Result<std::uint32_t> tree_index(const File& file, const std::string& which) {
-  std::uint32_t index = 0;
-  const char* const end = which.data() + which.size();
-  const auto [parsed, error] = std::from_chars(which.data(), end, index);
-  if (error == std::errc() && parsed == end) return index;
-  return file.find_tree(which);
-}
-
 Json vector_json(const Eigen::Vector3d& v) {
   return {v[0], v[1], v[2]};
 }
@@ -212,7 +204,7 @@ Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::strin
   Result<OpenedFile> opened = open_file(path);
   if (!opened) return opened.error();
   File* const file = &opened->file;
-  const Result<std::uint32_t> index = tree_index(*file, which);
+  const Result<std::uint32_t> index = find_tree(*file, which);
   if (!index) return index.error();
   BindOptions options;
   std::unique_ptr<SourceMesh> source;

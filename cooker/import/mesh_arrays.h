@@ -24,4 +24,13 @@ namespace boxtree::cooker {
   return arrays;
 }
 
+/// Stands for the mesh of a tree with external geometry when it is not at hand and no leaf will be
+/// read: such a tree can be bound and its boxes walked.
+[[nodiscard]] inline MeshArrays absent_arrays(const TreeRecord& record) {
+  MeshArrays absent;
+  absent.face_count = record.face_count;
+  absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
+  return absent;
+}
+
 }  // namespace boxtree::cooker

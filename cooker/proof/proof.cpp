@@ -10,6 +10,7 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/proof/proof.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/query/traversal.h>
@@ -205,13 +206,7 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
   BindOptions options;
   options.mesh = mesh;
   options.verify_mesh = mesh.has_value();
-  if (!mesh) {
-    const TreeRecord record = file.tree_record(index);
-    MeshArrays absent;
-    absent.face_count = record.face_count;
-    absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
-    options.mesh = absent;
-  }
+  if (!mesh) options.mesh = absent_arrays(file.tree_record(index));
   return Tree::bind(file, index, options);
 }
 
