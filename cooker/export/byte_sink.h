@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Small pieces gathered into large writes, so that exporters can hand over a vertex at a time.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/write/atomic_file.h>
+
+namespace boxtree::cooker {
+
+/// Remembers the first error and drops what comes after it: callers ask once, by finish().
+class ByteSink {
+ public:
+  /// `file` must outlive it.
+  explicit ByteSink(AtomicFile& file) : file_(file) { buffer_.reserve(kBufferBytes); }
+
+  void write(Bytes bytes) {
+    buffer_.insert(buffer_.end(), bytes.begin(), bytes.end());
+    if (buffer_.size() >= kBufferBytes) flush();
+  }
+
+  /// The bytes of a value as they lie in memory.
+  template <class T>
+  requires std::is_trivially_copyable_v<T>
+  void put(const T& value) { write(std::as_bytes(std::span(&value, 1))); }
+
+  template <class... Values>
+  void print(fmt::format_string<Values...> format, Values&&... values) {
+    text_.clear();
+    fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+    write(std::as_bytes(std::span(text_.data(), text_.size())));
+  }
+
+  /// Bytes taken so far.
+  [[nodiscard]] std::uint64_t size() const { return flushed_ + buffer_.size(); }
+
+  [[nodiscard]] Status finish() {
+    flush();
+    return status_;
+  }
+
+ private:
+  static constexpr std::size_t kBufferBytes = std::size_t{1} << 16;
+
+  void flush() {
+    if (status_) status_ = file_.write(buffer_);
+    flushed_ += buffer_.size();
+    buffer_.clear();
+  }
+
+  AtomicFile& file_;
+  std::vector<std::byte> buffer_;
+  std::uint64_t flushed_ = 0;
+  fmt::memory_buffer text_;
+  Status status_;
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Decoded triangles and boxes as a file that any viewer opens: what a codec did, to look at.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include <boxtree/cooker/export/decoded_faces.h>
+#include <boxtree/cooker/export/tree_boxes.h>
+#include <boxtree/runtime/tree/tree.h>
+
+namespace boxtree::cooker {
+
+struct ExportOptions {
+  bool triangles = true;
+  std::vector<LevelRange> levels = {{0, 3}};  // of boxes; ranges may overlap
+  bool leaves = false;                        // also the boxes of all leaves
+  bool solid_boxes = false;                   // boxes as faces, not as lines
+  std::optional<ExportOrder> order;           // [that of the source where face ids tell it]
+};
+
+/// What was written of one tree.
+struct ExportedTree {
+  std::string name;
+  std::uint64_t vertices = 0;  // of triangles; boxes have eight each
+  std::uint64_t faces = 0;
+  std::uint64_t triangles = 0;
+  std::vector<BoxGroup> boxes;
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of its node; glTF alone
+};
+
+struct ExportReport {
+  std::uint64_t bytes = 0;
+  std::vector<ExportedTree> trees;
+};
+
+/// Writes `trees` to `output`, as Wavefront OBJ or as binary glTF 2.0 by its extension (.obj,
+/// .glb). Positions are of object space. On any error nothing of `output` changes. Trees with
+/// external geometry must be bound to their mesh, unless `triangles` is false.
+///
+/// Errors: kInvalidQuery for another extension, and for a range of levels that begins below the
+/// deepest of all trees; those of DecodedFaces::decode, walk_boxes and write_glb; kWriteFailed.
+Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesystem::path& output,
+                                  const ExportOptions& options);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// Text of one tree after the other; vertices are numbered through the whole file, from 1.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <boxtree/cooker/export/byte_sink.h>
+#include <boxtree/cooker/export/obj_writer.h>
+#include <boxtree/cooker/version.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// A line end, and a backslash before one, would end the name early.
+std::string object_name(std::string name) {
+  const auto breaks = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\\'; };
+  std::replace_if(name.begin(), name.end(), breaks, '_');
+  return name;
+}
+
+// Names of groups are words: a line may list several.
+std::string group_name(const ShownTree& shown, const std::string& part) {
+  std::string name = object_name(shown.name + "_" + part);
+  std::replace(name.begin(), name.end(), ' ', '_');
+  return name;
+}
+
+class ObjText {
+ public:
+  ObjText(bool solid_boxes, ByteSink& out) : solid_boxes_(solid_boxes), out_(out) {}
+
+  void add(const ShownTree& shown) {
+    is_f32_ = has_f32_positions(shown.tree);
+    out_.print("o {}\n", object_name(shown.name));
+    if (shown.faces) {
+      out_.print("g {}\n", group_name(shown, "triangles"));
+      add_faces(*shown.faces);
+    }
+    for (const BoxGroup& group : shown.boxes) {
+      out_.print("g {}\n", group_name(shown, group.name()));
+      visit_group(shown.tree, group,
+                  [&](const Box<double>& box) { add_box(shown.tree.to_object(box)); });
+    }
+  }
+
+ private:
+  void add_faces(const DecodedFaces& faces) {
+    for (std::uint32_t v = 0; v < faces.vertex_count(); ++v) add_vertex(faces.position(v));
+    for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
+      const std::array<std::uint32_t, 4> corner = faces.face(f);
+      if (corner[3] == kMissingCorner) {
+        out_.print("f {} {} {}\n", next_ + corner[0], next_ + corner[1], next_ + corner[2]);
+      } else {
+        out_.print("f {} {} {} {}\n", next_ + corner[0], next_ + corner[1], next_ + corner[2],
+                   next_ + corner[3]);
+      }
+    }
+    next_ += faces.vertex_count();
+  }
+
+  void add_box(const Eigen::AlignedBox3d& box) {
+    for (unsigned corner = 0; corner < 8; ++corner) {
+      Eigen::Vector3d position;
+      for (int axis = 0; axis < 3; ++axis) {
+        position[axis] =
+            (corner >> axis & 1u) != 0 ? above(box.max()[axis]) : below(box.min()[axis]);
+      }
+      add_vertex(position);
+    }
+    if (solid_boxes_) {
+      for (const auto& side : kBoxSides) {
+        out_.print("f {} {} {} {}\n", next_ + side[0], next_ + side[1], next_ + side[2],
+                   next_ + side[3]);
+      }
+    } else {
+      for (const auto& edge : kBoxEdges) {
+        out_.print("l {} {}\n", next_ + edge[0], next_ + edge[1]);
+      }
+    }
+    next_ += 8;
+  }
+
+  void add_vertex(const Eigen::Vector3d& p) {
+    if (is_f32_) {
+      out_.print("v {} {} {}\n", f32_digits(static_cast<float>(p[0])),
+                 f32_digits(static_cast<float>(p[1])), f32_digits(static_cast<float>(p[2])));
+    } else {
+      out_.print("v {} {} {}\n", p[0], p[1], p[2]);  // the fewest digits that give it back
+    }
+  }
+
+  // Boxes around f32 positions are told in f32, too: whatever a reader makes of the digits, it
+  // keeps their order. No finite position lies beyond the largest finite number.
+  [[nodiscard]] double below(double value) const {
+    return is_f32_ ? f32_below(value) : std::max(value, std::numeric_limits<double>::lowest());
+  }
+  [[nodiscard]] double above(double value) const {
+    return is_f32_ ? f32_above(value) : std::min(value, std::numeric_limits<double>::max());
+  }
+
+  bool solid_boxes_;
+  ByteSink& out_;
+  bool is_f32_ = false;
+  std::uint64_t next_ = 1;  // number of the next vertex
+};
+
+}  // namespace
+
+std::string f32_digits(float value) {
+  // Nine significant digits tell all f32 apart. From 1e-7 on they end within 15 decimals; up to
+  // 1e15 a whole number is exact in the 64 bits that readers gather digits in.
+  constexpr int kDigits = 9;
+  constexpr float kSmallestFixed = 1e-7f;
+  constexpr float kLargestFixed = 1e15f;
+  const float magnitude = std::abs(value);
+  if (magnitude == 0) return std::signbit(value) ? "-0" : "0";
+  if (magnitude < kSmallestFixed || magnitude > kLargestFixed) {
+    return fmt::format("{:.{}e}", value, kDigits - 1);
+  }
+  const int exponent = static_cast<int>(std::floor(std::log10(double{magnitude})));
+  const int decimals = std::clamp(kDigits - 1 - exponent, 0, 15);
+  std::string digits = fmt::format("{:.{}f}", value, decimals);
+  if (decimals > 0) {
+    digits.erase(digits.find_last_not_of('0') + 1);
+    if (digits.back() == '.') digits.pop_back();
+  }
+  return digits;
+}
+
+void write_obj(std::span<const ShownTree> trees, bool solid_boxes, ByteSink& out) {
+  out.print("# boxtree {}\n", kVersion);
+  ObjText text(solid_boxes, out);
+  for (const ShownTree& shown : trees) text.add(shown);
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// The decoded boxes of a tree, level by level.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/tree/tree.h>
+
+namespace boxtree::cooker {
+
+/// Levels first..last. The root's box is level 0, the boxes that expanding a node gives are one
+/// level below its own, be they leaves or not.
+struct LevelRange {
+  std::uint32_t first = 0;
+  std::uint32_t last = 0;
+};
+
+/// Boxes that are shown together: those of one level, or those of all leaves.
+struct BoxGroup {
+  std::optional<std::uint32_t> level;  // nothing: the leaves
+  std::uint64_t count = 0;
+
+  [[nodiscard]] bool has(std::uint32_t box_level, bool is_leaf) const {
+    return level ? *level == box_level : is_leaf;
+  }
+  [[nodiscard]] std::string name() const {
+    return level ? "level " + std::to_string(*level) : "leaves";
+  }
+};
+
+/// Calls visit(level, is_leaf, Box<double>) for the boxes of levels 0 to `deepest`, each before
+/// those below it, in the order of the children. Boxes are of tree space. Ends on any bytes: an
+/// honest walk expands each node once. kNodeCorrupt and kDepthExceeded for corrupt bytes.
+template <class Visit>
+[[nodiscard]] Errc walk_boxes(const Tree& tree, std::uint32_t deepest, Visit visit) {
+  struct Entry {
+    Node node;
+    std::uint32_t level;
+  };
+  if (tree.empty()) return Errc::kOk;
+  std::vector<Entry> stack = {{tree.root(), 0}};
+  NodeChildren children;
+  std::uint64_t unexpanded = tree.record().node_count;
+  while (!stack.empty()) {
+    const Entry entry = stack.back();
+    stack.pop_back();
+    const Box<double>& box = entry.node.box;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!(box.low[k] <= box.high[k])) return Errc::kNodeCorrupt;  // NaN too
+    }
+    visit(entry.level, entry.node.is_leaf, box);
+    if (entry.node.is_leaf) continue;
+    if (entry.level >= kMaxDepth) return Errc::kDepthExceeded;
+    if (entry.level >= deepest) continue;
+    if (unexpanded-- == 0) return Errc::kNodeCorrupt;
+    if (const Errc error = tree.expand(entry.node, children); error != Errc::kOk) return error;
+    for (std::uint32_t i = children.count; i-- > 0;) {
+      stack.push_back({children.child[i], entry.level + 1});
+    }
+  }
+  return Errc::kOk;
+}
+
+/// The boxes of one group. Precondition: find_groups() met no error in this tree.
+template <class Visit>
+void visit_group(const Tree& tree, const BoxGroup& group, Visit visit) {
+  static_cast<void>(walk_boxes(tree, group.level.value_or(kMaxDepth),
+                               [&](std::uint32_t level, bool is_leaf, const Box<double>& box) {
+                                 if (group.has(level, is_leaf)) visit(box);
+                               }));
+}
+
+/// The groups chosen that have any boxes: levels in ascending order, then the leaves. Errors as
+/// walk_boxes, named after the tree.
+Result<std::vector<BoxGroup>> find_groups(const Tree& tree, const std::vector<LevelRange>& levels,
+                                          bool leaves);
+
+/// The edges of a box as pairs of corner numbers, whose bits choose between low and high: x is
+/// bit 0, y bit 1, z bit 2.
+inline constexpr std::array<std::array<std::uint32_t, 2>, 12> kBoxEdges = {{{0, 1},
+                                                                            {2, 3},
+                                                                            {4, 5},
+                                                                            {6, 7},
+                                                                            {0, 2},
+                                                                            {1, 3},
+                                                                            {4, 6},
+                                                                            {5, 7},
+                                                                            {0, 4},
+                                                                            {1, 5},
+                                                                            {2, 6},
+                                                                            {3, 7}}};
+
+/// The sides of a box, counter-clockwise seen from outside.
+inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kBoxSides = {
+    {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
+
+/// The nearest f32 that is not above `value`; the outermost finite one stands for all beyond, as no
+/// finite f32 lies there.
+[[nodiscard]] float f32_below(double value);
+/// The nearest f32 that is not below `value`, in the same way.
+[[nodiscard]] float f32_above(double value);
+
+}  // namespace boxtree::cooker
