@@ -28,6 +28,7 @@ int main(int argc, char** argv) {
     cooker::add_query_command(app, status);
     cooker::add_bench_command(app, status);
     cooker::add_report_command(app, status);
+    cooker::add_export_command(app, status);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

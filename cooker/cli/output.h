@@ -58,5 +58,6 @@ void add_verify_command(CLI::App& app, int& status);
 void add_query_command(CLI::App& app, int& status);
 void add_bench_command(CLI::App& app, int& status);
 void add_report_command(CLI::App& app, int& status);
+void add_export_command(CLI::App& app, int& status);
 
 }  // namespace boxtree::cooker

@@ -225,6 +225,50 @@ same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'
 expect 2 "$boxtree" report --paper missing.obj
 expect 1 "$boxtree" report cube.obj
 
+# Files for viewers: what comes back is the geometry that was cooked (verify compares its hash).
+expect 0 "$boxtree" export cube.bxt -o shown.obj --json
+same "$(jq -c '[.trees[0] | .name,.faces,.triangles,.levels[0],.leaves]' out)" \
+  '["cube",6,12,{"level":0,"boxes":1},null]'
+same "$(jq -r .bytes out)" "$(stat -c %s shown.obj)"
+same "$(grep -c '^l ' shown.obj)" 12
+expect 0 "$boxtree" verify external.bxt --mesh shown.obj
+expect 0 "$boxtree" export both.bxt -o shown.glb --triangles
+same "$(head -c 4 shown.glb)" glTF
+grep -q '^cube: 12 triangles$' out && grep -q '^flat: 1 triangles$' out
+expect 0 "$boxtree" cook shown.glb -o again.bxt --json
+same "$(jq -r '.trees[0].triangles' out)" 13
+for tree in 1 flat; do
+  expect 0 "$boxtree" export both.bxt -o flat-shown.obj --tree "$tree" --triangles
+  same "$(grep -c '^f ' flat-shown.obj)" 1
+done
+expect 0 "$boxtree" export cube.bxt -o boxes.obj --boxes --levels 0 --solid
+same "$(grep -c '^f ' boxes.obj)" 6
+expect 0 "$boxtree" export cube.bxt -o boxes.obj --leaves --json
+same "$(jq -c '[.trees[0] | .triangles,.levels,.leaves > 0]' out)" '[12,[],true]'
+expect 1 "$boxtree" export external.bxt -o external.obj
+expect 0 "$boxtree" export external.bxt -o external.obj --boxes
+expect 0 "$boxtree" export external.bxt -o external.obj --mesh cube.obj --triangles
+expect 0 "$boxtree" verify external.bxt --mesh external.obj
+expect 3 "$boxtree" export external.bxt -o external.obj --mesh other.obj
+cp shown.obj before.obj
+for levels in 90 0-1,90 3-1 1- x 0,; do
+  expect 1 "$boxtree" export cube.bxt -o shown.obj --levels "$levels"
+done
+expect 1 "$boxtree" export cube.bxt -o shown.stl
+expect 1 "$boxtree" export cube.bxt
+expect 1 "$boxtree" export both.bxt -o shown.obj --tree 2
+expect 1 "$boxtree" export both.bxt -o shown.obj --tree nobody
+expect 2 "$boxtree" export missing.bxt -o shown.obj
+expect 2 "$boxtree" export cube.bxt -o no/such/folder/shown.obj
+expect 3 "$boxtree" export cube.obj -o shown.obj
+cmp shown.obj before.obj
+# What an export is made from is never its output, whatever the name it goes by.
+cp cube.bxt link-target.bxt && ln -s link-target.bxt link.obj && cp cube.obj own.obj
+expect 1 "$boxtree" export link-target.bxt -o link.obj
+expect 1 "$boxtree" export external.bxt --mesh own.obj -o ./own.obj
+cmp link-target.bxt cube.bxt && cmp own.obj cube.obj
+same "$(find . -name '*.cooking' | wc -l)" 0
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out
