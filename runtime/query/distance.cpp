@@ -30,7 +30,8 @@ Result<Distance> search(const Placed& placed, const A& first_codec, const B& sec
   result.is_near_enough = !walk.is_spent();
   result.lower = placed.metric.length_below(walk.lower());
   const NearestPair& nearest = walk.nearest();
-  if (nearest.upper < std::numeric_limits<double>::infinity()) {
+  const bool is_within = walk.lower() <= approximation.max_distance;
+  if (is_within && nearest.upper < std::numeric_limits<double>::infinity()) {
     result.upper = placed.metric.length_above(nearest.upper);
     const Eigen::Vector3d origin =
         placed.first_pose * placed.first.frame().to_object(nearest.origin);
@@ -55,7 +56,7 @@ Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree&
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
-  const std::optional<WorldMetric> metric = WorldMetric::make(first, first_pose, *pose);
+  const std::optional<WorldMetric> metric = WorldMetric::make(first, first_pose, second, *pose);
   if (!metric) return Errc::kInvalidPose;
   if (first.empty() || second.empty()) {
     Distance nothing;

@@ -62,9 +62,13 @@ class DistanceWalk {
                      first_.record().root == RootKind::kLeaf,
                      second_.record().root == RootKind::kLeaf};
     const Box<double> image = pose_.hull_in_first(root.second_box);
-    const double root_key = std::max(metric_.in_first().squared_distance(root.first_box, image),
-                                     metric_.in_second().squared_distance(
-                                         pose_.to_second().hull(root.first_box), root.second_box));
+    face(metric_.to_world(center(image) - center(root.first_box)));
+    const double root_key =
+        std::max({metric_.in_first().squared_distance(root.first_box, image),
+                  metric_.in_second().squared_distance(pose_.to_second().hull(root.first_box),
+                                                       root.second_box),
+                  direction_.squared_distance(direction_.end_of_first(root.first_box),
+                                              direction_.end_of_second(root.second_box))});
     if (!frontier_.push(root_key, enough_, root)) return Errc::kInternal;
     double key = 0;
     Entry entry;
@@ -140,10 +144,13 @@ class DistanceWalk {
       if (!first_codec_.expand(entry.first, entry.first_box, first_children_)) {
         return Errc::kNodeCorrupt;
       }
+      const double second_end = direction_.end_of_second(entry.second_box);
       return meet_children(
           first_children_,
           [&](const Box<typename A::Scalar>& box) {
-            const double key = metric_.in_first().squared_distance(box, image);
+            double key = direction_.squared_distance(direction_.end_of_first(box), second_end);
+            if (!(key < enough_)) return key;
+            key = std::max(key, metric_.in_first().squared_distance(box, image));
             if (!(key < enough_)) return key;
             return std::max(key, metric_.in_second().squared_distance(pose_.to_second().hull(box),
                                                                       entry.second_box));
@@ -157,10 +164,13 @@ class DistanceWalk {
       return Errc::kNodeCorrupt;
     }
     const Box<double> first_image = pose_.to_second().hull(entry.first_box);
+    const double first_end = direction_.end_of_first(entry.first_box);
     return meet_children(
         second_children_,
         [&](const Box<typename B::Scalar>& box) {
-          const double key = metric_.in_second().squared_distance(first_image, box);
+          double key = direction_.squared_distance(first_end, direction_.end_of_second(box));
+          if (!(key < enough_)) return key;
+          key = std::max(key, metric_.in_second().squared_distance(first_image, box));
           if (!(key < enough_)) return key;
           return std::max(
               key, metric_.in_first().squared_distance(entry.first_box, pose_.hull_in_first(box)));
@@ -205,6 +215,15 @@ class DistanceWalk {
   }
 
   template <class S>
+  [[nodiscard]] static Eigen::Vector3d center(const Box<S>& box) noexcept {
+    Eigen::Vector3d middle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      middle[static_cast<Eigen::Index>(k)] = 0.5 * double{box.low[k]} + 0.5 * double{box.high[k]};
+    }
+    return middle;
+  }
+
+  template <class S>
   [[nodiscard]] static double extent(const Box<S>& box) noexcept {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) sum += double{box.high[k]} - double{box.low[k]};
@@ -217,6 +236,7 @@ class DistanceWalk {
   Errc compare(const Entry& entry) noexcept {
     if (const Errc error = read(entry); error != Errc::kOk) return error;
     const GapWeights& gaps = metric_.in_first();
+    set_ends();
     for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
       const double to_leaf = gaps.squared_distance(first_bounds_[i], second_bounds_);
       if (!(to_leaf < best_)) {
@@ -225,7 +245,8 @@ class DistanceWalk {
       }
       const Triangle triangle = first_batch_.triangle(i);
       for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-        const double key = gaps.squared_distance(first_bounds_[i], moved_bounds_[j]);
+        const double key = std::max(direction_.squared_distance(first_end_[i], second_end_[j]),
+                                    gaps.squared_distance(first_bounds_[i], moved_bounds_[j]));
         if (!(key < best_)) {
           left_ = std::min(left_, key);
           continue;
@@ -235,6 +256,19 @@ class DistanceWalk {
     }
     return Errc::kOk;
   }
+
+  // Where the triangles of the leaves at hand end along the direction.
+  void set_ends() noexcept {
+    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+      first_end_[i] = direction_.end_of_first(first_batch_.triangle(i));
+    }
+    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+      second_end_[j] = direction_.end_of_moved(moved_[j]);
+    }
+  }
+
+  // From now on boxes are compared along this vector of the world, too.
+  void face(const Eigen::Vector3d& along) noexcept { direction_ = metric_.direction(along, pose_); }
 
   // Corners are taken as differences from one of them, so that rounding is that of the triangles'
   // size and distance and not of their place.
@@ -256,7 +290,7 @@ class DistanceWalk {
     found.upper += error;
     if (!(found.lower > 0) && triangles_intersect(p, q)) found.lower = found.upper = 0;
     nearest_.lower = std::min(nearest_.lower, found.lower);
-    if (!(found.upper < nearest_.upper) || found.lower > approximation_.max_distance) return;
+    if (!(found.upper < nearest_.upper)) return;
     nearest_.upper = found.upper;
     nearest_.faces = {face_ref(first_, first_batch_.face[i]),
                       face_ref(second_, second_batch_.face[j])};
@@ -264,6 +298,8 @@ class DistanceWalk {
     nearest_.first = found.first;
     nearest_.second = found.second;
     set_enough();
+    face(found.second - found.first);
+    set_ends();
   }
 
   // Leaves are often met several times in a row; what was read of the last ones stays.
@@ -310,6 +346,7 @@ class DistanceWalk {
   double best_ = 0;                                        // likewise, were no error allowed
   double left_ = std::numeric_limits<double>::infinity();  // least key left alone, squared
   NearestPair nearest_;
+  Direction direction_;  // between the nearest points so far; first, between the trees
   bool has_next_ = false;
   double next_key_ = 0;
   Entry next_;
@@ -324,6 +361,8 @@ class DistanceWalk {
   std::array<Triangle, kMaxLeafTriangles> moved_;  // the second leaf in the first tree's space
   std::array<Box<double>, kMaxLeafTriangles> moved_bounds_;
   Box<double> second_bounds_;
+  std::array<double, kMaxLeafTriangles> first_end_;
+  std::array<double, kMaxLeafTriangles> second_end_;
   Frontier<Entry, kQueue, kStack> frontier_;
 };
 

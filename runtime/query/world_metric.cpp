@@ -98,6 +98,7 @@ double scaled_up(double x, int exponent) noexcept {
 }  // namespace
 
 std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& first_pose,
+                                             const Tree& second,
                                              const RelativePose& pose) noexcept {
   WorldMetric metric;
   const Eigen::Matrix3d linear = first_pose.linear();
@@ -120,8 +121,12 @@ std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& firs
   const Eigen::Matrix3d inverse = g.inverse();
   const Eigen::Vector3d length = inverse.rowwise().norm();
   const double residual = relative_residual(identity, inverse, length, g, length);
+  metric.inverse_ = inverse;
+  metric.residual_ = residual;
+  metric.coordinate_.setConstant(std::numeric_limits<double>::infinity());
   if (residual < kTooSingular) {
     const Eigen::Vector3d bound = length / (1 - residual) * kMore;
+    metric.coordinate_ = bound;
     metric.in_first_ = weights_of(identity, inverse, g, bound);
     const Eigen::Matrix3d& to_second = pose.to_second().linear;
     metric.in_second_ = weights_of(to_second, to_second * inverse, g, bound);
@@ -135,6 +140,9 @@ std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& firs
     metric.in_second_.margin[k] = (pose.to_second_error()[axis] + 8 * kUnit * terms[axis]) * kMore;
   }
 
+  metric.place_ = reach_of(first) + pose.to_first().linear.cwiseAbs() * reach_of(second) +
+                  pose.to_first().translation.cwiseAbs();
+
   // |G z| = |(G C^-1) (C z)|, C the lengths of the columns.
   const UnitRows columns(g.transpose());
   for (std::size_t k = 0; k < 3; ++k) {
@@ -145,6 +153,32 @@ std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& firs
   // magnitude in each of three components.
   metric.image_error_ = 8 * kUnit * g.cwiseAbs().rowwise().sum().maxCoeff();
   return metric;
+}
+
+// Any vector n of the first space will do: n . z = n . (Y v + (I - Y G) z) is at most |Y^T n| |v|
+// plus what the residual r makes of it, r times the sum of |n_k| |z_k| / |v|. With n near G^T v
+// that is the length of v along v.
+//
+// n . (y - x) for x in a box of the first tree and y = fl(L w + t), w in a box of the second, is
+// computed as (n . t + (L^T n) . w) - n . x. Magnitudes are at most |n| . place, and no term passes
+// through more than 4 roundings in y, 4 in L^T n, 4 in its product with w and 3 in the differences;
+// boxes may reach beyond the root's by a rounding of their own.
+Direction WorldMetric::direction(const Eigen::Vector3d& along,
+                                 const RelativePose& pose) const noexcept {
+  Direction result;
+  const double size = along.cwiseAbs().maxCoeff();
+  if (!(size > 0) || !std::isfinite(size)) return result;
+  const Eigen::Vector3d n = linear_.transpose() * (along / size);
+  const double length =
+      ((inverse_.transpose() * n).norm() + residual_ * n.cwiseAbs().dot(coordinate_)) * kMore;
+  const double scale = kLess / length;
+  if (!std::isfinite(scale)) return result;
+  result.first_ = n;
+  result.second_ = -(pose.to_first().linear.transpose() * n);
+  result.offset_ = n.dot(pose.to_first().translation);
+  result.error_ = 32 * kUnit * n.cwiseAbs().dot(place_);
+  result.scale_ = scale;
+  return result;
 }
 
 double WorldMetric::length_below(double length) const noexcept {

@@ -22,6 +22,7 @@
 #include <cstddef>
 #include <optional>
 
+#include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/query/relative_pose.h>
 
 namespace boxtree {
@@ -49,17 +50,74 @@ struct GapWeights {
   }
 };
 
+/// A direction of the world along which boxes of both trees are compared. That the second tree's
+/// boxes are turned costs nothing here, unlike on the axes: along the line between two points that
+/// are close to each other, whatever is near them shows its true distance.
+class Direction {
+ public:
+  /// Boxes are not apart along no direction.
+  Direction() = default;
+
+  /// The far end of a box of the first tree along the direction, seen from the second...
+  template <class S>
+  [[nodiscard]] double end_of_first(const Box<S>& box) const noexcept {
+    return (end(box, first_, 0) + end(box, first_, 1)) + end(box, first_, 2);
+  }
+  [[nodiscard]] double end_of_first(const Triangle& triangle) const noexcept {
+    return std::max({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
+                     dot(first_, triangle.corner[2])});
+  }
+  /// ... the near end of a box of the second tree, in its own space...
+  template <class S>
+  [[nodiscard]] double end_of_second(const Box<S>& box) const noexcept {
+    return offset_ - ((end(box, second_, 0) + end(box, second_, 1)) + end(box, second_, 2));
+  }
+  /// ... and of a triangle that has been brought into the first one's.
+  [[nodiscard]] double end_of_moved(const Triangle& triangle) const noexcept {
+    return std::min({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
+                     dot(first_, triangle.corner[2])});
+  }
+  /// A lower bound of the squared distance of what lies behind two ends.
+  [[nodiscard]] double squared_distance(double first_end, double second_end) const noexcept {
+    const double gap = std::max(0.0, ((second_end - first_end) - error_) * scale_);
+    return gap * gap;
+  }
+
+ private:
+  friend class WorldMetric;
+
+  template <class S>
+  [[nodiscard]] static double end(const Box<S>& box, const Eigen::Vector3d& normal,
+                                  std::size_t k) noexcept {
+    const double n = normal[static_cast<Eigen::Index>(k)];
+    return n * (n > 0 ? double{box.high[k]} : double{box.low[k]});
+  }
+  [[nodiscard]] static double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  }
+
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();   // the direction, asked of the first space
+  Eigen::Vector3d second_ = Eigen::Vector3d::Zero();  // its opposite, asked of the second
+  double offset_ = 0;
+  double scale_ = 0;  // world length of a unit
+  double error_ = 0;  // of two ends
+};
+
 /// The world in which two trees are placed, in units of a power of two in which G is of size 1.
 class WorldMetric {
  public:
   /// Nothing where the powers of two of a pose are too far apart for any unit.
   static std::optional<WorldMetric> make(const Tree& first, const Pose& first_pose,
-                                         const RelativePose& pose) noexcept;
+                                         const Tree& second, const RelativePose& pose) noexcept;
 
   /// Squared distances, from below, of boxes in the first tree's space...
   [[nodiscard]] const GapWeights& in_first() const noexcept { return in_first_; }
   /// ... and in the second's, of RelativePose::to_second().hull() and boxes of the second tree.
   [[nodiscard]] const GapWeights& in_second() const noexcept { return in_second_; }
+
+  /// The direction of a vector in the world. `pose` is that of make().
+  [[nodiscard]] Direction direction(const Eigen::Vector3d& along,
+                                    const RelativePose& pose) const noexcept;
 
   /// An upper bound of the distance of any two points of two boxes in the first tree's space.
   template <class S, class T>
@@ -98,6 +156,10 @@ class WorldMetric {
   double image_error_ = 0;
   GapWeights in_first_;
   GapWeights in_second_;
+  Eigen::Matrix3d inverse_;     // of G, nearly
+  Eigen::Vector3d coordinate_;  // |z_k| is at most so much of |G z|; infinite if nothing is known
+  double residual_ = 0;         // what is wrong with the inverse, in units of its rows
+  Eigen::Vector3d place_;       // largest magnitudes in the first space, of both trees together
   std::array<double, 3> column_{};  // lengths of the columns of G
   double stretch_ = 0;              // of G with columns of length 1, at least
 };
