@@ -46,6 +46,44 @@ template <std::size_t N, std::size_t M>
   return std::max(0.0, gap / length * kSeparationQuotient - kSeparationUnderflow);
 }
 
+/// A lower bound of the distance between the hulls of two sets of points, given a point of each
+/// that are nearly the closest. The line between them is the direction; but if they are close to
+/// each other, rounding tilts it, and a corner at the end of a long arm reaches across. The
+/// direction is then made orthogonal to that arm, and if need be to a second one: the edges or the
+/// face that it is to stand on. A bound of `enough` is not improved.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
+                                     const Eigen::Vector3d& on_second,
+                                     const std::array<Eigen::Vector3d, N>& first,
+                                     const std::array<Eigen::Vector3d, M>& second, double reach,
+                                     double enough) noexcept {
+  const auto dot = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
+  };
+  Eigen::Vector3d direction = on_second - on_first;
+  double lower = separation_along(direction, first, second, reach);
+  std::array<Eigen::Vector3d, 2> arms;
+  for (std::size_t n = 0; n < arms.size() && lower < enough; ++n) {
+    arms[n].setZero();
+    double least = 0;
+    const auto consider = [&](const Eigen::Vector3d& arm) {
+      const double reached = dot(direction, arm);
+      if (!(reached < least)) return;
+      least = reached;
+      arms[n] = arm;
+    };
+    for (const Eigen::Vector3d& corner : first) consider(on_first - corner);
+    for (const Eigen::Vector3d& corner : second) consider(corner - on_second);
+    if (n == 1) arms[1] -= (dot(arms[1], arms[0]) / dot(arms[0], arms[0])) * arms[0];
+    if (!(dot(arms[n], arms[n]) > 0)) break;
+    for (std::size_t i = 0; i <= n; ++i) {
+      direction -= (dot(direction, arms[i]) / dot(arms[i], arms[i])) * arms[i];
+    }
+    lower = std::max(lower, separation_along(direction, first, second, reach));
+  }
+  return lower;
+}
+
 /// The largest magnitude of any coordinate of these points.
 template <std::size_t N>
 [[nodiscard]] double reach_of(const std::array<Eigen::Vector3d, N>& points) noexcept {

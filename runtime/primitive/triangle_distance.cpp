@@ -174,42 +174,6 @@ struct Search {
   Eigen::Vector3d between;  // second - first
 };
 
-// From a closest point to the corner of its triangle that reaches farthest against `direction`.
-Eigen::Vector3d farthest_against(const Eigen::Vector3d& direction, const Search& search) {
-  Eigen::Vector3d arm = Eigen::Vector3d::Zero();
-  double least = 0;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (const Eigen::Vector3d& candidate : {Eigen::Vector3d(search.first - search.p[i]),
-                                             Eigen::Vector3d(search.q[i] - search.second)}) {
-      const double reached = dot(direction, candidate);
-      if (!(reached < least)) continue;
-      least = reached;
-      arm = candidate;
-    }
-  }
-  return arm;
-}
-
-// The best lower bound along the line between the points. If they are close to each other, rounding
-// tilts that line, and a corner at the end of a long arm reaches across. The direction is then made
-// orthogonal to that arm, and if need be to a second one: edges or the face that it is to stand on.
-double lower_bound(const Search& search, double upper) {
-  const double reach = search.reach;
-  Eigen::Vector3d direction = search.between;
-  double lower = separation_along(direction, search.p, search.q, reach);
-  std::array<Eigen::Vector3d, 2> arms;
-  for (std::size_t n = 0; n < arms.size() && upper - lower > 2 * kPointError * reach; ++n) {
-    arms[n] = farthest_against(direction, search);
-    if (n == 1) arms[1] -= (dot(arms[1], arms[0]) / dot(arms[0], arms[0])) * arms[0];
-    if (!(dot(arms[n], arms[n]) > 0)) break;
-    for (std::size_t i = 0; i <= n; ++i) {
-      direction -= (dot(direction, arms[i]) / dot(arms[i], arms[i])) * arms[i];
-    }
-    lower = std::max(lower, separation_along(direction, search.p, search.q, reach));
-  }
-  return lower;
-}
-
 }  // namespace
 
 TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept {
@@ -222,7 +186,8 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
     return std::sqrt(search.squared) * kUpperQuotient +
            (kPointError * search.reach + kUpperUnderflow);
   };
-  const double lower = lower_bound(search, upper());
+  const double lower = separation_near(search.first, search.second, search.p, search.q,
+                                       search.reach, upper() - 2 * kPointError * search.reach);
   if (!(lower > 0)) search.try_contacts();
   return {lower, upper(), search.first, search.second};
 }

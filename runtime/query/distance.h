@@ -26,7 +26,8 @@ struct Distance {
   double lower = 0;
   double upper = std::numeric_limits<double>::infinity();
   /// What is `upper` apart; nothing if no triangles were met, or if all are known to be beyond the
-  /// maximal distance. Points far from the world's origin are rounded more coarsely than `upper` is.
+  /// maximal distance. Points far from the world's origin are rounded more coarsely than `upper`
+  /// is.
   std::optional<DistanceWitness> witness;
   /// Whether the bounds are as near to each other as was asked, or as rounding lets them be: some
   /// 2^-44 of the triangles' size and distance. Otherwise the budget ran out.

@@ -1,13 +1,113 @@
 // SPDX-License-Identifier: MIT
 // Closest-point queries over any codec.
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 
 #include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/frontier.h>
 #include <boxtree/runtime/query/point.h>
+#include <boxtree/runtime/query/scaled_length.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
+namespace {
+
+// Looks at the nodes in the order of their distance, as far as the budget goes. Like a pair walk it
+// goes straight down first, so that a small budget finds something.
+template <Codec C>
+class BestFirst {
+ public:
+  BestFirst(const Tree& tree, const C& codec, PointQuery& query, std::uint64_t budget) noexcept
+      : tree_(tree), codec_(codec), query_(query), budget_(budget) {}
+
+  Errc run() noexcept {
+    Entry entry{root_box<S>(tree_), tree_.root_ref(), tree_.record().root == RootKind::kLeaf};
+    double key = query_.key(entry.box);
+    if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
+    std::uint64_t unexpanded = tree_.record().node_count;
+    typename C::Children children;
+    while (frontier_.pop(enough(), key, entry)) {
+      bool goes_on = true;
+      while (goes_on) {
+        if (query_.nodes_expanded == budget_) {
+          left_ = std::min(left_, key);
+          is_spent_ = true;
+          return Errc::kOk;
+        }
+        if (entry.is_leaf) {
+          if (!query_.leaf(entry.ref)) return Errc::kOk;  // the query holds the error
+          break;
+        }
+        ++query_.nodes_expanded;
+        if (unexpanded-- == 0 || !codec_.expand(entry.ref, entry.box, children)) {
+          return Errc::kNodeCorrupt;
+        }
+        const Errc error = meet(children, goes_on, key, entry);
+        if (error != Errc::kOk) return error;
+      }
+    }
+    return Errc::kOk;
+  }
+
+  [[nodiscard]] bool is_spent() const noexcept { return is_spent_; }
+  /// The least key of what was not looked at.
+  [[nodiscard]] double left() const noexcept { return std::min(left_, frontier_.least_left()); }
+
+ private:
+  using S = typename C::Scalar;
+  static constexpr std::size_t kQueue = 1024;
+  struct Entry {
+    Box<S> box;
+    NodeRef ref;
+    bool is_leaf;
+  };
+
+  // Equal distances are looked at, so that ties end as in the exact query.
+  [[nodiscard]] double enough() const noexcept {
+    return std::nextafter(query_.bound(), std::numeric_limits<double>::infinity());
+  }
+
+  // Lets the children wait; but while nothing is found yet the nearest is next.
+  Errc meet(const typename C::Children& children, bool& goes_on, double& key,
+            Entry& entry) noexcept {
+    const auto child = [&](std::uint32_t i) {
+      return Entry{children.box(i), children.ref[i], children.is_leaf(i)};
+    };
+    std::array<double, C::Children::kWidth> keys;
+    std::uint32_t nearest = 0;
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      keys[i] = query_.key(children.box(i));
+      if (keys[i] < keys[nearest]) nearest = i;
+    }
+    goes_on = !query_.found && children.count > 0 && keys[nearest] < enough();
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      if (goes_on && i == nearest) continue;
+      if (!(keys[i] < enough())) {
+        left_ = std::min(left_, keys[i]);
+      } else if (!frontier_.push(keys[i], enough(), child(i))) {
+        return Errc::kDepthExceeded;
+      }
+    }
+    if (goes_on) {
+      key = keys[nearest];
+      entry = child(nearest);
+    }
+    return Errc::kOk;
+  }
+
+  const Tree& tree_;
+  const C codec_;
+  PointQuery& query_;
+  const std::uint64_t budget_;
+  double left_ = std::numeric_limits<double>::infinity();
+  bool is_spent_ = false;
+  Frontier<Entry, kQueue, kStackSize<C>> frontier_;
+};
+
+}  // namespace
+
 Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen::Vector3d& point,
                                                   double max_distance) {
   const DefaultFloatState state;
@@ -24,6 +124,55 @@ Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen:
     query.found->distance = std::sqrt(query.found->distance) * tree.frame().scale;
   }
   return query.found;
+}
+
+Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
+                                       const PointOptions& options) {
+  const DefaultFloatState state;
+  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  const Frame& frame = tree.frame();
+  const Eigen::Vector3d tree_point = frame.to_tree(point);
+  if (!is_within_reach(tree_point) || !options.is_valid()) return Errc::kInvalidQuery;
+  ApproximatePoint result;
+  result.lower = std::numeric_limits<double>::infinity();
+  if (tree.empty()) return result;
+
+  Approximation approximation = options;
+  approximation.absolute_error *= frame.inverse_scale;
+  approximation.max_distance *= frame.inverse_scale;
+  PointQuery query{tree, tree_point, approximation.max_distance * approximation.max_distance,
+                   {},   Errc::kOk,  {}};
+  query.approximation = &approximation;
+  double left = std::numeric_limits<double>::infinity();  // squared: of what was not looked at
+  const Errc walked = with_codec(tree, [&](const auto& codec) {
+    if (options.node_budget == kUnlimitedNodes) return walk_nearest(tree, codec, query);
+    BestFirst walk(tree, codec, query, options.node_budget);
+    const Errc error = walk.run();
+    left = walk.left();
+    result.is_near_enough = !walk.is_spent();
+    return error;
+  });
+  if (walked != Errc::kOk) return walked;
+  if (query.error != Errc::kOk) return query.error;
+
+  // What was left out is beyond the bound, or was not looked at; keys are within a factor of
+  // 1 + 4 u of the square that they stand for, and so is a root. The point itself is off by the
+  // rounding of its way to tree space.
+  const int exponent = tree.record().scale_exponent;
+  const double place = frame.origin.isZero(0) ? 0 : kEpsilon * tree_point.cwiseAbs().maxCoeff();
+  const double untested = std::sqrt(std::min(query.best, left)) * (1 - 4 * kEpsilon);
+  result.lower =
+      scaled_below(std::max(0.0, std::min(untested, query.tested_lower) - place), exponent);
+  result.nodes_expanded = query.nodes_expanded;
+  if (!query.found) return result;
+  // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp).
+  const double off = 13 * kEpsilon * reach_of(tree).maxCoeff() + place;
+  const double upper = std::sqrt(query.found->distance) * (1 + 2 * kEpsilon) + off;
+  result.upper = scaled_above(upper, exponent);
+  result.witness = query.found;
+  result.witness->point = frame.to_object(query.found->point);
+  result.witness->distance = std::sqrt(query.found->distance) * frame.scale;
+  return result;
 }
 
 }  // namespace boxtree

@@ -3,9 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/separation.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -19,6 +24,11 @@ struct PointQuery {
   std::optional<ClosestPoint> found;
   Errc error = Errc::kOk;
   TriangleBatch batch;
+  // For answers with bounds: what may be left out, in tree space, and a lower bound of the
+  // distances of all triangles tested.
+  const Approximation* approximation = nullptr;
+  double tested_lower = std::numeric_limits<double>::infinity();
+  std::uint64_t nodes_expanded = 0;  // and leaves read
 
   [[nodiscard]] double bound() const noexcept { return best; }
 
@@ -28,6 +38,7 @@ struct PointQuery {
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) noexcept {
+    ++nodes_expanded;
     error = tree.leaves().read(ref.first, ref.second, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -42,11 +53,34 @@ struct PointQuery {
     const Eigen::Vector3d closest = closest_point_on_triangle(point, triangle);
     // Never below the distance of the bounds, so that it agrees with every key above.
     const double distance = std::max(bounds_distance, (closest - point).squaredNorm());
+    if (approximation != nullptr) note_lower(triangle, closest, std::min(distance, best));
     const FaceRef face = face_ref(tree, face_order);
     if (distance > best) return;
     if (found && distance == best && !comes_before(face, found->face)) return;
-    best = distance;
+    best = approximation == nullptr ? distance : enough(distance);
     found = ClosestPoint{closest, distance, face, half};
+  }
+
+ private:
+  // The square of what is not worth looking at; the very distance where no error is allowed.
+  [[nodiscard]] double enough(double squared) const noexcept {
+    if (approximation->relative_error == 0 && approximation->absolute_error == 0) return squared;
+    const double least = approximation->enough(std::sqrt(squared));
+    return std::min(squared, least * least);
+  }
+
+  // Seen from the point, so that rounding is that of the distance and the triangle's size.
+  void note_lower(const Triangle& triangle, const Eigen::Vector3d& closest,
+                  double squared) noexcept {
+    std::array<Eigen::Vector3d, 3> corner;
+    for (std::size_t c = 0; c < 3; ++c) corner[c] = triangle.corner[c] - point;
+    const double reach = reach_of(corner);
+    // Each corner is off by a rounding of its difference on each axis, less than this in length.
+    const double off = std::numeric_limits<double>::epsilon() * reach;
+    const std::array<Eigen::Vector3d, 1> here{Eigen::Vector3d::Zero()};
+    const double lower = separation_near(here[0], Eigen::Vector3d(closest - point), here, corner,
+                                         reach, std::sqrt(squared) - 16 * off);
+    tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };
 

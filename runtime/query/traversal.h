@@ -128,6 +128,7 @@ Errc traverse_overlap(const Tree& tree, const C codec, Query& query) {
 /// query.bound() -> double: keys above it cannot improve the answer. Equal keys are still visited,
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
+/// query.nodes_expanded, if it has one, counts the nodes taken apart.
 template <Codec C, class Query>
 Errc traverse_nearest(const Tree& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
@@ -153,6 +154,7 @@ Errc traverse_nearest(const Tree& tree, const C codec, Query& query) {
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.key > query.bound()) continue;
+    if constexpr (requires { query.nodes_expanded; }) ++query.nodes_expanded;
     if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.box, children)) {
       return Errc::kNodeCorrupt;
     }

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include <boxtree/runtime/query/scaled_length.h>
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/query/world_metric.h>
 
@@ -78,21 +79,6 @@ GapWeights weights_of(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y, const 
   result.combined = stretch > 1 ? 1 / (stretch * stretch) * kLess : kLess;
   if (!(result.combined > 0)) result.combined = 0;
   return result;
-}
-
-// 2^exponent * x, to the neighbour on the far side if that rounds to the wrong one.
-double scaled_down(double x, int exponent) noexcept {
-  const double result = std::ldexp(x, exponent);
-  if (x == std::numeric_limits<double>::infinity() || std::ldexp(result, -exponent) <= x) {
-    return result;
-  }
-  return std::nextafter(result, 0.0);
-}
-
-double scaled_up(double x, int exponent) noexcept {
-  const double result = std::ldexp(x, exponent);
-  if (std::ldexp(result, -exponent) >= x) return result;
-  return std::nextafter(result, std::numeric_limits<double>::infinity());
 }
 
 }  // namespace
@@ -182,15 +168,15 @@ Direction WorldMetric::direction(const Eigen::Vector3d& along,
 }
 
 double WorldMetric::length_below(double length) const noexcept {
-  return scaled_down(length, exponent_);
+  return scaled_below(length, exponent_);
 }
 
 double WorldMetric::length_above(double length) const noexcept {
-  return scaled_up(length, exponent_);
+  return scaled_above(length, exponent_);
 }
 
 double WorldMetric::from_world_above(double length) const noexcept {
-  return scaled_up(length, -exponent_);
+  return scaled_above(length, -exponent_);
 }
 
 }  // namespace boxtree

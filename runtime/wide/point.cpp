@@ -46,6 +46,7 @@ class PointWalk {
     for (;;) {
       const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
       const WideLinks links = links_of(*node);
+      ++query_.nodes_expanded;
       if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
       if (depth == open_.size()) return Errc::kDepthExceeded;
       open_[depth].links = links;
@@ -91,6 +92,7 @@ class PointWalk {
   }
 
   bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+    ++query_.nodes_expanded;
     if (!leaf_.load(first, count)) {
       query_.error = leaf_.error();
       return false;

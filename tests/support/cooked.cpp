@@ -37,6 +37,46 @@ std::string test_name(const testing::TestParamInfo<CodecId>& info) {
   return name;
 }
 
+std::vector<Encoding> all_encodings() {
+  std::vector<Encoding> all;
+  for (const CodecId codec : all_codecs()) {
+    all.push_back({codec, GeometryId::kExact});
+    all.push_back({codec, GeometryId::kGrid});
+  }
+  return all;
+}
+
+std::string encoding_name(const testing::TestParamInfo<Encoding>& info) {
+  return test_name({info.param.codec, info.index}) + "_" +
+         std::string(geometry_name(info.param.geometry));
+}
+
+CookedTree cook_tree(const cooker::SourceMesh& mesh, const Encoding& encoding) {
+  cooker::CookOptions options;
+  options.geometry = encoding.geometry;
+  options.grid.bits = 16;
+  return cook_tree(mesh, encoding.codec, options);
+}
+
+std::vector<Triangle> all_triangles(const Tree& tree) {
+  std::vector<Triangle> triangles;
+  std::vector<Node> pending{tree.root()};
+  while (!pending.empty()) {
+    const Node node = pending.back();
+    pending.pop_back();
+    if (node.is_leaf) {
+      TriangleBatch batch;
+      EXPECT_EQ(tree.leaf_triangles(node, batch), Errc::kOk);
+      for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
+      continue;
+    }
+    NodeChildren children;
+    EXPECT_EQ(tree.expand(node, children), Errc::kOk);
+    for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
+  }
+  return triangles;
+}
+
 void repair_checksums(std::vector<std::byte>& bytes) {
   const auto count = load<FileHeader>(bytes.data()).section_count;
   const std::size_t table = sizeof(FileHeader);

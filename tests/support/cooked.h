@@ -31,6 +31,22 @@ struct CookedTree {
 /// Every codec of the registry, for testing::ValuesIn.
 [[nodiscard]] std::vector<CodecId> all_codecs();
 
+/// A codec and a geometry store.
+struct Encoding {
+  CodecId codec;
+  GeometryId geometry;
+};
+
+/// Every codec with exact geometry and on a grid, and the names of such tests.
+[[nodiscard]] std::vector<Encoding> all_encodings();
+[[nodiscard]] std::string encoding_name(const testing::TestParamInfo<Encoding>& info);
+
+/// Cooks into an encoding; a grid has 16 bits.
+[[nodiscard]] CookedTree cook_tree(const cooker::SourceMesh& mesh, const Encoding& encoding);
+
+/// Every triangle of a tree, in tree space, by the public way down.
+[[nodiscard]] std::vector<Triangle> all_triangles(const Tree& tree);
+
 /// "plain_f32" for "plain-f32": test names allow no dashes.
 [[nodiscard]] std::string test_name(const testing::TestParamInfo<CodecId>& info);
 

@@ -21,26 +21,6 @@ namespace {
 
 using cooker::SourceMesh;
 
-// Every triangle of a tree, in tree space, by the public way down.
-std::vector<Triangle> all_triangles(const Tree& tree) {
-  std::vector<Triangle> triangles;
-  std::vector<Node> pending{tree.root()};
-  while (!pending.empty()) {
-    const Node node = pending.back();
-    pending.pop_back();
-    if (node.is_leaf) {
-      TriangleBatch batch;
-      EXPECT_EQ(tree.leaf_triangles(node, batch), Errc::kOk);
-      for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
-      continue;
-    }
-    NodeChildren children;
-    EXPECT_EQ(tree.expand(node, children), Errc::kOk);
-    for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
-  }
-  return triangles;
-}
-
 struct Truth {
   long double distance = std::numeric_limits<long double>::infinity();
   long double size = 0;  // how far apart the farthest corners are: what rounding is relative to
@@ -75,8 +55,8 @@ Truth brute_force(const Tree& first, const Pose& first_pose, const Tree& second,
     }
     return placed;
   };
-  for (const Triangle& triangle : all_triangles(first)) p.push_back(place(triangle));
-  for (Triangle triangle : all_triangles(second)) {
+  for (const Triangle& triangle : test::all_triangles(first)) p.push_back(place(triangle));
+  for (Triangle triangle : test::all_triangles(second)) {
     for (auto& c : triangle.corner) c = pose->to_first().apply(c);
     q.push_back(place(triangle));
   }
@@ -155,19 +135,9 @@ void check_witness(const Distance& found, const SourceMesh& a, const Pose& a_pos
   ASSERT_LE(off(b, b_pose, witness.faces.second, witness.second), 1e-12 * place);
 }
 
-struct Encoding {
-  CodecId codec;
-  GeometryId geometry;
-};
-
-class Distances : public testing::TestWithParam<Encoding> {
+class Distances : public testing::TestWithParam<test::Encoding> {
  protected:
-  static test::CookedTree cook(const SourceMesh& mesh) {
-    cooker::CookOptions options;
-    options.geometry = GetParam().geometry;
-    options.grid.bits = 16;
-    return test::cook_tree(mesh, GetParam().codec, options);
-  }
+  static test::CookedTree cook(const SourceMesh& mesh) { return test::cook_tree(mesh, GetParam()); }
 
   // Each pair of a few meshes in each kind of pose, apart and touching. With a grid, faces of the
   // source are not those that were asked, so `exact` tells whether they may be compared.
@@ -304,21 +274,8 @@ TEST_P(Distances, DependsOnTheRelativePoseAlone) {
   }
 }
 
-std::vector<Encoding> encodings() {
-  std::vector<Encoding> all;
-  for (const CodecId codec : test::all_codecs()) {
-    all.push_back({codec, GeometryId::kExact});
-    all.push_back({codec, GeometryId::kGrid});
-  }
-  return all;
-}
-
-std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
-  const std::string codec = test::test_name({encoding.param.codec, encoding.index});
-  return codec + "_" + std::string(geometry_name(encoding.param.geometry));
-}
-
-INSTANTIATE_TEST_SUITE_P(Encodings, Distances, testing::ValuesIn(encodings()), encoding_name);
+INSTANTIATE_TEST_SUITE_P(Encodings, Distances, testing::ValuesIn(test::all_encodings()),
+                         test::encoding_name);
 
 // A known distance, with each way of scaling the world.
 TEST(Distance, KnownCases) {

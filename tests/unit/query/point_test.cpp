@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: MIT
+// Closest points with an allowed error or a budget, against brute force in extended precision over
+// the decoded triangles, and against the exact query where no error is allowed.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/triangle_reference.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::SourceMesh;
+
+// Triangles in object space, each in a sphere that rules most of them out.
+class BruteForce {
+ public:
+  explicit BruteForce(const Tree& tree) {
+    const long double scale = std::ldexp(1.0L, tree.record().scale_exponent);
+    for (const Triangle& triangle : test::all_triangles(tree)) {
+      Item item;
+      item.center.setZero();
+      for (std::size_t c = 0; c < 3; ++c) {
+        item.corner[c] = scale * triangle.corner[c].cast<long double>() +
+                         tree.frame().origin.cast<long double>();
+        item.center += item.corner[c] / 3;
+      }
+      item.radius = 0;
+      for (const auto& c : item.corner) {
+        item.radius = std::max(item.radius, (c - item.center).norm());
+      }
+      items_.push_back(item);
+    }
+  }
+
+  [[nodiscard]] long double distance(const Eigen::Vector3d& point) const {
+    const test::LongVector p = point.cast<long double>();
+    long double best = std::numeric_limits<long double>::infinity();
+    for (const Item& item : items_) {
+      if ((item.center - p).norm() - item.radius > best) continue;
+      best = std::min(best, test::distance_in_extended_precision({p, p, p}, item.corner));
+    }
+    return best;
+  }
+
+ private:
+  struct Item {
+    test::LongTriangle corner;
+    test::LongVector center;
+    long double radius;
+  };
+  std::vector<Item> items_;
+};
+
+class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
+ protected:
+  // Amid the mesh, far from it, on a vertex, next to the surface.
+  std::vector<Eigen::Vector3d> points(const Tree& tree, int count) {
+    const Eigen::AlignedBox3d box = tree.to_object(tree.root().box);
+    const auto coordinate = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(random_);
+    };
+    std::vector<Eigen::Vector3d> result;
+    for (int i = 0; i < count; ++i) {
+      Eigen::Vector3d p;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const double margin = 0.2 * (box.max()[k] - box.min()[k]);
+        p[k] = coordinate(box.min()[k] - margin, box.max()[k] + margin);
+      }
+      if (i % 5 == 1) p *= 1e5;
+      if (i % 5 == 2) p = (*closest_point(tree, p))->point;
+      if (i % 5 == 3) p += (1 - 1e-6) * ((*closest_point(tree, p))->point - p);
+      result.push_back(p);
+    }
+    return result;
+  }
+
+  template <class Body>
+  void for_each_point(int count, Body body) {
+    for (const SourceMesh& mesh : test::all_kinds()) {
+      SCOPED_TRACE(mesh.name);
+      const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+      const BruteForce truth(cooked.tree);
+      const double size = cooked.tree.to_object(cooked.tree.root().box).diagonal().norm();
+      for (const Eigen::Vector3d& point : points(cooked.tree, count)) {
+        body(cooked.tree, point, truth.distance(point), size + point.norm());
+        if (HasFatalFailure()) return;
+      }
+    }
+  }
+
+  static void check(const ApproximatePoint& found, const Eigen::Vector3d& point, long double truth,
+                    double size) {
+    ASSERT_LE(found.lower, truth * (1 + 1e-17L) + 1e-19L * size);
+    ASSERT_GE(found.upper, truth - 1e-19L * size);
+    ASSERT_LE(found.lower, found.upper);
+    ASSERT_EQ(found.witness.has_value(), std::isfinite(found.upper));
+    if (!found.witness) return;
+    ASSERT_NEAR((found.witness->point - point).norm(), found.upper, 1e-13 * size);
+    ASSERT_NEAR(found.witness->distance, found.upper, 1e-13 * size);
+  }
+
+  std::mt19937_64 random_{5};
+};
+
+TEST_P(ApproximatePoints, BoundsAreTrueAndAsNearAsAsked) {
+  std::array<std::uint64_t, 7> nodes{};
+  for_each_point(
+      30, [&](const Tree& tree, const Eigen::Vector3d& point, long double truth, double size) {
+        std::uint64_t exact_nodes = 0;
+        const std::array<double, 7> errors = {0.0, 1e-6, 1e-3, 0.01, 0.1, 0.5, 1.0};
+        for (std::size_t i = 0; i < errors.size(); ++i) {
+          SCOPED_TRACE(errors[i]);
+          const auto found = closest_point(tree, point, PointOptions{errors[i], 0});
+          ASSERT_TRUE(found.ok() && found->is_near_enough);
+          check(*found, point, truth, size);
+          ASSERT_LE(found->upper, found->lower * (1 + errors[i]) + 1e-12 * size);
+          nodes[i] += found->nodes_expanded;
+          if (i == 0) exact_nodes = found->nodes_expanded;
+          ASSERT_LE(found->nodes_expanded, exact_nodes);
+          if (HasFatalFailure()) return;
+        }
+        for (const double error : {1e-3, 0.1, 10.0}) {
+          const auto found = closest_point(tree, point, PointOptions{0, error});
+          check(*found, point, truth, size);
+          ASSERT_LE(found->upper, found->lower + error + 1e-12 * size);
+          ASSERT_LE(found->nodes_expanded, exact_nodes);
+        }
+      });
+  for (std::size_t i = 1; i < nodes.size(); ++i) EXPECT_LE(nodes[i], nodes[i - 1]);
+  EXPECT_LT(nodes.back(), nodes.front());
+}
+
+TEST_P(ApproximatePoints, WithoutErrorTheyAreTheExactOnes) {
+  for_each_point(
+      20, [&](const Tree& tree, const Eigen::Vector3d& point, long double truth, double size) {
+        const auto exact = *closest_point(tree, point);
+        PointOptions unlimited;
+        PointOptions enough;  // best-first to the end: ties must end the same way
+        enough.node_budget = 1u << 30;
+        for (const PointOptions& options : {unlimited, enough}) {
+          const auto found = closest_point(tree, point, options);
+          ASSERT_TRUE(found->is_near_enough);
+          ASSERT_EQ(found->witness->distance, exact->distance);
+          ASSERT_EQ(found->witness->point, exact->point);
+          ASSERT_EQ(found->witness->face.id, exact->face.id);
+          ASSERT_EQ(found->witness->triangle, exact->triangle);
+          check(*found, point, truth, size);
+        }
+      });
+}
+
+TEST_P(ApproximatePoints, BudgetsEndTheSearchWithTrueBounds) {
+  int spent = 0;
+  for_each_point(
+      10, [&](const Tree& tree, const Eigen::Vector3d& point, long double truth, double size) {
+        double gap = std::numeric_limits<double>::infinity();
+        for (const std::uint64_t budget : {0u, 1u, 10u, 20u, 1000u}) {
+          SCOPED_TRACE(budget);
+          PointOptions options;
+          options.node_budget = budget;
+          const auto found = closest_point(tree, point, options);
+          check(*found, point, truth, size);
+          ASSERT_LE(found->nodes_expanded, budget);
+          ASSERT_LE(found->upper - found->lower, gap);  // more nodes never tell less
+          gap = found->upper - found->lower;
+          if (found->is_near_enough) continue;
+          ++spent;
+          ASSERT_EQ(found->nodes_expanded, budget);
+        }
+      });
+  EXPECT_GT(spent, 100);
+}
+
+TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
+  for_each_point(
+      5, [&](const Tree& tree, const Eigen::Vector3d& point, long double truth, double size) {
+        for (const std::uint64_t budget : {kUnlimitedNodes, std::uint64_t{1} << 30}) {
+          PointOptions options;
+          options.node_budget = budget;
+          options.max_distance = static_cast<double>(truth * 1.001L);
+          ASSERT_EQ(closest_point(tree, point, options)->witness.has_value(), true);
+          options.max_distance = static_cast<double>(truth * 0.999L);
+          if (truth < 1e-9L * size) continue;
+          const auto nothing = closest_point(tree, point, options);
+          ASSERT_FALSE(nothing->witness.has_value());
+          ASSERT_TRUE(nothing->is_near_enough);
+          check(*nothing, point, truth, size);
+          ASSERT_GE(nothing->lower, options.max_distance - 1e-12 * size);
+        }
+      });
+}
+
+TEST_P(ApproximatePoints, RefuseWhatHasNoMeaning) {
+  const test::CookedTree cooked = test::cook_tree(test::city(1, 2), GetParam());
+  const auto code = [&](const PointOptions& options) {
+    return closest_point(cooked.tree, {0, 0, 0}, options).code();
+  };
+  EXPECT_EQ(code({-1, 0}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({NAN, 0}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, -1}), Errc::kInvalidQuery);
+  EXPECT_EQ(code({0, 0, NAN}), Errc::kInvalidQuery);
+  EXPECT_EQ(closest_point(cooked.tree, {NAN, 0, 0}, PointOptions()).code(), Errc::kInvalidQuery);
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, ApproximatePoints, testing::ValuesIn(test::all_encodings()),
+                         test::encoding_name);
+
+}  // namespace
+}  // namespace boxtree
