@@ -185,9 +185,9 @@ TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
           PointOptions options;
           options.node_budget = budget;
           options.max_distance = static_cast<double>(truth * 1.001L);
-          ASSERT_EQ(closest_point(tree, point, options)->witness.has_value(), true);
+          if (truth < 1e-9L * size) continue;  // a thousandth of it is less than points are off by
+          ASSERT_TRUE(closest_point(tree, point, options)->witness.has_value());
           options.max_distance = static_cast<double>(truth * 0.999L);
-          if (truth < 1e-9L * size) continue;
           const auto nothing = closest_point(tree, point, options);
           ASSERT_FALSE(nothing->witness.has_value());
           ASSERT_TRUE(nothing->is_near_enough);
