@@ -5,29 +5,37 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/report/markup.h>
 #include <boxtree/cooker/report/page.h>
 
 namespace boxtree::cooker {
 namespace {
 
+// Eight colours, each with enough contrast on its background, in light and in dark.
 constexpr const char* kStyle = R"(
-:root{color-scheme:light dark;--ink:#1c2024;--faint:#60646c;--line:#d9d9e0;--back:#fff;
---c0:#0b68cb;--c1:#c2410c;--c2:#15803d;--c3:#7e22ce}
+:root{color-scheme:light dark;--ink:#1c2024;--faint:#60646c;--line:#d9d9e0;--back:#fff;--well:#f4f5f7;
+--c0:#0b68cb;--c1:#c2410c;--c2:#15803d;--c3:#7e22ce;--c4:#b4820a;--c5:#0e7490;--c6:#be185d;--c7:#57606a}
 @media (prefers-color-scheme:dark){:root{--ink:#edeef0;--faint:#b0b4ba;--line:#43484e;--back:#111113;
---c0:#70b8ff;--c1:#ff9592;--c2:#71d083;--c3:#d19dff}}
-body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--back);max-width:70rem;
-margin:0 auto;padding:1rem}
-h1{font-size:1.6rem}h2{font-size:1.2rem;margin-top:2.5rem}
+--well:#1b1c1f;--c0:#70b8ff;--c1:#ff9592;--c2:#71d083;--c3:#d19dff;--c4:#f5d90a;--c5:#4ccce6;--c6:#ff8dcc;
+--c7:#a5adb8}}
+*{box-sizing:border-box}
+body{font:16px/1.5 system-ui,sans-serif;color:var(--ink);background:var(--back);max-width:72rem;
+margin:0 auto;padding:1rem;overflow-wrap:break-word}
+h1{font-size:1.6rem;line-height:1.25}h2{font-size:1.2rem;margin-top:2.5rem}
 p{max-width:46rem}.faint{color:var(--faint)}
+.conclusion{background:var(--well);border-left:4px solid var(--c0);padding:.5rem .9rem;margin:.6rem 0}
 .scroll{overflow-x:auto}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem;margin:1rem 0}
 th,td{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{color:var(--faint);font-weight:600;vertical-align:bottom}
 th.word,td.word{text-align:left}
-svg{max-width:100%;height:auto}svg text{fill:var(--ink);font:12px system-ui,sans-serif}
-svg .axis{stroke:var(--faint)}svg .grid{stroke:var(--line)}
-@media print{body{max-width:none}h2{break-after:avoid}.scroll{overflow:visible}}
+.plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));gap:1.2rem}
+figure{margin:0;min-width:0}figcaption{font-weight:600}
+svg{display:block;width:100%;min-width:27rem;max-width:44rem;height:auto}
+svg text{fill:var(--ink);font:12px system-ui,sans-serif}
+svg .axis{stroke:var(--faint);fill:none}svg .grid{stroke:var(--line);fill:none}
+svg .line{fill:none;stroke-width:1.6}svg .front{stroke-width:2.5;stroke-dasharray:6 4;opacity:.55}
+@media print{body{max-width:none;font-size:11px}h2{break-after:avoid}figure{break-inside:avoid}
+.scroll{overflow:visible}svg{min-width:0}.plots{grid-template-columns:1fr 1fr}th,td{padding:.1rem .3rem}}
 )";
 
 void add_html(const PageTable& table, std::string& out) {
@@ -46,6 +54,14 @@ void add_html(const PageTable& table, std::string& out) {
     out += "</tr>\n";
   }
   out += "</tbody></table></div>\n";
+}
+
+// A drawing with its title; on narrow windows it scrolls rather than becoming too small to read.
+void add_figure(const std::string& title, const std::string& drawing, std::string& out) {
+  if (drawing.empty()) return;
+  out += "<figure>";
+  if (!title.empty()) out += "<figcaption>" + escaped(title) + "</figcaption>\n";
+  out += "<div class=\"scroll\">" + drawing + "</div></figure>\n";
 }
 
 void add_text(const PageTable& table, std::string& out) {
@@ -71,7 +87,8 @@ std::string to_text(const Page& page) {
   std::string out = page.title + "\n" + page.text + "\n";
   for (const PageSection& section : page.sections) {
     out += "\n" + section.title + "\n";
-    if (section.tables.empty()) out += "  " + section.text + "\n";
+    if (section.tables.empty() && !section.text.empty()) out += "  " + section.text + "\n";
+    for (const std::string& conclusion : section.conclusions) out += "  " + conclusion + "\n";
     for (const PageTable& table : section.tables) add_text(table, out);
   }
   return out;
@@ -85,9 +102,18 @@ std::string to_html(const Page& page) {
       "class=\"faint\">{2}</p>\n",
       escaped(page.title), kStyle, escaped(page.text));
   for (const PageSection& section : page.sections) {
-    out += "<h2>" + escaped(section.title) + "</h2>\n<p>" + escaped(section.text) + "</p>\n";
+    out += "<h2>" + escaped(section.title) + "</h2>\n";
+    if (!section.text.empty()) out += "<p>" + escaped(section.text) + "</p>\n";
+    for (const std::string& conclusion : section.conclusions) {
+      out += "<p class=\"conclusion\">" + escaped(conclusion) + "</p>\n";
+    }
     for (const PageTable& table : section.tables) add_html(table, out);
-    for (const PagePlot& plot : section.plots) out += to_svg_element(plot);
+    if (!section.plots.empty() || !section.bars.empty()) {
+      out += "<div class=\"plots\">\n";
+      for (const PagePlot& plot : section.plots) add_figure(plot.title, to_svg(plot), out);
+      for (const PageBars& bars : section.bars) add_figure(bars.title, to_svg(bars), out);
+      out += "</div>\n";
+    }
   }
   return out + "</body></html>\n";
 }

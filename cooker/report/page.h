@@ -23,6 +23,8 @@ struct PageSection {
   std::string text;  // what it shows and how to read it
   std::vector<PageTable> tables;
   std::vector<PagePlot> plots;
+  std::vector<PageBars> bars = {};
+  std::vector<std::string> conclusions = {};  // what it says, a paragraph each, before the tables
 };
 
 struct Page {

@@ -1,173 +1,453 @@
 // SPDX-License-Identifier: MIT
-// One plot: axes in steps a person would choose, a legend above, marks or lines.
+// Axes with steps that a person would choose, marks, curves, and labels where they find room.
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/report/markup.h>
 #include <boxtree/cooker/report/plot.h>
 
 namespace boxtree::cooker {
 namespace {
 
-// One axis of a plot: its range, widened a little, in steps a person would choose.
-struct Axis {
-  double low = 0;
-  double high = 1;
-  double step = 1;
+// The drawing, in units of its own: narrow enough to be read on a telephone.
+constexpr double kWidth = 560;
+constexpr double kFrameHeight = 300;
+constexpr double kLeft = 68;
+constexpr double kRight = 24;
+constexpr double kBelow = 48;
+constexpr double kLegendLine = 20;
+constexpr double kLetter = 6.8;  // mean width of a letter at 12 units, from common sans-serif faces
+constexpr double kLineHeight = 12;
 
-  [[nodiscard]] int ticks() const { return static_cast<int>(std::lround((high - low) / step)); }
-  // A multiple of the step, so that zero is zero.
-  [[nodiscard]] double tick(int i) const { return step * (std::round(low / step) + i); }
+struct Tick {
+  double value;
+  std::string text;
 };
 
-Axis axis_of(double low, double high) {
-  constexpr double kTicks = 6;
-  if (!(high > low)) high = low + 1;
-  const double raw = (high - low) / kTicks;
-  const double power = std::pow(10, std::floor(std::log10(raw)));
-  double step = 10 * power;
-  for (const double nice : {1.0, 2.0, 5.0}) {
-    if (nice * power >= raw) {
-      step = nice * power;
-      break;
+// One axis: where a value stands between 0 and 1, and the ticks.
+class Axis {
+ public:
+  Axis(const std::vector<double>& values, AxisScale scale) : scale_(scale) {
+    const auto [low, high] = std::minmax_element(values.begin(), values.end());
+    if (scale == AxisScale::kLinear) {
+      choose_linear(*low, *high);
+    } else {
+      choose_logarithmic(*low, *high);
     }
   }
-  return {std::floor(low / step) * step, std::ceil(high / step) * step, step};
-}
 
-constexpr double kWidth = 640;
-constexpr double kHeight = 400;
-constexpr double kLeft = 70;
-constexpr double kBottom = 50;
-constexpr double kTop = 40;
-constexpr double kRight = 110;  // room for labels of points at the edge
+  [[nodiscard]] double place(double value) const { return (scaled(value) - low_) / (high_ - low_); }
+  [[nodiscard]] const std::vector<Tick>& ticks() const { return ticks_; }
 
-void add_mark(std::size_t shape, double x, double y, const std::string& fill, std::string& out) {
-  switch (shape) {
-    case 0:
-      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"5\" fill=\"{}\"/>", x, y, fill);
-      break;
-    case 1:
-      out += fmt::format("<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"9\" height=\"9\" fill=\"{}\"/>",
-                         x - 4.5, y - 4.5, fill);
-      break;
-    default:
-      out += fmt::format("<path d=\"M{:.1f} {:.1f}l6 10h-12z\" fill=\"{}\"/>", x, y - 6, fill);
+ private:
+  [[nodiscard]] double scaled(double value) const {
+    return scale_ == AxisScale::kLinear ? value : std::log10(value);
   }
-}
 
-constexpr const char* kDashes[] = {"none", "7 4", "2 3", "9 3 2 3"};
-
-// Where values lie on the drawing.
-struct PlotFrame {
-  Axis x;
-  Axis y;
-
-  [[nodiscard]] double to_x(double value) const {
-    return kLeft + (value - x.low) / (x.high - x.low) * (kWidth - kLeft - kRight);
+  void choose_linear(double low, double high) {
+    constexpr double kTicks = 6;
+    if (!(high > low)) high = low + 1;
+    const double raw = (high - low) / kTicks;
+    const double power = std::pow(10, std::floor(std::log10(raw)));
+    double step = 10 * power;
+    for (const double nice : {1.0, 2.0, 5.0}) {
+      if (nice * power >= raw) {
+        step = nice * power;
+        break;
+      }
+    }
+    low_ = std::floor(low / step) * step;
+    high_ = std::ceil(high / step) * step;
+    const auto count = std::lround((high_ - low_) / step);
+    for (long i = 0; i <= count; ++i) {
+      const double value = low_ + static_cast<double>(i) * step;
+      ticks_.push_back({value, fmt::format("{:g}", value)});
+    }
   }
-  [[nodiscard]] double to_y(double value) const {
-    return kHeight - kBottom - (value - y.low) / (y.high - y.low) * (kHeight - kBottom - kTop);
+
+  // From one multiple of 1, 2 or 5 to another; ticks at all of them, at powers of ten, or at every
+  // second power and so on, as there is room.
+  void choose_logarithmic(double low, double high) {
+    constexpr double kDecadesOfThree = 2.2;  // with three ticks each
+    constexpr int kMostTicks = 8;
+    constexpr std::array kNice = {1.0, 2.0, 5.0, 10.0};
+    const auto decade = [](double value) {
+      return static_cast<int>(std::floor(std::log10(value)));
+    };
+    const auto nice_power = [](double nice, int power) { return nice * std::pow(10, power); };
+    double first = nice_power(1, decade(low));
+    double last = nice_power(10, decade(high));
+    for (const double nice : kNice) {
+      if (nice_power(nice, decade(low)) <= low) first = nice_power(nice, decade(low));
+    }
+    for (auto nice = kNice.rbegin(); nice != kNice.rend(); ++nice) {
+      if (nice_power(*nice, decade(high)) >= high) last = nice_power(*nice, decade(high));
+    }
+    if (!(last > first)) last = 10 * first;
+    low_ = std::log10(first);
+    high_ = std::log10(last);
+    const bool three = high_ - low_ <= kDecadesOfThree;
+    const int every = std::max(1, static_cast<int>(std::ceil((high_ - low_) / kMostTicks)));
+    for (int power = decade(first); power <= decade(last) + 1; ++power) {
+      for (const double nice : {1.0, 2.0, 5.0}) {
+        const double value = nice_power(nice, power);
+        // Both ends were made by the same expression, so that a half of a digit is slack enough.
+        if (value < first * 0.9999 || value > last * 1.0001) continue;
+        if (!three && (nice != 1.0 || power % every != 0)) continue;
+        ticks_.push_back({value, text_of(nice, power)});
+      }
+    }
   }
+
+  static std::string text_of(double nice, int power) {
+    if (power >= -2 && power <= 5) return fmt::format("{:g}", nice * std::pow(10, power));
+    static constexpr std::array<const char*, 10> kRaised = {"⁰", "¹", "²", "³", "⁴",
+                                                            "⁵", "⁶", "⁷", "⁸", "⁹"};
+    std::string raised = power < 0 ? "⁻" : "";
+    for (const char digit : std::to_string(std::abs(power))) {
+      raised += kRaised[static_cast<std::size_t>(digit - '0')];
+    }
+    return nice == 1.0 ? "10" + raised : fmt::format("{:g}·10{}", nice, raised);
+  }
+
+  AxisScale scale_;
+  double low_ = 0;
+  double high_ = 1;
+  std::vector<Tick> ticks_;
 };
 
-void add_axes(const PagePlot& plot, const PlotFrame& frame, std::string& out) {
-  for (int i = 0; i <= frame.x.ticks(); ++i) {
-    const double value = frame.x.tick(i);
+void add_mark(std::size_t shape, double x, double y, double r, const std::string& colour,
+              const std::string& hint, std::string& out) {
+  const std::string style = fmt::format("fill=\"{0}\" fill-opacity=\".65\" stroke=\"{0}\"", colour);
+  const std::string title = hint.empty() ? "" : "<title>" + escaped(hint) + "</title>";
+  switch (shape % 4) {
+    case 0:
+      out += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{:.1f}\" {}>{}</circle>\n", x, y,
+                         r, style, title);
+      break;
+    case 1:
+      out += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" height=\"{:.1f}\" {}>{}</rect>\n",
+          x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r, style, title);
+      break;
+    case 2:
+      out += fmt::format("<path d=\"M{:.1f} {:.1f}l{:.1f} {:.1f}h{:.1f}z\" {}>{}</path>\n", x,
+                         y - 1.2 * r, 1.2 * r, 2 * r, -2.4 * r, style, title);
+      break;
+    default:
+      out += fmt::format(
+          "<path d=\"M{0:.1f} {1:.1f}l{2:.1f} {2:.1f}l-{2:.1f} {2:.1f}l-{2:.1f} -{2:.1f}z\" "
+          "{3}>{4}</path>\n",
+          x, y - 1.2 * r, 1.2 * r, style, title);
+  }
+}
+
+void add_text(double x, double y, const char* anchor, const std::string& text, std::string& out) {
+  out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y, anchor,
+                     escaped(text));
+}
+
+// Letters, not bytes: the page is in UTF-8.
+double width_of(const std::string& text) {
+  const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
+    return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
+  });
+  return kLetter * static_cast<double>(letters);
+}
+
+// Names beside signs, in as many lines as it takes; returns their number. `draw` gets the number
+// of the name and the place of its sign.
+template <class Draw>
+std::size_t add_legend(const std::vector<std::string>& names, double left, double top, Draw draw,
+                       std::string& out) {
+  double x = left;
+  std::size_t lines = names.empty() ? 0 : 1;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    const double width = 34 + width_of(names[i]);
+    if (x > left && x + width > kWidth) {
+      x = left;
+      ++lines;
+    }
+    const double y = top + kLegendLine * static_cast<double>(lines - 1);
+    draw(i, x + 6, y + 8);
+    add_text(x + 18, y + 12, "start", names[i], out);
+    x += width;
+  }
+  return lines;
+}
+
+// Places where a label would cover something.
+class Taken {
+ public:
+  void add(double left, double top, double right, double bottom) {
+    boxes_.push_back({left, top, right, bottom});
+  }
+  [[nodiscard]] bool overlaps(double left, double top, double right, double bottom) const {
+    return std::any_of(boxes_.begin(), boxes_.end(), [&](const std::array<double, 4>& b) {
+      return left < b[2] && right > b[0] && top < b[3] && bottom > b[1];
+    });
+  }
+
+ private:
+  std::vector<std::array<double, 4>> boxes_;
+};
+
+struct Placed {
+  const PagePlot::Point* point;
+  std::size_t series;
+  double x;
+  double y;
+  bool is_zero;  // at the place of zero of a logarithmic axis
+};
+
+class Drawing {
+ public:
+  explicit Drawing(const PagePlot& plot) : plot_(plot) {}
+
+  std::string draw() {
+    const bool log_x = plot_.x_scale == AxisScale::kLogarithmic;
+    const bool log_y = plot_.y_scale == AxisScale::kLogarithmic;
+    std::vector<double> xs;
+    std::vector<double> ys;
+    for (const PagePlot::Series& series : plot_.series) {
+      for (const PagePlot::Point& point : series.points) {
+        if (log_y && !(point.y > 0)) continue;
+        if (log_x && !(point.x > 0)) has_zero_ = true;
+        if (!log_x || point.x > 0) xs.push_back(point.x);
+        ys.push_back(point.y);
+      }
+    }
+    if (ys.empty()) return {};
+    if (xs.empty()) xs = {1};
+    const Axis x_axis(xs, plot_.x_scale);
+    const Axis y_axis(ys, plot_.y_scale);
+    std::string legend;
+    add_series_legend(legend);
+    place_points(x_axis, y_axis, log_x, log_y);
+    std::string body;
+    add_axes(x_axis, y_axis, body);
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) add_line(s, body);
+    for (const Placed& placed : placed_) {
+      if (!plot_.series[placed.series].marks) continue;
+      add_mark(placed.series, placed.x, placed.y, placed.point->radius, colour(placed.series),
+               placed.point->hint, body);
+    }
+    add_labels(body);
+    return fmt::format(
+               "<svg viewBox=\"0 0 {0} {1:.0f}\" width=\"{0}\" role=\"img\" aria-label=\"{2}\">\n",
+               kWidth, bottom_ + kBelow,
+               escaped((plot_.title.empty() ? "" : plot_.title + ": ") + plot_.y_title + " over " +
+                       plot_.x_title)) +
+           legend + body + "</svg>\n";
+  }
+
+ private:
+  [[nodiscard]] std::string colour(std::size_t series) const {
+    const std::size_t wanted = plot_.series[series].colour;
+    if (wanted == PagePlot::kOwnColour) return fmt::format("var(--c{})", series % kPlotColours);
+    return wanted < kPlotColours ? fmt::format("var(--c{})", wanted) : "var(--ink)";
+  }
+
+  void add_series_legend(std::string& out) {
+    std::vector<std::string> names;
+    for (const PagePlot::Series& series : plot_.series) names.push_back(series.name);
+    const std::size_t lines = add_legend(
+        names, 8, 4,
+        [&](std::size_t s, double x, double y) {
+          if (plot_.series[s].marks) {
+            add_mark(s, x, y, 5, colour(s), "", out);
+          } else {
+            out +=
+                fmt::format("<path class=\"line front\" d=\"M{:.1f} {:.1f}h14\" stroke=\"{}\"/>\n",
+                            x - 6, y, colour(s));
+          }
+        },
+        out);
+    top_ = 16 + kLegendLine * static_cast<double>(lines);
+    bottom_ = top_ + kFrameHeight;
+  }
+
+  // With values at zero, the axis begins a little further to the right.
+  [[nodiscard]] double axis_left() const { return has_zero_ ? kLeft + 58 : kLeft + 8; }
+  [[nodiscard]] double zero_x() const { return kLeft + 22; }
+  [[nodiscard]] double to_x(double place) const {
+    return axis_left() + place * (kWidth - kRight - axis_left());
+  }
+  [[nodiscard]] double to_y(double place) const { return bottom_ - place * (bottom_ - top_); }
+
+  void place_points(const Axis& x_axis, const Axis& y_axis, bool log_x, bool log_y) {
+    for (std::size_t s = 0; s < plot_.series.size(); ++s) {
+      for (const PagePlot::Point& point : plot_.series[s].points) {
+        if (log_y && !(point.y > 0)) continue;
+        const bool is_zero = log_x && !(point.x > 0);
+        placed_.push_back({&point, s, is_zero ? zero_x() : to_x(x_axis.place(point.x)),
+                           to_y(y_axis.place(point.y)), is_zero});
+      }
+    }
+  }
+
+  void add_axes(const Axis& x_axis, const Axis& y_axis, std::string& out) const {
+    for (const Tick& tick : x_axis.ticks()) {
+      const double x = to_x(x_axis.place(tick.value));
+      out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", x, top_, bottom_);
+      add_text(x, bottom_ + 17, "middle", tick.text, out);
+    }
+    for (const Tick& tick : y_axis.ticks()) {
+      const double y = to_y(y_axis.place(tick.value));
+      out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", kLeft, y,
+                         kWidth - kRight);
+      add_text(kLeft - 7, y + 4, "end", tick.text, out);
+    }
+    if (has_zero_) {
+      out += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", zero_x(), top_,
+                         bottom_);
+      add_text(zero_x(), bottom_ + 17, "middle", plot_.zero_name, out);
+    }
+    add_text((kLeft + kWidth - kRight) / 2, bottom_ + 38, "middle", plot_.x_title, out);
     out += fmt::format(
-        "<line class=\"grid\" x1=\"{0:.1f}\" x2=\"{0:.1f}\" y1=\"{1}\" y2=\"{2}\"/>"
-        "<text x=\"{0:.1f}\" y=\"{3}\" text-anchor=\"middle\">{4:g}</text>\n",
-        frame.to_x(value), kTop, kHeight - kBottom, kHeight - kBottom + 18, value);
+        "<text transform=\"rotate(-90)\" x=\"{:.1f}\" y=\"14\" text-anchor=\"middle\">{}</text>\n",
+        -(top_ + bottom_) / 2, escaped(plot_.y_title));
   }
-  for (int i = 0; i <= frame.y.ticks(); ++i) {
-    const double value = frame.y.tick(i);
-    out += fmt::format(
-        "<line class=\"grid\" x1=\"{1}\" x2=\"{2}\" y1=\"{0:.1f}\" y2=\"{0:.1f}\"/>"
-        "<text x=\"{3}\" y=\"{4:.1f}\" text-anchor=\"end\">{5:g}</text>\n",
-        frame.to_y(value), kLeft, kWidth - kRight, kLeft - 8, frame.to_y(value) + 4, value);
-  }
-  out += fmt::format("<text x=\"{}\" y=\"{}\" text-anchor=\"middle\">{}</text>\n",
-                     (kLeft + kWidth - kRight) / 2, kHeight - 10, escaped(plot.x_title));
-  out += fmt::format(
-      "<text transform=\"rotate(-90)\" x=\"{}\" y=\"16\" text-anchor=\"middle\">{}</text>\n",
-      -(kTop + kHeight - kBottom) / 2, escaped(plot.y_title));
-}
 
-void add_line(const PagePlot::Series& series, std::size_t number, const PlotFrame& frame,
-              std::string& out) {
-  out += fmt::format(
-      "<polyline fill=\"none\" stroke=\"var(--c{})\" stroke-width=\"2\" stroke-dasharray=\"{}\" "
-      "points=\"",
-      number, kDashes[number]);
-  for (const auto& point : series.points) {
-    out += fmt::format("{:.1f},{:.1f} ", frame.to_x(point.x), frame.to_y(point.y));
+  void add_line(std::size_t series, std::string& out) const {
+    const PagePlot::Joined joined = plot_.series[series].joined;
+    if (joined == PagePlot::Joined::kNot) return;
+    const bool stairs = joined == PagePlot::Joined::kStaircase;
+    std::string path;
+    double last_y = 0;
+    for (const Placed& placed : placed_) {
+      if (placed.series != series || (placed.is_zero && !stairs)) continue;
+      if (path.empty()) {
+        path = fmt::format("M{:.1f} {:.1f}", placed.x, placed.y);
+      } else if (stairs) {
+        path += fmt::format("H{:.1f}V{:.1f}", placed.x, placed.y);
+      } else {
+        path += fmt::format("L{:.1f} {:.1f}", placed.x, placed.y);
+      }
+      last_y = placed.y;
+    }
+    if (path.empty()) return;
+    if (stairs) path += fmt::format("V{:.1f}H{:.1f}", last_y, kWidth - kRight);
+    out += fmt::format("<path class=\"line{}\" d=\"{}\" stroke=\"{}\"/>\n", stairs ? " front" : "",
+                       path, colour(series));
   }
-  out += "\"/>\n";
-}
 
-void add_marks(const PagePlot::Series& series, std::size_t number, const PlotFrame& frame,
-               std::string& out) {
-  for (const auto& point : series.points) {
-    add_mark(number, frame.to_x(point.x), frame.to_y(point.y), fmt::format("var(--c{})", number),
-             out);
-    out += fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\">{}</text>\n", frame.to_x(point.x) + 9,
-                       frame.to_y(point.y) + 4, escaped(point.label));
+  void add_labels(std::string& out) const {
+    Taken taken;
+    for (const Placed& placed : placed_) {
+      if (!plot_.series[placed.series].marks) continue;
+      const double r = placed.point->radius;
+      taken.add(placed.x - r, placed.y - r, placed.x + r, placed.y + r);
+    }
+    for (const Placed& placed : placed_) {
+      if (placed.point->label.empty()) continue;
+      const double width = width_of(placed.point->label);
+      const double r = placed.point->radius + 3;
+      // To the right, to the left, above, below: the first that covers nothing and lies inside.
+      const std::array<std::pair<double, double>, 4> corners = {
+          {{placed.x + r, placed.y - kLineHeight / 2},
+           {placed.x - r - width, placed.y - kLineHeight / 2},
+           {placed.x - width / 2, placed.y - r - kLineHeight},
+           {placed.x - width / 2, placed.y + r}}};
+      for (const auto& [left, top] : corners) {
+        const bool inside = left >= kLeft && left + width <= kWidth && top >= top_ - kLineHeight &&
+                            top + kLineHeight <= bottom_;
+        if (!inside || taken.overlaps(left, top, left + width, top + kLineHeight)) continue;
+        taken.add(left, top, left + width, top + kLineHeight);
+        add_text(left, top + kLineHeight - 2, "start", placed.point->label, out);
+        break;
+      }
+    }
   }
-}
 
-// What the element needs of a page's style sheet.
-constexpr const char* kFileStyle =
-    "<style>:root{--c0:#0b68cb;--c1:#c2410c;--c2:#15803d;--c3:#7e22ce}"
-    "text{fill:#1c2024;font:12px system-ui,sans-serif}.grid{stroke:#d9d9e0}</style>"
-    "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+  const PagePlot& plot_;
+  bool has_zero_ = false;
+  double top_ = 0;
+  double bottom_ = 0;
+  std::vector<Placed> placed_;
+};
 
 }  // namespace
 
-std::string to_svg_element(const PagePlot& plot) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Axis x{kInfinity, -kInfinity};
-  Axis y = x;
-  for (const auto& series : plot.series) {
-    for (const auto& point : series.points) {
-      x = {std::min(x.low, point.x), std::max(x.high, point.x)};
-      y = {std::min(y.low, point.y), std::max(y.high, point.y)};
+std::string escaped(const std::string& text) {
+  std::string out;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        out += "&amp;";
+        break;
+      case '<':
+        out += "&lt;";
+        break;
+      case '>':
+        out += "&gt;";
+        break;
+      case '"':
+        out += "&quot;";
+        break;
+      default:
+        out += c;
     }
   }
-  if (x.low > x.high) return {};
-  const PlotFrame frame{axis_of(x.low, x.high), axis_of(y.low, y.high)};
-  std::string out = fmt::format(
-      "<svg viewBox=\"0 0 {0} {1}\" width=\"{0}\" role=\"img\" aria-label=\"{2} over {3}\">\n",
-      kWidth, kHeight, escaped(plot.y_title), escaped(plot.x_title));
-  add_axes(plot, frame, out);
-  double legend = kLeft;
-  for (std::size_t s = 0; s < plot.series.size(); ++s) {
-    const auto& series = plot.series[s];
-    double after_key = legend + 16;
-    if (plot.lines) {
-      constexpr double kKey = 28;
-      out += fmt::format(
-          "<path d=\"M{:.1f} 18h{}\" stroke=\"var(--c{})\" stroke-width=\"2\" "
-          "stroke-dasharray=\"{}\"/>",
-          legend, kKey, s, kDashes[s]);
-      after_key = legend + kKey + 6;
-    } else {
-      add_mark(s, legend + 6, 18, fmt::format("var(--c{})", s), out);
-    }
-    out += fmt::format("<text x=\"{:.1f}\" y=\"22\">{}</text>\n", after_key, escaped(series.name));
-    legend = after_key + 24 + 7.0 * static_cast<double>(series.name.size());
-    plot.lines ? add_line(series, s, frame, out) : add_marks(series, s, frame, out);
-  }
-  return out + "</svg>\n";
+  return out;
 }
 
-std::string to_svg_file(const PagePlot& plot) {
-  std::string svg = to_svg_element(plot);
-  svg.insert(svg.find('>') + 2, kFileStyle);
-  svg.insert(svg.find("<svg") + 4, " xmlns=\"http://www.w3.org/2000/svg\"");
-  return svg;
+std::string to_svg(const PagePlot& plot) {
+  return Drawing(plot).draw();
+}
+
+std::string to_svg(const PageBars& bars) {
+  if (bars.bars.empty()) return {};
+  constexpr double kRow = 20;
+  constexpr double kNumbers = 60;  // room for the sum at the end of a bar
+  double names = 0;
+  double largest = 0;
+  for (const PageBars::Bar& bar : bars.bars) {
+    names = std::max(names, width_of(bar.label));
+    double sum = 0;
+    for (const double value : bar.values) sum += value;
+    largest = std::max(largest, sum);
+  }
+  const double left = names + 14;
+  const double unit = largest > 0 ? (kWidth - left - kNumbers) / largest : 0;
+  std::string body;
+  const auto colour = [](std::size_t part) {
+    return fmt::format("var(--c{})", part % kPlotColours);
+  };
+  const std::size_t lines = add_legend(
+      bars.parts, 8, 4,
+      [&](std::size_t part, double x, double y) {
+        body += fmt::format(
+            "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"11\" height=\"11\" fill=\"{}\"/>\n", x - 5,
+            y - 6, colour(part));
+      },
+      body);
+  double y = 12 + kLegendLine * static_cast<double>(lines);
+  for (const PageBars::Bar& bar : bars.bars) {
+    add_text(left - 8, y + 13, "end", bar.label, body);
+    double x = left;
+    double sum = 0;
+    for (std::size_t part = 0; part < bar.values.size(); ++part) {
+      const double value = bar.values[part];
+      sum += value;
+      if (!(value > 0)) continue;
+      const std::string name = part < bars.parts.size() ? bars.parts[part] : "";
+      body += fmt::format(
+          "<rect x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.2f}\" height=\"{:.1f}\" "
+          "fill=\"{}\"><title>{}: {:.2f}</title></rect>\n",
+          x, y + 2, value * unit, kRow - 4, colour(part), escaped(name), value);
+      x += value * unit;
+    }
+    add_text(x + 6, y + 13, "start", fmt::format("{:.2f}", sum), body);
+    y += kRow;
+  }
+  return fmt::format(
+             "<svg viewBox=\"0 0 {0} {1:.0f}\" width=\"{0}\" role=\"img\" aria-label=\"{2}\">\n",
+             kWidth, y + 8, escaped(bars.title)) +
+         body + "</svg>\n";
 }
 
 }  // namespace boxtree::cooker
