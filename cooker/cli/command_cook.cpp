@@ -7,12 +7,12 @@
 #include <fstream>
 #include <memory>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
 #include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/cli/step_printer.h>
 #include <boxtree/cooker/cook.h>
 #include <boxtree/format/grid.h>
 
@@ -38,28 +38,6 @@ struct Arguments {
   bool json = false;
   bool quiet = false;
   int jobs = tbb::task_arena::automatic;
-};
-
-// Steps on a terminal only, and only once the work has taken half a second.
-class StepPrinter {
- public:
-  explicit StepPrinter(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
-  StepPrinter(const StepPrinter&) = delete;
-  StepPrinter& operator=(const StepPrinter&) = delete;
-  ~StepPrinter() {
-    if (printed_) fmt::print(stderr, "\r\033[K");
-  }
-  void operator()(const std::string& step) {
-    if (!enabled_ || Clock::now() - start_ < std::chrono::milliseconds(500)) return;
-    fmt::print(stderr, "\r\033[K{} ...", step);
-    static_cast<void>(std::fflush(stderr));
-    printed_ = true;
-  }
-
- private:
-  bool enabled_;
-  bool printed_ = false;
-  Clock::time_point start_ = Clock::now();
 };
 
 // Make syntax: spaces, '#' and '$' in names are escaped, as gcc -MD does.

@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: MIT
-// `boxtree report --paper`: the tables of the paper for any mesh.
-#include <array>
-#include <cerrno>
-#include <cstdio>
-#include <fcntl.h>
+// `boxtree report`: which encoding to use for a mesh; with --paper the tables of the paper.
 #include <filesystem>
 #include <memory>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <system_error>
-#include <unistd.h>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/cli/peers.h>
+#include <boxtree/cooker/cli/step_printer.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/report/paper_tables.h>
+#include <boxtree/cooker/report/tradeoff_page.h>
 #include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
@@ -26,81 +21,42 @@ struct Arguments {
   std::vector<std::filesystem::path> meshes;
   std::filesystem::path output;
   std::filesystem::path json;
+  std::filesystem::path csv;
   std::filesystem::path peers;
+  std::vector<std::filesystem::path> included;
   bool paper = false;
   bool quick = false;
   bool no_times = false;
 };
 
-// The measuring program of a build folder: it is not part of an installation.
-std::filesystem::path default_peers() {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const std::filesystem::path path = self.parent_path() / "tests/bench/boxtree_peers";
-  return std::filesystem::exists(path, error) ? path : std::filesystem::path();
+std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {
+  std::vector<std::string> names;
+  for (const std::filesystem::path& mesh : meshes) names.push_back(mesh.string());
+  return names;
 }
 
-// What a program prints on standard output; its messages go where ours do.
-Result<std::string> output_of(const std::vector<std::string>& command) {
-  std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
-    return Error{Errc::kInternal, "pipe: " + std::generic_category().message(errno)};
-  }
-  posix_spawn_file_actions_t actions;
-  posix_spawn_file_actions_init(&actions);
-  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
-  std::vector<char*> arguments;
-  for (const std::string& argument : command)
-    arguments.push_back(const_cast<char*>(argument.c_str()));
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int failed =
-      ::posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&actions);
-  ::close(ends[1]);
-  if (failed != 0) {
-    ::close(ends[0]);
-    return Error{Errc::kFileUnreadable,
-                 command[0] + ": " + std::generic_category().message(failed)};
-  }
-  std::string text;
-  std::array<char, 65536> block;
-  ssize_t got = 0;
-  while ((got = ::read(ends[0], block.data(), block.size())) > 0 || (got < 0 && errno == EINTR)) {
-    if (got > 0) text.append(block.data(), static_cast<std::size_t>(got));
-  }
-  ::close(ends[0]);
-  int status = 0;
-  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
-  }
-  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    return Error{Errc::kInternal, command[0] + ": ended with status " + std::to_string(status)};
-  }
-  return text;
-}
-
-Result<std::vector<PeerRow>> measure_peers(const Arguments& arguments) {
-  std::vector<std::string> command = {arguments.peers.string()};
-  for (const std::filesystem::path& mesh : arguments.meshes) command.push_back(mesh.string());
+Result<std::vector<PeerRow>> measure_paper_peers(const Arguments& arguments) {
+  std::vector<std::string> options = names_of(arguments.meshes);
   const char* const turns = arguments.quick ? "2" : "12";
   const char* const runs = arguments.quick ? "1" : "5";
-  command.insert(command.end(), {"--json", "--builder", "paper", "--questions", "tumble",
-                                 "--tumble", turns, "--runs", runs, "--only", "original", "--only",
-                                 "boxtree", "--only", "fcl:kdop18"});
-  const Result<std::string> text = output_of(command);
-  if (!text) return text.error();
-  std::vector<PeerRow> rows;
-  try {
-    const Json document = Json::parse(*text);
-    for (const auto& row : document.at("rows")) {
-      rows.push_back({row.at("mesh"), row.at("library"), row.at("variant"), row.at("metric"),
-                      row.at("value"), row.at("unit")});
-    }
-  } catch (const Json::exception& error) {
-    return Error{Errc::kInternal, arguments.peers.string() + ": " + error.what()};
+  options.insert(options.end(),
+                 {"--builder", "paper", "--questions", "tumble", "--tumble", turns, "--runs", runs,
+                  "--only", "original", "--only", "boxtree", "--only", "fcl:kdop18"});
+  return run_peers(arguments.peers, options, false);
+}
+
+// Everything but our own codecs, which are measured here; quickly: those that take seconds.
+Result<std::vector<PeerRow>> measure_tradeoff_peers(const Arguments& arguments) {
+  std::vector<std::string> options = names_of(arguments.meshes);
+  options.insert(options.end(), {"--questions", "single", "--questions", "pairs", "--only",
+                                 "original", "--only", "embree"});
+  if (arguments.quick) {
+    options.insert(options.end(), {"--quick", "--runs", "1"});
+  } else {
+    options.insert(options.end(),
+                   {"--only", "bullet", "--only", "fcl", "--only", "ode", "--only", "cgal"});
   }
-  return rows;
+  return run_peers(arguments.peers, options, true);
 }
 
 Json to_json(const PaperFigures& mesh) {
@@ -188,20 +144,28 @@ Status write_text(const std::filesystem::path& path, const std::string& text) {
 }
 
 std::string command_of(const Arguments& arguments) {
-  std::string command = "boxtree report --paper";
+  std::string command = "boxtree report";
+  if (arguments.paper) command += " --paper";
   if (arguments.quick) command += " --quick";
+  if (arguments.no_times && !arguments.paper) command += " --no-times";
   for (const auto& mesh : arguments.meshes) command += " " + mesh.filename().string();
   return command;
 }
 
-int run(const Arguments& arguments) {
+Result<SourceMesh> read_mesh(const std::filesystem::path& path) {
+  Result<Imported> imported = import_mesh(path);
+  if (!imported) return imported.error();
+  imported->mesh.name = path.stem().string();
+  return std::move(imported->mesh);
+}
+
+int run_paper(const Arguments& arguments) {
   PaperReport report;
   report.command = command_of(arguments);
   for (const std::filesystem::path& path : arguments.meshes) {
-    Result<Imported> imported = import_mesh(path);
-    if (!imported) return fail(imported.error());
-    imported->mesh.name = path.stem().string();
-    Result<PaperFigures> figures = paper_figures(imported->mesh);
+    const Result<SourceMesh> mesh = read_mesh(path);
+    if (!mesh) return fail(mesh.error());
+    Result<PaperFigures> figures = paper_figures(*mesh);
     if (!figures) return fail(figures.error());
     report.meshes.push_back(std::move(*figures));
   }
@@ -209,7 +173,7 @@ int run(const Arguments& arguments) {
   if (!stairs) return fail(stairs.error());
   report.stairs = std::move(*stairs);
   if (!arguments.no_times && !arguments.peers.empty()) {
-    Result<std::vector<PeerRow>> rows = measure_peers(arguments);
+    Result<std::vector<PeerRow>> rows = measure_paper_peers(arguments);
     if (!rows) return fail(rows.error());
     report.peers = std::move(*rows);
   }
@@ -228,19 +192,87 @@ int run(const Arguments& arguments) {
   return 0;
 }
 
+// Why other libraries are not in the report; empty when they are.
+std::string why_no_peers(const Arguments& arguments) {
+  if (arguments.no_times) return "--no-times";
+  if (arguments.peers.empty()) return "boxtree_peers was not built";
+  return {};
+}
+
+Result<TradeoffReport> measure_all(const Arguments& arguments) {
+  TradeoffReport report;
+  report.quick = arguments.quick;
+  report.surroundings = surroundings(command_of(arguments));
+  report.no_peers = why_no_peers(arguments);
+  // What can be refused at once is read before what takes minutes.
+  for (const std::filesystem::path& path : arguments.included) {
+    Result<IncludedResults> results = read_results(path);
+    if (!results) return results.error();
+    report.included.push_back(std::move(*results));
+  }
+  const std::size_t parts = arguments.meshes.size() + (report.no_peers.empty() ? 1u : 0u);
+  const auto part = [&](double done) { return done / static_cast<double>(parts); };
+  StepPrinter steps(true);
+  for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
+    const auto before = static_cast<double>(i);
+    steps("import " + arguments.meshes[i].filename().string(), part(before));
+    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i]);
+    if (!mesh) return mesh.error();
+    Result<MeshTradeoff> figures = measure_tradeoff(
+        *mesh, {arguments.quick, !arguments.no_times},
+        [&](const std::string& step, double share) { steps(step, part(before + share)); });
+    if (!figures) return figures.error();
+    report.meshes.push_back(std::move(*figures));
+  }
+  if (report.no_peers.empty()) {
+    steps("ask other libraries", part(static_cast<double>(arguments.meshes.size())));
+    Result<std::vector<PeerRow>> rows = measure_tradeoff_peers(arguments);
+    if (!rows) return rows.error();
+    report.peers = std::move(*rows);
+  }
+  return report;
+}
+
+int run_tradeoff(const Arguments& arguments) {
+  const Result<TradeoffReport> report = measure_all(arguments);
+  if (!report) return fail(report.error());
+  fmt::print("{}", to_text(tradeoff_summary(*report)));
+  const auto write = [](const std::filesystem::path& path, const std::string& text) {
+    return path.empty() ? Status() : write_text(path, text);
+  };
+  if (Status status = write(arguments.output, to_html(tradeoff_page(*report))); !status) {
+    return fail(status.error());
+  }
+  if (Status status = write(arguments.json, to_json(*report)); !status) return fail(status.error());
+  if (Status status = write(arguments.csv, to_csv(*report)); !status) return fail(status.error());
+  return 0;
+}
+
+int run(const Arguments& arguments) {
+  return arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
+}
+
 }  // namespace
 
 void add_report_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   arguments->peers = default_peers();
-  CLI::App& command = *app.add_subcommand("report", "Redraw the paper's tables for meshes");
+  CLI::App& command =
+      *app.add_subcommand("report", "Which encoding to use for meshes: bytes, times and errors");
   command.add_option("meshes", arguments->meshes, "Mesh files")->required();
-  command.add_flag("--paper", arguments->paper, "The tables of the paper (the only report so far)")
-      ->required();
+  CLI::Option* paper =
+      command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_option("-o,--output", arguments->output, "Write an HTML page");
   command.add_option("--json", arguments->json, "Write all figures as JSON");
-  command.add_flag("--quick", arguments->quick, "Few poses and one run: for a look");
-  command.add_flag("--no-times", arguments->no_times, "Leave out what needs boxtree_peers");
+  command.add_option("--csv", arguments->csv, "Write a row for each encoding as CSV")
+      ->excludes(paper);
+  command.add_flag("--quick", arguments->quick, "Few encodings, questions and runs: for a look");
+  command.add_flag("--no-times", arguments->no_times,
+                   "Count only: the same figures on every machine");
+  command
+      .add_option("--include", arguments->included,
+                  "JSON results of other checks, shown as tables of their own")
+      ->excludes(paper);
   command
       .add_option("--peers", arguments->peers,
                   "The program boxtree_peers [tests/bench/ beside this one, if built]")

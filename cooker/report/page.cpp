@@ -32,7 +32,7 @@ th.word,td.word{text-align:left}
 figure{margin:0;min-width:0}figcaption{font-weight:600}
 svg{display:block;width:100%;min-width:27rem;max-width:44rem;height:auto}
 svg text{fill:var(--ink);font:12px system-ui,sans-serif}
-svg .axis{stroke:var(--faint);fill:none}svg .grid{stroke:var(--line);fill:none}
+svg .band{fill:var(--well)}svg .grid{stroke:var(--line);fill:none}
 svg .line{fill:none;stroke-width:1.6}svg .front{stroke-width:2.5;stroke-dasharray:6 4;opacity:.55}
 @media print{body{max-width:none;font-size:11px}h2{break-after:avoid}figure{break-inside:avoid}
 .scroll{overflow:visible}svg{min-width:0}.plots{grid-template-columns:1fr 1fr}th,td{padding:.1rem .3rem}}
@@ -88,7 +88,11 @@ std::string to_text(const Page& page) {
   for (const PageSection& section : page.sections) {
     out += "\n" + section.title + "\n";
     if (section.tables.empty() && !section.text.empty()) out += "  " + section.text + "\n";
-    for (const std::string& conclusion : section.conclusions) out += "  " + conclusion + "\n";
+    for (const PageConclusion& conclusion : section.conclusions) {
+      out += "  " + conclusion.lead + " " + conclusion.text +
+             "
+             ";
+    }
     for (const PageTable& table : section.tables) add_text(table, out);
   }
   return out;
@@ -104,8 +108,9 @@ std::string to_html(const Page& page) {
   for (const PageSection& section : page.sections) {
     out += "<h2>" + escaped(section.title) + "</h2>\n";
     if (!section.text.empty()) out += "<p>" + escaped(section.text) + "</p>\n";
-    for (const std::string& conclusion : section.conclusions) {
-      out += "<p class=\"conclusion\">" + escaped(conclusion) + "</p>\n";
+    for (const PageConclusion& conclusion : section.conclusions) {
+      out += "<p class=\"conclusion\"><strong>" + escaped(conclusion.lead) + "</strong> " +
+             escaped(conclusion.text) + "</p>\n";
     }
     for (const PageTable& table : section.tables) add_html(table, out);
     if (!section.plots.empty() || !section.bars.empty()) {

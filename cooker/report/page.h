@@ -18,13 +18,19 @@ struct PageTable {
   std::size_t word_columns = 1;
 };
 
+/// A paragraph that says what figures mean, its point first.
+struct PageConclusion {
+  std::string lead;
+  std::string text;
+};
+
 struct PageSection {
   std::string title;
   std::string text;  // what it shows and how to read it
   std::vector<PageTable> tables;
   std::vector<PagePlot> plots;
   std::vector<PageBars> bars = {};
-  std::vector<std::string> conclusions = {};  // what it says, a paragraph each, before the tables
+  std::vector<PageConclusion> conclusions = {};  // before the tables
 };
 
 struct Page {

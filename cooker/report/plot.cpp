@@ -18,6 +18,7 @@ constexpr double kFrameHeight = 300;
 constexpr double kLeft = 68;
 constexpr double kRight = 24;
 constexpr double kBelow = 48;
+constexpr double kBand = 90;  // left of a logarithmic axis, for values at zero
 constexpr double kLegendLine = 20;
 constexpr double kLetter = 6.8;  // mean width of a letter at 12 units, from common sans-serif faces
 constexpr double kLineHeight = 12;
@@ -271,8 +272,14 @@ class Drawing {
   }
 
   // With values at zero, the axis begins a little further to the right.
-  [[nodiscard]] double axis_left() const { return has_zero_ ? kLeft + 58 : kLeft + 8; }
-  [[nodiscard]] double zero_x() const { return kLeft + 22; }
+  [[nodiscard]] double axis_left() const { return has_zero_ ? kLeft + kBand + 20 : kLeft + 8; }
+  // Side by side, as they would cover each other; fronts begin at the edge.
+  [[nodiscard]] double zero_x(std::size_t series) const {
+    if (!plot_.series[series].marks) return kLeft;
+    constexpr double kMargin = 10;
+    const auto last = static_cast<double>(std::max<std::size_t>(plot_.series.size(), 2) - 1);
+    return kLeft + kMargin + static_cast<double>(series) / last * (kBand - 2 * kMargin);
+  }
   [[nodiscard]] double to_x(double place) const {
     return axis_left() + place * (kWidth - kRight - axis_left());
   }
@@ -283,13 +290,20 @@ class Drawing {
       for (const PagePlot::Point& point : plot_.series[s].points) {
         if (log_y && !(point.y > 0)) continue;
         const bool is_zero = log_x && !(point.x > 0);
-        placed_.push_back({&point, s, is_zero ? zero_x() : to_x(x_axis.place(point.x)),
+        placed_.push_back({&point, s, is_zero ? zero_x(s) : to_x(x_axis.place(point.x)),
                            to_y(y_axis.place(point.y)), is_zero});
       }
     }
   }
 
   void add_axes(const Axis& x_axis, const Axis& y_axis, std::string& out) const {
+    if (has_zero_) {
+      out += fmt::format(
+          "<rect class=\"band\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{:.1f}\" "
+          "height=\"{:.1f}\"/>\n",
+          kLeft, top_, kBand, bottom_ - top_);
+      add_text(kLeft + kBand / 2, bottom_ + 17, "middle", plot_.zero_name, out);
+    }
     for (const Tick& tick : x_axis.ticks()) {
       const double x = to_x(x_axis.place(tick.value));
       out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", x, top_, bottom_);
@@ -300,11 +314,6 @@ class Drawing {
       out += fmt::format("<path class=\"grid\" d=\"M{:.1f} {:.1f}H{:.1f}\"/>\n", kLeft, y,
                          kWidth - kRight);
       add_text(kLeft - 7, y + 4, "end", tick.text, out);
-    }
-    if (has_zero_) {
-      out += fmt::format("<path class=\"axis\" d=\"M{:.1f} {:.1f}V{:.1f}\"/>\n", zero_x(), top_,
-                         bottom_);
-      add_text(zero_x(), bottom_ + 17, "middle", plot_.zero_name, out);
     }
     add_text((kLeft + kWidth - kRight) / 2, bottom_ + 38, "middle", plot_.x_title, out);
     out += fmt::format(
@@ -346,12 +355,12 @@ class Drawing {
       if (placed.point->label.empty()) continue;
       const double width = width_of(placed.point->label);
       const double r = placed.point->radius + 3;
-      // To the right, to the left, above, below: the first that covers nothing and lies inside.
+      // Above, below, to the right, to the left: the first that covers nothing and lies inside.
       const std::array<std::pair<double, double>, 4> corners = {
-          {{placed.x + r, placed.y - kLineHeight / 2},
-           {placed.x - r - width, placed.y - kLineHeight / 2},
-           {placed.x - width / 2, placed.y - r - kLineHeight},
-           {placed.x - width / 2, placed.y + r}}};
+          {{placed.x - width / 2, placed.y - r - kLineHeight},
+           {placed.x - width / 2, placed.y + r},
+           {placed.x + r, placed.y - kLineHeight / 2},
+           {placed.x - r - width, placed.y - kLineHeight / 2}}};
       for (const auto& [left, top] : corners) {
         const bool inside = left >= kLeft && left + width <= kWidth && top >= top_ - kLineHeight &&
                             top + kLineHeight <= bottom_;

@@ -223,7 +223,29 @@ same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique'
 same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[8]'
 same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'
 expect 2 "$boxtree" report --paper missing.obj
-expect 1 "$boxtree" report cube.obj
+expect 1 "$boxtree" report --paper cube.obj --csv paper.csv
+
+# Which encoding to use: a page, JSON and CSV of the same points; counted figures repeat to the byte.
+printf '[{"id":"S1","what":"hashes","figure":0,"limit":0,"pass":true}]' >stiff.json
+expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json \
+  -o report.html --json report.json --csv report.csv
+grep -q 'Balanced, for most uses' out
+same "$(wc -c <err)" 0
+same "$(jq -c '[.meshes[].points | length] | unique' report.json)" '[16]'
+same "$(jq -c '[.meshes[].points[] | .gates.pass and .times == null] | unique' report.json)" '[true]'
+same "$(jq -c '[.meshes[].points[].bytes | .total == .nodes + .vertices + .corners + .face_ids + .rest] | unique' report.json)" '[true]'
+same "$(wc -l <report.csv)" 33
+same "$(grep -c '<h2>stiff</h2>' report.html)" 1
+jq 'del(.load)' report.json >first.json
+expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json --json report.json
+same "$(jq 'del(.load)' report.json | cmp - first.json && echo same)" same
+expect 0 "$boxtree" report cube.obj --quick --peers '' --json report.json
+same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
+expect 2 "$boxtree" report missing.obj
+expect 2 "$boxtree" report cube.obj --include missing.json
+expect 2 "$boxtree" report cube.obj --include cube.obj
+expect 1 "$boxtree" report
+expect 2 "$boxtree" report cube.obj --quick --no-times -o no/such/folder/report.html
 
 # Files for viewers: what comes back is the geometry that was cooked (verify compares its hash).
 expect 0 "$boxtree" export cube.bxt -o shown.obj --json

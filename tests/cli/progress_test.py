@@ -15,7 +15,7 @@ import sys
 import tempfile
 import time
 
-SHOWN_AFTER = 0.5  # seconds, as in command_cook.cpp
+SHOWN_AFTER = 0.5  # seconds, as in step_printer.h
 GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOWN_AFTER
 ERASE = "\r\x1b[K"  # to the start of the line, and clear it
 STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")

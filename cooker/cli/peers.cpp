@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: MIT
+// A child process, its standard output read to the end.
+#include <array>
+#include <cerrno>
+#include <fcntl.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/cli/peers.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// What a program prints on standard output.
+Result<std::string> output_of(const std::vector<std::string>& command, bool quiet) {
+  std::array<int, 2> ends{};
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) {
+    return Error{Errc::kInternal, "pipe: " + std::generic_category().message(errno)};
+  }
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+  if (quiet) {
+    posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, "/dev/null", O_WRONLY, 0);
+  }
+  std::vector<char*> arguments;
+  for (const std::string& argument : command)
+    arguments.push_back(const_cast<char*>(argument.c_str()));
+  arguments.push_back(nullptr);
+  pid_t child = 0;
+  const int failed =
+      ::posix_spawn(&child, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  ::close(ends[1]);
+  if (failed != 0) {
+    ::close(ends[0]);
+    return Error{Errc::kFileUnreadable,
+                 command[0] + ": " + std::generic_category().message(failed)};
+  }
+  std::string text;
+  std::array<char, 65536> block;
+  ssize_t got = 0;
+  while ((got = ::read(ends[0], block.data(), block.size())) > 0 || (got < 0 && errno == EINTR)) {
+    if (got > 0) text.append(block.data(), static_cast<std::size_t>(got));
+  }
+  ::close(ends[0]);
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
+    return Error{Errc::kInternal, command[0] + ": ended with status " + std::to_string(status)};
+  }
+  return text;
+}
+
+}  // namespace
+
+std::filesystem::path default_peers() {
+  std::error_code error;
+  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) return {};
+  const std::filesystem::path path = self.parent_path() / "tests/bench/boxtree_peers";
+  return std::filesystem::exists(path, error) ? path : std::filesystem::path();
+}
+
+Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
+                                       const std::vector<std::string>& arguments, bool quiet) {
+  std::vector<std::string> command = {program.string()};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  command.emplace_back("--json");
+  const Result<std::string> text = output_of(command, quiet);
+  if (!text) return text.error();
+  std::vector<PeerRow> rows;
+  try {
+    const auto document = nlohmann::json::parse(*text);
+    for (const auto& row : document.at("rows")) {
+      rows.push_back({row.at("mesh"), row.at("library"), row.at("variant"), row.at("metric"),
+                      row.at("value"), row.at("unit")});
+    }
+  } catch (const nlohmann::json::exception& error) {
+    return Error{Errc::kInternal, program.string() + ": " + error.what()};
+  }
+  return rows;
+}
+
+}  // namespace boxtree::cooker

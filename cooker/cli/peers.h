@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// boxtree_peers as a program of its own: the original and other libraries are no part of the
+// product.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/report/paper_tables.h>
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+/// The measuring program of a build folder, which an installation does not have; empty then.
+[[nodiscard]] std::filesystem::path default_peers();
+
+/// Runs `program` with `arguments` and --json. Its messages go where ours do unless `quiet`.
+/// Errors: kFileUnreadable when it does not start; kInternal when it fails or prints no rows.
+Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
+                                       const std::vector<std::string>& arguments, bool quiet);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,351 @@
+// SPDX-License-Identifier: MIT
+// One store of geometry after the other: its candidates are counted by the search of the cooker,
+// then asked here.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/choose/search.h>
+#include <boxtree/cooker/report/measure.h>
+#include <boxtree/cooker/report/tradeoff.h>
+#include <boxtree/cooker/write/file_writer.h>
+#include <boxtree/runtime/boxtree.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::array kFullSweep = {8, 10, 12, 14, 16, 18, 21, 24, 27, 30};
+constexpr std::array kQuickSweep = {10, 14, 18, 24};
+
+struct Effort {
+  WorkloadSize timed;
+  WorkloadSize answered;
+  std::size_t runs;
+};
+constexpr Effort kFullEffort{{20'000, 4'000, 4'000, 64}, {200'000, 0, 20'000, 0}, 7};
+constexpr Effort kQuickEffort{{2'000, 400, 400, 16}, {20'000, 0, 2'000, 0}, 3};
+
+double nanoseconds_since(Clock::time_point start) {
+  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+}
+
+// What reading the clock twice takes, in nanoseconds: it is in every time of a single question.
+double clock_cost() {
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 1000; ++i) least = std::min(least, nanoseconds_since(Clock::now()));
+  return least;
+}
+
+template <class Question, class Ask>
+KindTimes time_each(const std::vector<Question>& questions, std::size_t runs, Status& status,
+                    Ask ask) {
+  if (questions.empty()) return {};
+  const double clock = clock_cost();
+  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const Clock::time_point start = Clock::now();
+      const Errc error = ask(questions[i]);
+      least[i] = std::min(least[i], std::max(0.0, nanoseconds_since(start) - clock));
+      if (error != Errc::kOk && status.ok()) status = error;
+    }
+  }
+  std::sort(least.begin(), least.end());
+  return {least[least.size() / 2], least[(least.size() - 1) * 99 / 100],
+          std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size())};
+}
+
+Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& questions,
+                                                      std::size_t runs) {
+  Status status;
+  const Pose here = Pose::Identity();
+  const std::array<KindTimes, kTimedKinds> times = {
+      time_each(questions.rays, runs, status,
+                [&](const Ray& ray) { return closest_hit(tree, ray).code(); }),
+      time_each(questions.boxes, runs, status,
+                [&](const Eigen::AlignedBox3d& box) {
+                  return overlap_box(tree, box, [](const FaceRef&) { return true; }).code();
+                }),
+      time_each(questions.points, runs, status,
+                [&](const Eigen::Vector3d& point) { return closest_point(tree, point).code(); }),
+      time_each(questions.poses, runs, status,
+                [&](const Pose& pose) { return first_contact(tree, here, tree, pose).code(); })};
+  if (!status) return status.error();
+  return times;
+}
+
+// Of exact geometry or of another: what is compared.
+struct Answers {
+  std::vector<double> ray_lengths;  // to the hit, object space; infinite without one
+  std::vector<double> distances;
+};
+
+Result<Answers> answers_of(const Tree& tree, const Workload& questions) {
+  Answers answers;
+  answers.ray_lengths.reserve(questions.rays.size());
+  answers.distances.reserve(questions.points.size());
+  for (const Ray& ray : questions.rays) {
+    const auto hit = closest_hit(tree, ray);
+    if (!hit) return hit.error();
+    answers.ray_lengths.push_back(*hit ? (*hit)->t * ray.direction.norm()
+                                       : std::numeric_limits<double>::infinity());
+  }
+  for (const Eigen::Vector3d& point : questions.points) {
+    const auto closest = closest_point(tree, point);
+    if (!closest) return closest.error();
+    answers.distances.push_back(*closest ? (*closest)->distance
+                                         : std::numeric_limits<double>::infinity());
+  }
+  return answers;
+}
+
+AnswerErrors compare(const Answers& found, const Answers& exact, double diagonal) {
+  AnswerErrors errors;
+  std::vector<double> ray_errors;
+  std::size_t flips = 0;
+  for (std::size_t i = 0; i < exact.ray_lengths.size(); ++i) {
+    const bool hits = std::isfinite(found.ray_lengths[i]);
+    const bool should = std::isfinite(exact.ray_lengths[i]);
+    if (hits != should) ++flips;
+    if (hits && should) {
+      ray_errors.push_back(std::abs(found.ray_lengths[i] - exact.ray_lengths[i]) / diagonal);
+    }
+  }
+  std::vector<double> distance_errors;
+  for (std::size_t i = 0; i < exact.distances.size(); ++i) {
+    distance_errors.push_back(std::abs(found.distances[i] - exact.distances[i]) / diagonal);
+    errors.distance_max = std::max(errors.distance_max, distance_errors.back());
+  }
+  if (!ray_errors.empty()) errors.ray_median = median(std::move(ray_errors));
+  if (!distance_errors.empty()) errors.distance_median = median(std::move(distance_errors));
+  if (!exact.ray_lengths.empty()) {
+    errors.flips_per_million =
+        1e6 * static_cast<double>(flips) / static_cast<double>(exact.ray_lengths.size());
+  }
+  return errors;
+}
+
+// Root of the mean square of what vertices move on a grid, object space.
+double rms_move(const SourceMesh& mesh, const QuantisedMesh& quantised) {
+  double sum = 0;
+  const std::size_t count = mesh.positions.size();
+  const Eigen::Vector3d origin(quantised.origin[0], quantised.origin[1], quantised.origin[2]);
+  const double step = std::ldexp(1.0, quantised.step_exponent);
+  for (std::size_t i = 0; i < count; ++i) {
+    sum += (quantised.mesh.positions[i] * step + origin - mesh.positions[i]).squaredNorm();
+  }
+  return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
+}
+
+ByteParts bytes_of(const EncodedTree& tree) {
+  ByteParts parts{tree.nodes.bytes.size(), tree.geometry.vertices.size(),
+                  tree.geometry.corners.size(), tree.geometry.face_ids.size(), 0};
+  parts.rest = serialize(std::span(&tree, 1)).size() - parts.total();
+  return parts;
+}
+
+// One mesh: see measure_tradeoff.
+class Measurement {
+ public:
+  Measurement(const SourceMesh& mesh, const TradeoffOptions& options, const ShareProgress& progress)
+      : mesh_(mesh),
+        options_(options),
+        progress_(progress),
+        effort_(options.quick ? kQuickEffort : kFullEffort),
+        timed_(make_workload(bounds_of(mesh), effort_.timed)),
+        answered_(make_workload(bounds_of(mesh), effort_.answered, 2)) {
+    out_.name = mesh.name;
+    out_.triangles = mesh.triangle_count();
+    out_.vertices = mesh.positions.size();
+    out_.diagonal = bounds_of(mesh).diagonal().norm();
+    out_.timed = options.times;
+    const std::uint64_t coordinate = mesh.positions.precision == Precision::kF64 ? 8 : 4;
+    out_.source.vertices = out_.vertices * 3 * coordinate;
+    out_.source.corners = out_.triangles * 3 * 4;
+    const std::size_t grids = grid_sweep(options.quick).size();
+    steps_ = kCodecs.size() + 2 * grids;
+  }
+
+  Result<MeshTradeoff> run() {
+    if (Status status = measure_store({}); !status) return status.error();
+    for (const int bits : grid_sweep(options_.quick)) {
+      const Status status = measure_store(bits);
+      // Too fine for positions so far from zero: there is no such grid.
+      if (!status && status.error().code != Errc::kMeshUnsupported) return status.error();
+    }
+    enter_extra_work();
+    return std::move(out_);
+  }
+
+ private:
+  void tell(const std::string& what) {
+    if (progress_) {
+      progress_(mesh_.name + ": " + what,
+                static_cast<double>(std::min(step_, steps_)) / static_cast<double>(steps_));
+    }
+  }
+
+  // All candidates with exact geometry, or those of the wide codecs on a grid.
+  Status measure_store(std::optional<int> grid_bits) {
+    tell(grid_bits ? fmt::format("grid of {} bits", *grid_bits) : "exact geometry");
+    SearchOptions search;
+    search.try_all = !grid_bits;
+    search.geometry = grid_bits ? GeometryId::kGrid : GeometryId::kExact;
+    double rms = 0;
+    double bound = 0;
+    if (grid_bits) {
+      search.grid.bits = *grid_bits;
+      const Result<Grid> grid = choose_grid(bounds_of(mesh_), search.grid);
+      if (!grid) return grid.error();
+      rms = rms_move(mesh_, quantise(mesh_, *grid));
+      // A vertex moves at most half a step along each axis.
+      bound = std::sqrt(3.0) / 2 * std::ldexp(1.0, grid->step_exponent);
+    }
+    Result<TriedTree> tried = try_encodings(mesh_, search);
+    if (!tried) return tried.error();
+    const std::vector<Candidate>& candidates = tried->contest.candidates;
+    if (!grid_bits) {
+      if (Status status = find_exact_answers(*tried); !status) return status;
+    }
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      if (grid_bits && !is_wide(candidates[i].codec)) continue;
+      TradePoint point = point_of(candidates[i]);
+      point.grid_bits = grid_bits.value_or(0);
+      point.surface_rms = in_diagonals(rms);
+      point.surface_bound = in_diagonals(bound);
+      tell("ask " + point.name());
+      if (Status status = ask(*tried, i, point); !status) return status;
+      out_.points.push_back(std::move(point));
+      ++step_;
+    }
+    return {};
+  }
+
+  [[nodiscard]] double in_diagonals(double length) const {
+    return out_.diagonal > 0 ? length / out_.diagonal : 0;
+  }
+
+  [[nodiscard]] TradePoint point_of(const Candidate& candidate) const {
+    TradePoint point;
+    point.codec = candidate.codec;
+    point.geometry = candidate.geometry;
+    point.gates = candidate.gates;
+    point.work = candidate.work;
+    point.reference = is_wide(candidate.codec) ? CodecId::kWide8 : CodecId::kPlainF32;
+    point.surface_max = in_diagonals(candidate.max_vertex_error);
+    point.modelled = candidate.cost;
+    return point;
+  }
+
+  // The encoded tree of a candidate; the same memory as the next one's.
+  static EncodedTree& assemble(TriedTree& tried, std::size_t candidate) {
+    EncodedTree& tree = tried.families[tried.nodes[candidate].family];
+    tree.nodes = std::move(tried.nodes[candidate].nodes);
+    return tree;
+  }
+  static void take_apart(TriedTree& tried, std::size_t candidate) {
+    tried.nodes[candidate].nodes = std::move(tried.families[tried.nodes[candidate].family].nodes);
+  }
+
+  Status find_exact_answers(TriedTree& tried) {
+    const std::vector<Candidate>& candidates = tried.contest.candidates;
+    const auto found = std::find_if(candidates.begin(), candidates.end(), [](const Candidate& c) {
+      return c.codec == CodecId::kPlainF32;
+    });
+    const auto i = static_cast<std::size_t>(found - candidates.begin());
+    if (found == candidates.end() || !found->gates.pass()) {
+      return Error{Errc::kInternal, mesh_.name + ": nothing to compare answers with"};
+    }
+    const EncodedTree& encoded = assemble(tried, i);
+    const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
+    if (!tree) return tree.error();
+    Result<Answers> answers = answers_of(*tree, answered_);
+    if (!answers) return answers.error();
+    exact_ = std::move(*answers);
+    take_apart(tried, i);
+    return {};
+  }
+
+  Status ask(TriedTree& tried, std::size_t candidate, TradePoint& point) {
+    const EncodedTree& encoded = assemble(tried, candidate);
+    point.bytes = bytes_of(encoded);
+    if (!point.gates.pass()) return {};  // listed as failed, but it has no answers to look at
+    const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
+    if (!tree) return tree.error();
+    const Result<Answers> answers = answers_of(*tree, answered_);
+    if (!answers) return answers.error();
+    point.answers = compare(*answers, exact_, out_.diagonal > 0 ? out_.diagonal : 1);
+    if (options_.times) {
+      const auto times = time_kinds(*tree, timed_, effort_.runs);
+      if (!times) return times.error();
+      point.times = *times;
+    }
+    return {};
+  }
+
+  void enter_extra_work() {
+    for (TradePoint& point : out_.points) {
+      const auto reference =
+          std::find_if(out_.points.begin(), out_.points.end(), [&](const TradePoint& other) {
+            return other.codec == point.reference && other.geometry == GeometryId::kExact;
+          });
+      const auto extra = [](double work, double of_reference) {
+        return of_reference > 0 ? work / of_reference - 1 : 0;
+      };
+      for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+        point.extra_nodes[kind] = extra(point.work[kind].nodes, reference->work[kind].nodes);
+        point.false_leaf_tests[kind] = extra(point.work[kind].leaves, reference->work[kind].leaves);
+      }
+    }
+  }
+
+  const SourceMesh& mesh_;
+  const TradeoffOptions& options_;
+  const ShareProgress& progress_;
+  const Effort& effort_;
+  const Workload timed_;
+  const Workload answered_;
+  Answers exact_;
+  std::size_t step_ = 0;
+  std::size_t steps_ = 1;
+  MeshTradeoff out_;
+};
+
+}  // namespace
+
+std::string TradePoint::name() const {
+  return grid_bits == 0 ? fmt::format("{}, exact", codec_name(codec))
+                        : fmt::format("{}, grid {}", codec_name(codec), grid_bits);
+}
+
+std::span<const int> grid_sweep(bool quick) noexcept {
+  return quick ? std::span<const int>(kQuickSweep) : std::span<const int>(kFullSweep);
+}
+
+Result<MeshTradeoff> measure_tradeoff(const SourceMesh& mesh, const TradeoffOptions& options,
+                                      const ShareProgress& progress) {
+  if (mesh.faces.empty()) return Error{Errc::kNoFaces, mesh.name};
+  return Measurement(mesh, options, progress).run();
+}
+
+std::vector<std::size_t> pareto_front(std::span<const TwoCosts> points) {
+  std::vector<std::size_t> order(points.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return points[a].x != points[b].x ? points[a].x < points[b].x : points[a].y < points[b].y;
+  });
+  std::vector<std::size_t> front;
+  for (const std::size_t i : order) {
+    if (front.empty() || points[i].y < points[front.back()].y) front.push_back(i);
+  }
+  return front;
+}
+
+}  // namespace boxtree::cooker

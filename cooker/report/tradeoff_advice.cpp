@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// Recommendations are minima over the points; words are filled in from the same figures.
+#include <algorithm>
+#include <array>
+#include <functional>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/report/tradeoff_advice.h>
+
+namespace boxtree::cooker {
+namespace {
+
+constexpr double kNone = std::numeric_limits<double>::infinity();
+
+// The first point with the least score; nothing when all are infinite.
+std::optional<std::size_t> least(const MeshTradeoff& mesh,
+                                 const std::function<double(std::size_t)>& score) {
+  std::optional<std::size_t> best;
+  double best_score = kNone;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    if (!mesh.points[i].gates.pass()) continue;
+    const double of_point = score(i);
+    if (of_point < best_score) {
+      best = i;
+      best_score = of_point;
+    }
+  }
+  return best;
+}
+
+std::string size_in_words(std::uint64_t bytes) {
+  constexpr double kKibi = 1024;
+  const auto value = static_cast<double>(bytes);
+  if (value < kKibi) return fmt::format("{} bytes", bytes);
+  if (value < kKibi * kKibi) return fmt::format("{:.1f} KiB", value / kKibi);
+  return fmt::format("{:.2f} MiB", value / (kKibi * kKibi));
+}
+
+PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::string& role,
+                    double slowdown) {
+  const TradePoint& point = mesh.points[place];
+  const std::uint64_t bytes = point.bytes.total();
+  const std::string surface = point.surface_max == 0
+                                  ? "No position changes by a single bit."
+                                  : fmt::format("No point of the surface moves by more than {}.",
+                                                move_in_words(mesh, point.surface_max));
+  const auto time = [&](std::size_t kind) { return time_in_words(time_of(mesh, point, kind)); };
+  std::string times =
+      fmt::format("a ray takes {}, a small box {}, a closest point {}, {} {}", time(0), time(1),
+                  time(2), mesh.timed ? "a first contact" : "all contacts", time(3));
+  if (mesh.timed) {
+    times = fmt::format("In the median {} (one in a hundred takes longer than {}, {}, {} and {}).",
+                        times, time_in_words(point.times[0].p99_ns),
+                        time_in_words(point.times[1].p99_ns), time_in_words(point.times[2].p99_ns),
+                        time_in_words(point.times[3].p99_ns));
+  } else {
+    times = "By its counted work " + times + ".";
+  }
+  return {
+      role + ": " + point.name() + ".",
+      fmt::format("{:.2f} bytes per triangle, {} in all: {:.0f} % of the source arrays, tree "
+                  "included. {} {} That is {:.2f} times the best time of each kind, on average. "
+                  "Make it with: boxtree cook MESH -o FILE.bxt {}",
+                  mesh.per_triangle(bytes), size_in_words(bytes),
+                  100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
+                  surface, times, slowdown, cook_options(point))};
+}
+
+}  // namespace
+
+double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind) {
+  return mesh.timed ? point.times[kind].median_ns : point.modelled[kind];
+}
+
+std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
+  std::array<double, kTimedKinds> fastest;
+  fastest.fill(kNone);
+  for (const TradePoint& point : mesh.points) {
+    if (!point.gates.pass()) continue;
+    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
+      const double time = time_of(mesh, point, kind);
+      if (time > 0) fastest[kind] = std::min(fastest[kind], time);
+    }
+  }
+  std::vector<double> slower;
+  for (const TradePoint& point : mesh.points) {
+    double sum = 0;
+    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
+      // Shorter than the clock tells: as fast as the fastest.
+      const double time = time_of(mesh, point, kind);
+      sum += time > 0 ? time / fastest[kind] : 1;
+    }
+    slower.push_back(sum / kTimedKinds);
+  }
+  return slower;
+}
+
+std::optional<Advice> advise(const MeshTradeoff& mesh) {
+  const std::vector<double> slower = slowdowns_of(mesh);
+  const auto bytes = [&](std::size_t i) {
+    return static_cast<double>(mesh.points[i].bytes.total());
+  };
+  const auto moved = [&](std::size_t i) { return mesh.points[i].surface_max; };
+  const auto smallest =
+      least(mesh, [&](std::size_t i) { return moved(i) <= kCoarse ? bytes(i) : kNone; });
+  const auto balanced =
+      least(mesh, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
+  const auto fastest = least(mesh, [&](std::size_t i) { return slower[i]; });
+  const auto exact = least(mesh, [&](std::size_t i) {
+    return mesh.points[i].geometry == GeometryId::kExact ? bytes(i) : kNone;
+  });
+  if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
+  return Advice{*smallest, *balanced, *fastest, *exact};
+}
+
+std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
+  const std::optional<Advice> advice = advise(mesh);
+  if (!advice) return {{"No encoding passed its gates.", "Use none, and report this as a defect."}};
+  const std::vector<double> slower = slowdowns_of(mesh);
+  struct Role {
+    std::string name;
+    std::size_t place;
+  };
+  const std::array roles = {
+      Role{"Balanced, for most uses (surface within a millionth of the diagonal)",
+           advice->balanced},
+      Role{"Smallest (surface within a ten-thousandth of the diagonal)", advice->smallest},
+      Role{"Fastest", advice->fastest},
+      Role{"Smallest with every position bit for bit", advice->smallest_exact}};
+  static_assert(kFine == 1e-6 && kCoarse == 1e-4, "as the words say");
+  // An encoding that is best at two things is told of once.
+  std::vector<Role> merged;
+  for (const Role& role : roles) {
+    const auto same = std::find_if(merged.begin(), merged.end(),
+                                   [&](const Role& r) { return r.place == role.place; });
+    if (same == merged.end()) {
+      merged.push_back(role);
+    } else {
+      same->name += "; also: " + role.name;
+    }
+  }
+  std::vector<PageConclusion> words;
+  for (const Role& role : merged) {
+    words.push_back(told(mesh, role.place, role.name, slower[role.place]));
+  }
+  return words;
+}
+
+std::string cook_options(const TradePoint& point) {
+  return fmt::format(
+      "--codec {} {}", codec_name(point.codec),
+      point.grid_bits == 0 ? "--exact" : fmt::format("--grid-bits {}", point.grid_bits));
+}
+
+std::string time_in_words(double nanoseconds) {
+  if (nanoseconds < 1e3) return fmt::format("{:.0f} ns", nanoseconds);
+  if (nanoseconds < 1e6) return fmt::format("{:.3g} µs", nanoseconds / 1e3);
+  return fmt::format("{:.3g} ms", nanoseconds / 1e6);
+}
+
+std::string move_in_words(const MeshTradeoff& mesh, double share) {
+  return share == 0 ? "0"
+                    : fmt::format("{:.2g} of the diagonal ({:.2g} units of the mesh)", share,
+                                  share * mesh.diagonal);
+}
+
+}  // namespace boxtree::cooker

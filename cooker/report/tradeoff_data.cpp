@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+// Figures in, text out: no figure is made here.
+#include <algorithm>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <sys/utsname.h>
+#include <thread>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/report/tradeoff_advice.h>
+#include <boxtree/cooker/report/tradeoff_data.h>
+#include <boxtree/cooker/version.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// What follows the first line that begins with `key` and a colon.
+std::string line_of(const char* path, const std::string& key) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    const std::size_t colon = line.find(':');
+    if (line.rfind(key, 0) != 0 || colon == std::string::npos) continue;
+    const std::size_t first = line.find_first_not_of(" \t", colon + 1);
+    return first == std::string::npos ? "" : line.substr(first);
+  }
+  return {};
+}
+
+std::string compiler() {
+#if defined(__clang__)
+  std::string name = "Clang " __clang_version__;
+#elif defined(__GNUC__)
+  std::string name = "GCC " __VERSION__;
+#else
+  std::string name = "unknown";
+#endif
+#ifdef __OPTIMIZE__
+  name += ", optimised";
+#else
+  name += ", not optimised";
+#endif
+#ifndef NDEBUG
+  name += ", with assertions";
+#endif
+  return name;
+}
+
+std::string text_of(const Json& value) {
+  if (value.is_null()) return {};
+  if (value.is_string()) return value.get<std::string>();
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (value.is_number()) return fmt::format("{:g}", value.get<double>());
+  return value.dump();
+}
+
+std::string member(const Json& row, const char* name) {
+  return row.contains(name) ? text_of(row[name]) : std::string();
+}
+
+Json to_json(const ByteParts& bytes) {
+  return {{"nodes", bytes.nodes},       {"vertices", bytes.vertices}, {"corners", bytes.corners},
+          {"face_ids", bytes.face_ids}, {"rest", bytes.rest},         {"total", bytes.total()}};
+}
+
+Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
+  Json work;
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    work[kQueryNames[kind]] = {{"nodes", point.work[kind].nodes},
+                               {"leaves", point.work[kind].leaves},
+                               {"extra_nodes", point.extra_nodes[kind]},
+                               {"false_leaf_tests", point.false_leaf_tests[kind]},
+                               {"modelled_ns", point.modelled[kind]}};
+  }
+  Json times = nullptr;
+  if (mesh.timed) {
+    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
+      times[kTimedNames[kind]] = {{"median_ns", point.times[kind].median_ns},
+                                  {"p99_ns", point.times[kind].p99_ns},
+                                  {"mean_ns", point.times[kind].mean_ns}};
+    }
+  }
+  return {
+      {"name", point.name()},
+      {"codec", codec_name(point.codec)},
+      {"geometry", geometry_name(point.geometry)},
+      {"grid_bits", point.grid_bits == 0 ? Json(nullptr) : Json(point.grid_bits)},
+      {"bytes", to_json(point.bytes)},
+      {"bytes_per_triangle", mesh.per_triangle(point.bytes.total())},
+      {"gates",
+       {{"pass", point.gates.pass()},
+        {"missed", point.gates.missed},
+        {"escapes", point.gates.escapes},
+        {"certificate", point.gates.certificate}}},
+      {"work_reference", codec_name(point.reference)},
+      {"work", work},
+      {"surface",
+       {{"max", point.surface_max}, {"rms", point.surface_rms}, {"bound", point.surface_bound}}},
+      {"answers",
+       {{"distance_max", point.answers.distance_max},
+        {"distance_median", point.answers.distance_median},
+        {"ray_median", point.answers.ray_median},
+        {"flips_per_million", point.answers.flips_per_million}}},
+      {"times", times}};
+}
+
+Json to_json(const MeshTradeoff& mesh) {
+  Json json = {{"mesh", mesh.name},
+               {"triangles", mesh.triangles},
+               {"vertices", mesh.vertices},
+               {"diagonal", mesh.diagonal},
+               {"source_bytes", to_json(mesh.source)}};
+  json["advice"] = nullptr;
+  if (const auto advice = advise(mesh)) {
+    json["advice"] = {{"balanced", mesh.points[advice->balanced].name()},
+                      {"smallest", mesh.points[advice->smallest].name()},
+                      {"fastest", mesh.points[advice->fastest].name()},
+                      {"smallest_exact", mesh.points[advice->smallest_exact].name()}};
+  }
+  json["points"] = Json::array();
+  for (const TradePoint& point : mesh.points) json["points"].push_back(to_json(mesh, point));
+  return json;
+}
+
+// Quoted where a comma, a quote or a line end would be taken for the table's own.
+std::string cell(const std::string& text) {
+  if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"') quoted += '"';
+    quoted += c;
+  }
+  return quoted + '"';
+}
+
+}  // namespace
+
+Surroundings surroundings(const std::string& command) {
+  Surroundings around;
+  around.processor = line_of("/proc/cpuinfo", "model name");
+  if (around.processor.empty()) around.processor = "unknown";
+  around.threads = std::to_string(std::thread::hardware_concurrency());
+  utsname system{};
+  if (::uname(&system) == 0) {
+    around.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
+  }
+  around.compiler = compiler();
+  around.version = kVersion;
+  double load = 0;
+  if (::getloadavg(&load, 1) == 1) around.load = fmt::format("{:.2f}", load);
+  around.command = command;
+  return around;
+}
+
+Result<IncludedResults> read_results(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) return Error{Errc::kFileUnreadable, path.string()};
+  const Json document = Json::parse(text, nullptr, false);
+  const bool has_rows = document.is_object() && document.contains("rows");
+  const Json& rows = has_rows ? document["rows"] : document;
+  const auto is_row = [](const Json& row) { return row.is_object(); };
+  if (!rows.is_array() || !std::all_of(rows.begin(), rows.end(), is_row)) {
+    return Error{Errc::kFileUnreadable, path.string() + ": no JSON array of rows"};
+  }
+  IncludedResults results;
+  results.title = has_rows ? member(document, "title") : "";
+  if (results.title.empty()) results.title = path.stem().string();
+  results.text = has_rows ? member(document, "text") : "";
+  for (const Json& row : rows) {
+    results.rows.push_back({member(row, "id"), member(row, "what"), member(row, "figure"),
+                            member(row, "limit"), member(row, "pass")});
+  }
+  return results;
+}
+
+std::string to_json(const TradeoffReport& report) {
+  const Surroundings& around = report.surroundings;
+  Json json = {{"command", around.command},     {"version", around.version},
+               {"processor", around.processor}, {"threads", around.threads},
+               {"system", around.system},       {"compiler", around.compiler},
+               {"load", around.load},           {"quick", report.quick}};
+  json["meshes"] = Json::array();
+  for (const MeshTradeoff& mesh : report.meshes) json["meshes"].push_back(to_json(mesh));
+  json["peers"] = Json::array();
+  for (const PeerRow& row : report.peers) {
+    json["peers"].push_back({{"mesh", row.mesh},
+                             {"library", row.library},
+                             {"variant", row.variant},
+                             {"metric", row.metric},
+                             {"value", row.value},
+                             {"unit", row.unit}});
+  }
+  json["included"] = Json::array();
+  for (const IncludedResults& results : report.included) {
+    Json rows = Json::array();
+    for (const IncludedRow& row : results.rows) {
+      rows.push_back({{"id", row.id},
+                      {"what", row.what},
+                      {"figure", row.figure},
+                      {"limit", row.limit},
+                      {"pass", row.pass}});
+    }
+    json["included"].push_back({{"title", results.title}, {"text", results.text}, {"rows", rows}});
+  }
+  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string to_csv(const TradeoffReport& report) {
+  std::string out =
+      "mesh,triangles,codec,geometry,grid_bits,bytes_nodes,bytes_vertices,bytes_corners,"
+      "bytes_face_ids,bytes_rest,bytes_total,bytes_per_triangle,pass,missed,escapes,surface_max,"
+      "surface_rms,surface_bound,distance_max,distance_median,ray_median,flips_per_million";
+  for (const char* kind : kQueryNames) {
+    out += fmt::format(",{0}_nodes,{0}_leaves,{0}_extra_nodes,{0}_false_leaf_tests,{0}_modelled_ns",
+                       kind);
+  }
+  for (const char* kind : kTimedNames) out += fmt::format(",{0}_median_ns,{0}_p99_ns", kind);
+  out += '\n';
+  for (const MeshTradeoff& mesh : report.meshes) {
+    for (const TradePoint& point : mesh.points) {
+      const ByteParts& b = point.bytes;
+      out += fmt::format(
+          "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}", cell(mesh.name),
+          mesh.triangles, codec_name(point.codec), geometry_name(point.geometry),
+          point.grid_bits == 0 ? "" : std::to_string(point.grid_bits), b.nodes, b.vertices,
+          b.corners, b.face_ids, b.rest, b.total(), mesh.per_triangle(b.total()),
+          point.gates.pass() ? 1 : 0, point.gates.missed, point.gates.escapes, point.surface_max,
+          point.surface_rms, point.surface_bound, point.answers.distance_max,
+          point.answers.distance_median, point.answers.ray_median, point.answers.flips_per_million);
+      for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+        out += fmt::format(",{},{},{},{},{}", point.work[kind].nodes, point.work[kind].leaves,
+                           point.extra_nodes[kind], point.false_leaf_tests[kind],
+                           point.modelled[kind]);
+      }
+      for (const KindTimes& times : point.times) {
+        out += mesh.timed ? fmt::format(",{},{}", times.median_ns, times.p99_ns) : ",,";
+      }
+      out += '\n';
+    }
+  }
+  return out;
+}
+
+}  // namespace boxtree::cooker

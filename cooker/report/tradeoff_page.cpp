@@ -1,0 +1,453 @@
+// SPDX-License-Identifier: MIT
+// First what to use, then why: plots, then the tables behind them, then how it was measured.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/report/tradeoff_advice.h>
+#include <boxtree/cooker/report/tradeoff_page.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Row = std::vector<std::string>;
+
+// Our own first, the largest trees last.
+constexpr std::array kSeriesOrder = {CodecId::kWide8,    CodecId::kWide4,     CodecId::kPlainF32,
+                                     CodecId::kPlainF16, CodecId::kPackedF32, CodecId::kPackedF16,
+                                     CodecId::kDedup,    CodecId::kPackedF64};
+static_assert(kSeriesOrder.size() == kCodecs.size());
+
+// How kinds are called on the page; the metric of boxtree_peers; its unit in nanoseconds.
+struct KindWords {
+  const char* title;
+  const char* question;
+  const char* peer_metric;
+  double peer_unit_ns;
+};
+constexpr std::array<KindWords, kTimedKinds> kKinds = {{
+    {"Rays", "closest hit of a ray", "ray_median_ns", 1},
+    {"Boxes", "all faces in a box of 5 % of the diagonal", "box_median_ns", 1},
+    {"Closest points", "closest point of the surface", "point_median_ns", 1},
+    {"Contacts", "first contact of the mesh and its copy", "pair_first_median_us", 1e3},
+}};
+
+std::string figure(double value) {
+  return value == 0 ? "0" : fmt::format("{:.2g}", value);
+}
+std::string percent(double share) {
+  return fmt::format("{:+.1f} %", 100 * share);
+}
+
+// The area of a mark grows with the bytes; small ones can still be seen.
+double radius_of(double bytes_per_triangle) {
+  return std::clamp(1.2 * std::sqrt(bytes_per_triangle), 2.5, 16.0);
+}
+
+// What one library's variant said of a mesh.
+const double* peer_figure(const TradeoffReport& report, const MeshTradeoff& mesh, const PeerRow& of,
+                          const std::string& metric) {
+  for (const PeerRow& row : report.peers) {
+    if (row.mesh == mesh.name && row.library == of.library && row.variant == of.variant &&
+        row.metric == metric) {
+      return &row.value;
+    }
+  }
+  return nullptr;
+}
+
+// One row of each library and variant.
+std::vector<PeerRow> peers_of(const TradeoffReport& report, const MeshTradeoff& mesh) {
+  std::vector<PeerRow> peers;
+  for (const PeerRow& row : report.peers) {
+    const bool is_known = std::any_of(peers.begin(), peers.end(), [&](const PeerRow& other) {
+      return other.library == row.library && other.variant == row.variant;
+    });
+    if (row.mesh == mesh.name && !is_known) peers.push_back(row);
+  }
+  return peers;
+}
+
+using ErrorOf = std::function<double(const TradePoint&)>;
+
+// A series of each codec over its grids, then the front; exact points last, where curves of bytes
+// end.
+std::vector<PagePlot::Series> codec_series(const MeshTradeoff& mesh, std::size_t kind,
+                                           const ErrorOf& x_of) {
+  std::vector<PagePlot::Series> all;
+  for (const CodecId codec : kSeriesOrder) {
+    PagePlot::Series series{std::string(codec_name(codec)), {}, PagePlot::Joined::kCurve};
+    const auto add = [&](const TradePoint& point) {
+      const double each = mesh.per_triangle(point.bytes.total());
+      const double time = time_of(mesh, point, kind);
+      series.points.push_back(
+          {x_of(point), time, point.grid_bits == 0 ? "" : std::to_string(point.grid_bits),
+           radius_of(each),
+           fmt::format("{}: {:.2f} bytes per triangle, {}, surface moved by {:.2g}", point.name(),
+                       each, time_in_words(time), point.surface_max)});
+    };
+    for (const bool on_grid : {true, false}) {
+      for (const TradePoint& point : mesh.points) {
+        const bool belongs = point.codec == codec && point.gates.pass();
+        if (belongs && (point.grid_bits != 0) == on_grid) add(point);
+      }
+    }
+    if (!series.points.empty()) all.push_back(std::move(series));
+  }
+  return all;
+}
+
+PagePlot::Series front_of(const std::vector<PagePlot::Series>& all, AxisScale x_scale) {
+  std::vector<TwoCosts> costs;
+  for (const PagePlot::Series& series : all) {
+    for (const PagePlot::Point& point : series.points) {
+      // What has no logarithm stands at one place, so that one is as good as another.
+      const double x = x_scale == AxisScale::kLogarithmic ? std::max(point.x, 0.0) : point.x;
+      if (point.y > 0) costs.push_back({x, point.y});
+    }
+  }
+  PagePlot::Series front{
+      "best so far (Pareto front)", {}, PagePlot::Joined::kStaircase, kPlotColours, false};
+  for (const std::size_t i : pareto_front(costs)) {
+    front.points.push_back({costs[i].x, costs[i].y, "", 0});
+  }
+  return front;
+}
+
+PagePlot kind_plot(const TradeoffReport& report, const MeshTradeoff& mesh, std::size_t kind,
+                   bool against_bytes) {
+  const bool is_distance = kind == 2;
+  const std::string time = mesh.timed ? "median time, ns" : "time by counted work, ns";
+  PagePlot plot;
+  plot.x_scale = plot.y_scale = AxisScale::kLogarithmic;
+  plot.y_title = time;
+  plot.zero_name = "exact";
+  if (against_bytes) {
+    plot.title = fmt::format("{}: bytes against time", kKinds[kind].title);
+    plot.x_title = "bytes per triangle, whole file";
+  } else {
+    plot.title = fmt::format("{}: error against time", kKinds[kind].title);
+    plot.x_title = is_distance ? "largest distance error, share of the diagonal"
+                               : "largest move of the surface, share of the diagonal";
+  }
+  plot.series = codec_series(mesh, kind, [&](const TradePoint& point) {
+    if (against_bytes) return mesh.per_triangle(point.bytes.total());
+    return is_distance ? point.answers.distance_max : point.surface_max;
+  });
+  PagePlot::Series others{"other libraries", {}, PagePlot::Joined::kNot, kPlotColours};
+  for (const PeerRow& peer : peers_of(report, mesh)) {
+    const double* const ns = peer_figure(report, mesh, peer, kKinds[kind].peer_metric);
+    const double* const bytes = peer_figure(report, mesh, peer, "total_bytes_per_tri");
+    if (ns == nullptr || bytes == nullptr) continue;
+    double x = *bytes;
+    if (!against_bytes) {
+      // They keep the vertices as they are. Their distances are told in shares of four diagonals.
+      const double* const error = peer_figure(report, mesh, peer, "point_error");
+      x = is_distance && error != nullptr ? 4 * *error : 0;
+    }
+    const double value = *ns * kKinds[kind].peer_unit_ns;
+    const std::string name = peer.library + " " + peer.variant;
+    others.points.push_back(
+        {x, value, name, radius_of(*bytes),
+         fmt::format("{}: {:.2f} bytes per triangle, {}", name, *bytes, time_in_words(value))});
+  }
+  const PagePlot::Series front = front_of(plot.series, plot.x_scale);
+  if (!others.points.empty()) plot.series.push_back(others);
+  plot.series.push_back(front);
+  return plot;
+}
+
+// All contacts are counted, and only then is their time modelled: no times, no fourth measured
+// kind.
+std::string kind_question(const MeshTradeoff& mesh, std::size_t kind) {
+  return kind == 3 && !mesh.timed ? "all contacts of the mesh and its copy" : kKinds[kind].question;
+}
+
+PageSection kind_section(const TradeoffReport& report, const MeshTradeoff& mesh, std::size_t kind) {
+  PageSection section;
+  section.title = fmt::format("{}: {}", mesh.name, kKinds[kind].title);
+  section.text = fmt::format(
+      "The question: {}. Lower is faster, further left is more faithful or smaller, a larger mark "
+      "is more bytes per triangle. A curve follows one codec over its grids; the number at a mark "
+      "is the grid's bits. The dashed line is the Pareto front: nothing of ours lies below and to "
+      "the left of it.",
+      kind_question(mesh, kind));
+  section.plots = {kind_plot(report, mesh, kind, false), kind_plot(report, mesh, kind, true)};
+  return section;
+}
+
+PageSection advice_section(const MeshTradeoff& mesh) {
+  PageSection section;
+  section.title = mesh.name + ": what to use";
+  section.text = fmt::format(
+      "{} triangles, {} vertices, a diagonal of {:.4g} units. Every encoding below gives the same "
+      "answers as brute force over its own geometry; on a grid that geometry is rounded.",
+      mesh.triangles, mesh.vertices, mesh.diagonal);
+  section.conclusions = advice_in_words(mesh);
+  const auto advice = advise(mesh);
+  if (!advice) return section;
+  PageTable table{
+      {"choice", "encoding", "bytes / triangle", "of source", "surface moved", "ray", "box",
+       "point", mesh.timed ? "first contact" : "all contacts", "times the fastest"},
+      {},
+      2};
+  const std::vector<double> slower = slowdowns_of(mesh);
+  for (const auto& [role, place] :
+       {std::pair<const char*, std::size_t>{"balanced", advice->balanced},
+        {"smallest", advice->smallest},
+        {"fastest", advice->fastest},
+        {"smallest exact", advice->smallest_exact}}) {
+    const TradePoint& point = mesh.points[place];
+    Row row = {role, point.name(), fmt::format("{:.2f}", mesh.per_triangle(point.bytes.total())),
+               fmt::format("{:.0f} %", 100.0 * static_cast<double>(point.bytes.total()) /
+                                           static_cast<double>(mesh.source.total())),
+               figure(point.surface_max)};
+    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
+      row.push_back(time_in_words(time_of(mesh, point, kind)));
+    }
+    row.push_back(fmt::format("{:.2f}", slower[place]));
+    table.rows.push_back(std::move(row));
+  }
+  section.tables = {table};
+  return section;
+}
+
+PageSection bytes_section(const MeshTradeoff& mesh) {
+  PageSection section;
+  section.title = mesh.name + ": where the bytes go";
+  section.text =
+      "Bytes per triangle of a whole file. Nodes are the tree, vertices and corners the triangles "
+      "themselves, face ids the numbers that answers name; the rest is header, records and "
+      "padding. "
+      "Source arrays are positions and 32-bit corners as a program holds them, without any tree.";
+  PageBars bars;
+  bars.title = "bytes per triangle by part";
+  bars.parts = {"nodes", "vertices", "corners", "face ids", "rest"};
+  PageTable table{{"encoding", "nodes", "vertices", "corners", "face ids", "rest", "sum"}, {}};
+  const auto add = [&](const std::string& name, const ByteParts& bytes) {
+    const std::vector<double> each = {
+        mesh.per_triangle(bytes.nodes), mesh.per_triangle(bytes.vertices),
+        mesh.per_triangle(bytes.corners), mesh.per_triangle(bytes.face_ids),
+        mesh.per_triangle(bytes.rest)};
+    bars.bars.push_back({name, each});
+    Row row = {name};
+    for (const double value : each) row.push_back(fmt::format("{:.2f}", value));
+    row.push_back(fmt::format("{:.2f}", mesh.per_triangle(bytes.total())));
+    table.rows.push_back(std::move(row));
+  };
+  add("source arrays", mesh.source);
+  for (const CodecId codec : kSeriesOrder) {
+    for (const TradePoint& point : mesh.points) {
+      if (point.codec == codec) add(point.name(), point.bytes);
+    }
+  }
+  section.bars = {bars};
+  section.tables = {table};
+  return section;
+}
+
+PageSection gates_section(const MeshTradeoff& mesh) {
+  PageTable table{{"encoding", "gates", "faces missed", "boxes escaped", "certificate",
+                   "surface moved, max", "rms", "promised", "distance error, max", "median",
+                   "ray error, median", "flips per million"},
+                  {},
+                  2};
+  for (const TradePoint& point : mesh.points) {
+    table.rows.push_back(
+        {point.name(), point.gates.pass() ? "pass" : "FAILED", std::to_string(point.gates.missed),
+         std::to_string(point.gates.escapes), point.gates.certificate ? "holds" : "does not hold",
+         figure(point.surface_max), figure(point.surface_rms), figure(point.surface_bound),
+         figure(point.answers.distance_max), figure(point.answers.distance_median),
+         figure(point.answers.ray_median), fmt::format("{:.0f}", point.answers.flips_per_million)});
+  }
+  return {mesh.name + ": gates and errors",
+          "An encoding that misses a face or lets one stick out of a box above it is listed as "
+          "failed here and left out of plots and advice. Lengths are shares of the diagonal, "
+          "compared with exact geometry; flips are rays that hit one and miss the other.",
+          {table},
+          {}};
+}
+
+PageSection work_section(const MeshTradeoff& mesh) {
+  PageSection section;
+  section.title = mesh.name + ": work, counted";
+  section.text =
+      "Nodes decoded and leaves tested for one question, the same on every machine, and how many "
+      "more (+) or fewer (-) than in the reference with exact geometry: plain-f32, whose boxes are "
+      "exact, for codecs with a face a leaf; wide8 for the wide ones, which have a tree of their "
+      "own. Pairs are all contacts. A grid changes the mesh that the tree is built on, so that its "
+      "counts may fall as well.";
+  PageTable table{{"encoding", "reference"}, {}, 2};
+  for (const char* kind : kQueryNames) {
+    for (const char* what : {"nodes", "extra", "leaves", "false"}) {
+      table.columns.push_back(fmt::format("{}: {}", kind, what));
+    }
+  }
+  for (const TradePoint& point : mesh.points) {
+    Row row = {point.name(), std::string(codec_name(point.reference))};
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      row.push_back(fmt::format("{:.1f}", point.work[kind].nodes));
+      row.push_back(percent(point.extra_nodes[kind]));
+      row.push_back(fmt::format("{:.2f}", point.work[kind].leaves));
+      row.push_back(percent(point.false_leaf_tests[kind]));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  section.tables = {table};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    // Of pairs the first contact is timed and all are counted: only the model has both.
+    if (kind == 3 && mesh.timed) continue;
+    for (const bool leaves : {false, true}) {
+      PagePlot plot;
+      plot.title = fmt::format("{}: {} against time", kKinds[kind].title,
+                               leaves ? "false leaf tests" : "extra nodes");
+      plot.x_title = leaves ? "leaf tests beyond the reference's, share of them"
+                            : "nodes beyond the reference's, share of them";
+      plot.y_title = mesh.timed ? "median time, ns" : "time by counted work, ns";
+      plot.x_scale = plot.y_scale = AxisScale::kLogarithmic;
+      plot.zero_name = "none";
+      plot.series = codec_series(mesh, kind, [&](const TradePoint& point) {
+        return leaves ? point.false_leaf_tests[kind] : point.extra_nodes[kind];
+      });
+      for (PagePlot::Series& series : plot.series) series.joined = PagePlot::Joined::kNot;
+      plot.series.push_back(front_of(plot.series, plot.x_scale));
+      section.plots.push_back(std::move(plot));
+    }
+  }
+  return section;
+}
+
+PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh) {
+  PageSection section;
+  section.title = mesh.name + ": times";
+  section.text =
+      "Of one question: median, 99th percentile and mean over all questions, each question's time "
+      "the least of several runs, on one thread, in memory that is already mapped. Clocks tick in "
+      "steps of about 10 ns; the median box touches nothing and ends early.";
+  PageTable table{{"encoding"}, {}};
+  for (const KindWords& kind : kKinds) {
+    for (const char* what : {"median", "p99", "mean"}) {
+      table.columns.push_back(fmt::format("{}: {}", kind.title, what));
+    }
+  }
+  for (const TradePoint& point : mesh.points) {
+    Row row = {point.name()};
+    for (const KindTimes& times : point.times) {
+      row.push_back(time_in_words(times.median_ns));
+      row.push_back(time_in_words(times.p99_ns));
+      row.push_back(time_in_words(times.mean_ns));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  section.tables = {table};
+  PageTable peers{
+      {"other library", "variant", "bytes / triangle", "ray", "box", "point", "first contact"},
+      {},
+      2};
+  for (const PeerRow& peer : peers_of(report, mesh)) {
+    Row row = {peer.library, peer.variant};
+    const double* const bytes = peer_figure(report, mesh, peer, "total_bytes_per_tri");
+    row.push_back(bytes == nullptr ? "" : fmt::format("{:.2f}", *bytes));
+    for (const KindWords& kind : kKinds) {
+      const double* const time = peer_figure(report, mesh, peer, kind.peer_metric);
+      row.push_back(time == nullptr ? "-" : time_in_words(*time * kind.peer_unit_ns));
+    }
+    peers.rows.push_back(std::move(row));
+  }
+  if (!peers.rows.empty()) section.tables.push_back(peers);
+  return section;
+}
+
+PageSection included_section(const IncludedResults& results) {
+  PageTable table{{"id", "what", "figure", "limit", "pass"}, {}, 5};
+  for (const IncludedRow& row : results.rows) {
+    table.rows.push_back({row.id, row.what, row.figure, row.limit, row.pass});
+  }
+  return {results.title, results.text, {table}, {}};
+}
+
+PageSection words_section() {
+  return {"Words used here",
+          "",
+          {{{"word", "meaning"},
+            {{"codec", "how the nodes of the tree are stored; all give the same answers"},
+             {"wide8, wide4", "our own: eight children a node, 8 or 4 bits for a side of a box"},
+             {"plain, packed, dedup", "two children a node, as in the thesis"},
+             {"exact", "every position of the mesh is kept bit for bit"},
+             {"grid 24", "positions rounded to 2^24 steps over the largest extent"},
+             {"diagonal", "of the mesh's bounding box; errors are shares of it"},
+             {"gates", "what every file must pass: no face missed, every box holds what is below"},
+             {"extra nodes", "nodes decoded beyond those of the reference tree"},
+             {"false leaf tests", "leaves tested beyond those of the reference tree"},
+             {"Pareto front", "encodings that no other one beats in both things at once"}},
+            2}},
+          {}};
+}
+
+PageSection machine_section(const TradeoffReport& report) {
+  const Surroundings& around = report.surroundings;
+  PageTable table{{"", ""}, {}, 2};
+  table.rows = {{"command", around.command},          {"boxtree", around.version},
+                {"compiler", around.compiler},        {"processor", around.processor},
+                {"hardware threads", around.threads}, {"system", around.system}};
+  const bool is_timed = std::any_of(report.meshes.begin(), report.meshes.end(),
+                                    [](const MeshTradeoff& mesh) { return mesh.timed; });
+  if (is_timed) table.rows.push_back({"load when measuring began", around.load});
+  PageSection section{"Machine, compiler, command", "", {table}, {}};
+  const auto left_out = [&](const std::string& what) {
+    section.conclusions.push_back({"Left out:", what});
+  };
+  if (report.quick) left_out("more than half of the grids and most questions (--quick).");
+  if (!report.no_peers.empty()) left_out("other libraries (" + report.no_peers + ").");
+  if (report.included.empty()) {
+    left_out(
+        "approximate queries, stiff contacts and robustness: no results were given with "
+        "--include.");
+  }
+  return section;
+}
+
+Page page_head(const TradeoffReport& report) {
+  Page page;
+  std::string names;
+  for (const MeshTradeoff& mesh : report.meshes) names += (names.empty() ? "" : ", ") + mesh.name;
+  page.title = "Which encoding for " + names + "?";
+  page.text =
+      "What each encoding of a collision tree costs in bytes and in time, and how far it "
+      "is from the original surface. Made by: " +
+      report.surroundings.command;
+  return page;
+}
+
+}  // namespace
+
+Page tradeoff_summary(const TradeoffReport& report) {
+  Page page = page_head(report);
+  for (const MeshTradeoff& mesh : report.meshes) page.sections.push_back(advice_section(mesh));
+  return page;
+}
+
+Page tradeoff_page(const TradeoffReport& report) {
+  Page page = tradeoff_summary(report);
+  for (const MeshTradeoff& mesh : report.meshes) {
+    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
+      page.sections.push_back(kind_section(report, mesh, kind));
+    }
+    page.sections.push_back(bytes_section(mesh));
+    page.sections.push_back(gates_section(mesh));
+    page.sections.push_back(work_section(mesh));
+    if (mesh.timed) page.sections.push_back(times_section(report, mesh));
+  }
+  for (const IncludedResults& results : report.included) {
+    page.sections.push_back(included_section(results));
+  }
+  page.sections.push_back(words_section());
+  page.sections.push_back(machine_section(report));
+  return page;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: MIT
+// Points against files that were really written and surfaces that were really decoded; curves where
+// theory orders them; the page and its data against the points.
+#include <array>
+#include <cmath>
+#include <map>
+#include <regex>
+#include <set>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/report/tradeoff_advice.h>
+#include <boxtree/cooker/report/tradeoff_page.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using test::require;
+
+const SourceMesh& mesh() {
+  static const SourceMesh torus = [] {
+    SourceMesh made = test::torus(24, 40);
+    made.name = "<torus> & co";
+    return made;
+  }();
+  return torus;
+}
+
+// Without times: every figure is the same on every machine.
+const MeshTradeoff& counted() {
+  static const MeshTradeoff tradeoff = require(measure_tradeoff(mesh(), {false, false}));
+  return tradeoff;
+}
+
+const TradePoint* find(CodecId codec, int grid_bits) {
+  for (const TradePoint& point : counted().points) {
+    if (point.codec == codec && point.grid_bits == grid_bits) return &point;
+  }
+  return nullptr;
+}
+
+TEST(Tradeoff, EveryCodecIsExactAndTheWideOnesSweepTheGrids) {
+  std::set<std::pair<CodecId, int>> found;
+  for (const TradePoint& point : counted().points) found.insert({point.codec, point.grid_bits});
+  std::set<std::pair<CodecId, int>> expected;
+  for (const CodecInfo& codec : kCodecs) expected.insert({codec.id, 0});
+  for (const int bits : {8, 10, 12, 14, 16, 18, 21, 24, 27, 30}) {
+    expected.insert({CodecId::kWide8, bits});
+    expected.insert({CodecId::kWide4, bits});
+  }
+  EXPECT_EQ(found, expected);
+  EXPECT_EQ(counted().points.size(), expected.size());
+}
+
+TEST(Tradeoff, BytesAreThoseOfTheFileThatACookWrites) {
+  for (const TradePoint& point : counted().points) {
+    CookOptions options;
+    options.geometry = point.geometry;
+    if (point.grid_bits != 0) options.grid.bits = point.grid_bits;
+    options.codec = point.codec;
+    const EncodedTree tree = require(cook_as(mesh(), point.codec, options));
+    EXPECT_EQ(point.bytes.total(), serialize(std::span(&tree, 1)).size()) << point.name();
+    EXPECT_EQ(point.bytes.nodes, tree.nodes.bytes.size()) << point.name();
+    EXPECT_GT(point.bytes.rest, 0u) << point.name();
+  }
+}
+
+TEST(Tradeoff, EveryPointPassesItsGates) {
+  for (const TradePoint& point : counted().points) EXPECT_TRUE(point.gates.pass()) << point.name();
+}
+
+// Largest distance of a decoded corner from the source's, found by the face ids of an opened file.
+double decoded_move(int grid_bits) {
+  CookOptions options;
+  options.geometry = GeometryId::kGrid;
+  options.grid.bits = grid_bits;
+  const test::CookedTree cooked = test::cook_tree(mesh(), CodecId::kWide8, options);
+  double largest = 0;
+  std::size_t triangles = 0;
+  std::vector<Node> todo = {cooked.tree.root()};
+  while (!todo.empty()) {
+    const Node node = todo.back();
+    todo.pop_back();
+    if (!node.is_leaf) {
+      NodeChildren children;
+      EXPECT_EQ(cooked.tree.expand(node, children), Errc::kOk);
+      for (std::uint32_t i = 0; i < children.count; ++i) todo.push_back(children.child[i]);
+      continue;
+    }
+    TriangleBatch batch;
+    EXPECT_EQ(cooked.tree.leaf_triangles(node, batch), Errc::kOk);
+    for (std::uint32_t i = 0; i < batch.count; ++i, ++triangles) {
+      const Face& face = mesh().faces[cooked.tree.face_id(batch.face[i])];
+      if (face.is_quad()) throw std::logic_error("triangles alone are compared here");
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3d corner = cooked.tree.frame().to_object(batch.triangle(i).corner[k]);
+        largest = std::max(largest, (corner - mesh().positions[face.corner[k]]).norm());
+      }
+    }
+  }
+  EXPECT_EQ(triangles, mesh().triangle_count());
+  return largest;
+}
+
+TEST(Tradeoff, SurfaceMovesAsFarAsTheDecodedTrianglesTell) {
+  for (const int bits : {8, 14, 21, 30}) {
+    const double diagonal = counted().diagonal;
+    const TradePoint& point = *find(CodecId::kWide8, bits);
+    // Decoding goes through tree space and back: a few roundings of numbers of the mesh's size.
+    EXPECT_NEAR(point.surface_max, decoded_move(bits) / diagonal, 1e-14) << bits;
+  }
+}
+
+TEST(Tradeoff, SurfaceAndBytesOfGridsAreMonotoneAndWithinTheBound) {
+  for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+    const TradePoint* coarser = nullptr;
+    for (const int bits : grid_sweep(false)) {
+      const TradePoint& point = *find(codec, bits);
+      EXPECT_GT(point.surface_max, 0) << point.name();
+      EXPECT_LE(point.surface_max, point.surface_bound * (1 + 1e-12)) << point.name();
+      EXPECT_LE(point.surface_rms, point.surface_max) << point.name();
+      EXPECT_GT(point.surface_rms, 0) << point.name();
+      // The closest point of a surface that moves by at most so much.
+      EXPECT_LE(point.answers.distance_max, point.surface_max * (1 + 1e-9)) << point.name();
+      EXPECT_LE(point.answers.distance_median, point.answers.distance_max);
+      if (coarser != nullptr) {
+        EXPECT_LT(point.surface_max, coarser->surface_max) << point.name();
+        EXPECT_LT(point.surface_rms, coarser->surface_rms) << point.name();
+        EXPECT_GE(point.bytes.vertices, coarser->bytes.vertices) << point.name();
+      }
+      coarser = &point;
+    }
+  }
+}
+
+TEST(Tradeoff, ExactGeometryGivesTheAnswersOfTheReference) {
+  for (const TradePoint& point : counted().points) {
+    if (point.grid_bits != 0) continue;
+    EXPECT_EQ(point.surface_max, 0) << point.name();
+    EXPECT_EQ(point.answers.distance_max, 0) << point.name();
+    EXPECT_EQ(point.answers.flips_per_million, 0) << point.name();
+    EXPECT_EQ(point.answers.ray_median, 0) << point.name();
+  }
+  EXPECT_GT(find(CodecId::kWide8, 8)->answers.distance_max, 0);
+  EXPECT_GT(find(CodecId::kWide8, 8)->answers.ray_median, 0);
+}
+
+TEST(Tradeoff, CoarserBoxesNeverSaveWork) {
+  for (const TradePoint& point : counted().points) {
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      if (point.codec == CodecId::kWide4) {
+        const TradePoint& finer = *find(CodecId::kWide8, point.grid_bits);
+        EXPECT_GE(point.work[kind].nodes, finer.work[kind].nodes) << point.name() << kind;
+        EXPECT_GE(point.work[kind].leaves, finer.work[kind].leaves) << point.name() << kind;
+      }
+      if (point.grid_bits == 0) {
+        EXPECT_GE(point.extra_nodes[kind], 0) << point.name() << kind;
+        EXPECT_GE(point.false_leaf_tests[kind], 0) << point.name() << kind;
+      }
+    }
+  }
+  EXPECT_GT(find(CodecId::kWide4, 0)->extra_nodes[0], 0);
+  EXPECT_GT(find(CodecId::kPlainF16, 0)->extra_nodes[0], 0);
+}
+
+TEST(Tradeoff, TimesComeInOrder) {
+  const MeshTradeoff timed = require(measure_tradeoff(test::sphere(8, 12), {true, true}));
+  for (const TradePoint& point : timed.points) {
+    for (const KindTimes& times : point.times) {
+      EXPECT_GT(times.median_ns, 0) << point.name();
+      EXPECT_LE(times.median_ns, times.p99_ns) << point.name();
+      EXPECT_LE(times.mean_ns, times.p99_ns * 100) << point.name();
+    }
+  }
+}
+
+TEST(Tradeoff, RefusesAMeshWithoutFaces) {
+  EXPECT_EQ(measure_tradeoff({}, {}).code(), Errc::kNoFaces);
+}
+
+TEST(ParetoFront, HoldsWhatNothingBeats) {
+  const std::array<TwoCosts, 7> points = {{{3, 3}, {1, 5}, {2, 5}, {2, 4}, {5, 1}, {5, 2}, {2, 4}}};
+  EXPECT_EQ(pareto_front(points), (std::vector<std::size_t>{1, 3, 0, 4}));
+  EXPECT_TRUE(pareto_front({}).empty());
+
+  // Against the definition, point by point.
+  std::vector<TwoCosts> many;
+  std::uint32_t state = 1;
+  const auto next = [&state] {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<double>(state >> 28);  // 16 values: many ties
+  };
+  for (int i = 0; i < 60; ++i) {
+    const double x = next();
+    many.push_back({x, next()});
+  }
+  const std::vector<std::size_t> front = pareto_front(many);
+  for (std::size_t i = 0; i < many.size(); ++i) {
+    bool is_beaten = false;
+    for (std::size_t j = 0; j < many.size(); ++j) {
+      const bool no_worse = many[j].x <= many[i].x && many[j].y <= many[i].y;
+      const bool better = many[j].x < many[i].x || many[j].y < many[i].y;
+      const bool earlier_twin = no_worse && !better && j < i;
+      is_beaten |= (no_worse && better) || earlier_twin;
+    }
+    const bool in_front = std::find(front.begin(), front.end(), i) != front.end();
+    EXPECT_EQ(in_front, !is_beaten) << many[i].x << ' ' << many[i].y;
+  }
+}
+
+MeshTradeoff three_points() {
+  MeshTradeoff made;
+  made.name = "made up";
+  made.triangles = 100;
+  made.diagonal = 2;
+  made.source.vertices = 1000;
+  made.timed = true;
+  const auto add = [&](CodecId codec, int bits, std::uint64_t bytes, double moved, double ns) {
+    TradePoint point;
+    point.codec = codec;
+    point.grid_bits = bits;
+    point.geometry = bits == 0 ? GeometryId::kExact : GeometryId::kGrid;
+    point.bytes.nodes = bytes;
+    point.surface_max = moved;
+    point.gates.certificate = true;
+    for (KindTimes& times : point.times) times = {ns, 2 * ns, ns};
+    made.points.push_back(point);
+  };
+  add(CodecId::kWide8, 0, 1300, 0, 100);
+  add(CodecId::kWide4, 0, 1200, 0, 150);
+  add(CodecId::kWide4, 8, 200, 3e-3, 200);  // small, but farther off than any choice allows
+  add(CodecId::kWide4, 14, 400, 5e-5, 200);
+  add(CodecId::kWide8, 24, 800, 4e-8, 120);
+  return made;
+}
+
+TEST(Advice, IsTheMinimumWithinEachLimit) {
+  MeshTradeoff made = three_points();
+  const auto advice = advise(made);
+  ASSERT_TRUE(advice);
+  EXPECT_EQ(advice->smallest, 3u);
+  EXPECT_EQ(advice->balanced, 4u);  // 800 * 1.2 < 1300 * 1 < 1200 * 1.5
+  EXPECT_EQ(advice->fastest, 0u);
+  EXPECT_EQ(advice->smallest_exact, 1u);
+  const std::vector<PageConclusion> words = advice_in_words(made);
+  ASSERT_EQ(words.size(), 4u);
+  EXPECT_EQ(
+      words[0].lead,
+      "Balanced, for most uses (surface within a millionth of the diagonal): wide8, grid 24.");
+  EXPECT_EQ(
+      words[0].text,
+      "8.00 bytes per triangle, 800 bytes in all: 80 % of the source arrays, tree included. No "
+      "point of the surface moves by more than 4e-08 of the diagonal (8e-08 units of the "
+      "mesh). In the median a ray takes 120 ns, a small box 120 ns, a closest point 120 ns, a "
+      "first contact 120 ns (one in a hundred takes longer than 240 ns, 240 ns, 240 ns and "
+      "240 ns). That is 1.20 times the best time of each kind, on average. Make it with: "
+      "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24");
+  EXPECT_NE(words[3].text.find("No position changes by a single bit."), std::string::npos);
+  EXPECT_NE(words[3].text.find("--codec wide4 --exact"), std::string::npos);
+
+  // What fails its gates is no choice, however good.
+  made.points[4].gates.missed = 1;
+  EXPECT_EQ(advise(made)->balanced, 0u);
+  for (TradePoint& point : made.points) point.gates.missed = 1;
+  EXPECT_FALSE(advise(made));
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) {
+    ++found;
+  }
+  return found;
+}
+
+TradeoffReport sample_report() {
+  TradeoffReport report;
+  report.meshes = {counted()};
+  report.surroundings = surroundings("boxtree report <torus>.obj");
+  report.no_peers = "--no-times";
+  return report;
+}
+
+TEST(TradeoffPage, IsOneWellFormedPageWithoutNetwork) {
+  const std::string html = to_html(tradeoff_page(sample_report()));
+  EXPECT_EQ(html.find("http:"), std::string::npos);
+  EXPECT_EQ(html.find("https:"), std::string::npos);
+  EXPECT_EQ(html.find("<script"), std::string::npos);
+  EXPECT_EQ(html.find("<torus>"), std::string::npos) << "a name is no markup";
+  EXPECT_EQ(html.find("nan"), std::string::npos);
+  EXPECT_EQ(html.find("inf\""), std::string::npos);
+  // Every element that opens is closed, innermost first.
+  std::vector<std::string> open;
+  const std::regex tag("<(/?)([a-z0-9]+)([^<>]*)>");
+  const std::set<std::string> alone = {"meta"};
+  for (std::sregex_iterator it(html.begin(), html.end(), tag), end; it != end; ++it) {
+    const std::string name = (*it)[2];
+    const std::string rest = (*it)[3];
+    if (alone.contains(name) || (!rest.empty() && rest.back() == '/')) continue;
+    if ((*it)[1] == "") {
+      open.push_back(name);
+    } else {
+      ASSERT_FALSE(open.empty()) << name;
+      ASSERT_EQ(open.back(), name);
+      open.pop_back();
+    }
+  }
+  EXPECT_TRUE(open.empty());
+  // Error and bytes for each of four kinds, two of work for each, and the bars.
+  EXPECT_EQ(count(html, "<svg"), 4u * 2 + 4u * 2 + 1);
+}
+
+TEST(TradeoffPage, MarksOfPlotsLieInsideTheirFrames) {
+  const std::string html = to_html(tradeoff_page(sample_report()));
+  const std::regex view(
+      "viewBox=\"0 0 ([0-9]+) ([0-9]+)\"|<circle cx=\"([^\"]+)\" cy=\"([^\"]+)\"");
+  double width = 0;
+  double height = 0;
+  std::size_t marks = 0;
+  for (std::sregex_iterator it(html.begin(), html.end(), view), end; it != end; ++it) {
+    if ((*it)[1].matched) {
+      width = std::stod((*it)[1]);
+      height = std::stod((*it)[2]);
+      continue;
+    }
+    ++marks;
+    EXPECT_TRUE(std::stod((*it)[3]) > 0 && std::stod((*it)[3]) < width) << (*it)[3];
+    EXPECT_TRUE(std::stod((*it)[4]) > 0 && std::stod((*it)[4]) < height) << (*it)[4];
+  }
+  EXPECT_GT(marks, 50u);
+}
+
+TEST(TradeoffPage, SaysWhatWasLeftOutAndShowsWhatWasIncluded) {
+  TradeoffReport report = sample_report();
+  EXPECT_NE(to_html(tradeoff_page(report)).find("stiff contacts and robustness"),
+            std::string::npos);
+  const test::TempFolder folder;
+  report.included.push_back(
+      require(read_results(folder.write("stiff.json", R"({"title":"Stiff contact","rows":[
+        {"id":"S1","what":"same hash","figure":0,"limit":"0 differ","pass":true}]})"))));
+  const std::string html = to_html(tradeoff_page(report));
+  EXPECT_EQ(html.find("stiff contacts and robustness"), std::string::npos);
+  EXPECT_NE(html.find("<h2>Stiff contact</h2>"), std::string::npos);
+  EXPECT_NE(html.find("<td class=\"word\">0 differ</td><td class=\"word\">yes</td>"),
+            std::string::npos);
+  EXPECT_EQ(require(read_results(folder.write("rows.json", R"([{"id":"A"}])"))).title, "rows");
+  for (const char* bad : {"{", "3", "[3]", R"({"rows":{}})", ""}) {
+    EXPECT_EQ(read_results(folder.write("bad.json", bad)).code(), Errc::kFileUnreadable) << bad;
+  }
+  EXPECT_EQ(read_results(folder.path() / "none").code(), Errc::kFileUnreadable);
+}
+
+TEST(TradeoffPage, OtherLibrariesStandWhereTheirFiguresAre) {
+  TradeoffReport report = sample_report();
+  const auto add = [&](const char* metric, double value) {
+    report.peers.push_back({counted().name, "original", "pointers", metric, value, ""});
+  };
+  EXPECT_EQ(to_html(tradeoff_page(report)).find("original pointers"), std::string::npos);
+  add("total_bytes_per_tri", 171);
+  add("ray_median_ns", 2500);
+  const std::string html = to_html(tradeoff_page(report));
+  // In the two plots of rays, beside the mark or in its hint.
+  EXPECT_EQ(count(html, "original pointers: 171.00 bytes per triangle, 2.5 µs"), 2u);
+}
+
+TEST(TradeoffData, JsonAndCsvSayWhatThePointsSay) {
+  const TradeoffReport report = sample_report();
+  const auto json = nlohmann::json::parse(to_json(report));
+  const auto& points = json.at("meshes").at(0).at("points");
+  ASSERT_EQ(points.size(), counted().points.size());
+  std::istringstream lines(to_csv(report));
+  std::string line;
+  ASSERT_TRUE(std::getline(lines, line));
+  const auto commas = std::count(line.begin(), line.end(), ',');
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const TradePoint& point = counted().points[i];
+    EXPECT_EQ(points[i].at("bytes").at("total"), point.bytes.total());
+    EXPECT_EQ(points[i].at("surface").at("max"), point.surface_max);
+    EXPECT_EQ(points[i].at("work").at("ray").at("nodes"), point.work[0].nodes);
+    EXPECT_TRUE(points[i].at("times").is_null());
+    ASSERT_TRUE(std::getline(lines, line));
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
+    EXPECT_NE(line.find("," + std::to_string(point.bytes.total()) + ","), std::string::npos);
+  }
+  EXPECT_FALSE(std::getline(lines, line));
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
