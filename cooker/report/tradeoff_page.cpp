@@ -279,8 +279,9 @@ PageSection work_section(const MeshTradeoff& mesh) {
       "Nodes decoded and leaves tested for one question, the same on every machine, and how many "
       "more (+) or fewer (-) than in the reference with exact geometry: plain-f32, whose boxes are "
       "exact, for codecs with a face a leaf; wide8 for the wide ones, which have a tree of their "
-      "own. Pairs are all contacts. A grid changes the mesh that the tree is built on, so that its "
-      "counts may fall as well.";
+      "own. Pairs are all contacts. Fewer is "
+      "possible, too: rays and closest points go to the nearest box first, and a grid changes the "
+      "mesh that the tree is built on.";
   PageTable table{{"encoding", "reference"}, {}, 2};
   for (const char* kind : kQueryNames) {
     for (const char* what : {"nodes", "extra", "leaves", "false"}) {

@@ -126,8 +126,8 @@ TEST(Tradeoff, SurfaceAndBytesOfGridsAreMonotoneAndWithinTheBound) {
       EXPECT_LE(point.surface_max, point.surface_bound * (1 + 1e-12)) << point.name();
       EXPECT_LE(point.surface_rms, point.surface_max) << point.name();
       EXPECT_GT(point.surface_rms, 0) << point.name();
-      // The closest point of a surface that moves by at most so much.
-      EXPECT_LE(point.answers.distance_max, point.surface_max * (1 + 1e-9)) << point.name();
+      // The closest point of a surface that moves by at most so much, but for roundings.
+      EXPECT_LE(point.answers.distance_max, point.surface_max + 1e-14) << point.name();
       EXPECT_LE(point.answers.distance_median, point.answers.distance_max);
       if (coarser != nullptr) {
         EXPECT_LT(point.surface_max, coarser->surface_max) << point.name();
@@ -151,22 +151,31 @@ TEST(Tradeoff, ExactGeometryGivesTheAnswersOfTheReference) {
   EXPECT_GT(find(CodecId::kWide8, 8)->answers.ray_median, 0);
 }
 
+// What overlaps a box overlaps every box around it. Rays and closest points visit the nearest box
+// first, so that single questions may gain by coarser ones; between wide8 and wide4 the mean may
+// not.
 TEST(Tradeoff, CoarserBoxesNeverSaveWork) {
+  constexpr auto kBox = static_cast<std::size_t>(QueryKind::kBox);
   for (const TradePoint& point : counted().points) {
-    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      if (point.codec == CodecId::kWide4) {
-        const TradePoint& finer = *find(CodecId::kWide8, point.grid_bits);
+    if (point.codec == CodecId::kWide4) {
+      const TradePoint& finer = *find(CodecId::kWide8, point.grid_bits);
+      for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
         EXPECT_GE(point.work[kind].nodes, finer.work[kind].nodes) << point.name() << kind;
         EXPECT_GE(point.work[kind].leaves, finer.work[kind].leaves) << point.name() << kind;
       }
-      if (point.grid_bits == 0) {
-        EXPECT_GE(point.extra_nodes[kind], 0) << point.name() << kind;
-        EXPECT_GE(point.false_leaf_tests[kind], 0) << point.name() << kind;
-      }
+    }
+    if (point.grid_bits == 0) {
+      EXPECT_GE(point.false_leaf_tests[kBox], 0) << point.name();
+    }
+  }
+  // Lossless codecs of one tree do the same work, to the last node.
+  for (const CodecId codec : {CodecId::kPackedF32, CodecId::kPackedF64, CodecId::kDedup}) {
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      EXPECT_EQ(find(codec, 0)->extra_nodes[kind], 0) << codec_name(codec) << kind;
+      EXPECT_EQ(find(codec, 0)->false_leaf_tests[kind], 0) << codec_name(codec) << kind;
     }
   }
   EXPECT_GT(find(CodecId::kWide4, 0)->extra_nodes[0], 0);
-  EXPECT_GT(find(CodecId::kPlainF16, 0)->extra_nodes[0], 0);
 }
 
 TEST(Tradeoff, TimesComeInOrder) {
@@ -293,8 +302,7 @@ TEST(TradeoffPage, IsOneWellFormedPageWithoutNetwork) {
   EXPECT_EQ(html.find("https:"), std::string::npos);
   EXPECT_EQ(html.find("<script"), std::string::npos);
   EXPECT_EQ(html.find("<torus>"), std::string::npos) << "a name is no markup";
-  EXPECT_EQ(html.find("nan"), std::string::npos);
-  EXPECT_EQ(html.find("inf\""), std::string::npos);
+  EXPECT_FALSE(std::regex_search(html, std::regex("[ \">(MLHV]-?(nan|inf)[ \"<)HVL]")));
   // Every element that opens is closed, innermost first.
   std::vector<std::string> open;
   const std::regex tag("<(/?)([a-z0-9]+)([^<>]*)>");
