@@ -89,9 +89,7 @@ std::string to_text(const Page& page) {
     out += "\n" + section.title + "\n";
     if (section.tables.empty() && !section.text.empty()) out += "  " + section.text + "\n";
     for (const PageConclusion& conclusion : section.conclusions) {
-      out += "  " + conclusion.lead + " " + conclusion.text +
-             "
-             ";
+      out += "  " + conclusion.lead + " " + conclusion.text + "\n";
     }
     for (const PageTable& table : section.tables) add_text(table, out);
   }

@@ -204,6 +204,14 @@ struct Placed {
   bool is_zero;  // at the place of zero of a logarithmic axis
 };
 
+// What a page would give a plot, in its light colours.
+constexpr const char* kFileStyle =
+    "<style>:root{--ink:#1c2024;--faint:#60646c;--line:#d9d9e0;--back:#fff;--well:#f4f5f7;"
+    "--c0:#0b68cb;--c1:#c2410c;--c2:#15803d;--c3:#7e22ce;--c4:#b4820a;--c5:#0e7490;--c6:#be185d;"
+    "--c7:#57606a}text{fill:#1c2024;font:12px system-ui,sans-serif}.grid{stroke:#d9d9e0;fill:none}"
+    ".line{fill:none;stroke-width:1.6}.band{fill:#f4f5f7}</style>"
+    "<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n";
+
 class Drawing {
  public:
   explicit Drawing(const PagePlot& plot) : plot_(plot) {}
@@ -405,7 +413,20 @@ std::string escaped(const std::string& text) {
 }
 
 std::string to_svg(const PagePlot& plot) {
-  return Drawing(plot).draw();
+  if (!plot.lines) return Drawing(plot).draw();
+  PagePlot curves = plot;
+  for (PagePlot::Series& series : curves.series) {
+    series.joined = PagePlot::Joined::kCurve;
+    series.marks = false;
+  }
+  return Drawing(curves).draw();
+}
+
+std::string to_svg_file(const PagePlot& plot) {
+  std::string svg = to_svg(plot);
+  svg.insert(svg.find('>') + 2, kFileStyle);
+  svg.insert(svg.find("<svg") + 4, " xmlns=\"http://www.w3.org/2000/svg\"");
+  return svg;
 }
 
 std::string to_svg(const PageBars& bars) {

@@ -43,6 +43,7 @@ struct PagePlot {
   std::string title = {};
   /// Logarithmic x: what stands at the left edge, where values that are not above zero are drawn.
   std::string zero_name = "0";
+  bool lines = false;  // all series are curves without marks, whatever they say
 };
 
 /// Colours that a page has for series; more than that start again with another shape.
@@ -65,5 +66,8 @@ struct PageBars {
 /// Nothing for a plot without points; points whose y a logarithm does not have are left out.
 [[nodiscard]] std::string to_svg(const PagePlot& plot);
 [[nodiscard]] std::string to_svg(const PageBars& bars);
+
+/// A file of its own: dark on white. Precondition: a point.
+[[nodiscard]] std::string to_svg_file(const PagePlot& plot);
 
 }  // namespace boxtree::cooker

@@ -247,7 +247,8 @@ void add_surface(Field kind, const Scale& scale, CaseResult& result) {
   const unsigned compared = scale.quick ? 1 : 8;
   std::vector<Store> stores = {exact_store(), grid_store(16), grid_store(21), grid_store(24)};
   if (scale.quick) stores.resize(2);
-  cooker::PagePlot plot{"bounces", "largest drift so far of 32 balls, 1e-6 of E0", {}, true};
+  cooker::PagePlot plot{"bounces", "largest drift so far of 32 balls, 1e-6 of E0", {}};
+  plot.lines = true;
   std::vector<double> exact_rms;
   for (const Store& store : stores) {
     const std::vector<Shape> levels = levels_of(field(kind, kCells, kTile), store);

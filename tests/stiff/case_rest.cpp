@@ -193,8 +193,9 @@ void add_time_plots(const Outcome& right, const Outcome& wrong, std::vector<Name
   for (unsigned i = 1; i < kSteps; ++i) shown = unrest(i) > unrest(shown) ? i : shown;
 
   const auto plot_of = [](const std::string& title) {
-    return cooker::PagePlot{
-        "time, s", title, {{"f16 to nearest", {}}, {"all codecs, no tree", {}}}, true};
+    cooker::PagePlot plot{"time, s", title, {{"f16 to nearest", {}}, {"all codecs, no tree", {}}}};
+    plot.lines = true;
+    return plot;
   };
   cooker::PagePlot depth = plot_of("depth of one box at k 1e5 N/m, mm");
   cooker::PagePlot energy = plot_of("energy of all boxes at k 1e5 N/m above rest, mJ");
@@ -222,8 +223,8 @@ CaseResult run_rest(const Scale& scale) {
   const Shape nearest = make_nearest(stairs(kSteps, kSteps, kLevelSize), exact_store());
   cooker::PagePlot chatter{"log10 of the stiffness in N/m",
                            "log10 of the rms acceleration in g",
-                           {{"f16 to nearest", {}}, {"all codecs, no tree", {}}, {"limit", {}}},
-                           true};
+                           {{"f16 to nearest", {}}, {"all codecs, no tree", {}}, {"limit", {}}}};
+  chatter.lines = true;
   for (const double stiffness : {1e3, 1e4, 1e5, 1e6, 1e7, 1e8}) {
     const Setting symplectic = setting_of(stiffness, Stepper::kSymplectic, scale);
     const Outcome right = add_rows(exact, symplectic, result.rows);

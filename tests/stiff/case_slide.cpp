@@ -79,7 +79,8 @@ CaseResult run_slide(const Scale& scale) {
   const std::vector<Shape> bodies =
       all_shapes(box(Eigen::Vector3d::Constant(kHalf)), exact_store());
   const std::vector<double> stiffnesses = scale.quick ? std::vector{1e4} : std::vector{1e4, 1e6};
-  cooker::PagePlot plot{"way, m", "height above the plane, um", {}, true};
+  cooker::PagePlot plot{"way, m", "height above the plane, um", {}};
+  plot.lines = true;
   for (const int bits : {16, 21, 24}) {
     if (scale.quick && bits == 24) continue;
     const Store store = grid_store(bits);

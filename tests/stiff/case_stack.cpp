@@ -97,7 +97,8 @@ CaseResult run_stack(const Scale& scale) {
   }
   runs.push_back({1, false, explicit_step, 5000});
   if (!scale.quick) runs.push_back({1e2, false, explicit_step, 60000});
-  cooker::PagePlot plot{"time, s", "log10 of the share that the depth is off rest", {}, true};
+  cooker::PagePlot plot{"time, s", "log10 of the share that the depth is off rest", {}};
+  plot.lines = true;
   for (const Run& run : runs) {
     std::vector<std::uint64_t> hashes;
     Outcome outcome;

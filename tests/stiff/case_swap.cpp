@@ -131,7 +131,8 @@ CaseResult run_swap(const Scale& scale) {
       {grid_store(16), false, false},        {tolerance_store(rule), false, true},
       {grid_store(18), false, true},         {grid_store(21), false, true},
       {tolerance_store(unseen), false, true}};
-  cooker::PagePlot plot{"time after the swap, s", "highest box above rest, mm", {}, true};
+  cooker::PagePlot plot{"time after the swap, s", "highest box above rest, mm", {}};
+  plot.lines = true;
   for (const Kind& kind : kinds) {
     const SourceMesh other = kind.half_vertices ? with_half_vertices(mesh) : mesh;
     const std::vector<Shape> swapped = all_shapes(other, kind.store);

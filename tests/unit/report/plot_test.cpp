@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Plots: lines through all their points and inside the frame, files that need no page around them.
+#include <algorithm>
 #include <regex>
 #include <set>
 #include <sstream>
@@ -12,22 +13,25 @@ namespace boxtree::cooker {
 namespace {
 
 PagePlot sample() {
-  return {
-      "x", "<y>", {{"a & b", {{0, -3, ""}, {1, 5, ""}, {2, 4, ""}}}, {"c", {{2, 0.1, ""}}}}, true};
+  PagePlot plot{
+      "x", "<y>", {{"a & b", {{0, -3, ""}, {1, 5, ""}, {2, 4, ""}}}, {"c", {{2, 0.1, ""}}}}};
+  plot.lines = true;
+  return plot;
 }
 
 TEST(Plot, LinesGoThroughTheirPointsInsideTheFrame) {
-  const std::string svg = to_svg_element(sample());
-  const std::regex line("points=\"([^\"]*)\"");
+  const std::string svg = to_svg(sample());
+  const std::regex line("class=\"line\" d=\"M([^\"]*)\"");
   std::vector<std::size_t> counts;
   for (std::sregex_iterator it(svg.begin(), svg.end(), line), end; it != end; ++it) {
-    std::istringstream points((*it)[1]);
+    std::string path = (*it)[1];
+    std::replace(path.begin(), path.end(), 'L', ' ');
+    std::istringstream points(path);
     double x = 0;
     double y = 0;
-    char comma = 0;
     double last = -1;
     counts.push_back(0);
-    while (points >> x >> comma >> y) {
+    while (points >> x >> y) {
       EXPECT_TRUE(x > last && x <= 640 && y >= 0 && y <= 400) << x << ' ' << y;
       last = x;
       ++counts.back();
@@ -39,8 +43,9 @@ TEST(Plot, LinesGoThroughTheirPointsInsideTheFrame) {
 
 TEST(Plot, ZeroOnAnAxisIsZero) {
   // Steps of 0.1 from below zero: added up they miss it.
-  const PagePlot plot{"x", "y", {{"s", {{-0.3, -0.3, ""}, {0.3, 0.3, ""}}}}, true};
-  const std::string svg = to_svg_element(plot);
+  PagePlot plot{"x", "y", {{"s", {{-0.3, -0.3, ""}, {0.3, 0.3, ""}}}}};
+  plot.lines = true;
+  const std::string svg = to_svg(plot);
   EXPECT_NE(svg.find(">0</text>"), std::string::npos);
   EXPECT_FALSE(std::regex_search(svg, std::regex(">[-0-9.]*e-[0-9]+</text>")));
 }
@@ -59,7 +64,7 @@ TEST(Plot, FilesBringTheirColours) {
 }
 
 TEST(Plot, NothingWithoutPoints) {
-  EXPECT_EQ(to_svg_element({"x", "y", {{"none", {}}}}), "");
+  EXPECT_EQ(to_svg({"x", "y", {{"none", {}}}}), "");
 }
 
 }  // namespace
