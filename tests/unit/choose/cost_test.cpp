@@ -28,8 +28,7 @@ TEST(FitSteps, FindsTheStepsThatMadeTheTimes) {
   const StepCost truth{80, 15, 40};
   std::vector<Measured> measured;
   for (const Work work : {Work{3, 1}, Work{10, 2}, Work{40, 31}, Work{100, 12}}) {
-    measured.push_back(
-        {work, truth.question + work.nodes * truth.node + work.leaves * truth.leaf});
+    measured.push_back({work, truth.question + work.nodes * truth.node + work.leaves * truth.leaf});
   }
   const StepCost found = fit_steps(measured);
   EXPECT_NEAR(found.question, truth.question, 1e-6);

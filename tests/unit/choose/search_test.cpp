@@ -22,8 +22,7 @@ SearchOptions options_for(Goal goal) {
 
 Candidate winner(const SourceMesh& mesh, const SearchOptions& options) {
   TriedTree tried = require(try_encodings(mesh, options));
-  const std::size_t chosen =
-      require(choose(std::span(&tried.contest, 1), options.wishes)).front();
+  const std::size_t chosen = require(choose(std::span(&tried.contest, 1), options.wishes)).front();
   return tried.contest.candidates[chosen];
 }
 

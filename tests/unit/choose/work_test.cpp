@@ -45,8 +45,8 @@ TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
     questions.boxes = choice_questions(bounds_of(mesh)).boxes;
     Reached reached;
     for (const Eigen::AlignedBox3d& box : questions.boxes) {
-      count(tree, tree.root(),
-            {tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())}, reached);
+      count(tree, tree.root(), {tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())},
+            reached);
     }
     const auto boxes = static_cast<double>(questions.boxes.size());
     const Work work = require(count_work(tree, questions))[1];
