@@ -2,6 +2,7 @@
 // Exported files of every codec against the source mesh and against a walk of single nodes.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -37,7 +38,7 @@ TEST_P(Export, ReimportedFilesHoldTheFacesOfTheSourceInItsOrder) {
 
 // What a walk by expand() meets, level by level in the order of the children.
 struct Walked {
-  std::map<std::string, std::uint64_t> boxes;  // by name of the group
+  std::map<std::string, std::vector<Eigen::AlignedBox3d>> boxes;  // of object space, by group
   // For each leaf: its faces, and the boxes on its path as (group, number in it).
   struct Leaf {
     Node node;
@@ -48,9 +49,13 @@ struct Walked {
 
 void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf path, Walked& out) {
   const std::string group = "level " + std::to_string(level);
-  path.path.emplace_back(group, out.boxes[group]++);
+  const auto add_to = [&](const std::string& name) {
+    path.path.emplace_back(name, out.boxes[name].size());
+    out.boxes[name].push_back(tree.to_object(node.box));
+  };
+  add_to(group);
   if (node.is_leaf) {
-    path.path.emplace_back("leaves", out.boxes["leaves"]++);
+    add_to("leaves");
     path.node = node;
     out.leaves.push_back(path);
     return;
@@ -80,17 +85,43 @@ std::string group_of(const ViewedPart& part) {
   return part.name;
 }
 
-// Every part is there, has as many boxes as the walk, and every triangle lies in every box above.
+// As a box rounded outward to f32, and no farther. With positions of f64 in OBJ, the box itself.
+void expect_rounded_outward(const ViewedPart& part, std::uint64_t i, const Eigen::AlignedBox3d& box,
+                            bool is_f32) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  const Eigen::AlignedBox3d seen = part.box(i);
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const double low = box.min()[axis] - part.translation[axis];
+    const double high = box.max()[axis] - part.translation[axis];
+    if (!is_f32) {
+      ASSERT_EQ(seen.min()[axis], low);
+      ASSERT_EQ(seen.max()[axis], high);
+      continue;
+    }
+    const auto seen_low = static_cast<float>(seen.min()[axis]);
+    const auto seen_high = static_cast<float>(seen.max()[axis]);
+    ASSERT_LE(seen_low, low);
+    ASSERT_GT(std::nextafter(seen_low, kInfinity), low);
+    ASSERT_GE(seen_high, high);
+    ASSERT_LT(std::nextafter(seen_high, -kInfinity), high);
+  }
+}
+
+// Every part is there, has the boxes of the walk, and every triangle lies in every box above.
 void expect_boxes_around_triangles(const Tree& tree, const std::filesystem::path& path) {
   const Walked walk = walked(tree);
   std::map<std::string, ViewedPart> parts;
   for (ViewedPart& part : test::read_viewer_file(path)) parts[group_of(part)] = std::move(part);
   ASSERT_EQ(parts.size(), walk.boxes.size() + 1);
-  for (const auto& [group, count] : walk.boxes) {
+  const bool is_f32 = path.extension() == ".glb" || has_f32_positions(tree);
+  for (const auto& [group, boxes] : walk.boxes) {
     const ViewedPart& part = parts.at(group);
-    EXPECT_EQ(part.box_count(), count) << group;
-    EXPECT_EQ(part.elements.size(), 12 * count) << group;
+    ASSERT_EQ(part.box_count(), boxes.size()) << group;
+    EXPECT_EQ(part.elements.size(), 12 * boxes.size()) << group;
     EXPECT_TRUE(part.has_lines);
+    for (std::uint64_t i = 0; i < boxes.size(); ++i) {
+      expect_rounded_outward(part, i, boxes[i], is_f32);
+    }
   }
   // In tree order faces are exported as the leaves number them. A quad is one element in OBJ and
   // two in GLB.
@@ -162,7 +193,7 @@ TEST_P(Export, ReportsWhatItWrote) {
   std::vector<std::string> groups;
   for (const BoxGroup& group : tree.boxes) {
     groups.push_back(group.name());
-    EXPECT_EQ(group.count, walk.boxes.at(group.name()));
+    EXPECT_EQ(group.count, walk.boxes.at(group.name()).size());
   }
   EXPECT_EQ(groups, (std::vector<std::string>{"level 1", "level 2", "leaves"}));
   const std::vector<ViewedPart> parts = test::read_viewer_file(path);
@@ -263,7 +294,7 @@ TEST_P(Export, ExternalGeometryComesFromItsMesh) {
     EXPECT_EQ(test::read_text(without), test::read_text(with));
   }
   for (const ViewedPart& part : test::read_viewer_file(without)) {
-    EXPECT_EQ(part.box_count(), walked(boxes_only).boxes.at(group_of(part)));
+    EXPECT_EQ(part.box_count(), walked(boxes_only).boxes.at(group_of(part)).size());
   }
 }
 
