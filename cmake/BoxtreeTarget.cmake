@@ -3,10 +3,11 @@
 
 # Sources are included as <boxtree/FOLDER/file.h>, in the tree as after installation. One link a
 # folder gives the tree that shape without a second copy of a header.
+cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH BOXTREE_SOURCE_DIR)
 set(BOXTREE_INCLUDE_DIR ${CMAKE_CURRENT_BINARY_DIR}/include)
 file(MAKE_DIRECTORY ${BOXTREE_INCLUDE_DIR}/boxtree)
 foreach(folder format runtime cooker)
-  file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR}/${folder} ${BOXTREE_INCLUDE_DIR}/boxtree/${folder}
+  file(CREATE_LINK ${BOXTREE_SOURCE_DIR}/${folder} ${BOXTREE_INCLUDE_DIR}/boxtree/${folder}
        SYMBOLIC)
 endforeach()
 
@@ -31,7 +32,7 @@ function(boxtree_set_target target)
   # ThreadSanitizer does not see how an oneTBB built without it orders tasks, and calls every pair
   # of tasks a race. Its build runs them on threads instead: the same calls, found before oneTBB's.
   if(BOXTREE_SANITIZE MATCHES thread)
-    target_include_directories(${target} BEFORE PRIVATE ${PROJECT_SOURCE_DIR}/tests/tsan)
+    target_include_directories(${target} BEFORE PRIVATE ${BOXTREE_SOURCE_DIR}/tests/tsan)
   endif()
 endfunction()
 

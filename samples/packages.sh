@@ -9,6 +9,8 @@ SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
 TEST_PACKAGES="libgtest-dev libcgal-dev jq python3-xxhash chromium"
 # Libraries that boxtree_peers measures beside ours.
 PEER_PACKAGES="libembree-dev libbullet-dev libfcl-dev libode-dev"
+# Other compilers, standard libraries and machines, for tests/same_bytes/compare_builds.sh.
+COMPARE_PACKAGES="clang libc++-dev libc++abi-dev g++-aarch64-linux-gnu qemu-user-static"
 
 # install_missing PACKAGE...: asks the package manager only for what is not there.
 install_missing() {

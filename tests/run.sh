@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds and runs every test. The last line counts them.
-#   tests/run.sh [--all]   --all: also the debug, scalar and sanitizer builds
+#   tests/run.sh [--all]   --all: also the debug, scalar and sanitizer builds, and the bytes that
+#                          other compilers and arm64 write
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=samples/packages.sh
@@ -28,10 +29,24 @@ run_preset() {
   if [ "$status" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
 }
 
+# compare_builds: each build that writes files is a test.
+compare_builds() {
+  local said=build/compare_builds.txt status=0 failures
+  # shellcheck disable=SC2086 # a list of words
+  install_missing $COMPARE_PACKAGES
+  tests/same_bytes/compare_builds.sh | tee "$said" || status=$?
+  failures=$(grep -c '^FAIL' "$said" || true)
+  failed=$((failed + failures))
+  skipped=$((skipped + $(grep -c '^SKIP' "$said" || true)))
+  passed=$((passed + $(grep -c '^PASS' "$said" || true)))
+  if [ "$status" -ne 0 ] && [ "$failures" -eq 0 ]; then failed=$((failed + 1)); fi
+}
+
 mkdir -p build
 run_preset release
 if [ "${1:-}" = --all ]; then
   for preset in debug scalar asan-ubsan tsan; do run_preset "$preset"; done
+  compare_builds
 fi
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]

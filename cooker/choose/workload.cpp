@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Seeded questions from integer arithmetic, so that no standard library can change them.
+// Seeded questions. What the cooker chooses depends on them, so no library may have a say in their
+// last bits: sines, norms and products are made here, by the four operations and square roots in
+// one order (docs/ARCHITECTURE.md, "Same bytes everywhere").
 #include <array>
 #include <cmath>
 #include <limits>
@@ -9,6 +11,41 @@
 
 namespace boxtree::cooker {
 namespace {
+
+// The cosine and the sine of an angle in full turns, from 0 to 1.
+std::array<double, 2> cosine_sine(double turns) {
+  const double quarters = std::floor(4 * turns + 0.5);
+  const double x = 2 * std::numbers::pi * (turns - quarters / 4);  // at most pi / 4
+  std::array<double, 2> sums{};
+  double term = 1;
+  for (int n = 0; n < 20; ++n) {  // pi / 4 to the 20th over 20! is below 2^-60
+    sums[static_cast<std::size_t>(n % 2)] += n % 4 < 2 ? term : -term;
+    term *= x / (n + 1);
+  }
+  const auto [cosine, sine] = sums;
+  switch (static_cast<int>(quarters) % 4) {
+    case 0:
+      return {cosine, sine};
+    case 1:
+      return {-sine, cosine};
+    case 2:
+      return {-cosine, -sine};
+    default:
+      return {sine, -cosine};
+  }
+}
+
+double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+double length_of(const Eigen::Vector3d& vector) {
+  return std::sqrt(dot(vector, vector));
+}
+
+Eigen::Vector3d turned(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& vector) {
+  return {dot(rotation.row(0), vector), dot(rotation.row(1), vector), dot(rotation.row(2), vector)};
+}
 
 // SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
 class Random {
@@ -32,18 +69,18 @@ class Random {
   // Uniform on the unit sphere (Archimedes: heights are uniform).
   Eigen::Vector3d direction() {
     const double z = between(-1, 1);
-    const double angle = between(0, 2 * std::numbers::pi);
+    const auto [cosine, sine] = cosine_sine(unit());
     const double r = std::sqrt(1 - z * z);
-    return {r * std::cos(angle), r * std::sin(angle), z};
+    return {r * cosine, r * sine, z};
   }
   // Uniform rotation (Shoemake, "Uniform random rotations", 1992).
   Eigen::Matrix3d rotation() {
     const double u = unit();
-    const double a = between(0, 2 * std::numbers::pi);
-    const double b = between(0, 2 * std::numbers::pi);
+    const auto [cosine_a, sine_a] = cosine_sine(unit());
+    const auto [cosine_b, sine_b] = cosine_sine(unit());
     const double s = std::sqrt(1 - u);
     const double t = std::sqrt(u);
-    return Eigen::Quaterniond(t * std::cos(b), s * std::sin(a), s * std::cos(a), t * std::sin(b))
+    return Eigen::Quaterniond(t * cosine_b, s * sine_a, s * cosine_a, t * sine_b)
         .toRotationMatrix();
   }
 
@@ -58,8 +95,8 @@ double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rot
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Eigen::Vector3d& axis) {
     const double reach =
-        half.dot(axis.cwiseAbs()) + half.dot((rotation.transpose() * axis).cwiseAbs());
-    const double along = std::abs(direction.dot(axis));
+        dot(half, axis.cwiseAbs()) + dot(half, turned(rotation.transpose(), axis).cwiseAbs());
+    const double along = std::abs(dot(direction, axis));
     if (along > 0) distance = std::min(distance, reach / along);
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
@@ -76,7 +113,7 @@ Pose random_pose(const Eigen::AlignedBox3d& bounds, double share, Random& random
   const double distance = share * touching_distance(bounds.sizes() / 2, rotation, direction);
   Pose pose = Pose::Identity();
   pose.linear() = rotation;
-  pose.translation() = bounds.center() - rotation * bounds.center() + distance * direction;
+  pose.translation() = bounds.center() - turned(rotation, bounds.center()) + distance * direction;
   return pose;
 }
 
@@ -86,10 +123,12 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
                        std::uint64_t seed) {
   Workload workload;
   Random random(seed);
-  const double diagonal = bounds.diagonal().norm();
+  const double diagonal = length_of(bounds.diagonal());
   for (std::size_t i = 0; i < size.rays; ++i) {
     const Eigen::Vector3d origin = bounds.center() + diagonal * random.direction();
-    workload.rays.push_back({origin, (random.inside(bounds) - origin).normalized()});
+    const Eigen::Vector3d toward = random.inside(bounds) - origin;
+    const double length = length_of(toward);
+    workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : toward});
   }
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.025 * diagonal);
   for (std::size_t i = 0; i < size.boxes; ++i) {

@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// Cooks generated meshes in every codec and geometry store, and prints a line each: mesh, codec,
+// settings, size of the file and XXH3-64 of its bytes. And which encoding is chosen for each.
+//   boxtree_same_bytes [--jobs N] [--comma-locale] [--save FOLDER]
+//   --jobs N         on so many threads [as many as there are processors]
+//   --comma-locale   in the locale of the environment, whose decimal point must be a comma
+//   --save FOLDER    also write each file, to see where two builds differ
+#include <clocale>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <locale>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
+
+#include <boxtree/cooker/cook.h>
+#include <boxtree/runtime/file/checksum.h>
+
+#include "tests/same_bytes/meshes.h"
+
+namespace boxtree::same_bytes {
+namespace {
+
+using cooker::CookOptions;
+using cooker::EncodedTree;
+using cooker::Goal;
+using cooker::SourceMesh;
+
+struct Arguments {
+  int jobs = tbb::task_arena::automatic;
+  bool comma_locale = false;
+  std::filesystem::path save;
+};
+
+struct Settings {
+  std::string name;
+  CookOptions options;
+};
+
+std::vector<Settings> all_settings() {
+  std::vector<Settings> all = {{"exact", {}}};
+  for (const int bits : {12, 21, 30}) {
+    all.push_back({fmt::format("grid-{}", bits), {}});
+    all.back().options.geometry = GeometryId::kGrid;
+    all.back().options.grid.bits = bits;
+  }
+  all.push_back({"external", {}});
+  all.back().options.geometry = GeometryId::kExternal;
+  all.push_back({"paper", {}});
+  all.back().options.builder = cooker::Builder::kPaper;
+  all.back().options.widths = cooker::FieldWidths::kEstimated;
+  return all;
+}
+
+// What a setting would not change, or cannot be had, is left out.
+bool applies(const Settings& settings, const SourceMesh& mesh, CodecId codec) {
+  if (settings.options.geometry == GeometryId::kExternal) return mesh.face_ids.empty();
+  return settings.options.builder != cooker::Builder::kPaper || !is_wide(codec);
+}
+
+// Prints the lines. False as soon as a cook fails.
+class Printer {
+ public:
+  explicit Printer(std::filesystem::path save) : save_(std::move(save)) {}
+
+  bool print(const SourceMesh& mesh, std::string_view codec, const Settings& settings,
+             const Result<EncodedTree>& tree) {
+    if (!tree) {
+      fmt::print(stderr, "{} {} {}: {}\n", mesh.name, codec, settings.name, tree.error().message());
+      return false;
+    }
+    const std::vector<std::byte> bytes = cooker::serialize(std::span(&*tree, 1));
+    fmt::print("{} {} {} {} {:016x}\n", mesh.name, codec, settings.name, bytes.size(),
+               checksum(bytes));
+    if (save_.empty()) return true;
+    const std::string name = fmt::format("{}-{}-{}.bxt", mesh.name, codec, settings.name);
+    std::ofstream file(save_ / name, std::ios::binary);
+    file.write(reinterpret_cast<const char*>(bytes.data()),
+               static_cast<std::streamsize>(bytes.size()));
+    return file.good();
+  }
+
+ private:
+  std::filesystem::path save_;
+};
+
+// What the choice goes by, of all candidates: bytes, and the work that was counted.
+std::uint64_t hash_of(const cooker::Contest& contest) {
+  std::vector<double> numbers;
+  for (const cooker::Candidate& candidate : contest.candidates) {
+    numbers.push_back(static_cast<double>(candidate.bytes()));
+    for (const cooker::Work& work : candidate.work) {
+      numbers.insert(numbers.end(), {work.nodes, work.leaves});
+    }
+  }
+  return checksum(std::as_bytes(std::span(numbers)));
+}
+
+// Which encoding is the best for each goal. False when the cook fails.
+bool print_choices(const SourceMesh& mesh) {
+  CookOptions options;
+  options.may_use_grid = true;
+  options.try_all = true;
+  Result<cooker::TriedTree> tried = try_encodings(mesh, options);
+  if (!tried) return false;
+  for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+    const auto best = choose(std::span(&tried->contest, 1), {goal, {}, {}});
+    if (!best) return false;
+    const cooker::Candidate& chosen = tried->contest.candidates[best->front()];
+    fmt::print("{} best {} {} {} {:016x}\n", mesh.name, goal_name(goal), codec_name(chosen.codec),
+               geometry_name(chosen.geometry), hash_of(tried->contest));
+  }
+  return true;
+}
+
+bool print_all(Printer& printer) {
+  for (const SourceMesh& mesh : meshes()) {
+    for (const Settings& settings : all_settings()) {
+      for (const CodecInfo& codec : kCodecs) {
+        if (!applies(settings, mesh, codec.id)) continue;
+        const Result<EncodedTree> tree = cook_as(mesh, codec.id, settings.options);
+        if (!printer.print(mesh, codec.name, settings, tree)) return false;
+      }
+    }
+    if (!print_choices(mesh)) return false;
+  }
+  return true;
+}
+
+bool take_comma_locale() {
+  if (std::setlocale(LC_ALL, "") == nullptr) return false;
+  std::locale::global(std::locale(""));
+  return std::string_view(std::localeconv()->decimal_point) == ",";
+}
+
+bool read(int count, char** words, Arguments& arguments) {
+  for (int i = 1; i < count; ++i) {
+    const std::string_view word = words[i];
+    if (word == "--comma-locale") {
+      arguments.comma_locale = true;
+    } else if (word == "--jobs" && i + 1 < count) {
+      arguments.jobs = std::atoi(words[++i]);
+      if (arguments.jobs < 1) return false;
+    } else if (word == "--save" && i + 1 < count) {
+      arguments.save = words[++i];
+    } else {
+      return false;
+    }
+  }
+  return true;
+}
+
+int run(int count, char** words) {
+  Arguments arguments;
+  if (!read(count, words, arguments)) {
+    fmt::print(stderr, "usage: boxtree_same_bytes [--jobs N] [--comma-locale] [--save FOLDER]\n");
+    return 1;
+  }
+  if (arguments.comma_locale && !take_comma_locale()) {
+    fmt::print(stderr, "the locale of the environment has no decimal comma\n");
+    return 1;
+  }
+  bool good = false;
+  Printer printer(arguments.save);
+  tbb::task_arena(arguments.jobs).execute([&] { good = print_all(printer); });
+  return good ? 0 : 1;
+}
+
+}  // namespace
+}  // namespace boxtree::same_bytes
+
+int main(int count, char** words) {
+  return boxtree::same_bytes::run(count, words);
+}
