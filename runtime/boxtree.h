@@ -5,6 +5,7 @@
 #include <boxtree/runtime/file/file.h>
 #include <boxtree/runtime/query/box.h>
 #include <boxtree/runtime/query/distance.h>
+#include <boxtree/runtime/query/overlap_within.h>
 #include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/query/ray.h>

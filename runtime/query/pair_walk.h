@@ -20,6 +20,9 @@ struct NoPairObserver {
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
+  // One that has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)` is
+  // asked by them whether the walk is to end: before either of the above, and about each triangle
+  // of the first leaf and of the second, brought into the first one's space, that do not touch.
 };
 
 /// The children of one side of a pair: those of a node, or a leaf standing for itself.
@@ -99,7 +102,16 @@ class PairWalk {
                  : A::kDepthLimit * (A::Children::kWidth - 1) +
                        B::kDepthLimit * (B::Children::kWidth - 1) + 1;
 
+  template <class First, class Second>
+  [[nodiscard]] bool stops(const First& first, const Second& second) noexcept {
+    if constexpr (requires { observer_.stops(first, second); }) {
+      stopped_ = observer_.stops(first, second);
+    }
+    return stopped_;
+  }
+
   void descend(const Entry entry) {
+    if (stops(entry.first_box, entry.second_box)) return;
     observer_.node_pair(entry.first, entry.first_leaf, entry.second, entry.second_leaf);
     if (unmet_-- == 0) {
       error_ = Errc::kNodeCorrupt;
@@ -202,6 +214,7 @@ class PairWalk {
   }
 
   void test_leaves(const Entry& entry) {
+    if (stops(entry.first_box, entry.second_box)) return;
     observer_.leaf_pair(entry.first, entry.second);
     if (!read_first(entry.first) || !read_second(entry.second)) return;
     // Only what reaches into the other leaf's box can touch anything in it.
@@ -222,8 +235,9 @@ class PairWalk {
       const Triangle triangle = first_batch_.triangle(i);
       for (std::size_t n = 0; n < near_count; ++n) {
         const std::uint32_t j = near[n];
-        if (!boxes_overlap(first_bounds_[i], moved_bounds_[j]) || was_found(found, j) ||
-            !triangles_intersect(triangle, moved_[j])) {
+        if (!boxes_overlap(first_bounds_[i], moved_bounds_[j]) || was_found(found, j)) continue;
+        if (!triangles_intersect(triangle, moved_[j])) {
+          if (stops(triangle, moved_[j])) return;
           continue;
         }
         found |= std::uint64_t{1} << j;

@@ -175,6 +175,10 @@ double WorldMetric::length_above(double length) const noexcept {
   return scaled_above(length, exponent_);
 }
 
+double WorldMetric::from_world_below(double length) const noexcept {
+  return scaled_below(length, -exponent_);
+}
+
 double WorldMetric::from_world_above(double length) const noexcept {
   return scaled_above(length, -exponent_);
 }

@@ -146,7 +146,8 @@ class WorldMetric {
   /// A length in these units in the world's, rounded down or up.
   [[nodiscard]] double length_below(double length) const noexcept;
   [[nodiscard]] double length_above(double length) const noexcept;
-  /// A length of the world in these units, rounded up.
+  /// A length of the world in these units, rounded down or up.
+  [[nodiscard]] double from_world_below(double length) const noexcept;
   [[nodiscard]] double from_world_above(double length) const noexcept;
   [[nodiscard]] int exponent() const noexcept { return exponent_; }
 

@@ -38,6 +38,14 @@ void exercise(Bytes bytes) {
   static_cast<void>(overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}, all));
   static_cast<void>(overlap_sphere(*tree, {0, 0, 0}, 4, all));
   static_cast<void>(overlap_pairs(*tree, Pose::Identity(), *tree, Pose::Identity(), all));
+  Pose apart = Pose::Identity();
+  apart.translation() = Eigen::Vector3d(4, 5, 1);
+  static_cast<void>(distance(*tree, Pose::Identity(), *tree, apart));
+  static_cast<void>(overlap_within(*tree, Pose::Identity(), *tree, Pose::Identity(), 0.01));
+  static_cast<void>(overlap_box_within(*tree, Eigen::AlignedBox3d(Eigen::Vector3d(1, 1, 1)), 0));
+  PointOptions options;
+  options.node_budget = 100;
+  static_cast<void>(closest_point(*tree, {3, 2, 1}, options));
 }
 
 class Mutation : public testing::TestWithParam<Encoding> {};

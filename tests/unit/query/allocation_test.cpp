@@ -50,9 +50,17 @@ TEST(Allocation, QueriesNeverAllocate) {
       overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, count).ok();
   const bool sphere = overlap_sphere(*tree, {1, 0, 0}, 1, count).ok();
   const bool pairs = overlap_pairs(*tree, Pose::Identity(), *tree, pose, count).ok();
+  const bool apart = distance(*tree, Pose::Identity(), *tree, pose, {0.1, 0.1}).ok();
+  PointOptions options;
+  options.node_budget = 10;
+  const bool bounded = closest_point(*tree, {3, 1, 2}, options).ok();
+  const bool within =
+      overlap_within(*tree, Pose::Identity(), *tree, pose, 0.01).ok() &&
+      overlap_box_within(*tree, Eigen::AlignedBox3d(Eigen::Vector3d(1, 0, 0)), 0).ok();
   const bool refused = closest_point(*tree, {NAN, 0, 0}).ok();
   EXPECT_EQ(allocations, before);
-  EXPECT_TRUE(hit && any && near && box && sphere && pairs && !refused);
+  EXPECT_TRUE(hit && any && near && box && sphere && pairs && apart && bounded && within &&
+              !refused);
   EXPECT_GT(visited, 0u);
 }
 

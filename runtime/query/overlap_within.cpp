@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// Walks that end where two things are known to be close enough: every box holds a part of its
+// surface, so two boxes whose farthest points are near hold parts that are nearer; and so do
+// triangles with corners that are near.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/overlap_within.h>
+#include <boxtree/runtime/query/pair_walk.h>
+#include <boxtree/runtime/query/scaled_length.h>
+#include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/query/world_metric.h>
+
+namespace boxtree {
+namespace {
+
+// Rounding of a sum of three squares and its root, upward.
+constexpr double kMore = 1 + 8 * std::numeric_limits<double>::epsilon();
+
+// What the pair walk is told, and what became of it.
+struct Watch {
+  const RelativePose& pose;
+  const WorldMetric& metric;
+  double distance;  // in the metric's units
+  std::uint64_t budget;
+  std::uint64_t visited = 0;
+  Overlap why = Overlap::kFree;
+};
+
+struct Watcher {
+  Watch* watch;
+
+  void node_pair(NodeRef, bool, NodeRef, bool) noexcept {}
+  void leaf_pair(NodeRef, NodeRef) noexcept {}
+
+  template <class S, class T>
+  [[nodiscard]] bool stops(const Box<S>& first, const Box<T>& second) noexcept {
+    if (watch->metric.farthest(first, watch->pose.hull_in_first(second)) * kMore <
+        watch->distance) {
+      watch->why = Overlap::kUndecided;
+      return true;
+    }
+    if (watch->visited == watch->budget) {
+      watch->why = Overlap::kBudgetSpent;
+      return true;
+    }
+    ++watch->visited;
+    return false;
+  }
+
+  // By a corner of each: they have been found near, by their bounds.
+  [[nodiscard]] bool stops(const Triangle& first, const Triangle& second) noexcept {
+    const Eigen::Vector3d between = second.corner[0] - first.corner[0];
+    const double error = watch->metric.image_error() * between.cwiseAbs().maxCoeff();
+    if (!(watch->metric.to_world(between).norm() * kMore + error < watch->distance)) return false;
+    watch->why = Overlap::kUndecided;
+    return true;
+  }
+};
+
+template <Codec A, Codec B>
+Result<Visit> walk(const Tree& first, const A& first_codec, const Tree& second,
+                   const B& second_codec, Watch& watch, PairVisitor visitor) {
+  return PairWalk<A, B, Watcher>(first, first_codec, second, second_codec, watch.pose, visitor,
+                                 Watcher{&watch})
+      .run();
+}
+
+// Whether a triangle and a box share a point, exactly: a corner is inside, or the triangle meets
+// one of the twelve that the sides are made of.
+bool touches_exactly(const Triangle& triangle, const Eigen::Vector3d& low,
+                     const Eigen::Vector3d& high) noexcept {
+  if (!triangle_intersects_box(triangle, low, high)) return false;  // never by mistake
+  for (const Eigen::Vector3d& c : triangle.corner) {
+    if ((c.array() >= low.array()).all() && (c.array() <= high.array()).all()) return true;
+  }
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    const Eigen::Index u = (axis + 1) % 3;
+    const Eigen::Index v = (axis + 2) % 3;
+    for (const Eigen::Vector3d& from : {low, high}) {
+      std::array<Eigen::Vector3d, 4> side{from, from, from, from};
+      side[0][u] = side[3][u] = low[u];
+      side[1][u] = side[2][u] = high[u];
+      side[0][v] = side[1][v] = low[v];
+      side[2][v] = side[3][v] = high[v];
+      if (triangles_intersect(triangle, {{side[0], side[1], side[2]}}) ||
+          triangles_intersect(triangle, {{side[0], side[2], side[3]}})) {
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+// A box among the nodes of one tree, in tree space.
+struct BoxSearch {
+  const Tree& tree;
+  const BoxQuery& box;
+  double distance;
+  std::uint64_t budget;
+  BoxOverlap result;
+  TriangleBatch batch;
+
+  // How far the farthest point of a node's box is from the box asked about.
+  template <class S>
+  [[nodiscard]] double farthest(const Box<S>& node) const noexcept {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double outside =
+          std::max({0.0, box.low[axis] - node.low[k], node.high[k] - box.high[axis]});
+      sum += outside * outside;
+    }
+    return std::sqrt(sum) * kMore;
+  }
+
+  // Whether the search is over before this node or leaf is looked at.
+  template <class S>
+  [[nodiscard]] bool stops(const Box<S>& node) noexcept {
+    if (farthest(node) < distance) {
+      result.overlap = Overlap::kUndecided;
+      return true;
+    }
+    if (result.nodes_expanded == budget) {
+      result.overlap = Overlap::kBudgetSpent;
+      return true;
+    }
+    ++result.nodes_expanded;
+    return false;
+  }
+
+  [[nodiscard]] Errc leaf(NodeRef ref) noexcept {
+    const Errc error = tree.leaves().read(ref.first, ref.second, batch);
+    if (error != Errc::kOk) return error;
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      const Triangle triangle = batch.triangle(i);
+      const Box<double> bounds = bounds_of(triangle);
+      if (!box.overlaps(bounds)) continue;
+      if (!touches_exactly(triangle, box.low, box.high)) {
+        const Eigen::Vector3d& c = triangle.corner[0];
+        const std::array<double, 3> corner{c[0], c[1], c[2]};
+        if (!(farthest(Box<double>{corner, corner}) < distance)) continue;
+        result.overlap = Overlap::kUndecided;
+        break;
+      }
+      result.overlap = Overlap::kHit;
+      result.face = face_ref(tree, batch.face[i]);
+      break;
+    }
+    return Errc::kOk;
+  }
+
+  template <Codec C>
+  [[nodiscard]] Errc run(const C codec) noexcept {
+    using S = typename C::Scalar;
+    struct Entry {
+      Box<S> node;
+      NodeRef ref;
+      bool is_leaf;
+    };
+    std::array<Entry, kStackSize<C>> stack;
+    std::size_t size = 0;
+    const Box<S> root = root_box<S>(tree);
+    if (!box.overlaps(root)) return Errc::kOk;
+    stack[size++] = {root, tree.root_ref(), tree.record().root == RootKind::kLeaf};
+    std::uint64_t unexpanded = tree.record().node_count;
+    typename C::Children children;
+    while (size > 0) {
+      const Entry entry = stack[--size];
+      if (stops(entry.node)) return Errc::kOk;
+      if (entry.is_leaf) {
+        const Errc error = leaf(entry.ref);
+        if (error != Errc::kOk || result.overlap != Overlap::kFree) return error;
+        continue;
+      }
+      if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.node, children)) {
+        return Errc::kNodeCorrupt;
+      }
+      for (std::uint32_t i = 0; i < children.count; ++i) {
+        const Box<S> child = children.box(i);
+        if (!box.overlaps(child)) continue;
+        if (size == stack.size()) return Errc::kDepthExceeded;
+        stack[size++] = {child, children.ref[i], children.is_leaf(i)};
+      }
+    }
+    return Errc::kOk;
+  }
+};
+
+}  // namespace
+
+Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
+                                   const Pose& second_pose, double distance,
+                                   std::uint64_t node_budget) {
+  if (!(distance >= 0)) return Errc::kInvalidQuery;
+  const std::optional<RelativePose> pose =
+      RelativePose::make(first, first_pose, second, second_pose);
+  if (!pose) return Errc::kInvalidPose;
+  const std::optional<WorldMetric> metric = WorldMetric::make(first, first_pose, second, *pose);
+  if (!metric) return Errc::kInvalidPose;
+  PairOverlap result;
+  Watch watch{*pose, *metric, metric->from_world_below(distance), node_budget};
+  const auto visitor = [&result](const FacePair& pair) {
+    result.contact = pair;
+    return false;
+  };
+  const bool same = first.codec_view().index() == second.codec_view().index();
+  const Result<Visit> visit =
+      same ? with_codec(first,
+                        [&]<class C>(const C& codec) {
+                          return walk(first, codec, second, std::get<C>(second.codec_view()), watch,
+                                      visitor);
+                        })
+           : walk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, watch, visitor);
+  if (!visit) return visit.error();
+  result.overlap = result.contact ? Overlap::kHit : watch.why;
+  result.nodes_expanded = watch.visited;
+  return result;
+}
+
+Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
+                                      double distance, std::uint64_t node_budget) {
+  const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
+  if (!ordered || !box.min().allFinite() || !box.max().allFinite() || !(distance >= 0)) {
+    return Errc::kInvalidQuery;
+  }
+  if (tree.empty()) return BoxOverlap();
+  // Beyond the reach there is nothing to touch, and the predicates could overflow.
+  const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
+    return tree.frame().to_tree(corner).cwiseMax(-kReach).cwiseMin(kReach);
+  };
+  const BoxQuery query{clamped(box.min()), clamped(box.max())};
+  BoxSearch search{tree,        query, scaled_below(distance, -tree.record().scale_exponent),
+                   node_budget, {},    {}};
+  const Errc error = with_codec(tree, [&](const auto& codec) { return search.run(codec); });
+  if (error != Errc::kOk) return error;
+  return search.result;
+}
+
+}  // namespace boxtree
