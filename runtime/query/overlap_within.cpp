@@ -10,6 +10,7 @@
 
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/overlap_within.h>
 #include <boxtree/runtime/query/pair_walk.h>
 #include <boxtree/runtime/query/scaled_length.h>
@@ -197,6 +198,7 @@ struct BoxSearch {
 Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
                                    const Pose& second_pose, double distance,
                                    std::uint64_t node_budget) {
+  const DefaultFloatState state;
   if (!(distance >= 0)) return Errc::kInvalidQuery;
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
@@ -225,6 +227,7 @@ Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, co
 
 Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
                                       double distance, std::uint64_t node_budget) {
+  const DefaultFloatState state;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite() || !(distance >= 0)) {
     return Errc::kInvalidQuery;
