@@ -4,7 +4,6 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <boxtree/cooker/import/off_text.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -14,7 +13,7 @@ namespace {
 
 class OffReader {
  public:
-  OffReader(std::string_view off, KnownFaults& known, ExactPositions* exact)
+  OffReader(std::string_view off, KnownFaults& known, ExactPositions& exact)
       : rest_(off), known_(known), exact_(exact) {}
 
   Result<std::string> run();
@@ -26,12 +25,12 @@ class OffReader {
   Status read_counts();
   Status read_vertices();
   Status read_faces();
-  void add_vertex(std::size_t vertex);
+  bool add_vertex(std::size_t vertex);
   Status add_face();
 
   std::string_view rest_;
   KnownFaults& known_;
-  ExactPositions* exact_;  // or null
+  ExactPositions& exact_;
   std::string obj_;
   Tokens tokens_;  // of the line at hand
   std::size_t line_ = 0;
@@ -125,33 +124,31 @@ Status OffReader::read_vertices() {
       return failure(fmt::format("the file ends after {} of {} vertices", vertex, vertices_));
     }
     if (tokens_.size() < wanted) return failure("too few coordinates");
-    for (std::size_t i = 0; i < wanted; ++i) {
-      if (!read_number(tokens_[i])) return failure(fmt::format("'{}' is no number", tokens_[i]));
+    if (!add_vertex(vertex)) {
+      return failure(
+          fmt::format("'{}' is no number", find_no_number(std::span(tokens_).first(wanted))));
     }
-    add_vertex(vertex);
   }
   return {};
 }
 
-void OffReader::add_vertex(std::size_t vertex) {
+// False if a word is no number.
+bool OffReader::add_vertex(std::size_t vertex) {
   VertexWords words = kOrigin;
   for (std::size_t i = 0; i < dimensions_; ++i) words[i] = tokens_[i];
   if (is_homogeneous_) words[3] = tokens_[dimensions_];
-  const Eigen::Vector3d position = read_position(words, exact_ != nullptr);
+  const std::optional<Eigen::Vector3d> read = read_position(words, exact_.precision());
+  if (!read) return false;
+  const Eigen::Vector3d& position = *read;
   if (!position.allFinite()) {
     obj_ += marker_line(known_.faults.size());
     known_.faults.push_back(
         {Errc::kMeshNotFinite, fmt::format("vertex {} (line {}) is not finite: ({}, {}, {})",
                                            vertex, line_, position[0], position[1], position[2])});
-    return;
+    return true;
   }
-  if (exact_ != nullptr) {
-    obj_ += fmt::format("v {}\n", fmt::join(exact_->add(position), " "));
-    return;
-  }
-  obj_ += fmt::format("v {} {} {}", words[0], words[1], words[2]);
-  if (is_homogeneous_) obj_ += fmt::format(" {}", words[3]);
-  obj_ += '\n';
+  append_vertex_line(exact_.add(position), obj_);
+  return true;
 }
 
 Status OffReader::read_faces() {
@@ -192,7 +189,7 @@ Status OffReader::add_face() {
 
 }  // namespace
 
-Result<std::string> obj_from_off(std::string_view off, KnownFaults& known, ExactPositions* exact) {
+Result<std::string> obj_from_off(std::string_view off, KnownFaults& known, ExactPositions& exact) {
   return OffReader(off, known, exact).run();
 }
 

@@ -15,8 +15,7 @@ namespace boxtree::cooker {
 /// and homogeneous coordinates), as an OBJ file in the same order. Corners that name no vertex and
 /// vertices that are not finite become fault markers, described in `known`.
 /// kImportFailed, naming the line, if it is not such a file or ends early.
-/// With `exact`, positions are put aside there, whatever f32 makes of them.
-Result<std::string> obj_from_off(std::string_view off, KnownFaults& known,
-                                 ExactPositions* exact = nullptr);
+/// Positions are put aside in `exact`.
+Result<std::string> obj_from_off(std::string_view off, KnownFaults& known, ExactPositions& exact);
 
 }  // namespace boxtree::cooker

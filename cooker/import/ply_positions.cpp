@@ -5,7 +5,6 @@
 #include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <boxtree/cooker/import/ply_header.h>
 #include <boxtree/cooker/import/ply_positions.h>
@@ -53,8 +52,9 @@ std::optional<Layout> find_vertices(std::string_view file) {
 bool number_ply_vertices(std::string& file, ExactPositions& exact) {
   const std::optional<Layout> layout = find_vertices(file);
   if (!layout) return false;
-  ExactPositions found;
+  ExactPositions found(exact.precision());
   std::string rewritten = file.substr(0, layout->body);
+  rewritten.reserve(file.size());
   std::string_view rest = std::string_view(file).substr(layout->body);
   Tokens tokens;
   for (std::size_t line = 0; line < layout->lines_before + layout->vertices;) {
@@ -69,18 +69,22 @@ bool number_ply_vertices(std::string& file, ExactPositions& exact) {
       continue;
     }
     if (tokens.size() < layout->words) return false;
-    Eigen::Vector3d position;
+    VertexWords words = kOrigin;
+    for (std::size_t k = 0; k < 3; ++k) words[k] = tokens[layout->xyz[k]];
+    const std::optional<Eigen::Vector3d> position = read_position(words, exact.precision());
+    if (!position) return false;
+    if (!position->allFinite()) {
+      rewritten += text;
+      continue;
+    }
+    const ExactPositions::Number number = found.add(*position);
+    std::array<fmt::format_int, 3> digits = {fmt::format_int(number[0]), fmt::format_int(number[1]),
+                                             fmt::format_int(number[2])};
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<double> value = read_exact_number(tokens[layout->xyz[k]]);
-      if (!value) return false;
-      position[static_cast<Eigen::Index>(k)] = *value;
+      tokens[layout->xyz[k]] = std::string_view(digits[k].data(), digits[k].size());
     }
-    std::vector<std::string> words(tokens.begin(), tokens.end());
-    if (position.allFinite()) {
-      const ExactPositions::Number number = found.add(position);
-      for (std::size_t k = 0; k < 3; ++k) words[layout->xyz[k]] = std::to_string(number[k]);
-    }
-    rewritten += fmt::format("{}\n", fmt::join(words, " "));
+    for (const std::string_view token : tokens) (rewritten += token) += ' ';
+    rewritten.back() = '\n';
   }
   rewritten += rest;
   file = std::move(rewritten);

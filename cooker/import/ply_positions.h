@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY files of text in double precision: assimp reads their doubles as f32.
+// Positions of PLY files of text: assimp rounds their decimals more than once, and to f32.
 #pragma once
 
 #include <string>

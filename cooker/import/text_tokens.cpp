@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Words and numbers, read as assimp reads them.
+// Words and numbers, of which assimp's spellings are the widest.
+#include <algorithm>
 #include <charconv>
+#include <cmath>
+#include <limits>
 
 #include <assimp/fast_atof.h>
 #include <fmt/format.h>
@@ -20,12 +23,26 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\0' || c == '\\';
 }
 
-// In the arithmetic of T; words that are no numbers count as 0.
-template <class T, class Read>
-Eigen::Vector3d position_as(const VertexWords& words, Read read) {
+template <class T>
+std::optional<Eigen::Vector3d> position_as(const VertexWords& words) {
   std::array<T, 4> value{};
-  for (std::size_t i = 0; i < 4; ++i) value[i] = read(words[i]).value_or(0);
-  return {double{value[0] / value[3]}, double{value[1] / value[3]}, double{value[2] / value[3]}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const std::optional<T> number = read_number<T>(words[i]);
+    if (!number) return std::nullopt;
+    value[i] = *number;
+  }
+  return Eigen::Vector3d(value[0] / value[3], value[1] / value[3], value[2] / value[3]);
+}
+
+// Spellings of its own; no more digits than f32 has.
+std::optional<float> read_as_assimp(std::string_view token) {
+  float number = 0;
+  try {
+    Assimp::fast_atoreal_move<float, NotANumber>(std::string(token).c_str(), number);
+  } catch (const NotANumber&) {
+    return std::nullopt;
+  }
+  return number;
 }
 
 }  // namespace
@@ -40,30 +57,38 @@ void split_tokens(std::string_view text, Tokens& tokens) {
   }
 }
 
-std::optional<float> read_number(std::string_view token) {
-  float number = 0;
-  try {
-    Assimp::fast_atoreal_move<float, NotANumber>(std::string(token).c_str(), number);
-  } catch (const NotANumber&) {
-    return std::nullopt;
+template <class T>
+std::optional<T> read_number(std::string_view token) {
+  // from_chars knows no plus sign.
+  const bool has_plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
+  const char* const first = token.data() + (has_plus ? 1 : 0);
+  const char* const last = token.data() + token.size();
+  T number = 0;
+  const auto [end, error] = std::from_chars(first, last, number);
+  if (end == last && error == std::errc()) return number;
+  if (end == last && error == std::errc::result_out_of_range) {
+    // What is beyond long double as well, assimp takes for infinite or zero.
+    long double wide = 0;
+    if (std::from_chars(first, last, wide).ec == std::errc()) {
+      const T beyond = std::abs(wide) > 1 ? std::numeric_limits<T>::infinity() : T{0};
+      return std::copysign(beyond, static_cast<T>(std::signbit(wide) ? -1 : 1));
+    }
   }
-  return number;
+  const std::optional<float> rounded = read_as_assimp(token);
+  return rounded ? std::optional<T>(*rounded) : std::nullopt;
+}
+template std::optional<float> read_number(std::string_view token);
+template std::optional<double> read_number(std::string_view token);
+
+std::string_view find_no_number(std::span<const std::string_view> tokens) {
+  const auto found = std::find_if(tokens.begin(), tokens.end(), [](std::string_view token) {
+    return !read_number<float>(token);
+  });
+  return found == tokens.end() ? std::string_view() : *found;
 }
 
-std::optional<double> read_exact_number(std::string_view token) {
-  const std::optional<float> rounded = read_number(token);
-  if (!rounded) return std::nullopt;
-  const std::size_t sign = token.starts_with('+') ? 1 : 0;
-  double number = 0;
-  const auto [end, error] =
-      std::from_chars(token.data() + sign, token.data() + token.size(), number);
-  // Spellings that only assimp reads ("1,5", "nan(...)") keep what it makes of them.
-  return error == std::errc() && end == token.data() + token.size() ? number : double{*rounded};
-}
-
-Eigen::Vector3d read_position(const VertexWords& words, bool exact) {
-  return exact ? position_as<double>(words, read_exact_number)
-               : position_as<float>(words, read_number);
+std::optional<Eigen::Vector3d> read_position(const VertexWords& words, Precision precision) {
+  return precision == Precision::kF32 ? position_as<float>(words) : position_as<double>(words);
 }
 
 std::string marker_line(std::size_t fault) {

@@ -5,11 +5,14 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
+
+#include <boxtree/cooker/import/source_mesh.h>
 
 namespace boxtree::cooker {
 
@@ -18,18 +21,22 @@ using Tokens = std::vector<std::string_view>;
 /// The words of `text`, between spaces, tabs, line ends and backslashes.
 void split_tokens(std::string_view text, Tokens& tokens);
 
-/// The number at the beginning of `token`, exactly as assimp reads it; nothing if it reads none.
-[[nodiscard]] std::optional<float> read_number(std::string_view token);
+/// The number that `token` is, rounded once to the nearest T (float or double), infinite beyond its
+/// range; of other spellings ("1,5", "2m") what assimp makes of their beginning; nothing if that
+/// is no number.
+template <class T>
+[[nodiscard]] std::optional<T> read_number(std::string_view token);
 
-/// The same number with all its digits; what read_number does not read, this does not.
-[[nodiscard]] std::optional<double> read_exact_number(std::string_view token);
+/// The first of `tokens` that is no number, or an empty one.
+[[nodiscard]] std::string_view find_no_number(std::span<const std::string_view> tokens);
 
 /// Coordinates and weight of a vertex as they stand in a text; those left out are 0, the weight 1.
 using VertexWords = std::array<std::string_view, 4>;
 inline constexpr VertexWords kOrigin = {"0", "0", "0", "1"};
 
-/// The position: from all digits in double, or else as assimp has it, in float.
-[[nodiscard]] Eigen::Vector3d read_position(const VertexWords& words, bool exact);
+/// The position in numbers and arithmetic of `precision`; nothing if a word is no number.
+[[nodiscard]] std::optional<Eigen::Vector3d> read_position(const VertexWords& words,
+                                                           Precision precision);
 
 /// The OBJ vertex that stands for a fault (flatten.h), as a line.
 [[nodiscard]] std::string marker_line(std::size_t fault);
