@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// import_mesh: our own reader, or one assimp import without post-processing, checked before and
-// after.
+// import_mesh, import_scene: our own reader, or one assimp import without post-processing, checked
+// before and after.
+#include <cstdint>
 #include <exception>
 #include <memory>
 #include <new>
 #include <string>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
@@ -16,10 +19,13 @@
 #include <boxtree/cooker/import/flatten.h>
 #include <boxtree/cooker/import/header_checks.h>
 #include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/obj_faults.h>
+#include <boxtree/cooker/import/node_graph.h>
+#include <boxtree/cooker/import/obj_text.h>
 #include <boxtree/cooker/import/off_text.h>
 #include <boxtree/cooker/import/ply_positions.h>
+#include <boxtree/cooker/import/scene_intake.h>
 #include <boxtree/cooker/import/source_files.h>
+#include <boxtree/cooker/import/source_scene.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
@@ -74,104 +80,139 @@ Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, const StandIn*
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
 }
 
-Status import_once(const fs::path& path, const ImportOptions& options, const StandIn* stand_in,
-                   Imported& out) {
-  out = Imported();
+enum class Wanted : std::uint8_t { kMesh, kScene, kFitting };
+
+struct Request {
+  const fs::path& path;
+  const ImportOptions& options;
+  Wanted wanted;
+};
+
+ImportReport& report_of(ImportedFile& file) {
+  return std::visit([](auto& imported) -> ImportReport& { return imported.report; }, file);
+}
+
+// Formats of meshes. Groups of an OBJ file are nodes to assimp, but all of them are in one space.
+bool has_node_graph(const fs::path& path) {
+  return !has_extension(path, "obj") && !has_extension(path, "off") &&
+         !has_extension(path, "ply") && !has_extension(path, "stl");
+}
+
+Status take_over(const Request& request, aiScene& scene, const SourceContext& context,
+                 ImportReport&& report, ImportedFile& out) {
+  const Placements placements = find_placements(scene);
+  const bool has_graph = has_node_graph(request.path);
+  const bool is_scene =
+      request.wanted == Wanted::kScene ||
+      (request.wanted == Wanted::kFitting && has_graph && places_several(scene, placements));
+  if (!is_scene) {
+    Imported& mesh = out.emplace<Imported>();
+    mesh.report = std::move(report);
+    std::vector<MaterialRun> unwanted;
+    return flatten_scene(scene, placements, context, mesh, unwanted);
+  }
+  SourceScene& whole = out.emplace<SourceScene>();
+  whole.report = std::move(report);
+  return has_graph ? take_scene(scene, placements, context, whole)
+                   : take_whole(scene, placements, context, request.path.stem().string(), whole);
+}
+
+Status import_once(const Request& request, const StandIn* stand_in, ImportedFile& out) {
+  const fs::path& path = request.path;
   if (Status status = check_ply_header(path); !status.ok()) return status;
-  auto scene = read_scene(path, stand_in, out.report.files_read);
+  ImportReport report;
+  auto scene = read_scene(path, stand_in, report.files_read);
   if (!scene.ok()) return scene.error();
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
   static const StandIn kNone;
   const StandIn& aside = stand_in != nullptr ? *stand_in : kNone;
-  return flatten_scene(*scene.value(), options, path.string(), aside.known, aside.exact, out);
+  const SourceContext context{request.options, path.string(), aside.known, aside.exact};
+  return take_over(request, *scene.value(), context, std::move(report), out);
 }
 
 Error in_file(const fs::path& path, const Error& error) {
   return Error{error.code, path.string() + ": " + error.detail};
 }
 
-// Assimp refuses an OBJ file with one bad vertex number as a whole and says not where, and numbers
-// its vertices anew. So when an OBJ file fails, look at its text, mark what is wrong, and import it
-// once more: then each bad face is known by its number, its line and its own vertex number.
-Status import_obj(const fs::path& path, const ImportOptions& options, Imported& out) {
-  Result<std::string> text = read_source_file(path);
-  if (!text.ok()) return text.error();
-  const Result<bool> is_unknown = has_unknown_vertex_forms(text.value());
-  if (!is_unknown.ok()) return in_file(path, is_unknown.error());
-  const bool is_exact = options.precision == Precision::kF64;
-  Status status;
-  if (!is_unknown.value() && !is_exact) {
-    text.value() = std::string();  // not to stand beside assimp's own copy
-    status = import_once(path, options, nullptr, out);
-    if (status.ok() && out.report.skipped.empty()) return status;
-    text = read_source_file(path);
-    if (!text.ok()) return text.error();
-  }
-  StandIn marked{path.string(), std::move(text).value(), {}, {}};
-  bool changed = false;
-  marked.known = mark_obj_faults(marked.text, changed, is_exact ? &marked.exact : nullptr);
-  return changed || is_exact ? import_once(path, options, &marked, out) : status;
-}
-
-Status import_off(const fs::path& path, const ImportOptions& options, Imported& out) {
-  Result<std::string> off = read_source_file(path);
-  if (!off.ok()) return off.error();
-  StandIn obj{path.string() + ".obj", {}, {}, {}};
-  const bool is_exact = options.precision == Precision::kF64;
-  Result<std::string> text = obj_from_off(off.value(), obj.known, is_exact ? &obj.exact : nullptr);
-  if (!text.ok()) return in_file(path, text.error());
-  off.value() = std::string();
-  obj.text = std::move(text).value();
-  return import_once(path, options, &obj, out);
-}
-
-// Files of text, for f64. A file whose vertices cannot be found is read as any other: with f32
-// positions.
-Status import_exact_ply(const fs::path& path, const ImportOptions& options, Imported& out) {
+// Calls `read_text(file's text, stand-in)` to make what assimp is to see as `name`, and imports it.
+template <class Read>
+Status import_text(const Request& request, const std::string& name, const Read& read_text,
+                   ImportedFile& out) {
+  const fs::path& path = request.path;
   Result<std::string> file = read_source_file(path);
   if (!file.ok()) return file.error();
-  StandIn numbered{path.string(), std::move(file).value(), {}, {}};
-  const bool is_numbered = number_ply_vertices(numbered.text, numbered.exact);
-  return import_once(path, options, is_numbered ? &numbered : nullptr, out);
+  StandIn seen{name, {}, {}, ExactPositions(request.options.precision)};
+  Result<std::string> text = read_text(file.value(), seen.known, seen.exact);
+  if (!text.ok()) return in_file(path, text.error());
+  file.value() = std::string();  // not to stand beside what assimp makes of it
+  seen.text = std::move(text).value();
+  return import_once(request, &seen, out);
 }
 
-Status import_any(const fs::path& path, const ImportOptions& options, Imported& out) {
-  if (has_extension(path, "obj")) return import_obj(path, options, out);
-  if (has_extension(path, "off")) return import_off(path, options, out);
-  const bool is_exact = options.precision == Precision::kF64;
-  if (is_exact && has_extension(path, "ply")) return import_exact_ply(path, options, out);
-  return import_once(path, options, nullptr, out);
+// A file whose vertices cannot be found is read as any other.
+Status import_ply(const Request& request, ImportedFile& out) {
+  const fs::path& path = request.path;
+  Result<std::string> file = read_source_file(path);
+  if (!file.ok()) return file.error();
+  StandIn numbered{
+      path.string(), std::move(file).value(), {}, ExactPositions(request.options.precision)};
+  const bool is_numbered = number_ply_vertices(numbered.text, numbered.exact);
+  if (is_numbered) return import_once(request, &numbered, out);
+  numbered.text = std::string();
+  return import_once(request, nullptr, out);
+}
+
+Status import_any(const Request& request, ImportedFile& out) {
+  const fs::path& path = request.path;
+  if (has_extension(path, "obj")) {
+    return import_text(request, path.string(), obj_for_assimp, out);
+  }
+  if (has_extension(path, "off")) {
+    return import_text(request, path.string() + ".obj", obj_from_off, out);
+  }
+  if (has_extension(path, "ply")) return import_ply(request, out);
+  return import_once(request, nullptr, out);
 }
 
 // Formats of large meshes, read past assimp. False if this file is for assimp.
-Result<bool> import_directly(const fs::path& path, const ImportOptions& options, Imported& out) {
-  if (has_extension(path, "ply")) return import_binary_ply(path, options, out);
-  if (has_extension(path, "stl")) return import_binary_stl(path, options, out);
-  return false;
+Result<bool> import_directly(const Request& request, ImportedFile& out) {
+  const fs::path& path = request.path;
+  Imported mesh;
+  Result<bool> is_read = false;
+  if (has_extension(path, "ply")) is_read = import_binary_ply(path, request.options, mesh);
+  if (has_extension(path, "stl")) is_read = import_binary_stl(path, request.options, mesh);
+  if (!is_read.ok() || !is_read.value()) return is_read;
+  if (request.wanted == Wanted::kScene) {
+    out = scene_of(std::move(mesh), path.stem().string());
+  } else {
+    out = std::move(mesh);
+  }
+  return true;
 }
 
-Result<Imported> import_checked(const fs::path& path, const ImportOptions& options) {
+Result<ImportedFile> import_checked(const Request& request) {
+  const fs::path& path = request.path;
   if (Status status = check_source_file(path); !status.ok()) return status.error();
-  Imported out;
-  const Result<bool> is_read = import_directly(path, options, out);
+  ImportedFile out;
+  const Result<bool> is_read = import_directly(request, out);
   if (!is_read.ok()) return is_read.error();
   if (!is_read.value()) {
-    const Status status = import_any(path, options, out);
+    const Status status = import_any(request, out);
     if (!status.ok()) return status.error();
     // Hashed only now, so that a refused file costs no second reading.
-    const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
+    const Result<std::uint64_t> hash = hash_source_files(report_of(out).files_read);
     if (!hash.ok()) return hash.error();
-    out.report.content_hash = hash.value();
+    report_of(out).content_hash = hash.value();
   }
-  out.mesh.name = path.stem().string();
+  if (auto* mesh = std::get_if<Imported>(&out)) mesh->mesh.name = path.stem().string();
+  if (auto* scene = std::get_if<SourceScene>(&out)) scene->name = path.stem().string();
   return out;
 }
 
-}  // namespace
-
-Result<Imported> import_mesh(const fs::path& path, const ImportOptions& options) {
+Result<ImportedFile> import_guarded(const Request& request) {
+  const fs::path& path = request.path;
   try {
-    return import_checked(path, options);
+    return import_checked(request);
   } catch (const std::bad_alloc&) {
     return Error{Errc::kMeshTooLarge, path.string() + ": not enough memory to import it"};
   } catch (const std::exception& error) {
@@ -179,6 +220,27 @@ Result<Imported> import_mesh(const fs::path& path, const ImportOptions& options)
   } catch (...) {
     return Error{Errc::kImportFailed, path.string() + ": unknown exception while reading"};
   }
+}
+
+// Imported or SourceScene, whichever was asked for.
+template <class T>
+Result<T> only(Result<ImportedFile>&& file) {
+  if (!file.ok()) return file.error();
+  return std::get<T>(std::move(*file));
+}
+
+}  // namespace
+
+Result<Imported> import_mesh(const fs::path& path, const ImportOptions& options) {
+  return only<Imported>(import_guarded({path, options, Wanted::kMesh}));
+}
+
+Result<SourceScene> import_scene(const fs::path& path, const ImportOptions& options) {
+  return only<SourceScene>(import_guarded({path, options, Wanted::kScene}));
+}
+
+Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& options) {
+  return import_guarded({path, options, Wanted::kFitting});
 }
 
 }  // namespace boxtree::cooker

@@ -47,13 +47,19 @@ Status check_face_count(std::uint64_t faces, const std::string& file) {
                fmt::format("{}: {} faces, more than {}", file, faces, kMaxFaces)};
 }
 
+Status check_split_count(std::uint64_t faces, const std::string& file) {
+  if (faces <= kMaxFaces) return {};
+  return Error{Errc::kMeshTooLarge,
+               fmt::format("{}: {} faces after splitting, more than {}", file, faces, kMaxFaces)};
+}
+
 Status check_taken(const std::string& file, const Imported& imported) {
-  const ImportReport& report = imported.report;
   const std::size_t faces = imported.mesh.faces.size();
-  if (faces > kMaxFaces) {
-    return Error{Errc::kMeshTooLarge,
-                 fmt::format("{}: {} faces after splitting, more than {}", file, faces, kMaxFaces)};
-  }
+  if (Status status = check_split_count(faces, file); !status.ok()) return status;
+  return check_any_taken(file, faces, imported.report);
+}
+
+Status check_any_taken(const std::string& file, std::size_t faces, const ImportReport& report) {
   if (faces > 0) return {};
   std::string why = "no faces";
   if (!report.skipped.empty()) why = fmt::format("all {} faces are bad", report.source_faces);

@@ -35,6 +35,12 @@ void count_no_face(std::size_t corners, ImportReport& report);
 /// kMeshTooLarge when `faces`, as stated or counted before splitting, are more than kMaxFaces.
 Status check_face_count(std::uint64_t faces, const std::string& file);
 
+/// The same for faces counted after splitting.
+Status check_split_count(std::uint64_t faces, const std::string& file);
+
+/// kNoFaces when no faces were taken over; `report` says why.
+Status check_any_taken(const std::string& file, std::size_t faces, const ImportReport& report);
+
 /// What holds of a mesh only after the last face: there are some, and not too many of them.
 Status check_taken(const std::string& file, const Imported& imported);
 

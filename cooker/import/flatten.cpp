@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Flattening: walks the node tree, applies transforms in double, welds, counts.
+// Flattening: applies transforms in double, welds, counts.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,86 +25,6 @@ constexpr std::uint32_t kUnused = 0xffffffffu;
 constexpr std::uint32_t kNotFinite = 0xfffffffeu;
 constexpr std::uint32_t kUsed = 0xfffffffdu;
 
-// An affine map in double; assimp's matrices are rows of floats.
-struct Transform {
-  std::array<std::array<double, 4>, 3> row = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
-
-  static Transform from(const aiMatrix4x4& m) {
-    return {{{{m.a1, m.a2, m.a3, m.a4}, {m.b1, m.b2, m.b3, m.b4}, {m.c1, m.c2, m.c3, m.c4}}}};
-  }
-  [[nodiscard]] Transform operator*(const Transform& inner) const {
-    Transform product;
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        product.row[i][j] = row[i][0] * inner.row[0][j] + row[i][1] * inner.row[1][j] +
-                            row[i][2] * inner.row[2][j] + (j == 3 ? row[i][3] : 0.0);
-      }
-    }
-    return product;
-  }
-  [[nodiscard]] Vector3d operator*(const Vector3d& v) const {
-    const auto along = [&v](const std::array<double, 4>& r) {
-      return r[0] * v[0] + r[1] * v[1] + r[2] * v[2] + r[3];
-    };
-    return {along(row[0]), along(row[1]), along(row[2])};
-  }
-  [[nodiscard]] bool is_identity() const { return row == Transform().row; }
-  [[nodiscard]] bool mirrors() const {
-    const auto& [x, y, z] = row;
-    return x[0] * (y[1] * z[2] - y[2] * z[1]) - x[1] * (y[0] * z[2] - y[2] * z[0]) +
-               x[2] * (y[0] * z[1] - y[1] * z[0]) <
-           0;
-  }
-};
-
-struct Instance {
-  unsigned mesh;
-  Transform transform;
-};
-
-// Instances in node order, depth first, with an explicit stack: a file may nest as deep as it
-// likes.
-std::vector<Instance> find_instances(const aiScene& scene) {
-  struct Visit {
-    const aiNode* node;
-    Transform parent;
-  };
-  std::vector<Instance> instances;
-  std::vector<Visit> stack;
-  if (scene.mRootNode != nullptr) stack.push_back({scene.mRootNode, Transform()});
-  while (!stack.empty()) {
-    const Visit visit = stack.back();
-    stack.pop_back();
-    // A product with the identity would turn -0 into +0; nothing else depends on this.
-    const Transform own = Transform::from(visit.node->mTransformation);
-    const Transform transform = own.is_identity() ? visit.parent : visit.parent * own;
-    for (unsigned i = 0; i < visit.node->mNumMeshes; ++i) {
-      const unsigned mesh = visit.node->mMeshes[i];
-      if (mesh < scene.mNumMeshes && scene.mMeshes[mesh] != nullptr) {
-        instances.push_back({mesh, transform});
-      }
-    }
-    for (unsigned i = visit.node->mNumChildren; i-- > 0;) {
-      if (visit.node->mChildren[i] != nullptr) {
-        stack.push_back({visit.node->mChildren[i], transform});
-      }
-    }
-  }
-  return instances;
-}
-
-// Meshes that no node places come last, as they are: some of assimp's readers (RAW with several
-// groups) lose the nodes of meshes that the file does hold. Returns how many there are.
-std::size_t add_unplaced(const aiScene& scene, std::vector<Instance>& instances) {
-  std::vector<bool> placed(scene.mNumMeshes, false);
-  for (const Instance& instance : instances) placed[instance.mesh] = true;
-  const std::size_t before = instances.size();
-  for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
-    if (!placed[i] && scene.mMeshes[i] != nullptr) instances.push_back({i, Transform()});
-  }
-  return instances.size() - before;
-}
-
 // Normals, colours and the like can be larger than all that is kept.
 void free_attributes(aiMesh& mesh) {
   const auto drop = [](auto*& array) {
@@ -122,18 +42,20 @@ void free_attributes(aiMesh& mesh) {
 template <class T>
 class Flattener {
  public:
-  Flattener(const ImportOptions& options, const std::string& file, const KnownFaults& known,
-            const ExactPositions& exact, std::vector<T>& positions, Imported& out)
-      : options_(options),
-        file_(file),
-        known_(known),
-        exact_(exact),
+  Flattener(const SourceContext& context, std::vector<T>& positions, Imported& out)
+      : options_(context.options),
+        file_(context.file),
+        known_(context.known),
+        exact_(context.exact),
         positions_(positions),
         report_(out.report),
         welder_(positions),
         intake_(positions, out) {}
 
   Status add(const aiMesh& mesh, const Transform& transform);
+
+  /// Faces of three corners or more in what was added: the number of the next one.
+  [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
 
  private:
   std::array<T, 3> place(unsigned vertex) const;
@@ -287,13 +209,14 @@ void Flattener<T>::add_face(const aiFace& face) {
   }
 }
 
-// A coordinate was rounded to f32 (or f64, if exact) when the file was written or read, then
-// carried through the transform, and rounded again to T. The arithmetic of the transform adds four
-// roundings.
+// A coordinate was rounded to f32 (or to what it was put aside in) when the file was written or
+// read, then carried through the transform, and rounded again to T. The arithmetic of the transform
+// adds four roundings.
 template <class T>
 RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
   const Vector3d source = exact_[source_->mVertices[vertex]];
-  const auto rounding_when_read = exact_.empty() ? rounding_of<float> : rounding_of<double>;
+  const bool was_f32 = exact_.empty() || exact_.precision() == Precision::kF32;
+  const auto rounding_when_read = was_f32 ? rounding_of<float> : rounding_of<double>;
   const Vector3d before(rounding_when_read(source[0]), rounding_when_read(source[1]),
                         rounding_when_read(source[2]));
   const Vector3d after = intake_.position(remap_[vertex]);
@@ -313,19 +236,24 @@ RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
 }
 
 // Faces that the instances will give, or more than kMaxFaces.
-std::uint64_t count_faces(const aiScene& scene, const std::vector<Instance>& instances) {
+std::uint64_t count_faces(const aiScene& scene, std::span<const MeshInstance> instances) {
   std::uint64_t triangles = 0;
-  for (const Instance& instance : instances) triangles += scene.mMeshes[instance.mesh]->mNumFaces;
+  for (const MeshInstance& instance : instances) {
+    triangles += scene.mMeshes[instance.mesh]->mNumFaces;
+  }
   return triangles;
 }
 
 template <class T>
-Status flatten(aiScene& scene, const std::vector<Instance>& instances, Flattener<T>& flattener) {
-  std::vector<unsigned> uses(scene.mNumMeshes, 0);
-  for (const Instance& instance : instances) ++uses[instance.mesh];
-  for (const Instance& instance : instances) {
+Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
+               Flattener<T>& flattener, std::vector<MaterialRun>& materials) {
+  for (const MeshInstance& instance : instances) {
     aiMesh*& mesh = scene.mMeshes[instance.mesh];
+    const std::uint32_t first_face = flattener.next_face_id();
     if (Status status = flattener.add(*mesh, instance.transform); !status.ok()) return status;
+    if (flattener.next_face_id() > first_face) {
+      materials.push_back({first_face, mesh->mMaterialIndex});
+    }
     if (--uses[instance.mesh] > 0) continue;
     delete mesh;
     mesh = nullptr;
@@ -346,27 +274,47 @@ const FaceFault* KnownFaults::find(const aiVector3D& position) const {
   return &faults[std::min(static_cast<std::size_t>(position.z), faults.size() - 1)];
 }
 
-Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::string& file,
-                     const KnownFaults& known, const ExactPositions& exact, Imported& out) {
-  std::vector<Instance> instances = find_instances(scene);
-  out.report.meshes_unplaced = add_unplaced(scene, instances);
+void free_attributes(aiScene& scene) {
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     if (scene.mMeshes[i] != nullptr) free_attributes(*scene.mMeshes[i]);
   }
+}
+
+Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
+                         const SourceContext& context, Imported& out,
+                         std::vector<MaterialRun>& materials) {
   const std::uint64_t faces = count_faces(scene, instances);
-  if (Status status = check_face_count(faces, file); !status.ok()) return status;
+  if (Status status = check_face_count(faces, context.file); !status.ok()) return status;
+  Positions& positions = out.mesh.positions;
   out.mesh.faces.reserve(faces);
-  out.mesh.positions.precision = options.precision;
+  positions.precision = context.options.precision;
   Status status;
-  if (options.precision == Precision::kF32) {
-    Flattener<float> flattener(options, file, known, exact, out.mesh.positions.f32, out);
-    status = flatten(scene, instances, flattener);
+  if (positions.precision == Precision::kF32) {
+    Flattener<float> flattener(context, positions.f32, out);
+    status = flatten(scene, instances, uses, flattener, materials);
   } else {
-    Flattener<double> flattener(options, file, known, exact, out.mesh.positions.f64, out);
-    status = flatten(scene, instances, flattener);
+    Flattener<double> flattener(context, positions.f64, out);
+    status = flatten(scene, instances, uses, flattener, materials);
   }
   if (!status.ok()) return status;
-  return check_taken(file, out);
+  return check_split_count(out.mesh.faces.size(), context.file);
+}
+
+Status flatten_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
+                     Imported& out, std::vector<MaterialRun>& materials) {
+  free_attributes(scene);
+  out.report.meshes_unplaced = placements.unplaced;
+  std::vector<MeshInstance> instances;
+  MeshUses uses(scene.mNumMeshes, 0);
+  for (const Placement& placement : placements.all) {
+    for (const unsigned mesh : placement.meshes) {
+      instances.push_back({mesh, placement.transform});
+      ++uses[mesh];
+    }
+  }
+  Status status = flatten_instances(scene, instances, uses, context, out, materials);
+  if (!status.ok()) return status;
+  return check_any_taken(context.file, out.mesh.faces.size(), out.report);
 }
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An assimp scene becomes one SourceMesh: instances, transforms, welding, polygons.
+// Meshes of an assimp scene become one SourceMesh: transforms, welding, polygons.
 #pragma once
 
 #include <cstdint>
@@ -12,6 +12,8 @@
 #include <boxtree/cooker/import/exact_positions.h>
 #include <boxtree/cooker/import/face_intake.h>
 #include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/node_graph.h>
+#include <boxtree/format/scene_record.h>
 
 struct aiScene;
 
@@ -28,10 +30,36 @@ struct KnownFaults {
   [[nodiscard]] const FaceFault* find(const aiVector3D& position) const;
 };
 
-/// Flattens `scene` into `out.mesh` and counts in `out.report`, as import.h says. Frees each mesh
-/// of the scene as soon as its last instance is taken over, so that the two never coexist whole.
-/// `file` is what errors call the file; `exact` holds positions that assimp knows by number alone.
-Status flatten_scene(aiScene& scene, const ImportOptions& options, const std::string& file,
-                     const KnownFaults& known, const ExactPositions& exact, Imported& out);
+/// What is known of a file beside assimp's scene.
+struct SourceContext {
+  const ImportOptions& options;
+  std::string file;  // what errors call it
+  const KnownFaults& known;
+  const ExactPositions& exact;  // holds positions that assimp knows by number alone
+};
+
+/// A mesh of aiScene::mMeshes, and where it goes.
+struct MeshInstance {
+  unsigned mesh;
+  Transform transform;
+};
+
+/// For each mesh of aiScene::mMeshes, how often it is still to be taken over.
+using MeshUses = std::vector<unsigned>;
+
+/// Frees normals, colours and the like, which can be larger than all that is kept.
+void free_attributes(aiScene& scene);
+
+/// Puts `instances`, one after the other, into `out.mesh` and counts them in `out.report`, as
+/// import.h says; none may be left. Frees each mesh of the scene as soon as `uses` says that nobody
+/// wants it any more, so that the two never coexist whole. `materials` gets a run for each instance
+/// with faces, whose material is a number of aiScene::mMaterials.
+Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
+                         const SourceContext& context, Imported& out,
+                         std::vector<MaterialRun>& materials);
+
+/// The same for everything that is placed; kNoFaces when nothing comes of it.
+Status flatten_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
+                     Imported& out, std::vector<MaterialRun>& materials);
 
 }  // namespace boxtree::cooker

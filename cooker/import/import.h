@@ -23,10 +23,14 @@ struct ImportOptions {
   Precision precision = Precision::kF32;
 };
 
+/// SkippedFace::mesh: of the mesh nothing is left.
+inline constexpr std::uint32_t kNoMesh = 0xffffffffu;
+
 /// A face that was not taken over, and why. Nothing is dropped without one of these.
 struct SkippedFace {
   std::uint32_t face_id;
   std::string reason;
+  std::uint32_t mesh = 0;  // whose face it is: of SourceScene::meshes, or kNoMesh
 };
 
 /// What import did to the source, so that nothing happens silently.
@@ -69,12 +73,12 @@ struct Imported {
 /// faces, or out of memory). No exception leaves it, nothing is printed by it, it reads and writes
 /// no global state: safe to call from several threads, in any locale.
 ///
-/// What assimp decides: Debian's build holds positions as f32. f64 positions of OBJ, OFF and PLY
-/// files go past it; those of other formats have the digits of f32. Decimal coordinates read as f32
-/// can be a unit in the last place off the nearest. Where a reader of assimp repairs silently, we
-/// look first ourselves: OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out of range is
-/// refused even with skip_bad, and named by its mesh: assimp has dropped the faces and their
-/// numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex
+/// Positions of OBJ, OFF and PLY files go past assimp: decimals are rounded once, to the nearest
+/// f32 or f64. What assimp decides: those of other formats have the digits of f32, and decimals
+/// among them can be a unit in the last place off the nearest. Where a reader of assimp repairs
+/// silently, we look first ourselves: OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out
+/// of range is refused even with skip_bad, and named by its mesh: assimp has dropped the faces and
+/// their numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex
 /// number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 

@@ -1,7 +1,14 @@
 // SPDX-License-Identifier: MIT
 // The same tetrahedron in the formats that people use most.
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <charconv>
+#include <cmath>
 #include <cstring>
+#include <random>
+
+#include <fmt/format.h>
 
 #include "temp_files.h"
 
@@ -41,11 +48,11 @@ TEST_F(ImportFormatTest, Obj) {
                           "f 1 2 4\r\ng y\r\nf -3 -2 -1\r\nf 3 1 4"));
 }
 
-// Weights, colours, colours with opacity, comments: assimp leaves the last two kinds out, and with
-// them every number after.
+// Weights, colours, colours with opacity, comments, no digit before the point: assimp leaves the
+// last three kinds out, and with them every number after.
 TEST_F(ImportFormatTest, ObjVertexForms) {
   expect_tetrahedron(load("a.obj",
-                          "v 0 0 0 0.1 0.2 0.3 1\nv 2 0 0 2\nv 0 1 0 0.5 0.5 0.5\n"
+                          "v 0 0 0 0.1 0.2 0.3 1\nv 2 0 0 2\nv .0 1 0 0.5 0.5 0.5\n"
                           "v 0 0 1.5 # a comment of 2 numbers, 3\n"
                           "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"));
 }
@@ -200,6 +207,79 @@ TEST_F(ImportFormatTest, BadVerticesAreNamedInF64) {
       fail("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1e999 0\nf 1 2 3\n", {.precision = Precision::kF64});
   EXPECT_EQ(error.code, Errc::kMeshNotFinite);
   EXPECT_NE(error.detail.find("vertex 3 (line 3)"), std::string::npos) << error.detail;
+}
+
+// Decimals of every spelling and magnitude. Assimp multiplies by a power of ten that is rounded
+// itself, and adds what is behind the point as one float: both are off by a unit now and then.
+std::vector<std::string> decimals_of_all_kinds() {
+  std::mt19937 random(5);
+  std::vector<std::string> words = {"1.2345678e-05",
+                                    "7.0064923216240854e-46",
+                                    "7.1e-46",
+                                    "1.1754943508222875e-38",
+                                    "1e-60",
+                                    "-1e-400",
+                                    "+2.5E+3",
+                                    "3.40282356e38",
+                                    "16777217",
+                                    "16777219.0000000000000000000000000001",
+                                    "-0",
+                                    "123456789012345678901234567890",
+                                    ".1",
+                                    "5."};
+  while (words.size() < 3000) {
+    const auto any = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    if (!std::isfinite(any)) continue;
+    const int digits = static_cast<int>(random() % 20);
+    words.push_back(random() % 2 == 0 ? fmt::format("{:.{}e}", any, digits)
+                                      : fmt::format("{:.{}f}", std::fmod(any, 1e6f), digits));
+  }
+  return words;
+}
+
+float nearest_float(std::string_view word) {
+  float nearest = 0;
+  const std::size_t sign = word.starts_with('+') ? 1 : 0;
+  const auto [end, error] = std::from_chars(word.data() + sign, word.data() + word.size(), nearest);
+  // Beyond the range of f32 there are only numbers near zero here.
+  if (error != std::errc()) nearest = word.starts_with('-') ? -0.0f : 0.0f;
+  EXPECT_EQ(end, word.data() + word.size()) << word;
+  return nearest;
+}
+
+TEST_F(ImportFormatTest, DecimalsAreRoundedOnceToF32) {
+  const std::vector<std::string> words = decimals_of_all_kinds();
+  const std::size_t count = words.size() / 3;
+  std::string vertices, obj_faces, off_faces;
+  for (std::size_t i = 0; i < count; ++i) {
+    vertices += fmt::format("{} {} {}\n", words[3 * i], words[3 * i + 1], words[3 * i + 2]);
+    off_faces += fmt::format("3 {} {} {}\n", i, (i + 1) % count, (i + 2) % count);
+    obj_faces += fmt::format("f {} {} {}\n", i + 1, (i + 1) % count + 1, (i + 2) % count + 1);
+  }
+  std::string obj_vertices;
+  for (std::size_t i = 0; i < count; ++i) {
+    obj_vertices += fmt::format("v {} {} {}{}\n", words[3 * i], words[3 * i + 1], words[3 * i + 2],
+                                i % 3 == 0 ? " 0.1 0.2 0.3" : "");
+  }
+  const std::string counts = fmt::format("{0} {0} 0\n", count);
+  const std::string header = fmt::format(
+      "ply\nformat ascii 1.0\nelement vertex {0}\nproperty float x\nproperty float y\n"
+      "property float z\nelement face {0}\nproperty list uchar int vertex_indices\nend_header\n",
+      count);
+  for (const Imported& got : {load("a.obj", obj_vertices + obj_faces),
+                              load("a.off", "OFF\n" + counts + vertices + off_faces),
+                              load("a.ply", header + vertices + off_faces)}) {
+    expect_invariants(got);
+    ASSERT_EQ(got.mesh.faces.size(), count);
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::uint32_t vertex = got.mesh.faces[i].corner[0];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(got.mesh.positions.f32[3 * vertex + axis]),
+                  std::bit_cast<std::uint32_t>(nearest_float(words[3 * i + axis])))
+            << words[3 * i + axis];
+      }
+    }
+  }
 }
 
 std::string fine_ply(const std::string& format) {

@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: MIT
+// Each list of meshes that nodes have is flattened once, in its own space; what is equal then is
+// merged by content.
+#define XXH_INLINE_ALL
+#include <cstring>
+#include <map>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <unordered_map>
+#include <utility>
+
+#include <Eigen/LU>
+#include <assimp/material.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <boxtree/cooker/import/scene_intake.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// Names of the materials in use, numbered in order of their first use. Those of one name are one.
+class MaterialIntake {
+ public:
+  MaterialIntake(const aiScene& scene, std::vector<std::string>& names)
+      : scene_(scene), names_(names), numbers_(scene.mNumMaterials, kNoMaterial) {}
+
+  // Turns runs of aiScene::mMaterials into runs of `names`.
+  std::vector<MaterialRun> take(std::span<const MaterialRun> runs) {
+    std::vector<MaterialRun> taken;
+    for (const MaterialRun& run : runs) {
+      const std::uint32_t material = number_of(run.material);
+      if (taken.empty() || taken.back().material != material) {
+        taken.push_back({run.first_face, material});
+      }
+    }
+    return taken;
+  }
+
+  // Whether the materials taken tell faces apart, or at least have a name: faces without a material
+  // have one of assimp's making.
+  [[nodiscard]] bool are_known() const {
+    return names_.size() > 1 ||
+           (!by_name_.empty() && by_name_.begin()->first != AI_DEFAULT_MATERIAL_NAME);
+  }
+
+ private:
+  std::uint32_t number_of(std::uint32_t source) {
+    if (source >= numbers_.size()) return number_of_name(AI_DEFAULT_MATERIAL_NAME);
+    if (numbers_[source] == kNoMaterial) {
+      const std::string name = name_of(source);
+      numbers_[source] = name.empty() ? number_of_unnamed() : number_of_name(name);
+    }
+    return numbers_[source];
+  }
+  [[nodiscard]] std::string name_of(std::uint32_t source) const {
+    aiString name;
+    const aiMaterial* material = scene_.mMaterials[source];
+    if (material != nullptr) material->Get(AI_MATKEY_NAME, name);
+    return name.C_Str();
+  }
+  std::uint32_t number_of_name(const std::string& name) {
+    const auto [known, is_new] = by_name_.try_emplace(name, next());
+    if (is_new) names_.push_back(name);
+    return known->second;
+  }
+  std::uint32_t number_of_unnamed() {
+    const std::uint32_t number = next();
+    names_.push_back(fmt::format("material {}", number));
+    return number;
+  }
+  [[nodiscard]] std::uint32_t next() const { return static_cast<std::uint32_t>(names_.size()); }
+
+  const aiScene& scene_;
+  std::vector<std::string>& names_;
+  std::vector<std::uint32_t> numbers_;  // of each source material, or kNoMaterial: not yet in use
+  std::map<std::string, std::uint32_t> by_name_;
+};
+
+// Everything that makes two meshes equal, as bytes. Of positions the bits count: -0 is not +0.
+template <class Visit>
+void visit_content(const SceneMesh& mesh, const Visit& visit) {
+  const auto array = [&visit](const auto& values) { visit(std::as_bytes(std::span(values))); };
+  array(mesh.mesh.positions.f32);
+  array(mesh.mesh.positions.f64);
+  array(mesh.mesh.faces);
+  array(mesh.mesh.face_ids);
+  array(mesh.materials);
+}
+
+std::uint64_t hash_of(const SceneMesh& mesh) {
+  std::uint64_t hash = mesh.source_faces;
+  visit_content(mesh, [&hash](std::span<const std::byte> bytes) {
+    hash = XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
+  });
+  return hash;
+}
+
+bool is_equal(const SceneMesh& a, const SceneMesh& b) {
+  std::vector<std::span<const std::byte>> of_a;
+  visit_content(a, [&of_a](std::span<const std::byte> bytes) { of_a.push_back(bytes); });
+  bool equal = a.source_faces == b.source_faces;
+  std::size_t next = 0;
+  visit_content(b, [&](std::span<const std::byte> bytes) {
+    const std::span<const std::byte> other = of_a[next++];
+    equal = equal && bytes.size() == other.size() &&
+            (bytes.empty() || std::memcmp(bytes.data(), other.data(), bytes.size()) == 0);
+  });
+  return equal;
+}
+
+Pose pose_of(const Transform& transform) {
+  Pose pose = Pose::Identity();
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 4; ++j) {
+      pose(i, j) = transform.row[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+    }
+  }
+  return pose;
+}
+
+// What is wrong with a pose, or nullptr. Asks what RelativePose asks, in its arithmetic, of a body
+// seen from itself: the inverse is finite, and so is that of the product of the two (a determinant
+// beyond all doubles makes the first one zero).
+const char* pose_fault(const Pose& pose) {
+  if (!pose.matrix().allFinite()) return "is not finite";
+  const Eigen::Matrix3d linear = pose.linear();
+  const Eigen::Matrix3d inverse = linear.inverse();
+  const Eigen::Matrix3d product = inverse * linear;
+  const Eigen::Matrix3d back = product.inverse();
+  if (!inverse.allFinite() || !product.allFinite() || !back.allFinite()) return "is not invertible";
+  return nullptr;
+}
+
+// Assimp's reader of glTF numbers the primitives of a mesh: wheel-0, wheel-1.
+std::string name_of(const aiScene& scene, const Placement& placement) {
+  constexpr std::string_view kFirst = "-0";
+  std::string name = scene.mMeshes[placement.meshes[0]]->mName.C_Str();
+  if (placement.meshes.size() > 1 && name.ends_with(kFirst)) {
+    name.resize(name.size() - kFirst.size());
+  }
+  return name.empty() ? placement.name : name;
+}
+
+void drop_materials(SourceScene& out) {
+  out.materials.clear();
+  for (SceneMesh& mesh : out.meshes) mesh.materials.clear();
+}
+
+class SceneIntake {
+ public:
+  SceneIntake(aiScene& scene, const SourceContext& context, SourceScene& out)
+      : scene_(scene),
+        context_(context),
+        out_(out),
+        materials_(scene, out.materials),
+        uses_(scene.mNumMeshes, 0) {}
+
+  Status take(const Placements& placements);
+
+ private:
+  Result<std::uint32_t> take_meshes(const Placement& placement);
+  std::uint32_t merge(SceneMesh&& mesh);
+
+  aiScene& scene_;
+  const SourceContext& context_;
+  SourceScene& out_;
+  MaterialIntake materials_;
+  MeshUses uses_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;  // numbers of out.meshes
+};
+
+Status SceneIntake::take(const Placements& placements) {
+  // Nodes with the same meshes of the file in the same order share what becomes of them.
+  std::map<std::vector<unsigned>, std::optional<std::uint32_t>> taken;
+  for (const Placement& placement : placements.all) {
+    if (!taken.try_emplace(placement.meshes).second) continue;
+    for (const unsigned mesh : placement.meshes) ++uses_[mesh];
+  }
+  for (const Placement& placement : placements.all) {
+    std::optional<std::uint32_t>& mesh = taken.find(placement.meshes)->second;
+    if (!mesh) {
+      const Result<std::uint32_t> number = take_meshes(placement);
+      if (!number.ok()) return number.error();
+      mesh = *number;
+    }
+    if (*mesh == kNoMesh) continue;
+    const Pose pose = pose_of(placement.transform);
+    if (const char* fault = pose_fault(pose)) {
+      return Error{Errc::kInvalidPose, fmt::format("{}: node '{}': its transform {}", context_.file,
+                                                   placement.name, fault)};
+    }
+    const auto id = static_cast<std::uint32_t>(out_.instances.size());
+    out_.instances.push_back({placement.name, *mesh, id, pose});
+  }
+  if (!materials_.are_known()) drop_materials(out_);
+  return check_any_taken(context_.file, out_.instances.size(), out_.report);
+}
+
+Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
+  SceneMesh mesh;
+  Imported imported;
+  imported.mesh.name = name_of(scene_, placement);
+  imported.report = std::move(out_.report);
+  const std::size_t faces_before = imported.report.source_faces;
+  const std::size_t skipped_before = imported.report.skipped.size();
+  const SourceContext context{context_.options,
+                              fmt::format("{}: mesh of '{}'", context_.file, placement.name),
+                              context_.known, context_.exact};
+  std::vector<MeshInstance> parts;
+  for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
+  std::vector<MaterialRun> runs;
+  const Status status = flatten_instances(scene_, parts, uses_, context, imported, runs);
+  out_.report = std::move(imported.report);
+  if (!status.ok()) return status.error();
+  mesh.mesh = std::move(imported.mesh);
+  mesh.source_faces = static_cast<std::uint32_t>(out_.report.source_faces - faces_before);
+  std::uint32_t number = kNoMesh;
+  if (!mesh.mesh.faces.empty()) {
+    mesh.materials = materials_.take(runs);
+    number = merge(std::move(mesh));
+  }
+  for (std::size_t i = skipped_before; i < out_.report.skipped.size(); ++i) {
+    out_.report.skipped[i].mesh = number;
+  }
+  return number;
+}
+
+// The number of `mesh`, or of one with the same content.
+std::uint32_t SceneIntake::merge(SceneMesh&& mesh) {
+  const std::uint64_t hash = hash_of(mesh);
+  const auto [first, last] = by_hash_.equal_range(hash);
+  for (auto candidate = first; candidate != last; ++candidate) {
+    if (is_equal(out_.meshes[candidate->second], mesh)) return candidate->second;
+  }
+  const auto number = static_cast<std::uint32_t>(out_.meshes.size());
+  out_.meshes.push_back(std::move(mesh));
+  by_hash_.emplace(hash, number);
+  return number;
+}
+
+}  // namespace
+
+Status take_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
+                  SourceScene& out) {
+  free_attributes(scene);
+  out.report.meshes_unplaced = placements.unplaced;
+  return SceneIntake(scene, context, out).take(placements);
+}
+
+Status take_whole(aiScene& scene, const Placements& placements, const SourceContext& context,
+                  const std::string& name, SourceScene& out) {
+  Imported imported;
+  imported.report = std::move(out.report);
+  std::vector<MaterialRun> runs;
+  Status status = flatten_scene(scene, placements, context, imported, runs);
+  out = scene_of(std::move(imported), name);
+  if (!status.ok()) return status;
+  MaterialIntake materials(scene, out.materials);
+  out.meshes[0].materials = materials.take(runs);
+  if (!materials.are_known()) drop_materials(out);
+  return {};
+}
+
+SourceScene scene_of(Imported&& imported, const std::string& name) {
+  SourceScene scene;
+  scene.name = name;
+  scene.report = std::move(imported.report);
+  const auto source_faces = static_cast<std::uint32_t>(scene.report.source_faces);
+  scene.meshes.push_back({std::move(imported.mesh), source_faces, {}});
+  scene.meshes[0].mesh.name = name;
+  scene.instances.push_back({name, 0, 0, Pose::Identity()});
+  return scene;
+}
+
+}  // namespace boxtree::cooker
