@@ -125,6 +125,24 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "cook_record";
     case SectionKind::kBlob:
       return "blob";
+    case SectionKind::kScene:
+      return "scene";
+    case SectionKind::kSceneNodes:
+      return "scene_nodes";
+    case SectionKind::kInstances:
+      return "instances";
+    case SectionKind::kPoses:
+      return "poses";
+    case SectionKind::kLayers:
+      return "layers";
+    case SectionKind::kMaterials:
+      return "materials";
+    case SectionKind::kMaterialRuns:
+      return "material_runs";
+    case SectionKind::kFaceMaterials:
+      return "face_materials";
+    case SectionKind::kLeftOut:
+      return "left_out";
   }
   return "unknown";
 }

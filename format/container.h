@@ -53,6 +53,16 @@ enum class SectionKind : std::uint32_t {
   kNames = 7,        // UTF-8 names of all trees, joined; owner kNoOwner
   kCookRecord = 8,   // UTF-8 JSON: how the file was made; owner kNoOwner
   kBlob = 9,         // BlobHeader and a compressed file (format/blob.h); owner kNoOwner
+  // A scene (format/scene_record.h); owner kNoOwner unless said otherwise.
+  kScene = 10,          // SceneRecord
+  kSceneNodes = 11,     // Wide8Node[] over the static instances
+  kInstances = 12,      // InstanceRecord[]
+  kPoses = 13,          // f32[12] or f64[12] an instance
+  kLayers = 14,         // LayerRecord[]
+  kMaterials = 15,      // MaterialRecord[]
+  kMaterialRuns = 16,   // owner: a tree; MaterialRun[]
+  kFaceMaterials = 17,  // owner: a tree; material of each face in tree order, u8 or u16
+  kLeftOut = 18,        // LeftOutRecord[]
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

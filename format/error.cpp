@@ -58,6 +58,11 @@ constexpr std::array kTable = {
     ErrcInfo{Errc::kExternalMeshMismatch, "external_mesh_mismatch",
              "the mesh given is not the one the tree was cooked from", 3},
     ErrcInfo{Errc::kTreeIndex, "tree_index", "no tree with this number in the file", 1},
+    ErrcInfo{Errc::kNoScene, "no_scene", "the file holds trees but no scene", 1},
+    ErrcInfo{Errc::kInstanceIndex, "instance_index", "no instance with this number in the scene",
+             1},
+    ErrcInfo{Errc::kInstanceStatic, "instance_static",
+             "an instance that was bound as static cannot be moved", 1},
     ErrcInfo{Errc::kFileNotFound, "file_not_found", "no such file", 2},
     ErrcInfo{Errc::kFileUnreadable, "file_unreadable", "the file cannot be read", 2},
     ErrcInfo{Errc::kMapFailed, "map_failed", "the file cannot be mapped", 2},
@@ -73,6 +78,8 @@ constexpr std::array kTable = {
              "the mesh cannot be stored in the way asked for", 5},
     ErrcInfo{Errc::kBudgetUnreachable, "budget_unreachable",
              "no encoding keeps to the bytes and the time asked for", 1},
+    ErrcInfo{Errc::kProfileInvalid, "profile_invalid",
+             "a profile says what it must not, or of nothing that is there", 3},
     ErrcInfo{Errc::kInternal, "internal", "a defect in boxtree itself; please report it", 4},
 };
 

@@ -52,6 +52,9 @@ enum class Errc : std::uint16_t {
   kExternalMeshNeeded = 53,
   kExternalMeshMismatch = 54,
   kTreeIndex = 55,
+  kNoScene = 56,
+  kInstanceIndex = 57,
+  kInstanceStatic = 58,
 
   // 60..69: the operating system.
   kFileNotFound = 60,
@@ -67,6 +70,7 @@ enum class Errc : std::uint16_t {
   kMeshTooLarge = 74,
   kMeshUnsupported = 75,
   kBudgetUnreachable = 76,
+  kProfileInvalid = 77,
 
   // 90: our own bug; please report.
   kInternal = 90,

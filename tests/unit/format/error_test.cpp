@@ -50,6 +50,9 @@ constexpr Row kPinned[] = {
     {53, "external_mesh_needed", 1},
     {54, "external_mesh_mismatch", 3},
     {55, "tree_index", 1},
+    {56, "no_scene", 1},
+    {57, "instance_index", 1},
+    {58, "instance_static", 1},
     {60, "file_not_found", 2},
     {61, "file_unreadable", 2},
     {62, "map_failed", 2},
@@ -61,6 +64,7 @@ constexpr Row kPinned[] = {
     {74, "mesh_too_large", 5},
     {75, "mesh_unsupported", 5},
     {76, "budget_unreachable", 1},
+    {77, "profile_invalid", 3},
     {90, "internal", 4},
 };
 

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// The records of a scene: placed trees, the top-level tree over them, and what was left out of the
+// file because the scene does not need it.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <type_traits>
+
+#include <boxtree/format/limits.h>
+#include <boxtree/format/result.h>
+#include <boxtree/format/tree_record.h>
+
+namespace boxtree {
+
+/// Kinds of queries, as bits: what a scene is asked, what an object answers. Pinned.
+using QueryKinds = std::uint8_t;
+inline constexpr QueryKinds kRayQueries = 1;
+inline constexpr QueryKinds kBoxQueries = 2;    // boxes and spheres
+inline constexpr QueryKinds kPointQueries = 4;  // closest points
+inline constexpr QueryKinds kPairQueries = 8;   // contacts
+inline constexpr QueryKinds kAllQueries = 15;
+
+/// Layers of one scene: instances of a layer answer the same queries and meet the same layers.
+inline constexpr std::uint32_t kMaxLayers = 32;
+
+/// Instances of one scene: as many as leaves that a wide codec can number.
+inline constexpr std::uint32_t kMaxInstances = kMaxFaces / kLeafFaces;
+
+/// The scene of a file: at most one. World coordinates meet the top-level tree in its own tree
+/// space, (world - origin) * 2^-scale_exponent, as in TreeRecord.
+struct SceneRecord {
+  std::uint32_t instance_count;
+  std::uint32_t static_count;  // instances 0 to static_count - 1 are the leaves of the top level
+  std::uint32_t node_count;    // of section scene_nodes
+  RootKind root;               // kLeaf: one static instance, which has no node
+  std::uint32_t depth;         // inner nodes on the longest path
+  std::uint8_t pose_bytes;     // of a number in section poses: 4 or 8
+  std::uint8_t layer_count;    // 1 to kMaxLayers
+  QueryKinds query_kinds;      // what the scene may be asked
+  std::uint8_t reserved0;
+  std::int32_t scale_exponent;
+  std::uint32_t material_count;
+  std::array<double, 3> origin;     // world
+  std::array<double, 3> root_low;   // tree space of the top level
+  std::array<double, 3> root_high;  // likewise
+  double condition;                 // no pose of a static instance has a larger one
+  std::array<std::uint64_t, 2> reserved1;
+};
+static_assert(sizeof(SceneRecord) == 128 && std::is_trivially_copyable_v<SceneRecord>);
+static_assert(offsetof(SceneRecord, scale_exponent) == 24 && offsetof(SceneRecord, origin) == 32);
+static_assert(offsetof(SceneRecord, root_high) == 80);
+
+/// Numbers of a pose: three rows of four.
+inline constexpr std::size_t kNumbersOfPose = 12;
+
+/// InstanceRecord::flags: the instance moves, so it is not in the top level of the file.
+inline constexpr std::uint8_t kInstanceMoves = 1;
+inline constexpr std::uint8_t kInstanceKnownFlags = 1;
+
+/// One placed tree. Its pose, three rows of four numbers, stands in section poses.
+struct InstanceRecord {
+  std::uint32_t tree;
+  std::uint32_t id;           // number in the source, depth first
+  std::uint32_t name_offset;  // into the names section
+  std::uint16_t name_bytes;
+  std::uint8_t layer;
+  std::uint8_t flags;
+};
+static_assert(sizeof(InstanceRecord) == 16 && std::is_trivially_copyable_v<InstanceRecord>);
+static_assert(offsetof(InstanceRecord, layer) == 14);
+
+/// What the instances of one layer answer and meet.
+struct LayerRecord {
+  std::uint32_t meets;        // bit n: contacts with layer n are asked for; symmetric
+  std::uint32_t query_kinds;  // QueryKinds that instances of the layer answer
+  std::uint32_t name_offset;  // into the names section
+  std::uint32_t name_bytes;
+};
+static_assert(sizeof(LayerRecord) == 16 && std::is_trivially_copyable_v<LayerRecord>);
+
+/// Name of one material.
+struct MaterialRecord {
+  std::uint32_t name_offset;  // into the names section
+  std::uint32_t name_bytes;
+};
+static_assert(sizeof(MaterialRecord) == 8 && std::is_trivially_copyable_v<MaterialRecord>);
+
+/// Source faces from `first_face` up to that of the next run have one material. The first run of a
+/// tree starts at face 0.
+struct MaterialRun {
+  std::uint32_t first_face;
+  std::uint32_t material;
+};
+static_assert(sizeof(MaterialRun) == 8 && std::is_trivially_copyable_v<MaterialRun>);
+
+/// Stands for the material of a face in files or trees without materials.
+inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
+
+/// Parts that a profile can leave out. Numbers are pinned.
+enum class Part : std::uint16_t {
+  kFaceIds = 1,
+  kMaterials = 2,
+  kNames = 3,
+  kRays = 4,
+  kBoxes = 5,
+  kPoints = 6,
+  kPairs = 7,
+};
+
+/// "face ids"; "unknown" for a number this reader does not know.
+[[nodiscard]] std::string_view part_name(Part part) noexcept;
+
+/// A part that is not there, and the line of the profile that said so.
+struct LeftOutRecord {
+  Part part;
+  std::uint16_t reserved0;
+  std::uint32_t owner;        // the tree without it, or kNoOwner
+  std::uint32_t line;         // of the profile, from 1; 0 when an option said so
+  std::uint32_t text_offset;  // into the names section: "scene.toml:12: face_ids = false"
+  std::uint32_t text_bytes;
+  std::uint32_t reserved1;
+};
+static_assert(sizeof(LeftOutRecord) == 24 && std::is_trivially_copyable_v<LeftOutRecord>);
+
+/// Checks everything about a record that can be checked without its sections: counts within limits,
+/// consistent root kind, finite ordered root box, zero reserve.
+Status check_scene_record(const SceneRecord& record);
+
+}  // namespace boxtree
