@@ -76,7 +76,9 @@ struct Wide4Node {
   }
   /// A code of at least so many steps. For writers.
   [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
-    constexpr float kHalf = kFirstSteps / 2;
+    static_assert(kFirstSteps % 2 == 0);
+    constexpr std::uint32_t kHalfSteps = kFirstSteps / 2;
+    constexpr auto kHalf = static_cast<float>(kHalfSteps);
     return static_cast<std::uint32_t>(std::sqrt(steps + kHalf * kHalf) - kHalf) + 1;
   }
   static constexpr float kStepsOfExtent = 688;

@@ -71,7 +71,7 @@ struct GridView {
 };
 
 /// Most vertices that a leaf can have: every face a quad for itself.
-inline constexpr std::size_t kMaxLeafVertices = 4 * kLeafFaces;
+inline constexpr std::size_t kMaxLeafVertices = std::size_t{4} * kLeafFaces;
 
 /// A decoded leaf. Positions of corrupt bytes may be any numbers.
 struct GridLeaf {

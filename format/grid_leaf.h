@@ -130,7 +130,7 @@ BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t le
   const std::uint64_t first_leaf = ((leaves + 1) * cluster.leaf_bits + 7) / 8;
   // Bytes after the start of the cluster, of a leaf and of what follows the last one.
   std::uint64_t at[2];
-  const std::uint32_t number[2] = {leaf % kClusterLeaves, leaves};
+  const std::uint64_t number[2] = {leaf % kClusterLeaves, leaves};
   for (std::size_t i = 0; i < 2; ++i) {
     at[i] = first_leaf + number[i] * cluster.leaf_bytes +
             read_bits(bytes, start * 8 + number[i] * cluster.leaf_bits, cluster.leaf_bits);
@@ -224,8 +224,8 @@ template <bool kMayBeQuad>
 BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
                                            GridLeafFaces& out, GridOffsets& offsets) noexcept {
   using namespace grid_detail;
-  std::uint32_t vertex_count;
-  std::uint64_t leaf_start;
+  std::uint32_t vertex_count = 0;
+  std::uint64_t leaf_start = 0;
   if (!find_grid_leaf(grid, leaf, vertex_count, offsets, leaf_start)) return false;
   LeafBits bits(grid.bytes.data(), leaf_start);
   bits.refill();
