@@ -12,9 +12,27 @@
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/primitive/separation.h>
 #include <boxtree/runtime/query/point.h>
+#include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
+
+/// A point of the world and the best that was found there, for the exact test of placed triangles.
+struct PlacedPoint {
+  AffineMap to_world;     // from tree space
+  Eigen::Vector3d point;  // world
+  double best;            // squared distance in the world; shrinks
+  double least_stretch;   // of the map, from below: how short a length of tree space becomes
+  double error;           // of distances in the world
+
+  /// No point of tree space whose squared distance is larger can be as near as `best`.
+  [[nodiscard]] double bound_in_tree() const noexcept {
+    constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
+    const double reach = (std::sqrt(best) + error) / least_stretch;
+    return least_stretch > 0 ? reach * reach * (1 + 16 * kUnit)
+                             : std::numeric_limits<double>::infinity();
+  }
+};
 
 /// A query of traverse_nearest, in tree space.
 struct PointQuery {
@@ -29,6 +47,8 @@ struct PointQuery {
   const Approximation* approximation = nullptr;
   double tested_lower = std::numeric_limits<double>::infinity();
   std::uint64_t nodes_expanded = 0;  // and leaves read
+  // For a placed tree: decides in the world, where `found` is then.
+  PlacedPoint* placed = nullptr;
 
   [[nodiscard]] double bound() const noexcept { return best; }
 
@@ -50,6 +70,10 @@ struct PointQuery {
   void test(const Triangle& triangle, std::uint32_t face_order, std::uint32_t half) noexcept {
     const double bounds_distance = squared_distance(point, bounds_of(triangle));
     if (bounds_distance > best) return;
+    if (placed != nullptr) {
+      test_placed(triangle, face_order, half);
+      return;
+    }
     const Eigen::Vector3d closest = closest_point_on_triangle(point, triangle);
     // Never below the distance of the bounds, so that it agrees with every key above.
     const double distance = std::max(bounds_distance, (closest - point).squaredNorm());
@@ -62,6 +86,19 @@ struct PointQuery {
   }
 
  private:
+  void test_placed(const Triangle& triangle, std::uint32_t face_order,
+                   std::uint32_t half) noexcept {
+    const Eigen::Vector3d closest =
+        closest_point_on_triangle(placed->point, placed->to_world.apply(triangle));
+    const double distance = (closest - placed->point).squaredNorm();
+    if (distance > placed->best) return;
+    const FaceRef face = face_ref(tree, face_order);
+    if (found && distance == placed->best && !comes_before(face, found->face)) return;
+    placed->best = distance;
+    best = placed->bound_in_tree();
+    found = ClosestPoint{closest, distance, face, half};
+  }
+
   // The square of what is not worth looking at; the very distance where no error is allowed.
   [[nodiscard]] double enough(double squared) const noexcept {
     if (approximation->relative_error == 0 && approximation->absolute_error == 0) return squared;
@@ -83,5 +120,8 @@ struct PointQuery {
     tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };
+
+/// closest_point for callers that have made the query themselves: the first error met, if any.
+Errc find_nearest(const Tree& tree, PointQuery& query);
 
 }  // namespace boxtree

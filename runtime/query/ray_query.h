@@ -90,4 +90,14 @@ struct RayQuery {
   TriangleBatch batch;
 };
 
+/// The power of two that brings the largest component of a direction into [1/2, 1).
+[[nodiscard]] int direction_exponent(const Eigen::Vector3d& direction) noexcept;
+
+/// Whether a ray has finite numbers, a direction and an ordered interval; an origin that is not
+/// finite is left to is_within_reach().
+[[nodiscard]] bool is_valid(const Ray& ray) noexcept;
+
+/// closest_hit or any_hit for callers that have seen to the floating-point state.
+Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first);
+
 }  // namespace boxtree

@@ -14,6 +14,7 @@
 #include <Eigen/LU>
 
 #include <boxtree/format/box.h>
+#include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
@@ -30,6 +31,10 @@ struct AffineMap {
       y[i] = ((translation[i] + linear(i, 0) * x[0]) + linear(i, 1) * x[1]) + linear(i, 2) * x[2];
     }
     return y;
+  }
+
+  [[nodiscard]] Triangle apply(const Triangle& triangle) const noexcept {
+    return {{apply(triangle.corner[0]), apply(triangle.corner[1]), apply(triangle.corner[2])}};
   }
 
   /// The smallest box that holds the image of `box`. Each bound takes, term by term, the smaller or

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
@@ -27,17 +28,53 @@ struct BoxQuery {
   }
 };
 
+/// A box of the world, asked of a tree that is placed there. Boxes of the tree are compared by the
+/// hulls of their images, which hold the images of what they hold exactly (AffineMap::hull).
+struct PlacedBoxQuery {
+  AffineMap to_world;  // from tree space
+  Box<double> box;     // world
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& of_tree) const noexcept {
+    return boxes_overlap(to_world.hull(of_tree), box);
+  }
+  [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
+    return triangle_intersects_box(to_world.apply(triangle), {box.low[0], box.low[1], box.low[2]},
+                                   {box.high[0], box.high[1], box.high[2]});
+  }
+};
+
+/// A sphere of the world, for the exact test of placed triangles.
+struct PlacedSphere {
+  AffineMap to_world;  // from tree space
+  Eigen::Vector3d center;
+  double squared_radius;
+
+  [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
+    const Eigen::Vector3d closest = closest_point_on_triangle(center, to_world.apply(triangle));
+    return (closest - center).squaredNorm() <= squared_radius;
+  }
+};
+
 struct SphereQuery {
   Eigen::Vector3d center;  // tree space
   double squared_radius;
+  /// For a placed tree: decides in the world. The radius above then holds all that may touch, in
+  /// tree space; what lies within the one below touches without being asked.
+  const PlacedSphere* placed = nullptr;
+  double certain_squared_radius = squared_radius;
 
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return squared_distance(center, box) <= squared_radius;
   }
   [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
+    if (placed != nullptr) return placed->touches(triangle);
     return (closest_point_on_triangle(center, triangle) - center).squaredNorm() <= squared_radius;
   }
 };
+
+/// overlap_sphere for callers that have made the shape themselves.
+Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor);
 
 }  // namespace boxtree

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Builds and refits the tree over moving instances.
+#include <algorithm>
+#include <numeric>
+
+#include <boxtree/runtime/scene/moving_tree.h>
+
+namespace boxtree {
+namespace {
+
+// Sorts numbers of boxes so that each half of any range that is halved from the whole down is
+// apart from the other along the longer side of their centres. `size` is a power of two; the
+// numbers fill it from the front.
+void sort_in_space(std::span<std::uint32_t> numbers, std::uint32_t size,
+                   std::span<const Box<double>> boxes) {
+  if (size < 2 || numbers.size() < 2) return;
+  const auto centre = [&](std::uint32_t number, std::size_t axis) {
+    return boxes[number].low[axis] / 2 + boxes[number].high[axis] / 2;
+  };
+  std::size_t longest = 0;
+  double largest = -1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    double low = centre(numbers[0], axis), high = low;
+    for (const std::uint32_t number : numbers) {
+      low = std::min(low, centre(number, axis));
+      high = std::max(high, centre(number, axis));
+    }
+    if (high - low > largest) {
+      largest = high - low;
+      longest = axis;
+    }
+  }
+  const std::size_t left = std::min<std::size_t>(size / 2, numbers.size());
+  std::nth_element(numbers.begin(), numbers.begin() + static_cast<std::ptrdiff_t>(left),
+                   numbers.end(), [&](std::uint32_t a, std::uint32_t b) {
+                     const double x = centre(a, longest), y = centre(b, longest);
+                     return x != y ? x < y : a < b;
+                   });
+  sort_in_space(numbers.first(left), size / 2, boxes);
+  sort_in_space(numbers.subspan(left), size / 2, boxes);
+}
+
+}  // namespace
+
+void MovingTree::build(std::span<const Box<double>> boxes) {
+  const auto count = static_cast<std::uint32_t>(boxes.size());
+  leaves_ = std::bit_ceil(std::max(count, 1u));
+  nodes_.assign(2 * std::size_t{leaves_}, empty_box<double>());
+  place_.resize(count);
+  at_place_.assign(leaves_, 0);
+  std::vector<std::uint32_t> numbers(count);
+  std::iota(numbers.begin(), numbers.end(), 0u);
+  sort_in_space(numbers, leaves_, boxes);
+  for (std::uint32_t place = 0; place < count; ++place) {
+    place_[numbers[place]] = place;
+    at_place_[place] = numbers[place];
+    nodes_[leaves_ + place] = boxes[numbers[place]];
+  }
+  for (std::uint32_t node = leaves_ - 1; node > 0; --node) join(node);
+}
+
+void MovingTree::refit(std::uint32_t moving, const Box<double>& box) noexcept {
+  std::uint32_t node = leaves_ + place_[moving];
+  nodes_[node] = box;
+  while (node > 1) {
+    node /= 2;
+    join(node);
+  }
+}
+
+void MovingTree::join(std::uint32_t node) noexcept {
+  nodes_[node] = nodes_[2 * node];
+  expand(nodes_[node], nodes_[2 * node + 1]);
+}
+
+}  // namespace boxtree

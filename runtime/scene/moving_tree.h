@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: MIT
+// The tree over the moving instances of a scene: in private memory, refitted from a leaf up when
+// one of them is given another pose.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <boxtree/format/children.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/tree/codecs.h>
+
+namespace boxtree {
+
+/// A complete binary tree: node 1 is the root, nodes 2n and 2n + 1 are the children of node n,
+/// leaves are the last half. Holds boxes alone; a leaf is a place, and places are dealt out to
+/// instances so that neighbours in the tree are neighbours in space when it is built.
+class MovingTree {
+ public:
+  struct Codec {
+    using Scalar = double;
+    using Children = ChildSet<2, double>;
+    static constexpr std::uint32_t kDepthLimit = 32;
+
+    const Box<double>* nodes = nullptr;
+    std::uint32_t leaves = 0;  // a power of two
+
+    static Result<Codec> bind(const TreeRecord& /*record*/, Bytes /*section*/) {
+      return Errc::kInternal;  // it is in no file
+    }
+    [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {1, 0}; }
+    [[nodiscard]] bool expand(NodeRef ref, const Box<double>& /*box*/,
+                              Children& out) const noexcept {
+      out.clear();
+      for (std::uint32_t child = 2 * ref.first; child <= 2 * ref.first + 1; ++child) {
+        if (nodes[child].low[0] > nodes[child].high[0]) continue;  // no instance below
+        out.add(nodes[child], NodeRef{child, 0}, child >= leaves);
+      }
+      return true;
+    }
+  };
+
+  struct Record {
+    RootKind root;
+    std::uint32_t node_count;
+  };
+
+  /// Deals places out to instances with these boxes and builds the tree over them. Allocates.
+  void build(std::span<const Box<double>> boxes);
+  /// Gives the instance with number `moving` another box; O(log n), no allocation.
+  void refit(std::uint32_t moving, const Box<double>& box) noexcept;
+
+  [[nodiscard]] bool empty() const noexcept { return place_.empty(); }
+  [[nodiscard]] Record record() const noexcept {
+    if (empty()) return {RootKind::kEmpty, 0};
+    return {leaves_ == 1 ? RootKind::kLeaf : RootKind::kSubtree, leaves_ - 1};
+  }
+  [[nodiscard]] NodeRef root_ref() const noexcept { return {1, 0}; }
+  [[nodiscard]] Codec codec() const noexcept { return {nodes_.data(), leaves_}; }
+  [[nodiscard]] const Box<double>& root_box() const noexcept { return nodes_[1]; }
+  [[nodiscard]] const Box<double>& box(std::uint32_t moving) const noexcept {
+    return nodes_[leaves_ + place_[moving]];
+  }
+  /// The number of the moving instance that a leaf is.
+  [[nodiscard]] std::uint32_t moving(NodeRef leaf) const noexcept {
+    return at_place_[leaf.first - leaves_];
+  }
+
+ private:
+  void join(std::uint32_t node) noexcept;
+
+  std::uint32_t leaves_ = 0;
+  std::vector<Box<double>> nodes_;       // [2 leaves_]; node 0 is not used
+  std::vector<std::uint32_t> place_;     // of each moving instance
+  std::vector<std::uint32_t> at_place_;  // [leaves_]; unspecified where no instance is
+};
+
+template <class S>
+[[nodiscard]] Box<S> root_box(const MovingTree& tree) noexcept {
+  return tree.root_box();
+}
+
+}  // namespace boxtree

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+// Maps of placed trees and their error bounds.
+#include <algorithm>
+#include <cmath>
+
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/scene/placement.h>
+
+namespace boxtree {
+namespace {
+
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+// Cofactors over the determinant, each operation in the order written: Eigen's own inverse may add
+// in another order on another instruction set. Not finite where the matrix is not invertible.
+Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& m) noexcept {
+  Eigen::Matrix3d cofactor;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      const Eigen::Index r = (i + 1) % 3, s = (i + 2) % 3;
+      const Eigen::Index c = (j + 1) % 3, d = (j + 2) % 3;
+      cofactor(i, j) = m(r, c) * m(s, d) - m(r, d) * m(s, c);
+    }
+  }
+  const double determinant =
+      (m(0, 0) * cofactor(0, 0) + m(0, 1) * cofactor(0, 1)) + m(0, 2) * cofactor(0, 2);
+  Eigen::Matrix3d inverse;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) inverse(i, j) = cofactor(j, i) / determinant;
+  }
+  return inverse;
+}
+
+Eigen::Vector3d product(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) noexcept {
+  Eigen::Vector3d out;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    out[i] = (m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2];
+  }
+  return out;
+}
+
+Eigen::Matrix3d magnitudes(const Eigen::Matrix3d& m) noexcept {
+  return m.cwiseAbs();
+}
+
+// The largest row sum of |m| |inverse|.
+double condition_of(const Eigen::Matrix3d& m, const Eigen::Matrix3d& inverse) noexcept {
+  const Eigen::Matrix3d a = magnitudes(m), b = magnitudes(inverse);
+  double largest = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    double sum = 0;
+    for (Eigen::Index k = 0; k < 3; ++k) sum += (a(i, k) * ((b(k, 0) + b(k, 1)) + b(k, 2)));
+    largest = std::max(largest, sum);
+  }
+  return largest;
+}
+
+}  // namespace
+
+std::optional<Placement> Placement::make(const Tree& tree, const Pose& pose) noexcept {
+  return make(tree.frame(), {tree.record().root_low, tree.record().root_high}, pose);
+}
+
+std::optional<Placement> Placement::make(const Frame& frame, const Box<double>& root,
+                                         const Pose& pose) noexcept {
+  const Eigen::Matrix3d linear = pose.linear();
+  Placement placed;
+  placed.inverse_ = inverse_of(linear);
+  placed.translation_ = pose.translation();
+  placed.frame_origin_ = frame.origin;
+  placed.frame_inverse_scale_ = frame.inverse_scale;
+  placed.to_world_.linear = linear * frame.scale;  // a power of two: no rounding
+  // Where the frame has no origin of its own the sum is the pose's translation, unrounded.
+  placed.to_world_.translation = product(linear, frame.origin) + pose.translation();
+  Eigen::Vector3d reach;
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach[static_cast<Eigen::Index>(k)] = std::max(std::abs(root.low[k]), std::abs(root.high[k]));
+  }
+  const Eigen::Vector3d terms = product(magnitudes(placed.to_world_.linear), reach) +
+                                product(magnitudes(linear), frame.origin.cwiseAbs()) +
+                                pose.translation().cwiseAbs();
+  placed.magnitude_ = std::max({terms[0], terms[1], terms[2]});
+  placed.condition_ = condition_of(linear, placed.inverse_);
+  const bool is_finite = placed.to_world_.linear.allFinite() && placed.inverse_.allFinite() &&
+                         std::isfinite(placed.magnitude_) && std::isfinite(placed.condition_) &&
+                         placed.magnitude_ <= kReach;
+  if (!is_finite) return std::nullopt;
+  placed.world_box_ = placed.to_world_.hull(root);
+  for (std::size_t k = 0; k < 3; ++k) {
+    placed.world_box_.low[k] -= placed.error();
+    placed.world_box_.high[k] += placed.error();
+  }
+  return placed;
+}
+
+// A world coordinate is a sum of nine terms, each rounded; on the way back the error of each
+// coordinate is spread by |L| |L^-1|, whose rounding and that of the comparison itself are counted
+// generously: 64 roundings in all.
+double Placement::error_of(double magnitude) const noexcept {
+  return 64 * kUnitRoundoff * condition_ * magnitude + std::numeric_limits<double>::min();
+}
+
+Ray Placement::to_object(const Ray& world) const noexcept {
+  Ray ray = world;
+  ray.origin = product(inverse_, world.origin - translation_);
+  ray.direction = product(inverse_, world.direction);
+  return ray;
+}
+
+Eigen::Vector3d Placement::to_tree(const Eigen::Vector3d& world) const noexcept {
+  return (product(inverse_, world - translation_) - frame_origin_) * frame_inverse_scale_;
+}
+
+// What the inverse lacks is measured by going there and back. To that come the roundings of the
+// measurement, of a triangle's way to the world and of its distance, which are bounded by 26 of the
+// largest coordinate (see triangle_distance.cpp).
+double Placement::distance_error(const Eigen::Vector3d& tree,
+                                 const Eigen::Vector3d& world) const noexcept {
+  const Eigen::Vector3d back = to_world_.apply(tree) - world;
+  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
+  const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude_ +
+                         std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
+  return std::sqrt((back[0] * back[0] + back[1] * back[1]) + back[2] * back[2]) +
+         128 * kUnitRoundoff * largest + std::numeric_limits<double>::min();
+}
+
+// The squares of both are eigenvalues of L^T L, which Gershgorin's circles hold. Where axes are far
+// from orthogonal the circles reach zero: then 1 / |L^-1|, the Frobenius norm, is a lower bound,
+// once what the computed inverse lacks is made up for: |L^-1| <= |X| / (1 - |I - L X|).
+Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
+  const auto dot = [&linear](Eigen::Index i, Eigen::Index j) {
+    return (linear(0, i) * linear(0, j) + linear(1, i) * linear(1, j)) +
+           linear(2, i) * linear(2, j);
+  };
+  const double xx = dot(0, 0), yy = dot(1, 1), zz = dot(2, 2);
+  const double xy = std::abs(dot(0, 1)), yz = std::abs(dot(1, 2)), zx = std::abs(dot(2, 0));
+  // Entries of the product are off by 3u of what they sum up, which no diagonal sum is less than.
+  const double off = 16 * kUnitRoundoff * ((xx + yy) + zz);
+  const double smallest = std::min({xx - (xy + zx), yy - (xy + yz), zz - (zx + yz)}) - off;
+  const double largest = std::max({xx + (xy + zx), yy + (xy + yz), zz + (zx + yz)}) + off;
+  Stretch stretch{std::sqrt(std::max(0.0, smallest)) * (1 - 4 * kUnitRoundoff),
+                  std::sqrt(largest) * (1 + 4 * kUnitRoundoff)};
+  const Eigen::Matrix3d inverse = inverse_of(linear);
+  double norm = 0, lacking = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) {
+      norm += inverse(i, j) * inverse(i, j);
+      double entry = i == j ? 1 : 0;
+      double terms = entry;
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        entry -= linear(i, k) * inverse(k, j);
+        terms += std::abs(linear(i, k) * inverse(k, j));
+      }
+      const double residual = std::abs(entry) + 8 * kUnitRoundoff * terms;
+      lacking += residual * residual;
+    }
+  }
+  const double other = (1 - std::sqrt(lacking)) / std::sqrt(norm) * (1 - 32 * kUnitRoundoff);
+  if (other > stretch.least) stretch.least = other;  // false for NaN
+  return stretch;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: MIT
+// What a scene says of its instances, and moving them.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/scene/scene.h>
+
+namespace boxtree {
+namespace {
+
+Pose pose_of(const std::byte* numbers, std::uint32_t bytes) noexcept {
+  Pose pose;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      const std::size_t i = 4 * row + column;
+      pose.matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          bytes == sizeof(float) ? double{load<float>(numbers, i)} : load<double>(numbers, i);
+    }
+  }
+  pose.makeAffine();
+  return pose;
+}
+
+}  // namespace
+
+void Scene::rebuild() {
+  if (moving_.empty()) return;
+  const DefaultFloatState state;
+  std::vector<Box<double>> boxes;
+  boxes.reserve(moving_.size());
+  for (const Moving& moving : moving_)
+    boxes.push_back(to_frame(moving.placed.placement.world_box()));
+  moving_tree_.build(boxes);
+}
+
+Status Scene::update(std::uint32_t instance, const Pose& pose) {
+  const DefaultFloatState state;
+  if (instance >= instance_count()) return Errc::kInstanceIndex;
+  const Moving* found = find_moving(instance);
+  if (found == nullptr) return Errc::kInstanceStatic;
+  Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
+  const std::optional<Placement> placement = Placement::make(*moving.placed.tree, pose);
+  if (!placement) return Errc::kInvalidPose;
+  moving.pose = pose;
+  moving.placed.placement = *placement;
+  condition_ = std::max(condition_, placement->condition());
+  moving_tree_.refit(static_cast<std::uint32_t>(found - moving_.data()),
+                     to_frame(placement->world_box()));
+  return {};
+}
+
+Result<InstanceInfo> Scene::info(std::uint32_t number) const {
+  if (number >= instance_count()) {
+    return Error{Errc::kInstanceIndex,
+                 "instance " + std::to_string(number) + " of " + std::to_string(instance_count())};
+  }
+  const InstanceRecord record = instance(number);
+  if (record.tree >= trees_.size() || record.layer >= layer_count()) {
+    return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + ": its record"};
+  }
+  return InstanceInfo{text(record.name_offset, record.name_bytes), record.tree, record.id,
+                      record.layer, find_moving(number) != nullptr};
+}
+
+Result<std::uint32_t> Scene::find_instance(std::string_view name) const {
+  for (std::uint32_t i = 0; i < instance_count(); ++i) {
+    const InstanceRecord record = instance(i);
+    if (text(record.name_offset, record.name_bytes) == name) return i;
+  }
+  return Error{Errc::kInstanceIndex, "no instance is named \"" + std::string(name) + "\""};
+}
+
+Result<Pose> Scene::pose(std::uint32_t number) const {
+  const Result<InstanceInfo> known = info(number);
+  if (!known) return known.error();
+  const Moving* moving = find_moving(number);
+  return moving != nullptr ? moving->pose : stored_pose(number);
+}
+
+std::string_view Scene::layer_name(std::uint32_t number) const noexcept {
+  if (number >= layer_count()) return {};
+  const LayerRecord record = layer(number);
+  return text(record.name_offset, record.name_bytes);
+}
+
+std::uint32_t Scene::material(std::uint32_t number, const FaceRef& face) const noexcept {
+  if (number >= instance_count()) return kNoMaterial;
+  const std::uint32_t tree = instance(number).tree;
+  if (tree >= trees_.size()) return kNoMaterial;
+  const TreeMaterials& materials = materials_of_tree_[tree];
+  if (materials.faces != nullptr) {
+    if (face.order >= trees_[tree].record().face_count) return kNoMaterial;
+    return load_number(materials.faces, static_cast<std::uint8_t>(materials.number_bytes),
+                       face.order);
+  }
+  // One run is of all faces, whatever their ids; else the last one that starts at or before it.
+  std::uint32_t first = 0;
+  std::uint32_t count = materials.run_count;
+  if (count == 0) return kNoMaterial;
+  if (count > 1 && face.id == kNoFaceId) return kNoMaterial;
+  while (count > 1) {
+    const std::uint32_t half = count / 2;
+    const bool is_right = load<MaterialRun>(materials.runs, first + half).first_face <= face.id;
+    first += is_right ? half : 0;
+    count = is_right ? count - half : half;
+  }
+  return load<MaterialRun>(materials.runs, first).material;
+}
+
+std::string_view Scene::material_name(std::uint32_t number) const noexcept {
+  if (number >= material_count()) return {};
+  const auto record = load<MaterialRecord>(materials_, number);
+  return text(record.name_offset, record.name_bytes);
+}
+
+std::optional<Scene::Placed> Scene::place(std::uint32_t number, Errc& error) const noexcept {
+  const InstanceRecord record = instance(number);
+  if (record.tree < trees_.size() && record.layer < layer_count()) {
+    const Tree& tree = trees_[record.tree];
+    if (const std::optional<Placement> placement = Placement::make(tree, stored_pose(number))) {
+      return Placed{&tree, *placement, record.id, record.layer};
+    }
+  }
+  error = Errc::kRecordInvalid;
+  return std::nullopt;
+}
+
+bool Scene::is_detached(std::uint32_t number) const noexcept {
+  return has_detached_ && find_moving(number) != nullptr;
+}
+
+LayerRecord Scene::layer(std::uint32_t number) const noexcept {
+  return load<LayerRecord>(layers_, number);
+}
+
+Box<double> Scene::to_frame(const Box<double>& world) const noexcept {
+  const Eigen::Vector3d low = frame_.to_tree({world.low[0], world.low[1], world.low[2]});
+  const Eigen::Vector3d high = frame_.to_tree({world.high[0], world.high[1], world.high[2]});
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+std::string_view Scene::text(std::uint32_t offset, std::uint32_t size) const noexcept {
+  if (!in_range(offset, size, names_.size())) return {};
+  return {reinterpret_cast<const char*>(names_.data()) + offset, size};
+}
+
+InstanceRecord Scene::instance(std::uint32_t number) const noexcept {
+  return load<InstanceRecord>(instances_, number);
+}
+
+Pose Scene::stored_pose(std::uint32_t number) const noexcept {
+  return pose_of(poses_ + std::size_t{number} * kNumbersOfPose * record().pose_bytes,
+                 record().pose_bytes);
+}
+
+const Scene::Moving* Scene::find_moving(std::uint32_t number) const noexcept {
+  const auto place = std::lower_bound(
+      moving_.begin(), moving_.end(), number,
+      [](const Moving& moving, std::uint32_t value) { return moving.instance < value; });
+  return place != moving_.end() && place->instance == number ? &*place : nullptr;
+}
+
+}  // namespace boxtree

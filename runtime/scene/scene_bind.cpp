@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: MIT
+// Binding a scene: the checks that let queries trust counts and section sizes.
+#include <algorithm>
+#include <utility>
+
+#include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/scene/scene.h>
+
+namespace boxtree {
+namespace {
+
+std::string section_text(SectionKind kind) {
+  return "section " + std::string(section_name(kind));
+}
+
+// The section's bytes if it has `count * element` of them.
+Result<const std::byte*> sized(const File& file, SectionKind kind, std::uint64_t count,
+                               std::uint64_t element) {
+  const Bytes section = file.section(kind);
+  if (section.empty() && count > 0) {
+    return Error{Errc::kSectionMissing, section_text(kind) + " is absent"};
+  }
+  if (section.size() != count * element) {
+    return Error{
+        Errc::kSectionSize,
+        section_text(kind) + ": " + section_size_error(section.size(), count * element).detail};
+  }
+  return section.data();
+}
+
+}  // namespace
+
+Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
+  const DefaultFloatState state;
+  Scene scene;
+  if (Status status = scene.bind_sections(file); !status) return status.error();
+  if (Status status = scene.bind_trees(file, options); !status) return status.error();
+  if (Status status = scene.check_materials(file); !status) return status.error();
+  if (Status status = scene.check_parts(options); !status) return status.error();
+  if (Status status = scene.bind_moving(options); !status) return status.error();
+  return scene;
+}
+
+Status Scene::bind_sections(const File& file) {
+  const Bytes section = file.section(SectionKind::kScene);
+  if (section.empty()) return Error{Errc::kNoScene, "the file has no section \"scene\""};
+  if (section.size() != sizeof(SceneRecord)) {
+    return Error{Errc::kSectionSize,
+                 section_text(SectionKind::kScene) + ": " +
+                     section_size_error(section.size(), sizeof(SceneRecord)).detail};
+  }
+  SceneRecord& record = top_.scene;
+  record = load<SceneRecord>(section.data(), 0);
+  if (Status status = check_scene_record(record); !status) return status;
+  frame_ = Frame(Eigen::Vector3d(record.origin[0], record.origin[1], record.origin[2]),
+                 record.scale_exponent);
+  const auto nodes = sized(file, SectionKind::kSceneNodes, record.node_count, sizeof(Wide8Node));
+  const auto instances =
+      sized(file, SectionKind::kInstances, record.instance_count, sizeof(InstanceRecord));
+  const auto poses =
+      sized(file, SectionKind::kPoses, record.instance_count, kNumbersOfPose * record.pose_bytes);
+  const auto layers = sized(file, SectionKind::kLayers, record.layer_count, sizeof(LayerRecord));
+  const auto materials =
+      sized(file, SectionKind::kMaterials, record.material_count, sizeof(MaterialRecord));
+  for (const auto* found : {&nodes, &instances, &poses, &layers, &materials}) {
+    if (!*found) return found->error();
+  }
+  // A leaf of the top level is one instance: as many leaves as static instances.
+  top_.codec = {*nodes, record.node_count, record.static_count * kLeafFaces};
+  instances_ = *instances;
+  poses_ = *poses;
+  layers_ = *layers;
+  materials_ = *materials;
+  names_ = file.section(SectionKind::kNames);
+  left_out_ = file.section(SectionKind::kLeftOut);
+  condition_ = record.condition;
+  if (left_out_.size() % sizeof(LeftOutRecord) != 0) {
+    return Error{Errc::kSectionSize, section_text(SectionKind::kLeftOut) + ": " +
+                                         std::to_string(left_out_.size()) + " bytes"};
+  }
+  return {};
+}
+
+Status Scene::bind_trees(const File& file, const SceneOptions& options) {
+  trees_.reserve(file.tree_count());
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    BindOptions bind;
+    for (const SceneMeshArrays& mesh : options.meshes) {
+      if (mesh.tree == i) bind.mesh = mesh.arrays;
+    }
+    Result<Tree> tree = Tree::bind(file, i, bind);
+    if (!tree) return tree.error();
+    if (options.require_face_ids && !tree->has_face_ids() && !tree->empty()) {
+      return left_out(Part::kFaceIds, i, "tree " + std::to_string(i));
+    }
+    trees_.push_back(std::move(*tree));
+  }
+  return {};
+}
+
+Status Scene::check_materials(const File& file) {
+  materials_of_tree_.resize(trees_.size());
+  for (std::uint32_t i = 0; i < trees_.size(); ++i) {
+    const Bytes runs = file.section(SectionKind::kMaterialRuns, i);
+    const Bytes faces = file.section(SectionKind::kFaceMaterials, i);
+    const std::uint64_t count = trees_[i].record().face_count;
+    if (runs.size() % sizeof(MaterialRun) != 0 || runs.size() / sizeof(MaterialRun) > count) {
+      return Error{Errc::kSectionSize, "tree " + std::to_string(i) + ": " +
+                                           section_text(SectionKind::kMaterialRuns) + ": " +
+                                           std::to_string(runs.size()) + " bytes"};
+    }
+    if (!faces.empty() && faces.size() != count && faces.size() != 2 * count) {
+      return Error{Errc::kSectionSize,
+                   "tree " + std::to_string(i) + ": " + section_text(SectionKind::kFaceMaterials) +
+                       ": " + section_size_error(faces.size(), count).detail + " or twice that"};
+    }
+    materials_of_tree_[i] = {
+        runs.data(), static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
+        faces.empty() ? nullptr : faces.data(), faces.empty() || faces.size() == count ? 1u : 2u};
+  }
+  return {};
+}
+
+Status Scene::check_parts(const SceneOptions& options) const {
+  const auto asked = [&](QueryKinds kind) {
+    return (options.queries & kind) != 0 && (record().query_kinds & kind) == 0;
+  };
+  const std::string scene = "the scene";
+  if (asked(kRayQueries)) return left_out(Part::kRays, kNoOwner, scene);
+  if (asked(kBoxQueries)) return left_out(Part::kBoxes, kNoOwner, scene);
+  if (asked(kPointQueries)) return left_out(Part::kPoints, kNoOwner, scene);
+  if (asked(kPairQueries)) return left_out(Part::kPairs, kNoOwner, scene);
+  if (options.require_materials && record().material_count == 0) {
+    return left_out(Part::kMaterials, kNoOwner, scene);
+  }
+  if (options.require_names && !has_names()) return left_out(Part::kNames, kNoOwner, scene);
+  return {};
+}
+
+// The record that says why, if the file has one: of the tree, else of the whole scene, else of any
+// tree.
+Error Scene::left_out(Part part, std::uint32_t owner, const std::string& what) const {
+  const std::size_t count = left_out_.size() / sizeof(LeftOutRecord);
+  std::string_view reason;
+  int best = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto record = load<LeftOutRecord>(left_out_.data(), i);
+    if (record.part != part) continue;
+    const int fit = record.owner == owner ? 3 : record.owner == kNoOwner ? 2 : 1;
+    if (fit <= best) continue;
+    best = fit;
+    reason = text(record.text_offset, record.text_bytes);
+  }
+  return {Errc::kPartLeftOut,
+          what + ": " + std::string(part_name(part)) + " were left out" +
+              (reason.empty() ? " when it was cooked" : " by " + std::string(reason))};
+}
+
+bool Scene::has_names() const noexcept {
+  for (std::uint32_t i = 0; i < instance_count(); ++i) {
+    if (instance(i).name_bytes != 0) return true;
+  }
+  return instance_count() == 0;
+}
+
+Status Scene::bind_moving(const SceneOptions& options) {
+  std::vector<std::uint32_t> numbers(options.moving.begin(), options.moving.end());
+  for (const std::uint32_t number : numbers) {
+    if (number >= instance_count()) {
+      return Error{Errc::kInstanceIndex, "instance " + std::to_string(number) + " of " +
+                                             std::to_string(instance_count())};
+    }
+    has_detached_ |= number < record().static_count;
+  }
+  for (std::uint32_t i = record().static_count; i < instance_count(); ++i) numbers.push_back(i);
+  std::sort(numbers.begin(), numbers.end());
+  numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  for (const std::uint32_t number : numbers) {
+    Errc error = Errc::kOk;
+    std::optional<Placed> placed = place(number, error);
+    if (!placed) return Error{error, "instance " + std::to_string(number) + ": its record"};
+    moving_.push_back({number, stored_pose(number), *placed});
+    condition_ = std::max(condition_, placed->placement.condition());
+  }
+  rebuild();
+  return {};
+}
+
+}  // namespace boxtree

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: MIT
+// Contacts in a scene: candidates by their boxes in the world, then tree against tree.
+#include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/scene/scene_queries.h>
+#include <boxtree/runtime/scene/scene_walk.h>
+
+namespace boxtree {
+namespace {
+
+// One body asked against all instances that its box overlaps. Boxes are widened by what rounding
+// can do between there and the space in which two trees are compared (Placement::error), each by
+// the share of its own tree; the first tree of a comparison is the one whose pose magnifies errors
+// less, so both shares suffice.
+struct BodyInScene {
+  Admission admission;
+  const Tree& tree;
+  const Pose& pose;
+  const Placement& placement;
+  Box<double> in_frame;
+  std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
+  bool is_first;               // in what is reported
+  ScenePairVisitor visitor;
+  Errc error = Errc::kOk;
+  bool stopped = false;
+
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return boxes_overlap(box, in_frame);
+  }
+
+  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
+    if (instance == own_instance) return true;
+    const Scene& scene = admission.scene;
+    const Result<Pose> other_pose = scene.pose(instance);
+    if (!other_pose) {
+      error = other_pose.code();
+      return false;
+    }
+    const bool swap = other.placement.condition() < placement.condition();
+    const auto report = [&](const FaceRef& own, const FaceRef& met) {
+      const SceneFace body{own_instance, own}, placed{instance, met};
+      return is_first ? visitor({body, placed}) : visitor({placed, body});
+    };
+    const Result<Visit> visited =
+        swap ? overlap_pairs(*other.tree, *other_pose, tree, pose,
+                             [&](const FacePair& pair) { return report(pair.second, pair.first); })
+             : overlap_pairs(tree, pose, *other.tree, *other_pose,
+                             [&](const FacePair& pair) { return report(pair.first, pair.second); });
+    if (!visited) error = visited.code();
+    stopped = visited && *visited == Visit::kStopped;
+    return !is_done();
+  }
+};
+
+// A moving body against moving instances that come after it.
+struct LaterMoving {
+  BodyInScene& body;
+  const Admission& admission;
+  Errc& error;
+
+  [[nodiscard]] bool is_done() const noexcept { return body.is_done(); }
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return body.overlaps(box);
+  }
+  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
+    return instance <= body.own_instance || body.visit(instance, other);
+  }
+};
+
+BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Placed& placed,
+                    const Pose& pose, ScenePairVisitor visitor) {
+  return {
+      {scene, kPairQueries, scene.layer(placed.layer).meets}, *placed.tree, pose, placed.placement,
+      scene.to_frame(placed.placement.world_box()),           instance,     true, visitor};
+}
+
+bool asks_for_contacts(const Scene& scene, std::uint32_t layer) {
+  return (scene.layer(layer).query_kinds & kPairQueries) != 0;
+}
+
+Result<Visit> outcome(Errc walked, const BodyInScene& body) {
+  if (walked != Errc::kOk) return walked;
+  if (body.error != Errc::kOk) return body.error;
+  return body.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
+}  // namespace
+
+Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
+  for (const Scene::Moving& moving : scene.moving()) {
+    if (!asks_for_contacts(scene, moving.placed.layer)) continue;
+    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.pose, visitor);
+    StaticLeaves<BodyInScene> resting{{body}};
+    Errc walked = traverse_overlap(scene.top_level(), scene.top_level().codec, resting);
+    if (walked == Errc::kOk && !body.is_done()) {
+      LaterMoving later{body, body.admission, body.error};
+      MovingLeaves<LaterMoving> others{{later}};
+      walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
+    }
+    const Result<Visit> visit = outcome(walked, body);
+    if (!visit || *visit == Visit::kStopped) return visit;
+  }
+  return Visit::kComplete;
+}
+
+Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
+  const Result<Pose> pose = scene.pose(instance);
+  if (!pose) return pose.code();
+  const Result<InstanceInfo> info = scene.info(instance);
+  if (!info) return info.code();
+  if (!asks_for_contacts(scene, info->layer)) return Visit::kComplete;
+  const Tree& tree = scene.trees()[info->tree];
+  const std::optional<Placement> placement = Placement::make(tree, *pose);
+  if (!placement) return Errc::kRecordInvalid;
+  const Scene::Placed placed{&tree, *placement, info->id, info->layer};
+  BodyInScene body = body_of(scene, instance, placed, *pose, visitor);
+  return outcome(walk_overlap(scene, body), body);
+}
+
+Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
+                            ScenePairVisitor visitor, LayerMask layers) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
+  const std::optional<Placement> placement = Placement::make(tree, pose);
+  if (!placement) return Errc::kInvalidPose;
+  if (tree.empty()) return Visit::kComplete;
+  BodyInScene body{{scene, kPairQueries, layers},          tree,        pose,  *placement,
+                   scene.to_frame(placement->world_box()), kNoInstance, false, visitor};
+  return outcome(walk_overlap(scene, body), body);
+}
+
+}  // namespace boxtree

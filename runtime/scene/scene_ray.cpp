@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: MIT
+// Rays through a scene.
+#include <cmath>
+
+#include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/ray_query.h>
+#include <boxtree/runtime/scene/scene_queries.h>
+#include <boxtree/runtime/scene/scene_walk.h>
+
+namespace boxtree {
+namespace {
+
+// In the scene's frame, with the parameter s = t * 2^parameter_exponent (see RayQuery). Boxes of
+// instances are widened by Placement::error(); what is left is the error of the ray's own origin on
+// its way to object space and back, of which the slab's margin gets its share by a larger reach.
+struct SceneRayQuery {
+  SceneRayQuery(const Scene& scene, const Ray& world, bool stop_at_first, LayerMask layers) noexcept
+      : admission{scene, kRayQueries, layers},
+        ray(world),
+        any(stop_at_first),
+        exponent(direction_exponent(world.direction)),
+        parameter_exponent(exponent - scene.record().scale_exponent),
+        slab(scene.frame().to_tree(world.origin), RayQuery::scaled(world.direction, -exponent),
+             reach(scene, world)),
+        s_min(RayQuery::scaled(world.t_min, parameter_exponent)),
+        s_max(RayQuery::scaled(world.t_max, parameter_exponent)) {}
+
+  static Eigen::Vector3d reach(const Scene& scene, const Ray& world) noexcept {
+    const SceneRecord& record = scene.record();
+    double largest = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      largest = std::max({largest, std::abs(record.root_low[k]), std::abs(record.root_high[k])});
+    }
+    if (!scene.moving_tree().empty()) {
+      const Box<double>& box = scene.moving_tree().root_box();
+      for (std::size_t k = 0; k < 3; ++k) {
+        largest = std::max({largest, std::abs(box.low[k]), std::abs(box.high[k])});
+      }
+    }
+    const double origin = world.origin.cwiseAbs().maxCoeff() * scene.frame().inverse_scale;
+    return Eigen::Vector3d::Constant(largest + 16 * scene.condition() * (origin + largest));
+  }
+
+  [[nodiscard]] bool is_done() const noexcept {
+    return error != Errc::kOk || (any && best.has_value());
+  }
+  [[nodiscard]] double bound() const noexcept { return s_max; }
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+    const SlabInterval interval = slab.intersect(box);
+    const bool passes = interval.enter <= interval.leave && interval.leave >= s_min;
+    return passes ? interval.enter : std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
+    const Result<std::optional<RayHit>> found =
+        cast_ray(*placed.tree, placed.placement.to_object(ray), any);
+    if (!found) {
+      error = found.code();
+      return false;
+    }
+    if (!*found) return true;
+    const RayHit& hit = **found;
+    if (best && hit.t == best->hit.t && placed.id >= best_id) return true;
+    best = SceneRayHit{hit, instance};
+    best_id = placed.id;
+    ray.t_max = hit.t;
+    s_max = RayQuery::scaled(hit.t, parameter_exponent);
+    return !is_done();
+  }
+
+  Admission admission;
+  Ray ray;  // t_max shrinks to the best hit
+  bool any;
+  int exponent;
+  int parameter_exponent;
+  RaySlab slab;
+  double s_min;
+  double s_max;
+  std::optional<SceneRayHit> best;
+  std::uint32_t best_id = 0;
+  Errc error = Errc::kOk;
+};
+
+Result<std::optional<SceneRayHit>> cast(const Scene& scene, const Ray& ray, bool stop_at_first,
+                                        LayerMask layers) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
+  if (!is_valid(ray) || !is_within_reach(scene.frame().to_tree(ray.origin))) {
+    return Errc::kInvalidQuery;
+  }
+  SceneRayQuery query(scene, ray, stop_at_first, layers);
+  const Errc walked = walk_nearest(scene, query);
+  if (walked != Errc::kOk) return walked;
+  if (query.error != Errc::kOk) return query.error;
+  return query.best;
+}
+
+}  // namespace
+
+Result<std::optional<SceneRayHit>> closest_hit(const Scene& scene, const Ray& ray,
+                                               LayerMask layers) {
+  return cast(scene, ray, false, layers);
+}
+
+Result<std::optional<SceneRayHit>> any_hit(const Scene& scene, const Ray& ray, LayerMask layers) {
+  return cast(scene, ray, true, layers);
+}
+
+}  // namespace boxtree

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: MIT
+// Boxes, spheres and points in a scene.
+#include <cmath>
+
+#include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/point_query.h>
+#include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/scene/scene_queries.h>
+#include <boxtree/runtime/scene/scene_walk.h>
+#include <boxtree/runtime/wide/walks.h>
+
+namespace boxtree {
+namespace {
+
+constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+// What boxes and spheres share: `ask(placed, visitor)` answers for one instance.
+template <class Shape>
+struct ShapeInScene {
+  Admission admission;
+  const Shape& shape;
+  SceneFaceVisitor visitor;
+  Errc error = Errc::kOk;
+  bool stopped = false;
+
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return shape.overlaps(box);
+  }
+  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
+    const auto report = [&](const FaceRef& face) { return visitor({instance, face}); };
+    const Result<Visit> visited = shape.ask(placed, report);
+    if (!visited) error = visited.code();
+    stopped = visited && *visited == Visit::kStopped;
+    return !is_done();
+  }
+};
+
+template <class Shape>
+Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
+                        LayerMask layers) {
+  ShapeInScene<Shape> query{{scene, kBoxQueries, layers}, shape, visitor};
+  const Errc walked = walk_overlap(scene, query);
+  if (walked != Errc::kOk) return walked;
+  if (query.error != Errc::kOk) return query.error;
+  return query.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
+struct WorldBox {
+  Box<double> world;
+  Box<double> in_frame;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return boxes_overlap(box, in_frame);
+  }
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
+    const PlacedBoxQuery query{placed.placement.to_world(), world};
+    return visit_faces_compactly(*placed.tree, query, visitor);
+  }
+};
+
+// The distance of an instance's box, in the scene's frame, is that of its content but for the
+// rounding of the point there and of distances in the world, 64 roundings of the point's own
+// magnitude; what the instance contributes is in its box.
+double scene_error(const Scene& scene, const Eigen::Vector3d& point) noexcept {
+  const double magnitude = point.cwiseAbs().maxCoeff() + scene.frame().origin.cwiseAbs().maxCoeff();
+  return 64 * kUnitRoundoff * magnitude + std::numeric_limits<double>::min();
+}
+
+// A squared distance in the scene's frame that holds all within `distance` of the world.
+double frame_bound(const Scene& scene, double distance, double error) noexcept {
+  const double in_frame = (distance + error) * scene.frame().inverse_scale;
+  return in_frame * in_frame * (1 + 16 * kUnitRoundoff);
+}
+
+struct WorldSphere {
+  Eigen::Vector3d center;  // world
+  double radius;
+  Eigen::Vector3d center_in_frame;
+  double squared_radius_in_frame;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return squared_distance(center_in_frame, box) <= squared_radius_in_frame;
+  }
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
+    const Placement& placement = placed.placement;
+    const PlacedSphere exact{placement.to_world(), center, radius * radius};
+    const Eigen::Vector3d in_tree = placement.to_tree(center);
+    if (!is_within_reach(in_tree)) return Errc::kInvalidQuery;
+    const Stretch stretch = stretch_of(placement.to_world().linear);
+    const double error = placement.distance_error(in_tree, center);
+    const double most =
+        stretch.least > 0 ? std::min((radius + error) / stretch.least, 4 * kReach) : 4 * kReach;
+    const double certain = std::max(0.0, radius - error) / stretch.most;
+    const SphereQuery query{in_tree, most * most * (1 + 16 * kUnitRoundoff), &exact,
+                            certain * certain * (1 - 16 * kUnitRoundoff)};
+    return visit_sphere(*placed.tree, query, visitor);
+  }
+};
+
+struct PointInScene {
+  Admission admission;
+  Eigen::Vector3d point;  // world
+  Eigen::Vector3d point_in_frame;
+  double scene_margin;
+  double best;           // squared, world
+  double best_in_frame;  // squared: what is farther cannot be as near
+  std::optional<SceneClosestPoint> found;
+  std::uint32_t found_id = 0;
+  Errc error = Errc::kOk;
+
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk; }
+  [[nodiscard]] double bound() const noexcept { return best_in_frame; }
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+    return squared_distance(point_in_frame, box);
+  }
+  void set_bound() noexcept {
+    best_in_frame = frame_bound(admission.scene, std::sqrt(best), scene_margin);
+  }
+  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
+    const Placement& placement = placed.placement;
+    const Tree& tree = *placed.tree;
+    const Eigen::Vector3d in_tree = placement.to_tree(point);
+    if (!is_within_reach(in_tree)) {
+      error = Errc::kInvalidQuery;
+      return false;
+    }
+    PlacedPoint exact{placement.to_world(), point, best,
+                      stretch_of(placement.to_world().linear).least,
+                      placement.distance_error(in_tree, point)};
+    PointQuery query{tree, in_tree, exact.bound_in_tree(), {}, Errc::kOk, {}};
+    query.placed = &exact;
+    error = find_nearest(tree, query);
+    if (error != Errc::kOk) return false;
+    if (!query.found) return true;
+    if (found && exact.best == best && placed.id >= found_id) return true;
+    found = SceneClosestPoint{*query.found, instance};
+    found_id = placed.id;
+    best = exact.best;
+    set_bound();
+    return true;
+  }
+};
+
+}  // namespace
+
+Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
+                          SceneFaceVisitor visitor, LayerMask layers) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
+  const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
+  if (!ordered || !is_within_reach(box.min()) || !is_within_reach(box.max())) {
+    return Errc::kInvalidQuery;
+  }
+  WorldBox shape{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    shape.world.low[k] = box.min()[static_cast<Eigen::Index>(k)];
+    shape.world.high[k] = box.max()[static_cast<Eigen::Index>(k)];
+  }
+  shape.in_frame = scene.to_frame(shape.world);
+  return ask_scene(scene, shape, visitor, layers);
+}
+
+Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, double radius,
+                             SceneFaceVisitor visitor, LayerMask layers) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
+  if (!(radius >= 0) || !(radius <= kReach) || !is_within_reach(center)) return Errc::kInvalidQuery;
+  const WorldSphere shape{center, radius, scene.frame().to_tree(center),
+                          frame_bound(scene, radius, scene_error(scene, center))};
+  return ask_scene(scene, shape, visitor, layers);
+}
+
+Result<std::optional<SceneClosestPoint>> closest_point(const Scene& scene,
+                                                       const Eigen::Vector3d& point,
+                                                       double max_distance, LayerMask layers) {
+  const DefaultFloatState state;
+  if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
+  if (!is_within_reach(point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
+  PointInScene query{{scene, kPointQueries, layers},
+                     point,
+                     scene.frame().to_tree(point),
+                     scene_error(scene, point),
+                     max_distance * max_distance,
+                     0,
+                     {}};
+  query.set_bound();
+  const Errc walked = walk_nearest(scene, query);
+  if (walked != Errc::kOk) return walked;
+  if (query.error != Errc::kOk) return query.error;
+  if (query.found) query.found->closest.distance = std::sqrt(query.found->closest.distance);
+  return query.found;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The tree over the static instances of a scene, read from the mapped bytes: nodes of wide8 whose
+// leaf n is instance n. Walked by the templates of query/traversal.h like any tree.
+#pragma once
+
+#include <cmath>
+
+#include <boxtree/format/codec_wide.h>
+#include <boxtree/format/scene_record.h>
+#include <boxtree/runtime/tree/frame.h>
+
+namespace boxtree {
+
+/// Boxes of both trees of a scene are compared in the space of this frame.
+struct TopLevel {
+  using Codec = WideCodec<Wide8Node>;
+
+  SceneRecord scene{};
+  Codec codec;
+
+  [[nodiscard]] bool empty() const noexcept { return scene.root == RootKind::kEmpty; }
+  [[nodiscard]] const SceneRecord& record() const noexcept { return scene; }
+  [[nodiscard]] NodeRef root_ref() const noexcept { return {0, 0}; }
+  /// The instance that a leaf is.
+  [[nodiscard]] std::uint32_t instance(NodeRef leaf) const noexcept {
+    return leaf.first / kLeafFaces;
+  }
+};
+
+/// The root box; writers store f32 values.
+template <class S>
+[[nodiscard]] Box<S> root_box(const TopLevel& top) noexcept {
+  return box_cast<S>(Box<double>{top.scene.root_low, top.scene.root_high});
+}
+
+}  // namespace boxtree

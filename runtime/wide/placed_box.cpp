@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: MIT
+// Boxes of the world over placed trees of the wide codecs.
+#include <algorithm>
+#include <cmath>
+
+#include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/wide/targets.h>
+#include <boxtree/runtime/wide/walks.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "boxtree/runtime/wide/placed_box.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include <boxtree/runtime/wide/overlap-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
+  return traverse_overlap(tree, ErasedCodec{&tree}, faces);
+}
+#else
+// The boxes and corners of a placed tree as hulls in the world, seen from the middle of the box
+// that is asked about, widened by what float loses: of the rows of the map, its products and sums,
+// and of triangles that were rounded; less than 16 roundings of the largest sum.
+class PlacedBoxFilter {
+ public:
+  PlacedBoxFilter(const Tree& tree, const PlacedBoxQuery& query) {
+    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
+    const Eigen::Vector3d reach = reach_of(tree);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto row = static_cast<Eigen::Index>(k);
+      const double middle = query.box.low[k] / 2 + query.box.high[k] / 2;
+      const double offset = query.to_world.translation[row] - middle;
+      double terms = std::abs(offset);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const double factor = query.to_world.linear(row, static_cast<Eigen::Index>(j));
+        linear_[k][j] = static_cast<float>(factor);
+        terms += std::abs(factor) * reach[static_cast<Eigen::Index>(j)];
+      }
+      const double error = 16 * kUnit * terms + double{std::numeric_limits<float>::min()};
+      offset_[k] = static_cast<float>(offset);
+      low_[k] = float_below((query.box.low[k] - middle) - error);
+      high_[k] = float_above((query.box.high[k] - middle) + error);
+      inner_low_[k] = float_above((query.box.low[k] - middle) + error);
+      inner_high_[k] = float_below((query.box.high[k] - middle) - error);
+    }
+  }
+
+  HWY_INLINE Verdict judge(const VectorBox& box) const {
+    const Floats d;
+    auto touched = hn::Eq(hn::Zero(d), hn::Zero(d));
+    auto inside = touched;
+    for (std::size_t k = 0; k < 3; ++k) {
+      FloatVector low = hn::Set(d, offset_[k]);
+      FloatVector high = low;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const FloatVector factor = hn::Set(d, linear_[k][j]);
+        const bool turns = linear_[k][j] < 0;
+        low = hn::MulAdd(factor, turns ? box.high[j] : box.low[j], low);
+        high = hn::MulAdd(factor, turns ? box.low[j] : box.high[j], high);
+      }
+      touched = hn::And(
+          touched, hn::And(hn::Le(low, hn::Set(d, high_[k])), hn::Ge(high, hn::Set(d, low_[k]))));
+      inside = hn::And(inside, hn::And(hn::Ge(low, hn::Set(d, inner_low_[k])),
+                                       hn::Le(high, hn::Set(d, inner_high_[k]))));
+    }
+    return {bits_of(touched), bits_of(inside)};
+  }
+
+  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
+    return judge({{point[0], point[1], point[2]}, {point[0], point[1], point[2]}}).inside;
+  }
+
+ private:
+  std::array<std::array<float, 3>, 3> linear_;
+  std::array<float, 3> offset_;
+  std::array<float, 3> low_, high_;
+  std::array<float, 3> inner_low_, inner_high_;
+};
+
+Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
+  return with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return walk<PlacedBoxFilter>(tree, codec, faces); });
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_placed_box);
+
+// Whether no sum of the filter leaves the numbers that float counts with ease.
+bool is_for_vectors(const Tree& tree, const PlacedBoxQuery& query) {
+  constexpr double kLargest = 0x1p60;
+  double largest = reach_of(tree).maxCoeff();
+  for (std::size_t k = 0; k < 3; ++k) {
+    largest = std::max({largest, std::abs(query.box.low[k]), std::abs(query.box.high[k]),
+                        std::abs(query.to_world.translation[static_cast<Eigen::Index>(k)])});
+  }
+  const double factor = query.to_world.linear.cwiseAbs().maxCoeff();
+  return tree.has_nodes() && largest <= kLargest && factor <= kLargest;
+}
+
+}  // namespace
+
+Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk) {
+  if (is_for_vectors(tree, walk.shape)) {
+    return HWY_DYNAMIC_DISPATCH(walk_placed_box)(tree, walk);
+  }
+  return traverse_overlap(tree, ErasedCodec{&tree}, walk);
+}
+
+}  // namespace boxtree
+#endif

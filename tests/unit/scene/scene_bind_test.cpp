@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: MIT
+// Binding scenes: what the file says, what was left out, what cannot move; and damaged bytes.
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/proof/proof.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/scenes.h"
+
+namespace boxtree {
+namespace {
+
+using test::CookedScene;
+using test::require;
+
+cooker::SceneParts named_parts() {
+  cooker::SceneParts parts = test::random_parts(9, 2, 4, 2, 1);
+  parts.materials = {"wood", "stone"};
+  parts.tree_materials.resize(2);
+  parts.tree_materials[0].runs = {{0, 1}, {10, 0}};
+  return parts;
+}
+
+CookedScene cook(const cooker::SceneParts& parts) {
+  return test::cook_scene({test::sphere(6, 8), test::torus(6, 8)}, parts);
+}
+
+TEST(SceneBind, TellsWhatWasCooked) {
+  const cooker::SceneParts parts = named_parts();
+  const CookedScene cooked = cook(parts);
+  EXPECT_TRUE(cooker::verify_file(cooked.file).empty());
+  SceneOptions options;
+  options.queries = kAllQueries;
+  options.require_face_ids = options.require_materials = options.require_names = true;
+  const Scene scene = require(Scene::bind(cooked.file, options));
+  ASSERT_EQ(scene.instance_count(), 9u);
+  EXPECT_EQ(scene.layer_count(), 2u);
+  EXPECT_EQ(scene.layer_name(1), "layer 1");
+  EXPECT_EQ(scene.material_name(0), "wood");
+  EXPECT_EQ(scene.material_name(2), "");
+  std::set<std::uint32_t> ids;
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const InstanceInfo info = require(scene.info(i));
+    const cooker::PlacedTree& source = parts.instances[info.id];
+    ids.insert(info.id);
+    EXPECT_EQ(info.name, source.name);
+    EXPECT_EQ(info.tree, source.tree);
+    EXPECT_EQ(info.layer, source.layer);
+    EXPECT_EQ(info.moves, source.moves);
+    EXPECT_EQ(require(scene.pose(i)).matrix(), source.pose.matrix());
+    EXPECT_EQ(require(scene.find_instance(source.name)), i);
+    EXPECT_EQ(scene.material(i, {9, 0}), info.tree == 0 ? 1 : kNoMaterial);
+    EXPECT_EQ(scene.material(i, {10, 0}), info.tree == 0 ? 0 : kNoMaterial);
+  }
+  EXPECT_EQ(ids.size(), 9u);
+  EXPECT_EQ(scene.info(9).code(), Errc::kInstanceIndex);
+  EXPECT_EQ(scene.find_instance("nobody").code(), Errc::kInstanceIndex);
+}
+
+TEST(SceneBind, PosesTakeF32WhereThatLosesNothing) {
+  cooker::SceneParts parts = test::random_parts(3, 1, 0, 1, 1);
+  EXPECT_EQ(cook(parts).file.section(SectionKind::kPoses).size(), 3 * 12 * sizeof(double));
+  for (cooker::PlacedTree& placed : parts.instances) {
+    placed.pose.matrix() = placed.pose.matrix().cast<float>().cast<double>();
+  }
+  const CookedScene cooked = cook(parts);
+  EXPECT_EQ(cooked.file.section(SectionKind::kPoses).size(), 3 * 12 * sizeof(float));
+  const Scene scene = require(Scene::bind(cooked.file));
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(require(scene.pose(i)).matrix(),
+              parts.instances[require(scene.info(i)).id].pose.matrix());
+  }
+}
+
+TEST(SceneBind, NamesTheLineThatLeftAPartOut) {
+  cooker::SceneParts parts = test::random_parts(3, 1, 0, 1, 1);
+  parts.queries = kRayQueries;
+  parts.left_out.push_back({Part::kPairs, kNoOwner, 12, "scene.toml:12: queries = [\"ray\"]"});
+  const CookedScene cooked = cook(parts);
+  EXPECT_TRUE(cooker::verify_file(cooked.file).empty());
+  SceneOptions options;
+  options.queries = kRayQueries;
+  const Scene scene = require(Scene::bind(cooked.file, options));
+  options.queries = kPairQueries;
+  const Result<Scene> refused = Scene::bind(cooked.file, options);
+  EXPECT_EQ(refused.code(), Errc::kPartLeftOut);
+  EXPECT_EQ(refused.error().detail,
+            "the scene: pair queries were left out by scene.toml:12: queries = [\"ray\"]");
+  EXPECT_EQ(contacts(scene, [](const ScenePair&) { return true; }).code(), Errc::kPartLeftOut);
+  EXPECT_EQ(closest_point(scene, {0, 0, 0}).code(), Errc::kPartLeftOut);
+  options = {};
+  options.require_materials = true;
+  EXPECT_EQ(Scene::bind(cooked.file, options).error().detail,
+            "the scene: materials were left out when it was cooked");
+}
+
+TEST(SceneBind, OnlyWhatMovesIsMoved) {
+  const CookedScene cooked = cook(named_parts());
+  Scene scene = require(Scene::bind(cooked.file));
+  const std::vector<std::byte> before = cooked.bytes;
+  EXPECT_EQ(scene.update(0, Pose::Identity()).code(), Errc::kInstanceStatic);
+  EXPECT_EQ(scene.update(9, Pose::Identity()).code(), Errc::kInstanceIndex);
+  Pose flat = Pose::Identity();
+  flat.linear()(0, 0) = 0;
+  const std::uint32_t moving = scene.moving().front().instance;
+  const Pose kept = require(scene.pose(moving));
+  EXPECT_EQ(scene.update(moving, flat).code(), Errc::kInvalidPose);
+  EXPECT_EQ(require(scene.pose(moving)).matrix(), kept.matrix());
+  EXPECT_TRUE(scene.update(moving, Pose::Identity()).ok());
+  EXPECT_EQ(require(scene.pose(moving)).matrix(), Pose::Identity().matrix());
+  EXPECT_EQ(cooked.bytes, before);
+}
+
+// A static instance that is bound as moving answers from where it was moved to, and only there.
+TEST(SceneBind, StaticInstancesCanBeDetached) {
+  cooker::SceneParts parts;
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    cooker::PlacedTree placed;
+    placed.id = i;
+    placed.pose.translation() = Eigen::Vector3d(10.0 * i, 0, 0);
+    parts.instances.push_back(placed);
+  }
+  const CookedScene cooked = test::cook_scene({test::sphere(6, 8)}, parts);
+  const Scene resting = require(Scene::bind(cooked.file));
+  const Ray ray{{10, 0, 50}, {0, 0.01, -1}};
+  const auto hit = require(closest_hit(resting, ray));
+  ASSERT_TRUE(hit.has_value());
+  const std::uint32_t door = hit->instance;
+  SceneOptions options;
+  options.moving = std::span(&door, 1);
+  Scene scene = require(Scene::bind(cooked.file, options));
+  EXPECT_EQ(require(closest_hit(scene, ray))->hit.t, hit->hit.t);
+  Pose away = Pose::Identity();
+  away.translation() = Eigen::Vector3d(0, 30, 0);
+  ASSERT_TRUE(scene.update(door, away).ok());
+  EXPECT_FALSE(require(closest_hit(scene, ray)).has_value());
+  EXPECT_EQ(require(closest_hit(scene, {{0, 30, 50}, {0.01, 0, -1}}))->instance, door);
+  const std::uint32_t nobody = 2;
+  options.moving = std::span(&nobody, 1);
+  EXPECT_EQ(Scene::bind(cooked.file, options).code(), Errc::kInstanceIndex);
+}
+
+TEST(SceneBind, ScenesWithoutAnythingAtRestOrWithoutSceneAreTold) {
+  const CookedScene cooked = cook(test::random_parts(5, 2, 1, 1, 2));
+  const Scene scene = require(Scene::bind(cooked.file));
+  EXPECT_EQ(scene.record().static_count, 0u);
+  EXPECT_EQ(scene.moving().size(), 5u);
+  const std::vector<std::byte> bytes = test::cook_bytes(test::sphere(4, 4), CodecId::kWide8);
+  const File plain = require(File::open(bytes));
+  EXPECT_EQ(Scene::bind(plain).code(), Errc::kNoScene);
+}
+
+// Each byte of the scene's sections changed, with checksums made right again: refused, found by the
+// proof, or harmless; never a crash, never a walk without end.
+TEST(SceneBind, DamagedBytesAreRefusedOrAnswered) {
+  const CookedScene cooked = cook(named_parts());
+  std::size_t refused = 0, found = 0;
+  for (const SectionEntry& entry : cooked.file.container().sections) {
+    const auto kind = static_cast<SectionKind>(entry.kind);
+    if (kind < SectionKind::kScene || kind > SectionKind::kLeftOut) continue;
+    for (std::uint64_t i = 0; i < entry.size; ++i) {
+      for (const std::byte change : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
+        std::vector<std::byte> bytes = cooked.bytes;
+        bytes[entry.offset + i] ^= change;
+        test::repair_checksums(bytes);
+        const Result<File> file = File::open(bytes);
+        ASSERT_TRUE(file.ok());
+        found += cooker::verify_file(*file).empty() ? 0u : 1u;
+        Result<Scene> scene = Scene::bind(*file);
+        if (!scene) {
+          ++refused;
+          continue;
+        }
+        static_cast<void>(closest_hit(*scene, {{-9, 0.1, 0.2}, {1, 0.01, 0.02}}));
+        static_cast<void>(closest_point(*scene, {0.5, 0.5, 0.5}));
+        static_cast<void>(
+            overlap_box(*scene, {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)},
+                        [&](const SceneFace& face) {
+                          static_cast<void>(scene->material(face.instance, face.face));
+                          return true;
+                        }));
+        static_cast<void>(contacts(*scene, [](const ScenePair&) { return true; }));
+      }
+    }
+  }
+  EXPECT_GT(refused, 100u);
+  EXPECT_GT(found, refused);
+}
+
+}  // namespace
+}  // namespace boxtree
