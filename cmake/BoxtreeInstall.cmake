@@ -1,23 +1,28 @@
 # Installation: find_package(boxtree CONFIG) gives boxtree::format and boxtree::runtime, the program
 # boxtree::cli, and boxtree_add_cooked_assets(); find_package(boxtree CONFIG COMPONENTS blob) adds
-# boxtree::blob, which alone needs liblzma and zstd.
+# boxtree::blob, which alone needs liblzma and zstd. Codecs and queries are components, too: one that
+# was left out is not found.
 include(CMakePackageConfigHelpers)
 
 set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
 install(TARGETS boxtree_format boxtree_runtime EXPORT boxtreeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(BOXTREE_BLOB)
+  install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+  install(EXPORT boxtreeBlobTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
+endif()
 foreach(folder format runtime)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/
           DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree/${folder}
           FILES_MATCHING PATTERN "*.h")
 endforeach()
+install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h ${BOXTREE_INCLUDE_DIR}/boxtree/queries.h
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree)
 if(BOXTREE_BUILD_COOKER)
   install(TARGETS boxtree_cli EXPORT boxtreeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
 install(EXPORT boxtreeTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
-install(EXPORT boxtreeBlobTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/boxtreeConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
                               INSTALL_DESTINATION ${BOXTREE_CONFIG_DIR})

@@ -10,13 +10,16 @@ foreach(folder format runtime cooker)
   file(CREATE_LINK ${BOXTREE_SOURCE_DIR}/${folder} ${BOXTREE_INCLUDE_DIR}/boxtree/${folder}
        SYMBOLIC)
 endforeach()
+include(${CMAKE_CURRENT_LIST_DIR}/BoxtreeParts.cmake)
 
 function(boxtree_set_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   # Same bytes and same answers everywhere: no fused multiply-add that the source does not ask for.
   target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
-                                           -Wconversion -Wsign-conversion -Wno-missing-field-initializers)
+                                           -Wconversion -Wsign-conversion -Wno-missing-field-initializers
+                                           # Programs linked with --gc-sections keep what they call.
+                                           -ffunction-sections -fdata-sections)
   if(BOXTREE_WERROR)
     target_compile_options(${target} PRIVATE -Werror)
   endif()
@@ -44,4 +47,9 @@ function(boxtree_add_library name)
   target_include_directories(boxtree_${name} PUBLIC $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
                                                     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   boxtree_set_target(boxtree_${name})
+endfunction()
+
+# boxtree_small(SOURCES...): what runs once an opened file, not once a query, is compiled for size.
+function(boxtree_small)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-Os>)
 endfunction()

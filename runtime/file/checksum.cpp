@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// XXH3-64, compiled in so that the runtime needs no further library at link time.
+// XXH3-64, compiled in, once, so that the runtime needs no further library at link time.
+#include <new>
+
 #include <boxtree/runtime/file/checksum.h>
+#include <boxtree/runtime/file/checksum_stream.h>
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>
@@ -9,11 +12,25 @@ namespace boxtree {
 
 std::uint64_t checksum(Bytes head, Bytes tail) noexcept {
   if (tail.empty()) return XXH3_64bits(head.data(), head.size());
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  XXH3_64bits_update(&state, head.data(), head.size());
-  XXH3_64bits_update(&state, tail.data(), tail.size());
-  return XXH3_64bits_digest(&state);
+  ChecksumStream stream;
+  stream.add(head);
+  stream.add(tail);
+  return stream.value();
+}
+
+ChecksumStream::ChecksumStream() noexcept {
+  static_assert(sizeof(state_) >= sizeof(XXH3_state_t) &&
+                alignof(ChecksumStream) >= alignof(XXH3_state_t));
+  XXH3_64bits_reset(::new (state_.data()) XXH3_state_t);
+}
+
+void ChecksumStream::add(Bytes bytes) noexcept {
+  XXH3_64bits_update(std::launder(reinterpret_cast<XXH3_state_t*>(state_.data())), bytes.data(),
+                     bytes.size());
+}
+
+std::uint64_t ChecksumStream::value() const noexcept {
+  return XXH3_64bits_digest(std::launder(reinterpret_cast<const XXH3_state_t*>(state_.data())));
 }
 
 }  // namespace boxtree

@@ -2,6 +2,7 @@
 // Box queries over any codec.
 #include <boxtree/runtime/query/box.h>
 #include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/shape_query.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {

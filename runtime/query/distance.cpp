@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Distance queries: one instance of the walk for each codec, and one for pairs of different codecs.
-#include <variant>
+// Distance queries.
 
 #include <boxtree/runtime/query/distance.h>
 #include <boxtree/runtime/query/distance_walk.h>
@@ -11,6 +10,9 @@
 namespace boxtree {
 namespace {
 
+// Most of its time goes into distances of boxes, so one walk serves all codecs.
+using Walk = DistanceWalk<ErasedCodec, ErasedCodec>;
+
 struct Placed {
   const Tree& first;
   const Pose& first_pose;
@@ -19,12 +21,7 @@ struct Placed {
   const WorldMetric& metric;
 };
 
-template <Codec A, Codec B>
-Result<Distance> search(const Placed& placed, const A& first_codec, const B& second_codec,
-                        const Approximation& approximation) {
-  DistanceWalk walk(placed.first, first_codec, placed.second, second_codec, placed.pose,
-                    placed.metric, approximation);
-  if (const Errc error = walk.run(); error != Errc::kOk) return error;
+Distance answer(const Placed& placed, const Walk& walk, const Approximation& approximation) {
   Distance result;
   result.nodes_expanded = walk.visited();
   result.is_near_enough = !walk.is_spent();
@@ -67,13 +64,10 @@ Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree&
   approximation.absolute_error = metric->from_world_above(options.absolute_error);
   approximation.max_distance = metric->from_world_above(options.max_distance);
   const Placed placed{first, first_pose, second, *pose, *metric};
-  // By what is bound, not by what the records say: a tree of one leaf has no nodes to bind.
-  if (first.codec_view().index() != second.codec_view().index()) {
-    return search(placed, ErasedCodec{&first}, ErasedCodec{&second}, approximation);
-  }
-  return with_codec(first, [&]<class C>(const C& codec) {
-    return search(placed, codec, std::get<C>(second.codec_view()), approximation);
-  });
+  Walk walk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, *pose, *metric,
+            approximation);
+  if (const Errc error = walk.run(); error != Errc::kOk) return error;
+  return answer(placed, walk, approximation);
 }
 
 }  // namespace boxtree

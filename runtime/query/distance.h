@@ -5,11 +5,14 @@
 #include <limits>
 #include <optional>
 
+#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/approximation.h>
-#include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
+
+static_assert(kHasDistanceQueries,
+              "BOXTREE_QUERIES left distance queries out of this build of boxtree");
 
 using DistanceOptions = Approximation;
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <variant>
+#include <type_traits>
 
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/query/erased_codec.h>
@@ -55,7 +55,7 @@ struct Watcher {
   }
 
   // By a corner of each: they have been found near, by their bounds.
-  [[nodiscard]] bool stops(const Triangle& first, const Triangle& second) noexcept {
+  [[nodiscard]] bool stops(const Triangle& first, const Triangle& second) const noexcept {
     const Eigen::Vector3d between = second.corner[0] - first.corner[0];
     const double error = watch->metric.image_error() * between.cwiseAbs().maxCoeff();
     if (!(watch->metric.to_world(between).norm() * kMore + error < watch->distance)) return false;
@@ -64,10 +64,17 @@ struct Watcher {
   }
 };
 
-template <Codec A, Codec B>
-Result<Visit> walk(const Tree& first, const A& first_codec, const Tree& second,
-                   const B& second_codec, Watch& watch, PairVisitor visitor) {
-  return PairWalk<A, B, Watcher>(first, first_codec, second, second_codec, watch.pose, visitor,
+// Whether nodes have at most two children; a tree without nodes may be taken for either.
+bool is_binary(const Tree& tree) noexcept {
+  return with_codec(tree, [](const auto& codec) {
+    return std::remove_cvref_t<decltype(codec)>::Children::kWidth ==
+           ErasedBinaryCodec::Children::kWidth;
+  });
+}
+
+template <Codec C>
+Result<Visit> walk(const Tree& first, const Tree& second, Watch& watch, PairVisitor visitor) {
+  return PairWalk<C, C, Watcher>(first, C{&first}, second, C{&second}, watch.pose, visitor,
                                  Watcher{&watch})
       .run();
 }
@@ -156,21 +163,20 @@ struct BoxSearch {
     return Errc::kOk;
   }
 
-  template <Codec C>
-  [[nodiscard]] Errc run(const C codec) noexcept {
-    using S = typename C::Scalar;
+  [[nodiscard]] Errc run() noexcept {
+    const ErasedCodec codec{&tree};
     struct Entry {
-      Box<S> node;
+      Box<double> node;
       NodeRef ref;
       bool is_leaf;
     };
-    std::array<Entry, kStackSize<C>> stack;
+    std::array<Entry, kStackSize<ErasedCodec>> stack;
     std::size_t size = 0;
-    const Box<S> root = root_box<S>(tree);
+    const Box<double> root = root_box<double>(tree);
     if (!box.overlaps(root)) return Errc::kOk;
     stack[size++] = {root, tree.root_ref(), tree.record().root == RootKind::kLeaf};
     std::uint64_t unexpanded = tree.record().node_count;
-    typename C::Children children;
+    ErasedCodec::Children children;
     while (size > 0) {
       const Entry entry = stack[--size];
       if (stops(entry.node)) return Errc::kOk;
@@ -183,7 +189,7 @@ struct BoxSearch {
         return Errc::kNodeCorrupt;
       }
       for (std::uint32_t i = 0; i < children.count; ++i) {
-        const Box<S> child = children.box(i);
+        const Box<double> child = children.box(i);
         if (!box.overlaps(child)) continue;
         if (size == stack.size()) return Errc::kDepthExceeded;
         stack[size++] = {child, children.ref[i], children.is_leaf(i)};
@@ -211,14 +217,9 @@ Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, co
     result.contact = pair;
     return false;
   };
-  const bool same = first.codec_view().index() == second.codec_view().index();
-  const Result<Visit> visit =
-      same ? with_codec(first,
-                        [&]<class C>(const C& codec) {
-                          return walk(first, codec, second, std::get<C>(second.codec_view()), watch,
-                                      visitor);
-                        })
-           : walk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, watch, visitor);
+  const bool binary = is_binary(first) && is_binary(second);
+  const Result<Visit> visit = binary ? walk<ErasedBinaryCodec>(first, second, watch, visitor)
+                                     : walk<ErasedCodec>(first, second, watch, visitor);
   if (!visit) return visit.error();
   result.overlap = result.contact ? Overlap::kHit : watch.why;
   result.nodes_expanded = watch.visited;
@@ -240,7 +241,7 @@ Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3
   const BoxQuery query{clamped(box.min()), clamped(box.max())};
   BoxSearch search{tree,        query, scaled_below(distance, -tree.record().scale_exponent),
                    node_budget, {},    {}};
-  const Errc error = with_codec(tree, [&](const auto& codec) { return search.run(codec); });
+  const Errc error = search.run();
   if (error != Errc::kOk) return error;
   return search.result;
 }

@@ -5,11 +5,14 @@
 #include <cstdint>
 #include <optional>
 
+#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/approximation.h>
-#include <boxtree/runtime/query/pair.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
+
+static_assert(kHasWithinQueries,
+              "BOXTREE_QUERIES left within queries out of this build of boxtree");
 
 enum class Overlap : std::uint8_t {
   kHit,          // some face touches

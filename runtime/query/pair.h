@@ -4,18 +4,12 @@
 
 #include <optional>
 
+#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
 
-/// A face of the first tree and a face of the second one that touch.
-struct FacePair {
-  FaceRef first;
-  FaceRef second;
-};
-
-/// Receives one pair after the other; returns whether to go on.
-using PairVisitor = FunctionRef<bool(const FacePair&)>;
+static_assert(kHasPairQueries, "BOXTREE_QUERIES left pair queries out of this build of boxtree");
 
 /// Visits every pair of faces that share a point, each once, in no promised order. Poses take
 /// object space to world and may be any invertible affine map: rotation, scale, mirror, shear.

@@ -7,8 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/pair.h>
+#include <boxtree/runtime/query/leaf_pairs.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -58,9 +57,9 @@ class PairWalk {
         first_codec_(first_codec),
         second_codec_(second_codec),
         pose_(pose),
-        visitor_(visitor),
         observer_(observer),
-        unmet_(most_pairs(first.record(), second.record())) {}
+        unmet_(most_pairs(first.record(), second.record())),
+        leaves_(first, second, pose, visitor) {}
 
   [[nodiscard]] Result<Visit> run() {
     if (first_.empty() || second_.empty()) return Visit::kComplete;
@@ -216,79 +215,18 @@ class PairWalk {
   void test_leaves(const Entry& entry) {
     if (stops(entry.first_box, entry.second_box)) return;
     observer_.leaf_pair(entry.first, entry.second);
-    if (!read_first(entry.first) || !read_second(entry.second)) return;
-    // Only what reaches into the other leaf's box can touch anything in it.
-    std::array<std::uint32_t, kMaxLeafTriangles> near;  // triangles of the second leaf
-    std::size_t near_count = 0;
-    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-      if (boxes_overlap(entry.first_box, moved_bounds_[j])) near[near_count++] = j;
+    const LeafPair leaves{box_cast<double>(entry.first_box), box_cast<double>(entry.second_box),
+                          entry.first, entry.second};
+    if constexpr (requires(const Triangle& t) { observer_.stops(t, t); }) {
+      const auto ask = [this](const Triangle& first, const Triangle& moved) {
+        return observer_.stops(first, moved);
+      };
+      const TriangleWatch watch = ask;
+      error_ = leaves_.run(leaves, &watch);
+    } else {
+      error_ = leaves_.run(leaves, nullptr);
     }
-    if (near_count == 0) return;
-    const Box<double> second_image = pose_.hull_in_first(entry.second_box);
-    // A face is reported once: what its second half finds is compared with what the first half did.
-    std::uint32_t last_face = kNoFaceId;
-    std::uint64_t found = 0;  // bit j: triangle j of the second leaf touches the face at hand
-    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-      if (first_batch_.face[i] != last_face) found = 0;
-      last_face = first_batch_.face[i];
-      if (!boxes_overlap(first_bounds_[i], second_image)) continue;
-      const Triangle triangle = first_batch_.triangle(i);
-      for (std::size_t n = 0; n < near_count; ++n) {
-        const std::uint32_t j = near[n];
-        if (!boxes_overlap(first_bounds_[i], moved_bounds_[j]) || was_found(found, j)) continue;
-        if (!triangles_intersect(triangle, moved_[j])) {
-          if (stops(triangle, moved_[j])) return;
-          continue;
-        }
-        found |= std::uint64_t{1} << j;
-        stopped_ = !visitor_(
-            {face_ref(first_, first_batch_.face[i]), face_ref(second_, second_batch_.face[j])});
-        if (stopped_) return;
-      }
-    }
-  }
-
-  // Leaves are often met several times in a row; what was read of the last one stays. False with
-  // error_ set on corrupt bytes.
-  [[nodiscard]] bool read_first(NodeRef leaf) {
-    if (leaf == first_read_) return true;
-    first_read_ = kNone;
-    error_ = first_.leaves().read(leaf.first, leaf.second, first_batch_);
-    if (error_ != Errc::kOk) return false;
-    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-      first_bounds_[i] = bounds_of(first_batch_.triangle(i));
-    }
-    first_read_ = leaf;
-    return true;
-  }
-
-  [[nodiscard]] bool read_second(NodeRef leaf) {
-    if (leaf == second_read_) return true;
-    second_read_ = kNone;
-    error_ = second_.leaves().read(leaf.first, leaf.second, second_batch_);
-    if (error_ != Errc::kOk) return false;
-    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-      const Triangle triangle = second_batch_.triangle(j);
-      for (std::size_t c = 0; c < 3; ++c) {
-        moved_[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
-        if (is_within_reach(moved_[j].corner[c])) continue;
-        error_ = Errc::kVertexNotFinite;  // outside the root box that the pose was checked with
-        return false;
-      }
-      moved_bounds_[j] = bounds_of(moved_[j]);
-    }
-    second_read_ = leaf;
-    return true;
-  }
-
-  // Whether triangle j of the second leaf, or the other half of its face, was found already. Halves
-  // stand side by side.
-  [[nodiscard]] bool was_found(std::uint64_t found, std::uint32_t j) const noexcept {
-    const auto is_same = [&](std::uint32_t other) {
-      return second_batch_.face[other] == second_batch_.face[j] && ((found >> other) & 1u) != 0;
-    };
-    return is_same(j) || (j > 0 && is_same(j - 1)) ||
-           (j + 1 < second_batch_.count && is_same(j + 1));
+    stopped_ = leaves_.stopped();
   }
 
   const Tree& first_;
@@ -296,21 +234,13 @@ class PairWalk {
   const A first_codec_;
   const B second_codec_;
   const RelativePose& pose_;
-  PairVisitor visitor_;
   [[no_unique_address]] Observer observer_;
   std::uint64_t unmet_;
   Errc error_ = Errc::kOk;
   bool stopped_ = false;
   PairSide<A> first_side_;
   PairSide<B> second_side_;
-  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
-  NodeRef first_read_ = kNone;  // the leaf that first_batch_ holds
-  NodeRef second_read_ = kNone;
-  TriangleBatch first_batch_;
-  TriangleBatch second_batch_;
-  std::array<Box<double>, kMaxLeafTriangles> first_bounds_;
-  std::array<Triangle, kMaxLeafTriangles> moved_;  // the second leaf in the first tree's space
-  std::array<Box<double>, kMaxLeafTriangles> moved_bounds_;
+  LeafPairTest leaves_;
   std::array<Entry, kPairStack> stack_;
   std::size_t size_ = 0;
 };

@@ -5,9 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include <boxtree/runtime/query/erased_codec.h>
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/frontier.h>
 #include <boxtree/runtime/query/point.h>
+#include <boxtree/runtime/query/point_query.h>
 #include <boxtree/runtime/query/scaled_length.h>
 #include <boxtree/runtime/wide/walks.h>
 
@@ -16,18 +18,17 @@ namespace {
 
 // Looks at the nodes in the order of their distance, as far as the budget goes. Like a pair walk it
 // goes straight down first, so that a small budget finds something.
-template <Codec C>
 class BestFirst {
  public:
-  BestFirst(const Tree& tree, const C& codec, PointQuery& query, std::uint64_t budget) noexcept
-      : tree_(tree), codec_(codec), query_(query), budget_(budget) {}
+  BestFirst(const Tree& tree, PointQuery& query, std::uint64_t budget) noexcept
+      : tree_(tree), codec_{&tree}, query_(query), budget_(budget) {}
 
   Errc run() noexcept {
-    Entry entry{root_box<S>(tree_), tree_.root_ref(), tree_.record().root == RootKind::kLeaf};
+    Entry entry{root_box<double>(tree_), tree_.root_ref(), tree_.record().root == RootKind::kLeaf};
     double key = query_.key(entry.box);
     if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
     std::uint64_t unexpanded = tree_.record().node_count;
-    typename C::Children children;
+    ErasedCodec::Children children;
     while (frontier_.pop(enough(), key, entry)) {
       bool goes_on = true;
       while (goes_on) {
@@ -56,10 +57,9 @@ class BestFirst {
   [[nodiscard]] double left() const noexcept { return std::min(left_, frontier_.least_left()); }
 
  private:
-  using S = typename C::Scalar;
   static constexpr std::size_t kQueue = 1024;
   struct Entry {
-    Box<S> box;
+    Box<double> box;
     NodeRef ref;
     bool is_leaf;
   };
@@ -70,12 +70,12 @@ class BestFirst {
   }
 
   // Lets the children wait; but while nothing is found yet the nearest is next.
-  Errc meet(const typename C::Children& children, bool& goes_on, double& key,
+  Errc meet(const ErasedCodec::Children& children, bool& goes_on, double& key,
             Entry& entry) noexcept {
     const auto child = [&](std::uint32_t i) {
       return Entry{children.box(i), children.ref[i], children.is_leaf(i)};
     };
-    std::array<double, C::Children::kWidth> keys;
+    std::array<double, ErasedCodec::Children::kWidth> keys;
     std::uint32_t nearest = 0;
     for (std::uint32_t i = 0; i < children.count; ++i) {
       keys[i] = query_.key(children.box(i));
@@ -98,15 +98,21 @@ class BestFirst {
   }
 
   const Tree& tree_;
-  const C codec_;
+  const ErasedCodec codec_;
   PointQuery& query_;
   const std::uint64_t budget_;
   double left_ = std::numeric_limits<double>::infinity();
   bool is_spent_ = false;
-  Frontier<Entry, kQueue, kStackSize<C>> frontier_;
+  Frontier<Entry, kQueue, kStackSize<ErasedCodec>> frontier_;
 };
 
 }  // namespace
+
+Errc find_nearest(const Tree& tree, PointQuery& query) {
+  const Errc walked =
+      with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
+  return walked != Errc::kOk ? walked : query.error;
+}
 
 Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen::Vector3d& point,
                                                   double max_distance) {
@@ -115,10 +121,7 @@ Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen:
   if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;
   PointQuery query{tree, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
-  const Errc walked =
-      with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
-  if (walked != Errc::kOk) return walked;
-  if (query.error != Errc::kOk) return query.error;
+  if (const Errc error = find_nearest(tree, query); error != Errc::kOk) return error;
   if (query.found) {
     query.found->point = tree.frame().to_object(query.found->point);
     query.found->distance = std::sqrt(query.found->distance) * tree.frame().scale;
@@ -144,14 +147,15 @@ Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& 
                    {},   Errc::kOk,  {}};
   query.approximation = &approximation;
   double left = std::numeric_limits<double>::infinity();  // squared: of what was not looked at
-  const Errc walked = with_codec(tree, [&](const auto& codec) {
-    if (options.node_budget == kUnlimitedNodes) return walk_nearest(tree, codec, query);
-    BestFirst walk(tree, codec, query, options.node_budget);
-    const Errc error = walk.run();
+  Errc walked;
+  if (options.node_budget == kUnlimitedNodes) {
+    walked = with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
+  } else {
+    BestFirst walk(tree, query, options.node_budget);
+    walked = walk.run();
     left = walk.left();
     result.is_near_enough = !walk.is_spent();
-    return error;
-  });
+  }
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
 

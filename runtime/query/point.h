@@ -5,10 +5,13 @@
 #include <limits>
 #include <optional>
 
+#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/approximation.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
+
+static_assert(kHasPointQueries, "BOXTREE_QUERIES left point queries out of this build of boxtree");
 
 struct ClosestPoint {
   Eigen::Vector3d point;  // object space

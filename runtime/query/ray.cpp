@@ -10,18 +10,14 @@
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
-namespace {
 
-// An origin that is not finite is not within reach either.
-bool is_valid(const Ray& ray) {
+bool is_valid(const Ray& ray) noexcept {
   return ray.direction.allFinite() && !ray.direction.isZero(0) && ray.t_min >= 0 &&
          ray.t_min <= ray.t_max;  // false for NaN
 }
 
-// The power of two that brings the largest component of the direction into [1/2, 1) of tree space.
-// Directions of any length then behave alike, and t is converted without rounding.
-int direction_exponent(const Ray& ray) {
-  const double largest = ray.direction.cwiseAbs().maxCoeff();
+int direction_exponent(const Eigen::Vector3d& direction) noexcept {
+  const double largest = direction.cwiseAbs().maxCoeff();
   if (largest >= std::numeric_limits<double>::min()) [[likely]] {  // a normal number
     constexpr int kBias = std::numeric_limits<double>::max_exponent - 2;
     return static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52) - kBias;
@@ -31,12 +27,11 @@ int direction_exponent(const Ray& ray) {
   return exponent;
 }
 
-Result<std::optional<RayHit>> cast(const Tree& tree, const Ray& ray, bool stop_at_first) {
-  const DefaultFloatState state;
+Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first) {
   if (!is_valid(ray) || !is_within_reach(tree.frame().to_tree(ray.origin))) {
     return Errc::kInvalidQuery;
   }
-  RayQuery query(tree, ray, direction_exponent(ray), stop_at_first);
+  RayQuery query(tree, ray, direction_exponent(ray.direction), stop_at_first);
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
   if (walked != Errc::kOk) return walked;
@@ -45,14 +40,14 @@ Result<std::optional<RayHit>> cast(const Tree& tree, const Ray& ray, bool stop_a
   return query.hit;
 }
 
-}  // namespace
-
 Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray) {
-  return cast(tree, ray, false);
+  const DefaultFloatState state;
+  return cast_ray(tree, ray, false);
 }
 
 Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray) {
-  return cast(tree, ray, true);
+  const DefaultFloatState state;
+  return cast_ray(tree, ray, true);
 }
 
 }  // namespace boxtree

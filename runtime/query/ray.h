@@ -5,9 +5,12 @@
 #include <limits>
 #include <optional>
 
+#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/types.h>
 
 namespace boxtree {
+
+static_assert(kHasRayQueries, "BOXTREE_QUERIES left ray queries out of this build of boxtree");
 
 /// A ray or segment in object space: all points origin + t * direction with t_min <= t <= t_max.
 struct Ray {

@@ -4,10 +4,16 @@
 #include <cmath>
 
 #include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/shape_query.h>
 #include <boxtree/runtime/query/sphere.h>
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
+
+Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor) {
+  return visit_faces(tree, sphere, visitor);
+}
+
 Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
                              FaceVisitor visitor) {
   const DefaultFloatState state;
@@ -17,7 +23,7 @@ Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, do
   }
   // Twice the reach spans every distance that can occur; a larger radius changes no answer.
   const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kReach);
-  return visit_faces(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor);
+  return visit_sphere(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor);
 }
 
 }  // namespace boxtree

@@ -80,12 +80,13 @@ template <class S>
 template <Codec C>
 inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
-/// Visits every leaf whose box passes, in no promised order.
+/// Visits every leaf whose box passes, in no promised order. `tree`: a Tree, or whatever else has
+/// empty(), record(), root_ref() and root_box<S>() as a tree has.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
 /// Returns kNodeCorrupt or kDepthExceeded for corrupt nodes, else kOk.
-template <Codec C, class Query>
-Errc traverse_overlap(const Tree& tree, const C codec, Query& query) {
+template <class Source, Codec C, class Query>
+Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   struct Entry {
     Box<S> box;
@@ -129,8 +130,8 @@ Errc traverse_overlap(const Tree& tree, const C codec, Query& query) {
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
 /// query.nodes_expanded, if it has one, counts the nodes taken apart.
-template <Codec C, class Query>
-Errc traverse_nearest(const Tree& tree, const C codec, Query& query) {
+template <class Source, Codec C, class Query>
+Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   constexpr std::size_t kWidth = C::Children::kWidth;
   struct Entry {

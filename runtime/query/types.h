@@ -48,6 +48,15 @@ class FunctionRef<R(Args...)> {
 /// Receives one face after the other; returns whether to go on.
 using FaceVisitor = FunctionRef<bool(const FaceRef&)>;
 
+/// A face of the first tree and a face of the second one that touch.
+struct FacePair {
+  FaceRef first;
+  FaceRef second;
+};
+
+/// Receives one pair after the other; returns whether to go on.
+using PairVisitor = FunctionRef<bool(const FacePair&)>;
+
 /// How a query with a visitor ended.
 enum class Visit : std::uint8_t {
   kComplete,  // every answer was visited

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // From a codec's number to its type.
+#include <string>
+
 #include <boxtree/runtime/tree/codecs.h>
 
 namespace boxtree {
@@ -12,28 +14,21 @@ Result<AnyCodec> bind_as(const TreeRecord& record, Bytes nodes) {
   return AnyCodec(*codec);
 }
 
+template <CodecId... Ids>
+Result<AnyCodec> bind_one_of(CodecList<Ids...>, const TreeRecord& record, Bytes nodes) {
+  using Bind = Result<AnyCodec> (*)(const TreeRecord&, Bytes);
+  Bind bind = nullptr;
+  ((record.codec == Ids ? void(bind = bind_as<typename CodecOf<Ids>::type>) : void()), ...);
+  if (bind != nullptr) return bind(record, nodes);
+  return Error{Errc::kCodecUnsupported, "codec " + std::string(codec_name(record.codec)) +
+                                            " was left out of this build, which has " +
+                                            std::string(kBuiltCodecNames)};
+}
+
 }  // namespace
 
 Result<AnyCodec> bind_codec(const TreeRecord& record, Bytes nodes) {
-  switch (record.codec) {
-    case CodecId::kPlainF32:
-      return bind_as<PlainCodec<float>>(record, nodes);
-    case CodecId::kPlainF16:
-      return bind_as<PlainCodec<std::uint16_t>>(record, nodes);
-    case CodecId::kPackedF32:
-      return bind_as<PackedCodec<PackedCut::kF32>>(record, nodes);
-    case CodecId::kPackedF16:
-      return bind_as<PackedCodec<PackedCut::kF16>>(record, nodes);
-    case CodecId::kPackedF64:
-      return bind_as<PackedCodec<PackedCut::kF64>>(record, nodes);
-    case CodecId::kDedup:
-      return bind_as<PackedCodec<PackedCut::kTable>>(record, nodes);
-    case CodecId::kWide8:
-      return bind_as<WideCodec<Wide8Node>>(record, nodes);
-    case CodecId::kWide4:
-      return bind_as<WideCodec<Wide4Node>>(record, nodes);
-  }
-  return Errc::kCodecUnsupported;
+  return bind_one_of(BuiltCodecs(), record, nodes);
 }
 
 }  // namespace boxtree

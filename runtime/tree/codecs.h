@@ -3,8 +3,11 @@
 #pragma once
 
 #include <concepts>
+#include <cstdint>
+#include <type_traits>
 #include <variant>
 
+#include <boxtree/configuration.h>
 #include <boxtree/format/codec_packed.h>
 #include <boxtree/format/codec_plain.h>
 #include <boxtree/format/codec_wide.h>
@@ -25,14 +28,37 @@ concept Codec = requires(const C& codec, const TreeRecord& record, Bytes section
   noexcept->std::same_as<bool>;
 };
 
-/// One alternative a codec; a codec is added by its name here and in bind_codec().
-using AnyCodec =
-    std::variant<PlainCodec<float>, PlainCodec<std::uint16_t>, PackedCodec<PackedCut::kF32>,
-                 PackedCodec<PackedCut::kF16>, PackedCodec<PackedCut::kF64>,
-                 PackedCodec<PackedCut::kTable>, WideCodec<Wide8Node>, WideCodec<Wide4Node>>;
+/// The type of each codec; a codec is added by a line here.
+template <CodecId Id>
+struct CodecOf;
+template <>
+struct CodecOf<CodecId::kPlainF32> : std::type_identity<PlainCodec<float>> {};
+template <>
+struct CodecOf<CodecId::kPlainF16> : std::type_identity<PlainCodec<std::uint16_t>> {};
+template <>
+struct CodecOf<CodecId::kPackedF32> : std::type_identity<PackedCodec<PackedCut::kF32>> {};
+template <>
+struct CodecOf<CodecId::kPackedF16> : std::type_identity<PackedCodec<PackedCut::kF16>> {};
+template <>
+struct CodecOf<CodecId::kPackedF64> : std::type_identity<PackedCodec<PackedCut::kF64>> {};
+template <>
+struct CodecOf<CodecId::kDedup> : std::type_identity<PackedCodec<PackedCut::kTable>> {};
+template <>
+struct CodecOf<CodecId::kWide8> : std::type_identity<WideCodec<Wide8Node>> {};
+template <>
+struct CodecOf<CodecId::kWide4> : std::type_identity<WideCodec<Wide4Node>> {};
 
-/// The codec of `record` over the bytes of its nodes section. Errors: kCodecUnsupported and those
-/// of the codec's own bind.
+template <class List>
+struct VariantOf;
+template <CodecId... Ids>
+struct VariantOf<CodecList<Ids...>>
+    : std::type_identity<std::variant<typename CodecOf<Ids>::type...>> {};
+
+/// One alternative a codec that this build has.
+using AnyCodec = VariantOf<BuiltCodecs>::type;
+
+/// The codec of `record` over the bytes of its nodes section. Errors: kCodecUnsupported, also when
+/// the codec was left out of this build, and those of the codec's own bind.
 Result<AnyCodec> bind_codec(const TreeRecord& record, Bytes nodes);
 
 }  // namespace boxtree

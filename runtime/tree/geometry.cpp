@@ -2,11 +2,6 @@
 // Leaf geometry: corner numbers to positions to tree space, every number checked before it is used.
 #include <boxtree/runtime/tree/geometry.h>
 
-#define XXH_INLINE_ALL
-#include <string>
-
-#include <xxhash.h>
-
 namespace boxtree {
 
 std::array<std::uint32_t, 4> MeshArrays::face(std::uint32_t face) const noexcept {
@@ -29,27 +24,6 @@ Eigen::Vector3d MeshArrays::position(std::uint32_t vertex) const noexcept {
   }
   const auto p = load<std::array<float, 3>>(place);
   return {p[0], p[1], p[2]};
-}
-
-Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
-  XXH3_state_t state;
-  XXH3_64bits_reset(&state);
-  const std::size_t position_bytes = 3 * (mesh.positions_f64 ? sizeof(double) : sizeof(float));
-  for (std::uint32_t f = 0; f < mesh.face_count; ++f) {
-    const std::array<std::uint32_t, 4> corner = mesh.face(f);
-    const std::uint32_t count = corner[3] == kMissingCorner ? 3 : 4;
-    XXH3_64bits_update(&state, &count, sizeof(count));
-    for (std::size_t i = 0; i < count; ++i) {
-      if (corner[i] >= mesh.vertex_count) {
-        return Error{Errc::kVertexOutOfRange, "face " + std::to_string(f) + " names vertex " +
-                                                  std::to_string(corner[i]) + " of " +
-                                                  std::to_string(mesh.vertex_count)};
-      }
-      XXH3_64bits_update(&state, mesh.positions + std::size_t{corner[i]} * mesh.position_stride,
-                         position_bytes);
-    }
-  }
-  return static_cast<std::uint64_t>(XXH3_64bits_digest(&state));
 }
 
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {

@@ -15,6 +15,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR  // where there are no vectors, the walks of every codec are taken
 
 /// Reads leaves of one tree, one at a time. Coordinates are the exact ones or those rounded to
 /// nearest, see corner_error(). Exact triangles come from with_triangle().
@@ -108,7 +109,7 @@ class LeafFloats {
     const double scale = reader_.frame().inverse_scale;
     bool is_finite = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float* p = positions + start_[3 * lane + c];
+      const float* p = positions + start_[std::size_t{3} * lane + c];
       triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
       is_finite &= is_within_reach(triangle.corner[c]);
     }
@@ -123,7 +124,7 @@ class LeafFloats {
   [[nodiscard]] Errc error() const { return error_; }
 
  private:
-  static constexpr std::size_t kCorners = 3 * kLeafFaces;
+  static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
   static constexpr std::size_t kStride = 3 * sizeof(float);
   // Three times the number of a vertex fits into 32 bits.
   static constexpr std::uint32_t kMaxDirectVertices = 1u << 30;
@@ -166,7 +167,7 @@ class LeafFloats {
                                        read_bits(bytes, at + x_width + y_width, z_width)};
       // Unsigned, so that corrupt sums wrap.
       for (std::size_t k = 0; k < 3; ++k) {
-        grid_point_[kRow * i + k] = static_cast<std::int32_t>(
+        grid_point_[std::size_t{kRow} * i + k] = static_cast<std::int32_t>(
             static_cast<std::uint32_t>(offsets.origin[k]) + static_cast<std::uint32_t>(offset[k]));
       }
       grid_point_[kRow * i + 3] = 0;
@@ -205,16 +206,6 @@ class LeafFloats {
 
   // Corner `corner` of all faces; that of face i is start(i) numbers after `rows`: floats, or whole
   // numbers that become floats here.
-#if HWY_TARGET == HWY_SCALAR
-  template <class Number, class Start>
-  void transpose(const Number* rows, const Start& start, std::size_t corner) {
-    for (std::size_t i = 0; i < kLeafFaces; ++i) {
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        coordinate_[corner][axis][i] = static_cast<float>(rows[start(i) + axis]) * scale_;
-      }
-    }
-  }
-#else
   template <class Number, class Start>
   HWY_INLINE void transpose(const Number* rows, const Start& start, std::size_t corner) {
     const hn::Rebind<Number, Floats> d;
@@ -238,9 +229,7 @@ class LeafFloats {
       store(2, hn::InterleaveLower(pairs, z01, z23));
     }
   }
-  static HWY_INLINE FloatVector to_floats(FloatVector values) {
-    return values;
-  }
+  static HWY_INLINE FloatVector to_floats(FloatVector values) { return values; }
   static HWY_INLINE FloatVector to_floats(hn::Vec<hn::Rebind<std::int32_t, Floats>> values) {
     return hn::ConvertTo(Floats(), values);
   }
@@ -258,7 +247,6 @@ class LeafFloats {
     return row;
 #endif
   }
-#endif
 
   bool convert() {
     error_ = reader_.read(first_, count_, batch_);
@@ -290,6 +278,7 @@ class LeafFloats {
   HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and nothing
 };
 
+#endif
 }  // namespace boxtree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

@@ -7,13 +7,15 @@
 #define BOXTREE_RUNTIME_WIDE_LEAF_PAIR_INL_H
 #endif
 
-#include <boxtree/runtime/query/pair.h>
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/types.h>
 #include <boxtree/runtime/wide/leaf-inl.h>
 #include <boxtree/runtime/wide/pair_filter.h>
 #include <boxtree/runtime/wide/vector3-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR
 
 /// A leaf with bounds and normals, in the first tree's space.
 struct PreparedLeaf {
@@ -283,6 +285,7 @@ class LeafPairs {
   Errc error_ = Errc::kOk;
 };
 
+#endif
 }  // namespace boxtree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

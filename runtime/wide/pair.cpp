@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Two trees of the wide codecs: one box against eight.
+#include <boxtree/runtime/query/erased_codec.h>
 #include <boxtree/runtime/wide/pair_filter.h>
 #include <boxtree/runtime/wide/pair_walks.h>
 #include <boxtree/runtime/wide/targets.h>
@@ -18,6 +19,12 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
+#if HWY_TARGET == HWY_SCALAR
+Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
+                        PairVisitor visitor) {
+  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
+}
+#else
 // Vectors of three axes; what the fourth lane holds means nothing. Written and read as a whole, so
 // that no read waits for several writes.
 using Axes = hn::CappedTag<float, 4>;
@@ -45,13 +52,9 @@ struct PairPart {
 
 // Element `i` of the arrays of each axis.
 HWY_INLINE void gather(const float (&axes)[3][kWideChildren], std::uint32_t i, float* out) {
-#if HWY_TARGET == HWY_SCALAR
-  for (std::size_t k = 0; k < 4; ++k) out[k] = axes[std::min<std::size_t>(k, 2)][i];
-#else
   const Axes d;
   const auto xy = hn::OddEven(hn::Set(d, axes[1][i]), hn::Set(d, axes[0][i]));
   hn::Store(hn::ConcatUpperLower(d, hn::Set(d, axes[2][i]), xy), d, out);
-#endif
 }
 
 HWY_INLINE void set_box(const ChildBoxes& boxes, std::uint32_t i, PairPart& part) {
@@ -116,16 +119,14 @@ class WidePairWalk {
       second_boxes.low[k][0] = second_root.low[k];
       second_boxes.high[k][0] = second_root.high[k];
     }
-    PairPart second;
-    set_box(second_boxes, 0, second);
-    second.number = 0;
-    second.is_leaf = false;
-    Centered second_image;
-    set_image(second.centered, filter_.to_first, second_image);
+    set_box(second_boxes, 0, second_root_);
+    second_root_.number = 0;
+    second_root_.is_leaf = false;
+    set_image(second_root_.centered, filter_.to_first, second_root_image_);
     roots.links = {0, 0, 1, 1};
     roots.side = 0;
-    roots.other = &second;
-    roots.other_image = &second_image;
+    roots.other = &second_root_;
+    roots.other_image = &second_root_image_;
     Position at{0, 0};
     while (meet(at) && waiting_.pop(std::numeric_limits<float>::infinity(), at)) {
     }
@@ -248,6 +249,8 @@ class WidePairWalk {
   std::uint64_t unmet_;
   Errc error_ = Errc::kOk;
   Waiting<kDepths> waiting_;
+  PairPart second_root_;  // what the first one in open_ is compared with
+  Centered second_root_image_;
   PairChildren open_[kDepths];
 };
 
@@ -258,16 +261,13 @@ Result<Visit> walk(const Tree& first, const WideCodec<Node>& first_codec, const 
   return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, visitor)
       .run(root_box<float>(first), root_box<float>(second));
 }
-Result<Visit> pair_wide8(const Tree& first, const WideCodec<Wide8Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide8Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor) {
-  return walk(first, first_codec, second, second_codec, pose, visitor);
+Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
+                        PairVisitor visitor) {
+  return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
+    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, visitor);
+  });
 }
-Result<Visit> pair_wide4(const Tree& first, const WideCodec<Wide4Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide4Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor) {
-  return walk(first, first_codec, second, second_codec, pose, visitor);
-}
+#endif
 
 }  // namespace
 }  // namespace boxtree::HWY_NAMESPACE
@@ -277,30 +277,16 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(pair_wide8);
-HWY_EXPORT(pair_wide4);
-
-bool have_nodes(const Tree& first, const Tree& second) {
-  return first.has_nodes() && second.has_nodes();
-}
+HWY_EXPORT(walk_pair);
 
 }  // namespace
 
-Result<Visit> walk_pairs(const Tree& first, const WideCodec<Wide8Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide8Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor) {
-  if (!have_nodes(first, second)) {
-    return PairWalk(first, first_codec, second, second_codec, pose, visitor).run();
+Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
+                              PairVisitor visitor) {
+  if (first.has_nodes() && second.has_nodes()) {
+    return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, visitor);
   }
-  return HWY_DYNAMIC_DISPATCH(pair_wide8)(first, first_codec, second, second_codec, pose, visitor);
-}
-Result<Visit> walk_pairs(const Tree& first, const WideCodec<Wide4Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide4Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor) {
-  if (!have_nodes(first, second)) {
-    return PairWalk(first, first_codec, second, second_codec, pose, visitor).run();
-  }
-  return HWY_DYNAMIC_DISPATCH(pair_wide4)(first, first_codec, second, second_codec, pose, visitor);
+  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
 }
 
 }  // namespace boxtree

@@ -4,20 +4,23 @@
 
 #include <boxtree/format/codec_wide.h>
 #include <boxtree/runtime/query/pair_walk.h>
+#include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
+
+/// The walk by vectors. Precondition: both trees have the same wide codec.
+Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
+                              PairVisitor visitor);
 
 /// Visits the pairs of faces that touch. Errors: those of corrupt nodes and leaves.
 template <Codec C>
 Result<Visit> walk_pairs(const Tree& first, const C& first_codec, const Tree& second,
                          const C& second_codec, const RelativePose& pose, PairVisitor visitor) {
-  return PairWalk(first, first_codec, second, second_codec, pose, visitor).run();
+  if constexpr (kIsWalkedByVectors<C>) {
+    return walk_wide_pairs(first, second, pose, visitor);
+  } else {
+    return PairWalk(first, first_codec, second, second_codec, pose, visitor).run();
+  }
 }
-Result<Visit> walk_pairs(const Tree& first, const WideCodec<Wide8Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide8Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor);
-Result<Visit> walk_pairs(const Tree& first, const WideCodec<Wide4Node>& first_codec,
-                         const Tree& second, const WideCodec<Wide4Node>& second_codec,
-                         const RelativePose& pose, PairVisitor visitor);
 
 }  // namespace boxtree

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The closest point over the wide codecs.
+#include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/point_query.h>
 #include <boxtree/runtime/wide/point_filter.h>
 #include <boxtree/runtime/wide/targets.h>
 #include <boxtree/runtime/wide/walks.h>
@@ -18,6 +20,11 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_point(const Tree& tree, PointQuery& query) {
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+#else
 // The children of an open node.
 struct PointChildren {
   ChildBoxes boxes;
@@ -141,12 +148,10 @@ Errc walk(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query) {
   if (query.key(root) > query.bound()) return Errc::kOk;
   return PointWalk<Node>(tree, codec, query).run(root);
 }
-Errc point_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec, PointQuery& query) {
-  return walk(tree, codec, query);
+Errc walk_point(const Tree& tree, PointQuery& query) {
+  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
 }
-Errc point_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec, PointQuery& query) {
-  return walk(tree, codec, query);
-}
+#endif
 
 }  // namespace
 }  // namespace boxtree::HWY_NAMESPACE
@@ -156,22 +161,15 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(point_wide8);
-HWY_EXPORT(point_wide4);
-
-bool is_for_vectors(const Tree& tree, const PointQuery& query) {
-  return tree.has_nodes() && PointFilter::is_near(tree, query.point);
-}
+HWY_EXPORT(walk_point);
 
 }  // namespace
 
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, PointQuery& query) {
-  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
-  return HWY_DYNAMIC_DISPATCH(point_wide8)(tree, codec, query);
-}
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, PointQuery& query) {
-  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
-  return HWY_DYNAMIC_DISPATCH(point_wide4)(tree, codec, query);
+Errc walk_wide(const Tree& tree, PointQuery& query) {
+  if (tree.has_nodes() && PointFilter::is_near(tree, query.point)) {
+    return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
+  }
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 
 }  // namespace boxtree

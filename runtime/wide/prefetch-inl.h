@@ -25,7 +25,9 @@ class Prefetch {
         corners_(tree.leaves().mesh().corners),
         clusters_(tree.leaves().grid().clusters) {
     const MeshArrays& mesh = tree.leaves().mesh();
-    if (corners_ != nullptr) face_bytes_ = mesh.corners_per_face * mesh.corner_bytes;
+    if (corners_ != nullptr) {
+      face_bytes_ = std::size_t{mesh.corners_per_face} * mesh.corner_bytes;
+    }
   }
 
   /// Children of a node that are nodes or leaves: bit i is child i. Precondition: the node is

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Rays through the wide codecs.
+#include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/ray_query.h>
 #include <boxtree/runtime/wide/ray_filter.h>
 #include <boxtree/runtime/wide/targets.h>
 #include <boxtree/runtime/wide/walks.h>
@@ -18,6 +20,11 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 namespace {
 
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_ray(const Tree& tree, RayQuery& query) {
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+#else
 // The children of an open node as the ray sees them: the parameters of their planes. They follow
 // from those of their parent as its planes do, so no box is ever decoded.
 struct RayChildren {
@@ -178,7 +185,7 @@ class RayWalk {
 };
 
 template <class Node>
-Errc walk_ray(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
+Errc walk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
   const Box<float> root = root_box<float>(tree);
   const SlabInterval at = query.slab.intersect(root);
   if (!(at.enter <= at.leave && at.leave >= query.t_min && at.enter <= query.t_max)) {
@@ -187,12 +194,10 @@ Errc walk_ray(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
   return RayWalk<Node>(tree, codec, query, RayFilter(query, at.enter)).run(root);
 }
 
-Errc walk_ray_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
-  return walk_ray(tree, codec, query);
+Errc walk_ray(const Tree& tree, RayQuery& query) {
+  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
 }
-Errc walk_ray_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
-  return walk_ray(tree, codec, query);
-}
+#endif
 
 }  // namespace
 }  // namespace boxtree::HWY_NAMESPACE
@@ -202,22 +207,14 @@ HWY_AFTER_NAMESPACE();
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_ray_wide8);
-HWY_EXPORT(walk_ray_wide4);
-
-bool is_for_vectors(const Tree& tree, const RayQuery& query) {
-  return tree.has_nodes() && RayFilter::is_near(query);
-}
+HWY_EXPORT(walk_ray);
 
 }  // namespace
 
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query) {
-  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
-  return HWY_DYNAMIC_DISPATCH(walk_ray_wide8)(tree, codec, query);
-}
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query) {
-  if (!is_for_vectors(tree, query)) return traverse_nearest(tree, codec, query);
-  return HWY_DYNAMIC_DISPATCH(walk_ray_wide4)(tree, codec, query);
+Errc walk_wide(const Tree& tree, RayQuery& query) {
+  if (tree.has_nodes() && RayFilter::is_near(query))
+    return HWY_DYNAMIC_DISPATCH(walk_ray)(tree, query);
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 
 }  // namespace boxtree

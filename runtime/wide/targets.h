@@ -2,11 +2,14 @@
 // The instruction sets that the walks of the wide codecs are compiled for, one of which is chosen
 // when the program runs. Included before any header of Highway, in each file with such a walk.
 //
-// On x86-64: plain code for every machine (Highway's EMU128), SSE4, AVX2 and AVX-512. Eight
+// On x86-64: SSE4, AVX2 and AVX-512, unless BOXTREE_INSTRUCTION_SETS of CMake says otherwise. Eight
 // children are two SSE or one AVX register wide; AVX-512 gives masks and 32 registers. What lies
-// between two of these gains nothing. Scalable vectors (SVE, RVV) have no fixed size: arm64 uses
-// NEON.
+// between two of these gains nothing. On a machine that has none of them the walks of every codec
+// are taken. Scalable vectors (SVE, RVV) have no fixed size: arm64 uses NEON.
 #pragma once
 
-#define HWY_DISABLED_TARGETS \
-  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include <boxtree/configuration.h>
+
+#define HWY_DISABLED_TARGETS                                                             \
+  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | \
+   BOXTREE_LEFT_OUT_TARGETS)

@@ -13,6 +13,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR
 
 /// Squared distance from the end of `w` to the segment from the origin to `edge`, measured to a
 /// point of the segment: never too small but for rounding. An edge without length is its end.
@@ -80,6 +81,7 @@ HWY_INLINE FloatVector triangle_distance(const PointFilter& point, const LeafFlo
   return hn::Max(hn::NegMulAdd(hn::Set(d, 32.0f), spread, distance), hn::Zero(d));
 }
 
+#endif
 }  // namespace boxtree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 #endif

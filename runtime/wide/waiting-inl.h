@@ -59,7 +59,7 @@ class Waiting {
   /// Takes the next child whose key is not above `bound`; keys are compared less their lowest bits,
   /// which makes them smaller at most. False when there is none.
   HWY_INLINE bool pop(float bound, Child& child) {
-    std::int32_t word;
+    std::int32_t word = 0;
     do {
       if (size_ == 0) return false;
       word = word_[--size_];

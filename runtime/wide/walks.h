@@ -1,37 +1,74 @@
 // SPDX-License-Identifier: MIT
 // How a query walks a tree: any codec by the templates of query/traversal.h, the wide ones by walks
-// of their own, eight children at a time. Overloads choose; both give the same answers.
+// of their own, eight children at a time, where there are vectors. Both give the same answers.
 #pragma once
 
 #include <boxtree/format/codec_wide.h>
+#include <boxtree/runtime/query/erased_codec.h>
 #include <boxtree/runtime/query/face_visit.h>
-#include <boxtree/runtime/query/point_query.h>
-#include <boxtree/runtime/query/ray_query.h>
-#include <boxtree/runtime/query/shape_query.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
+
+struct BoxQuery;
+struct PlacedBoxQuery;
+struct PointQuery;
+struct RayQuery;
+struct SphereQuery;
+
+/// Whether trees of a codec are walked by vectors.
+template <Codec C>
+inline constexpr bool kIsWalkedByVectors = false;
+template <class Node>
+inline constexpr bool kIsWalkedByVectors<WideCodec<Node>> = kWalksByVectors;
+
+/// Calls `visitor` with the codec of a tree, one of the wide ones.
+template <class Answer, class Visitor>
+Answer with_wide_codec(const Tree& tree, const Visitor& visitor) {
+  return with_codec(tree, [&]<class C>([[maybe_unused]] const C& codec) -> Answer {
+    if constexpr (kIsWalkedByVectors<C>) {
+      return visitor(codec);
+    } else {
+      return Errc::kInternal;
+    }
+  });
+}
+
+/// The walks by vectors, one source a query. Precondition: the codec of `tree` is a wide one.
+Errc walk_wide(const Tree& tree, RayQuery& query);
+Errc walk_wide(const Tree& tree, PointQuery& query);
+Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk);
+Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk);
+Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk);
 
 /// Visits what can matter to the query, from near to far. Returns kNodeCorrupt or kDepthExceeded
 /// for corrupt nodes; the query holds the errors of leaves.
 template <Codec C, class Query>
 Errc walk_nearest(const Tree& tree, const C& codec, Query& query) {
-  return traverse_nearest(tree, codec, query);
+  if constexpr (kIsWalkedByVectors<C>) {
+    return walk_wide(tree, query);
+  } else {
+    return traverse_nearest(tree, codec, query);
+  }
 }
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, RayQuery& query);
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, RayQuery& query);
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide8Node>& codec, PointQuery& query);
-Errc walk_nearest(const Tree& tree, const WideCodec<Wide4Node>& codec, PointQuery& query);
 
 /// Visits the faces that touch the shape; errors likewise.
 template <Codec C, class Shape>
 Errc walk_overlap(const Tree& tree, const C& codec, FaceWalk<Shape>& walk) {
-  return traverse_overlap(tree, codec, walk);
+  if constexpr (kIsWalkedByVectors<C>) {
+    return walk_wide(tree, walk);
+  } else {
+    return traverse_overlap(tree, codec, walk);
+  }
 }
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& walk);
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& walk);
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<SphereQuery>& walk);
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<SphereQuery>& walk);
+
+/// How a visit ended.
+template <class Shape>
+Result<Visit> outcome_of(Errc walked, const FaceWalk<Shape>& walk) {
+  if (walked != Errc::kOk) return walked;
+  if (walk.error != Errc::kOk) return walk.error;
+  return walk.stopped ? Visit::kStopped : Visit::kComplete;
+}
 
 /// Visits each face once of which some triangle touches the shape.
 template <class Shape>
@@ -39,9 +76,17 @@ Result<Visit> visit_faces(const Tree& tree, const Shape& shape, FaceVisitor visi
   FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_overlap(tree, codec, walk); });
-  if (walked != Errc::kOk) return walked;
-  if (walk.error != Errc::kOk) return walk.error;
-  return walk.stopped ? Visit::kStopped : Visit::kComplete;
+  return outcome_of(walked, walk);
+}
+
+/// The same without a walk of its own for each codec: by vectors, and one walk for all others.
+template <class Shape>
+Result<Visit> visit_faces_compactly(const Tree& tree, const Shape& shape, FaceVisitor visitor) {
+  FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
+  if constexpr (kWalksByVectors) {
+    if (is_wide(tree.codec())) return outcome_of(walk_wide(tree, walk), walk);
+  }
+  return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, walk), walk);
 }
 
 }  // namespace boxtree

@@ -1,100 +1,28 @@
 // SPDX-License-Identifier: MIT
-// Boxes and spheres over the wide codecs. What is inside the shape as a whole is reported without
-// another test: neither its boxes nor its triangles are read.
-#include <boxtree/runtime/wide/point_filter.h>
-#include <boxtree/runtime/wide/targets.h>
-#include <boxtree/runtime/wide/walks.h>
+// The faces that touch a shape, over the wide codecs. What is inside the shape as a whole is
+// reported without another test: neither its boxes nor its triangles are read.
+#if defined(BOXTREE_RUNTIME_WIDE_OVERLAP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WIDE_OVERLAP_INL_H
+#undef BOXTREE_RUNTIME_WIDE_OVERLAP_INL_H
+#else
+#define BOXTREE_RUNTIME_WIDE_OVERLAP_INL_H
+#endif
 
-#undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "boxtree/runtime/wide/overlap.cpp"
-#include <hwy/foreach_target.h>
-// Highway's headers must come after foreach_target.h.
-#include <hwy/highway.h>
-
-#include <boxtree/runtime/wide/distance-inl.h>
+#include <boxtree/runtime/query/face_visit.h>
 #include <boxtree/runtime/wide/leaf-inl.h>
 #include <boxtree/runtime/wide/prefetch-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
-namespace {
+#if HWY_TARGET != HWY_SCALAR
 
-// Both filters answer for boxes, decoded or bounds of triangles: bit i of `touched` is clear only
+/// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
+/// only
 // when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the shape
-// beyond doubt.
+/// beyond doubt.
 struct Verdict {
   std::uint32_t touched;
   std::uint32_t inside;
-};
-
-class BoxFilter {
- public:
-  // Decoded boxes are exact; triangles were rounded to float.
-  BoxFilter(const Tree& tree, const BoxQuery& query) {
-    const double error = reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
-                         double{std::numeric_limits<float>::min()};
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      low_[k] = float_below(query.low[axis] - error);
-      high_[k] = float_above(query.high[axis] + error);
-      inner_low_[k] = float_above(query.low[axis] + error);
-      inner_high_[k] = float_below(query.high[axis] - error);
-    }
-  }
-
-  HWY_INLINE Verdict judge(const VectorBox& box) const {
-    const Floats d;
-    auto touched =
-        hn::And(hn::Le(box.low[0], hn::Set(d, high_[0])), hn::Ge(box.high[0], hn::Set(d, low_[0])));
-    for (std::size_t k = 1; k < 3; ++k) {
-      touched = hn::And(touched, hn::And(hn::Le(box.low[k], hn::Set(d, high_[k])),
-                                         hn::Ge(box.high[k], hn::Set(d, low_[k]))));
-    }
-    return {bits_of(touched), bits_of(contained(box.low, box.high))};
-  }
-
-  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    return bits_of(contained(point, point));
-  }
-
- private:
-  HWY_INLINE hn::Mask<Floats> contained(const FloatVector (&low)[3],
-                                        const FloatVector (&high)[3]) const {
-    const Floats d;
-    auto inside = hn::And(hn::Ge(low[0], hn::Set(d, inner_low_[0])),
-                          hn::Le(high[0], hn::Set(d, inner_high_[0])));
-    for (std::size_t k = 1; k < 3; ++k) {
-      inside = hn::And(inside, hn::And(hn::Ge(low[k], hn::Set(d, inner_low_[k])),
-                                       hn::Le(high[k], hn::Set(d, inner_high_[k]))));
-    }
-    return inside;
-  }
-
-  std::array<float, 3> low_, high_;
-  std::array<float, 3> inner_low_, inner_high_;
-};
-
-class SphereFilter {
- public:
-  SphereFilter(const Tree& tree, const SphereQuery& query)
-      : center_(tree, query.center),
-        above_(PointFilter::above(query.squared_radius)),
-        below_(PointFilter::below(query.squared_radius)) {}
-
-  HWY_INLINE Verdict judge(const VectorBox& box) const {
-    const Floats d;
-    return {bits_of(hn::Le(nearest_squared(center_, box), hn::Set(d, above_))),
-            bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
-  }
-
-  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    const VectorBox box{{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
-    return bits_of(hn::Le(farthest_squared(center_, box), hn::Set(Floats(), below_)));
-  }
-
- private:
-  PointFilter center_;
-  float above_, below_;  // squared radius
 };
 
 template <class Node, class Shape, class Filter>
@@ -242,58 +170,7 @@ Errc walk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& faces
   return OverlapWalk<Node, Shape, Filter>(tree, codec, faces).run(root);
 }
 
-Errc box_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& faces) {
-  return walk<BoxFilter>(tree, codec, faces);
-}
-Errc box_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& faces) {
-  return walk<BoxFilter>(tree, codec, faces);
-}
-Errc sphere_wide8(const Tree& tree, const WideCodec<Wide8Node>& codec,
-                  FaceWalk<SphereQuery>& faces) {
-  return walk<SphereFilter>(tree, codec, faces);
-}
-Errc sphere_wide4(const Tree& tree, const WideCodec<Wide4Node>& codec,
-                  FaceWalk<SphereQuery>& faces) {
-  return walk<SphereFilter>(tree, codec, faces);
-}
-
-}  // namespace
+#endif
 }  // namespace boxtree::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
-
-#if HWY_ONCE
-namespace boxtree {
-namespace {
-
-HWY_EXPORT(box_wide8);
-HWY_EXPORT(box_wide4);
-HWY_EXPORT(sphere_wide8);
-HWY_EXPORT(sphere_wide4);
-
-bool is_for_vectors(const Tree& tree, const SphereQuery& query) {
-  return tree.has_nodes() && PointFilter::is_near(tree, query.center);
-}
-
-}  // namespace
-
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec, FaceWalk<BoxQuery>& walk) {
-  if (!tree.has_nodes()) return traverse_overlap(tree, codec, walk);
-  return HWY_DYNAMIC_DISPATCH(box_wide8)(tree, codec, walk);
-}
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec, FaceWalk<BoxQuery>& walk) {
-  if (!tree.has_nodes()) return traverse_overlap(tree, codec, walk);
-  return HWY_DYNAMIC_DISPATCH(box_wide4)(tree, codec, walk);
-}
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide8Node>& codec,
-                  FaceWalk<SphereQuery>& walk) {
-  if (!is_for_vectors(tree, walk.shape)) return traverse_overlap(tree, codec, walk);
-  return HWY_DYNAMIC_DISPATCH(sphere_wide8)(tree, codec, walk);
-}
-Errc walk_overlap(const Tree& tree, const WideCodec<Wide4Node>& codec,
-                  FaceWalk<SphereQuery>& walk) {
-  if (!is_for_vectors(tree, walk.shape)) return traverse_overlap(tree, codec, walk);
-  return HWY_DYNAMIC_DISPATCH(sphere_wide4)(tree, codec, walk);
-}
-
-}  // namespace boxtree
 #endif

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+// Triangles of two leaves, compared where their bounds do not tell that they are too far.
+#include <cmath>
+#include <cstddef>
+
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/nearest_triangles.h>
+#include <boxtree/runtime/query/traversal.h>
+
+namespace boxtree {
+
+void NearestTriangles::set_enough() noexcept {
+  const double enough = approximation_.enough(pair_.upper);
+  // The neighbour above: what is exactly at the maximal distance counts.
+  const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
+                                     std::numeric_limits<double>::infinity());
+  enough_ = std::min(enough * enough, most);
+  best_ = std::min(pair_.upper * pair_.upper, most);
+}
+
+// Those whose bounds are as far as the best are left alone. Not those that are near enough to it:
+// then what is found in a leaf would depend on the error allowed, and a walk that may err more
+// could miss what ends another one early.
+Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
+  if (const Errc error = read(first, second); error != Errc::kOk) return error;
+  const GapWeights& gaps = metric_.in_first();
+  set_ends();
+  for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+    const double to_leaf = gaps.squared_distance(first_bounds_[i], second_bounds_);
+    if (!(to_leaf < best_)) {
+      leave(to_leaf);
+      continue;
+    }
+    const Triangle triangle = first_batch_.triangle(i);
+    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+      const double key = std::max(direction_.squared_distance(first_end_[i], second_end_[j]),
+                                  gaps.squared_distance(first_bounds_[i], moved_bounds_[j]));
+      if (!(key < best_)) {
+        leave(key);
+        continue;
+      }
+      compare(triangle, i, moved_[j], j);
+    }
+  }
+  return Errc::kOk;
+}
+
+// Where the triangles of the leaves at hand end along the direction.
+void NearestTriangles::set_ends() noexcept {
+  for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+    first_end_[i] = direction_.end_of_first(first_batch_.triangle(i));
+  }
+  for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+    second_end_[j] = direction_.end_of_moved(moved_[j]);
+  }
+}
+
+// Corners are taken as differences from one of them, so that rounding is that of the triangles'
+// size and distance and not of their place.
+void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangle& q,
+                               std::uint32_t j) noexcept {
+  const Eigen::Vector3d& origin = p.corner[0];
+  Triangle p_world, q_world;
+  double reach = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const Eigen::Vector3d to_p = p.corner[c] - origin;
+    const Eigen::Vector3d to_q = q.corner[c] - origin;
+    reach = std::max({reach, to_p.cwiseAbs().maxCoeff(), to_q.cwiseAbs().maxCoeff()});
+    p_world.corner[c] = metric_.to_world(to_p);
+    q_world.corner[c] = metric_.to_world(to_q);
+  }
+  TriangleDistance found = triangle_distance(p_world, q_world);
+  // Both triangles may lie off by the error of their corners.
+  const double error = 2 * metric_.image_error() * reach;
+  found.lower = std::max(0.0, found.lower - error);
+  found.upper += error;
+  if (!(found.lower > 0) && triangles_intersect(p, q)) found.lower = found.upper = 0;
+  pair_.lower = std::min(pair_.lower, found.lower);
+  if (!(found.upper < pair_.upper)) return;
+  pair_.upper = found.upper;
+  pair_.faces = {face_ref(first_, first_batch_.face[i]), face_ref(second_, second_batch_.face[j])};
+  pair_.origin = origin;
+  pair_.first = found.first;
+  pair_.second = found.second;
+  set_enough();
+  face(found.second - found.first);
+  set_ends();
+}
+
+// Leaves are often met several times in a row; what was read of the last ones stays.
+Errc NearestTriangles::read(NodeRef first, NodeRef second) noexcept {
+  if (!(first == first_read_)) {
+    first_read_ = kNone;
+    const Errc error = first_.leaves().read(first.first, first.second, first_batch_);
+    if (error != Errc::kOk) return error;
+    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
+      first_bounds_[i] = bounds_of(first_batch_.triangle(i));
+    }
+    first_read_ = first;
+  }
+  if (second == second_read_) return Errc::kOk;
+  second_read_ = kNone;
+  const Errc error = second_.leaves().read(second.first, second.second, second_batch_);
+  if (error != Errc::kOk) return error;
+  second_bounds_ = empty_box<double>();
+  for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
+    const Triangle triangle = second_batch_.triangle(j);
+    for (std::size_t c = 0; c < 3; ++c) {
+      moved_[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
+      if (!is_within_reach(moved_[j].corner[c])) return Errc::kVertexNotFinite;
+    }
+    moved_bounds_[j] = bounds_of(moved_[j]);
+    boxtree::expand(second_bounds_, moved_bounds_[j]);
+  }
+  second_read_ = second;
+  return Errc::kOk;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: MIT
+// The nearest triangles of two trees so far: what distance walks of all codecs do alike, compiled
+// once.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include <boxtree/format/box.h>
+#include <boxtree/format/children.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/runtime/query/approximation.h>
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/world_metric.h>
+
+namespace boxtree {
+
+/// The nearest pair of triangles so far, in the metric's units.
+struct NearestPair {
+  double lower = std::numeric_limits<double>::infinity();  // of all triangles compared
+  double upper = std::numeric_limits<double>::infinity();
+  FacePair faces{};
+  Eigen::Vector3d origin;  // first tree's space; the points are differences from here
+  Eigen::Vector3d first;
+  Eigen::Vector3d second;
+};
+
+/// Compares the triangles of leaves and knows what need not be looked at any more. Everything
+/// passed by reference must outlive it.
+class NearestTriangles {
+ public:
+  /// `approximation` is in the metric's units.
+  NearestTriangles(const Tree& first, const Tree& second, const RelativePose& pose,
+                   const WorldMetric& metric, const Approximation& approximation) noexcept
+      : first_(first),
+        second_(second),
+        pose_(pose),
+        metric_(metric),
+        approximation_(approximation) {
+    set_enough();
+  }
+
+  /// The triangles of two leaves. Errors: those of corrupt leaves.
+  [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept;
+
+  /// From now on boxes are compared along this vector of the world, too.
+  void face(const Eigen::Vector3d& along) noexcept { direction_ = metric_.direction(along, pose_); }
+  /// Between the nearest points so far; first, what face() was told.
+  [[nodiscard]] const Direction& direction() const noexcept { return direction_; }
+
+  /// Squared: what is as far as this need not be looked at; it is near enough to the best, or too
+  /// far.
+  [[nodiscard]] double enough() const noexcept { return enough_; }
+  /// Takes note of what is left alone, by the lower bound of its squared distance.
+  void leave(double key) noexcept { left_ = std::min(left_, key); }
+  /// The least key left alone.
+  [[nodiscard]] double left() const noexcept { return left_; }
+
+  [[nodiscard]] bool has_any() const noexcept {
+    return pair_.upper != std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] const NearestPair& pair() const noexcept { return pair_; }
+
+ private:
+  [[nodiscard]] Errc read(NodeRef first, NodeRef second) noexcept;
+  void compare(const Triangle& p, std::uint32_t i, const Triangle& q, std::uint32_t j) noexcept;
+  void set_enough() noexcept;
+  void set_ends() noexcept;
+
+  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
+
+  const Tree& first_;
+  const Tree& second_;
+  const RelativePose& pose_;
+  const WorldMetric& metric_;
+  const Approximation& approximation_;
+  double enough_ = 0;
+  double best_ = 0;  // what enough_ would be were no error allowed
+  double left_ = std::numeric_limits<double>::infinity();
+  NearestPair pair_;
+  Direction direction_;
+  NodeRef first_read_ = kNone;  // the leaf that first_batch_ holds
+  NodeRef second_read_ = kNone;
+  TriangleBatch first_batch_;
+  TriangleBatch second_batch_;
+  std::array<Box<double>, kMaxLeafTriangles> first_bounds_;
+  std::array<Triangle, kMaxLeafTriangles> moved_;  // the second leaf in the first tree's space
+  std::array<Box<double>, kMaxLeafTriangles> moved_bounds_;
+  Box<double> second_bounds_;
+  std::array<double, kMaxLeafTriangles> first_end_;
+  std::array<double, kMaxLeafTriangles> second_end_;
+};
+
+}  // namespace boxtree

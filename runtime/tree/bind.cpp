@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Binding: the checks that let queries trust counts and section sizes, and nothing else.
+#include <cmath>
+#include <string>
+
+#include <boxtree/runtime/tree/tree.h>
+
+namespace boxtree {
+namespace {
+
+// The bytes of a section if there are `count * element`, all that its record allows.
+Result<const std::byte*> sized(Bytes section, SectionKind kind, const std::string& place,
+                               std::uint64_t count, std::uint64_t element) {
+  const std::string where = place + "section " + std::string(section_name(kind));
+  if (section.empty() && count * element > 0) {
+    return Error{Errc::kSectionMissing, where + " is absent"};
+  }
+  if (section.size() != count * element) {
+    return Error{Errc::kSectionSize,
+                 where + ": " + section_size_error(section.size(), count * element).detail};
+  }
+  return section.data();
+}
+
+}  // namespace
+
+Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions& options) {
+  if (index >= file.tree_count()) {
+    return Error{Errc::kTreeIndex,
+                 "tree " + std::to_string(index) + " of " + std::to_string(file.tree_count())};
+  }
+  return bind(
+      {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
+       file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
+       file.section(SectionKind::kFaceIds, index)},
+      index, options);
+}
+
+Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options) {
+  Tree tree;
+  tree.record_ = parts.record;
+  if (Status status = check_tree_record(tree.record_, index); !status) return status.error();
+  tree.frame_ = Frame(tree.record_);
+  tree.name_ = parts.name;
+  const std::string place = "tree " + std::to_string(index) + ": ";
+  if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
+  const bool external = tree.record_.geometry == GeometryId::kExternal;
+  if (Status status = external ? tree.bind_external_geometry(place, options)
+                               : tree.bind_stored_geometry(parts, place);
+      !status) {
+    return status.error();
+  }
+  if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
+  return tree;
+}
+
+Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
+  if (record_.root != RootKind::kSubtree) return {};
+  const std::string where = place + "section nodes";
+  if (parts.nodes.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
+  Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
+  if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
+  codec_ = *codec;
+  return {};
+}
+
+Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
+  if (record_.geometry == GeometryId::kGrid) return bind_grid(parts, place);
+  const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
+  const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
+  const auto positions =
+      sized(parts.vertices, SectionKind::kVertices, place, record_.vertex_count, stride);
+  if (!positions) return positions.error();
+  const auto corners = sized(parts.corners, SectionKind::kCorners, place, record_.face_count,
+                             std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
+  if (!corners) return corners.error();
+  leaves_ = LeafReader({*positions, stride, positions_f64, record_.vertex_count, *corners,
+                        record_.corner_bytes, record_.corners_per_face, record_.face_count},
+                       frame_);
+  return {};
+}
+
+Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
+  const auto clusters = sized(parts.corners, SectionKind::kCorners, place,
+                              clusters_of(record_.face_count), sizeof(ClusterRecord));
+  if (!clusters) return clusters.error();
+  if (record_.face_count > 0 && parts.vertices.empty()) {
+    return Error{Errc::kSectionMissing, place + "section vertices is absent"};
+  }
+  const GridView grid{*clusters, parts.vertices, record_.face_count, record_.corners_per_face};
+  leaves_ =
+      LeafReader(grid, frame_, std::ldexp(1.0, record_.grid_exponent - record_.scale_exponent));
+  return {};
+}
+
+Status Tree::bind_external_geometry(const std::string& place, const BindOptions& options) {
+  if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
+  const MeshArrays& mesh = *options.mesh;
+  const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
+  if (mesh.face_count != record_.face_count || mesh.positions_f64 != positions_f64) {
+    return Error{Errc::kExternalMeshMismatch,
+                 place + "expected " + std::to_string(record_.face_count) + " faces of " +
+                     (positions_f64 ? "f64" : "f32") + " positions, given " +
+                     std::to_string(mesh.face_count) + " of " +
+                     (mesh.positions_f64 ? "f64" : "f32")};
+  }
+  if (options.verify_mesh) {
+    const Result<std::uint64_t> hash = geometry_hash(mesh);
+    if (!hash) return hash.error();
+    if (*hash != record_.geometry_hash) {
+      return Error{Errc::kExternalMeshMismatch, place + "the mesh's content differs"};
+    }
+  }
+  leaves_ = LeafReader(mesh, frame_);
+  return {};
+}
+
+Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
+                           const BindOptions& options) {
+  const auto ids =
+      sized(parts.face_ids, SectionKind::kFaceIds, place,
+            record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
+  if (!ids) return ids.error();
+  if (record_.face_id_bytes != 0) face_ids_ = *ids;
+  if (record_.geometry == GeometryId::kExternal && face_ids_ != nullptr) {
+    leaves_.set_order(face_ids_, record_.face_id_bytes);
+  }
+  if (options.require_face_ids && !has_face_ids() && !empty()) {
+    return Error{Errc::kPartLeftOut, place + "face ids were left out when it was cooked"};
+  }
+  return {};
+}
+
+}  // namespace boxtree

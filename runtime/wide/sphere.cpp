@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Spheres over the wide codecs.
+#include <boxtree/runtime/query/erased_codec.h>
+#include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/wide/point_filter.h>
+#include <boxtree/runtime/wide/targets.h>
+#include <boxtree/runtime/wide/walks.h>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "boxtree/runtime/wide/sphere.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include <boxtree/runtime/wide/distance-inl.h>
+#include <boxtree/runtime/wide/overlap-inl.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_sphere(const Tree& tree, FaceWalk<SphereQuery>& faces) {
+  return traverse_overlap(tree, ErasedCodec{&tree}, faces);
+}
+#else
+class SphereFilter {
+ public:
+  SphereFilter(const Tree& tree, const SphereQuery& query)
+      : center_(tree, query.center),
+        above_(PointFilter::above(query.squared_radius)),
+        below_(PointFilter::below(query.certain_squared_radius)) {}
+
+  HWY_INLINE Verdict judge(const VectorBox& box) const {
+    const Floats d;
+    return {bits_of(hn::Le(nearest_squared(center_, box), hn::Set(d, above_))),
+            bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
+  }
+
+  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
+    const VectorBox box{{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
+    return bits_of(hn::Le(farthest_squared(center_, box), hn::Set(Floats(), below_)));
+  }
+
+ private:
+  PointFilter center_;
+  float above_, below_;  // squared radius
+};
+
+Errc walk_sphere(const Tree& tree, FaceWalk<SphereQuery>& faces) {
+  return with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return walk<SphereFilter>(tree, codec, faces); });
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_sphere);
+
+}  // namespace
+
+Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk) {
+  if (tree.has_nodes() && PointFilter::is_near(tree, walk.shape.center)) {
+    return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
+  }
+  return traverse_overlap(tree, ErasedCodec{&tree}, walk);
+}
+
+}  // namespace boxtree
+#endif

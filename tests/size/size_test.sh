@@ -1,0 +1,98 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Sizes of the runtime in linked and stripped programs of few lines, code and data, less those of an
+# empty program: whole and small. The small one reads wide4 and answers rays, holds no other walk
+# and no decompressor, and says so of a file that it cannot read.
+#   size_test.sh SOURCE BOXTREE WHOLE EMPTY     WHOLE: programs/whole.cpp of the build under test
+set -euo pipefail
+source=$1 boxtree=$2 whole=$3 empty=$4
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "size: $*"; exit 1; }
+
+# bytes PROGRAM: code and data of it once stripped.
+bytes() { strip -o "$work/stripped" "$1" && size "$work/stripped" | awk 'NR == 2 {print $4}'; }
+less=$(bytes "$empty")
+
+# build NAME OPTION...: a program on a runtime of its own.
+build() {
+  local name=$1
+  shift
+  cmake -S "$source/tests/size/programs" -B "$work/$name" -G Ninja -DBOXTREE_BUILD_COOKER=OFF "$@" \
+    >"$work/log" 2>&1 && cmake --build "$work/$name" -j2 >>"$work/log" 2>&1
+}
+# built NAME OPTION...: likewise; the test fails if it cannot be.
+built() { build "$@" || { tail -30 "$work/log"; fail "$1 does not build"; }; }
+# smaller NAME PROGRAM LIMIT: reports a size and holds it to a limit, both in bytes.
+smaller() {
+  local got=$(($(bytes "$2") - less))
+  echo "$1: $got bytes of code and data"
+  [ "$got" -lt "$3" ] || fail "$1: more than the $3 bytes that are allowed"
+}
+
+ray_only=(-DPROGRAM=ray -DBOXTREE_CODECS=wide4 -DBOXTREE_QUERIES=ray -DBOXTREE_BLOB=OFF)
+built small -DCMAKE_BUILD_TYPE=MinSizeRel -DBOXTREE_SIMD=OFF "${ray_only[@]}"
+built small-fast -DCMAKE_BUILD_TYPE=Release "${ray_only[@]}"
+built whole-small -DCMAKE_BUILD_TYPE=MinSizeRel -DPROGRAM=whole
+smaller 'whole runtime' "$whole" $((860 * 1024))
+smaller 'whole runtime, MinSizeRel' "$work/whole-small/program" $((400 * 1024))
+smaller 'rays of wide4' "$work/small-fast/program" $((120 * 1024))
+smaller 'rays of wide4, MinSizeRel without vectors' "$work/small/program" $((60 * 1024))
+
+# What was left out is in none of the small programs, and the same list finds it in the whole one.
+left_out='PairWalk|DistanceWalk|walk_wide_pairs|triangles_intersect|triangle_distance|PointQuery|BoxQuery|SphereQuery|PackedCodec|PlainCodec|Wide8Node|lzma_|ZSTD_|decompress'
+for name in small small-fast; do
+  nm -C "$work/$name/program" >"$work/symbols"
+  grep -E 'closest_hit' "$work/symbols" >/dev/null || fail "$name: no symbols to look at"
+  if grep -E "$left_out" "$work/symbols"; then fail "$name: links what it does not need"; fi
+  ldd "$work/$name/program" >"$work/libraries"
+  if grep -E 'lzma|zstd' "$work/libraries"; then fail "$name: needs a decompressor"; fi
+done
+nm -C "$whole" >"$work/symbols"
+IFS='|' read -ra names <<<"$left_out"
+for name in "${names[@]}"; do
+  grep -q "$name" "$work/symbols" || fail "the whole runtime has no symbol $name: the list is stale"
+done
+
+# Answers: a sheet at z = 1 whose second triangle (face 1) lies under the ray.
+cat >"$work/square.obj" <<'OBJ'
+v -10 -10 1
+v 10 -10 1
+v 10 8 1
+v -10 12 1
+f 1 2 3
+f 1 3 4
+OBJ
+for k in $(seq 0 40); do
+  printf 'v %d 30 0\nv %d 30 0\nv %d 31 0\nf -3 -2 -1\n' "$k" $((k + 1)) "$k"
+done >>"$work/square.obj"
+for codec in wide4 packed-f16; do
+  "$boxtree" cook "$work/square.obj" -o "$work/$codec.bxt" --codec "$codec" -q
+done
+"$boxtree" cook "$work/square.obj" -o "$work/grid.bxt" --codec wide4 --grid-bits 20 -q
+for name in small small-fast; do
+  for file in wide4 grid; do
+    said=$("$work/$name/program" "$work/$file.bxt") || fail "$name: $file: $said"
+    [ "$said" = 't 9, face 1' ] || fail "$name: $file: wrong answer '$said'"
+  done
+  said=$("$work/$name/program" "$work/packed-f16.bxt") && fail "$name: answered of another codec"
+  case $said in
+    *'codec packed-f16 was left out of this build, which has wide4'*) ;;
+    *) fail "$name: unclear: '$said'" ;;
+  esac
+done
+"$boxtree" cook "$work/square.obj" -o "$work/blob.bxt" --codec blob-zstd -q
+"$whole" "$work/blob.bxt" >/dev/null || fail "the whole runtime does not answer"
+
+# A query that was left out is an error of the compiler that says so; a codec or query that there is
+# not, and a cooker on less than a whole runtime, are errors of the configuration.
+sed -i 's/^PROGRAM:[A-Z]*=.*/PROGRAM:UNINITIALIZED=missing/' "$work/small/CMakeCache.txt"
+if build small; then fail "pair.h compiles where pair queries were left out"; fi
+grep -q 'BOXTREE_QUERIES left pair queries out' "$work/log" || fail "unclear: $(cat "$work/log")"
+if build unknown -DPROGRAM=ray -DBOXTREE_CODECS=wide5; then fail "a codec wide5 was built"; fi
+grep -q "unknown 'wide5'" "$work/log" || fail "unclear: $(cat "$work/log")"
+if build cooker -DPROGRAM=ray -DBOXTREE_QUERIES=ray -DBOXTREE_BUILD_COOKER=ON; then
+  fail "a cooker on less than a whole runtime was built"
+fi
+grep -q 'cooker needs the whole runtime' "$work/log" || fail "unclear: $(cat "$work/log")"
+echo "size: as expected"
