@@ -4,7 +4,8 @@
 # samples/quickstart.sh and tests/run.sh.
 
 BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
-  zlib1g-dev libtbb-dev pkg-config liblzma-dev libzstd-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev libhwy-dev"
+  zlib1g-dev libtbb-dev pkg-config liblzma-dev libzstd-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
+  libhwy-dev libtomlplusplus-dev"
 SAMPLE_PACKAGES="glmark2-data assimp-testmodels"
 TEST_PACKAGES="libgtest-dev libcgal-dev jq python3-xxhash chromium"
 # Libraries that boxtree_peers measures beside ours.

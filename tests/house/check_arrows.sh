@@ -15,9 +15,9 @@ forbid() {
   printf '%s: %s\n%s\n' "$1" "$3" "$found"
   bad=1
 }
-forbid format 'boxtree/(runtime|cooker)|Eigen|xxhash|assimp|fmt|nlohmann|CLI|tbb|oneapi|hwy' \
+forbid format 'boxtree/(runtime|cooker)|Eigen|xxhash|assimp|fmt|nlohmann|CLI|toml|tbb|oneapi|hwy' \
   'format uses the C++ standard library alone'
-forbid runtime 'boxtree/cooker|assimp|fmt/|nlohmann|CLI|tbb|oneapi|iostream|cstdio' \
+forbid runtime 'boxtree/cooker|assimp|fmt/|nlohmann|CLI|toml|tbb|oneapi|iostream|cstdio' \
   'runtime uses format, Eigen, Highway and xxHash, and prints nothing'
 
 # forbid_symbols LIBRARY REGEX WHY: no undefined symbol may match.

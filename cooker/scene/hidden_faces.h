@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Lists of faces that a user allows to be dropped.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include <boxtree/cooker/scene/profile.h>
+
+namespace boxtree::cooker {
+
+/// Numbers of source faces, one number or range ("12-40") a line; '#' starts a comment. Returned
+/// ascending, joined where they touch. Error: kProfileInvalid, "LIST:3: expected ..., found ...".
+Result<std::vector<FaceRange>> parse_hidden_faces(std::string_view text, std::string_view list);
+
+}  // namespace boxtree::cooker

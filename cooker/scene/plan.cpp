@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: MIT
+// Which instances and layers there are; what each mesh needs is in plan_meshes.cpp.
+#include <algorithm>
+#include <array>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/scene/plan.h>
+#include <boxtree/cooker/scene/plan_meshes.h>
+#include <boxtree/runtime/query/float_state.h>
+
+namespace boxtree::cooker {
+namespace {
+
+std::vector<std::uint32_t> objects_of(const SourceScene& scene, const Profile& profile) {
+  const auto other = static_cast<std::uint32_t>(profile.objects.size() - 1);
+  std::vector<std::uint32_t> objects;
+  objects.reserve(scene.instances.size());
+  for (const SceneInstance& instance : scene.instances) {
+    if (instance.id < profile.instances.size() && profile.instances[instance.id].object) {
+      objects.push_back(profile.instances[instance.id].object->value);
+      continue;
+    }
+    const std::string& mesh = scene.meshes[instance.mesh].mesh.name;
+    std::uint32_t object = 0;
+    for (; object < other; ++object) {
+      const auto& globs = profile.objects[object].match;
+      if (std::any_of(globs.begin(), globs.end(), [&](const Stated<std::string>& glob) {
+            return glob_matches(glob.value, instance.name) || glob_matches(glob.value, mesh);
+          })) {
+        break;
+      }
+    }
+    objects.push_back(object);
+  }
+  return objects;
+}
+
+// No query reaches an object that answers none, whether its instances move or not: pairs, too, are
+// met only where both sides answer pair queries.
+std::optional<std::uint32_t> line_that_drops(const ProfileObject& object) {
+  if (object.leave_out.value) return object.leave_out.line;
+  if (object.needs.queries.value == 0) return object.needs.queries.line;
+  return std::nullopt;
+}
+
+bool is_spawned(const Profile& profile, std::uint32_t object) {
+  return std::any_of(profile.meshes.begin(), profile.meshes.end(), [&](const ProfileMesh& mesh) {
+    return mesh.spawned_as && mesh.spawned_as->value == object;
+  });
+}
+
+void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan& plan) {
+  const std::vector<std::uint32_t> objects = objects_of(scene, profile);
+  std::vector<std::size_t> count(profile.objects.size(), 0);
+  for (const std::uint32_t object : objects) ++count[object];
+
+  constexpr std::uint32_t kNoLayer = 0xffffffffu;
+  std::vector<std::uint32_t> layer(profile.objects.size(), kNoLayer);
+  for (std::uint32_t o = 0; o < profile.objects.size(); ++o) {
+    const ProfileObject& object = profile.objects[o];
+    const bool is_other = o + 1 == profile.objects.size();
+    const auto dropped = line_that_drops(object);
+    if (count[o] > 0) {
+      const char* why = object.leave_out.value ? "left out" : "no query reaches them";
+      plan.decisions.push_back(
+          {Aspect::kInstances, OwnerKind::kObject, o, !dropped,
+           fmt::format("{} {}{}{}", count[o], object.moves.value ? "moving" : "static",
+                       dropped ? ": " : "", dropped ? why : ""),
+           dropped ? *dropped : object.name.line});
+    } else if (!object.match.empty()) {
+      plan.notices.push_back(fmt::format("{}: no instance is of object \"{}\"",
+                                         profile.cite(object.match.front().line),
+                                         object.name.value));
+    }
+    const bool is_idle =
+        is_other && count[o] == 0 && !plan.layers.empty() && !is_spawned(profile, o);
+    if (dropped || is_idle) continue;
+    layer[o] = static_cast<std::uint32_t>(plan.layers.size());
+    plan.layers.push_back(
+        {object.name.value, o, object.moves.value, object.needs.queries.value, 0});
+  }
+  for (const std::uint32_t o : objects) {
+    const bool kept = layer[o] != kNoLayer;
+    const ProfileObject& object = profile.objects[o];
+    plan.instances.push_back(
+        {kept, o, kept ? layer[o] : 0, object.moves.value, kept && object.needs.names.value});
+  }
+}
+
+bool never_meet(const ProfileObject& object, std::uint32_t other) {
+  return std::any_of(object.never_meets.begin(), object.never_meets.end(),
+                     [&](const Stated<std::uint32_t>& name) { return name.value == other; });
+}
+
+// Static instances may be moved after all where the application says so when it binds the scene
+// (SceneOptions::moving), so layers of them meet like any others; two at rest are never compared.
+void plan_contacts(const Profile& profile, ScenePlan& plan) {
+  for (std::size_t a = 0; a < plan.layers.size(); ++a) {
+    PlannedLayer& first = plan.layers[a];
+    if ((first.queries & kPairQueries) == 0) continue;
+    for (std::size_t b = a; b < plan.layers.size(); ++b) {
+      PlannedLayer& second = plan.layers[b];
+      if ((second.queries & kPairQueries) == 0) continue;
+      if (never_meet(profile.objects[first.object], second.object) ||
+          never_meet(profile.objects[second.object], first.object)) {
+        continue;
+      }
+      first.meets |= 1u << b;
+      second.meets |= 1u << a;
+    }
+  }
+  for (const PlannedLayer& layer : plan.layers) {
+    for (const Stated<std::uint32_t>& name : profile.objects[layer.object].never_meets) {
+      plan.decisions.push_back(
+          {Aspect::kContacts, OwnerKind::kObject, layer.object, false,
+           fmt::format("never meets \"{}\"", profile.objects[name.value].name.value), name.line});
+    }
+  }
+}
+
+constexpr std::array kKinds = {Aspect::kRay, Aspect::kBox, Aspect::kPoint, Aspect::kPair};
+
+void decide_queries(const Profile& profile, ScenePlan& plan) {
+  plan.queries = 0;
+  for (const PlannedLayer& layer : plan.layers) {
+    plan.queries = static_cast<QueryKinds>(plan.queries | layer.queries);
+  }
+  for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
+    const auto bit = static_cast<QueryKinds>(1u << kind);
+    const bool of_scene = (profile.scene.queries.value & bit) != 0;
+    std::uint32_t line = profile.scene.queries.line;
+    for (const PlannedLayer& layer : plan.layers) {
+      if (!of_scene || (layer.queries & bit) != 0) continue;
+      const ProfileObject& object = profile.objects[layer.object];
+      plan.decisions.push_back({kKinds[kind], OwnerKind::kObject, layer.object, false,
+                                "its instances do not answer them", object.needs.queries.line});
+      if ((plan.queries & bit) == 0) line = object.needs.queries.line;
+    }
+    const bool kept = (plan.queries & bit) != 0;
+    plan.decisions.push_back({kKinds[kind], OwnerKind::kFile, 0, kept,
+                              kept       ? "asked for"
+                              : of_scene ? "no object answers them"
+                                         : "the scene is never asked them",
+                              line});
+  }
+}
+
+void decide_names(const Profile& profile, ScenePlan& plan) {
+  bool any = false;
+  std::uint32_t line = profile.scene.names.line;
+  for (const PlannedLayer& layer : plan.layers) {
+    const Stated<bool>& names = profile.objects[layer.object].needs.names;
+    any = any || names.value;
+    line = std::max(line, names.line);
+    if (names.value) continue;
+    plan.decisions.push_back({Aspect::kNames, OwnerKind::kObject, layer.object, false,
+                              "nobody asks for names of its instances", names.line});
+  }
+  if (any) return;
+  plan.decisions.push_back(
+      {Aspect::kNames, OwnerKind::kFile, 0, false, "no object asks for them", line});
+}
+
+}  // namespace
+
+const char* aspect_name(Aspect aspect) noexcept {
+  switch (aspect) {
+    case Aspect::kFaceIds:
+      return "face ids";
+    case Aspect::kMaterials:
+      return "materials";
+    case Aspect::kNames:
+      return "names";
+    case Aspect::kRay:
+      return "ray queries";
+    case Aspect::kBox:
+      return "box queries";
+    case Aspect::kPoint:
+      return "point queries";
+    case Aspect::kPair:
+      return "pair queries";
+    case Aspect::kInstances:
+      return "instances";
+    case Aspect::kMesh:
+      return "mesh";
+    case Aspect::kGeometry:
+      return "geometry";
+    case Aspect::kPrecision:
+      return "precision";
+    case Aspect::kCodec:
+      return "codec";
+    case Aspect::kHiddenFaces:
+      return "hidden faces";
+    case Aspect::kContacts:
+      break;
+  }
+  return "contacts";
+}
+
+std::optional<Part> part_of(Aspect aspect) noexcept {
+  switch (aspect) {
+    case Aspect::kFaceIds:
+      return Part::kFaceIds;
+    case Aspect::kMaterials:
+      return Part::kMaterials;
+    case Aspect::kNames:
+      return Part::kNames;
+    case Aspect::kRay:
+      return Part::kRays;
+    case Aspect::kBox:
+      return Part::kBoxes;
+    case Aspect::kPoint:
+      return Part::kPoints;
+    case Aspect::kPair:
+      return Part::kPairs;
+    default:
+      return std::nullopt;
+  }
+}
+
+Result<ScenePlan> plan_scene(const SourceScene& scene, const Profile& profile) {
+  const DefaultFloatState state;
+  ScenePlan plan;
+  plan_instances(scene, profile, plan);
+  plan_contacts(profile, plan);
+  decide_queries(profile, plan);
+  decide_names(profile, plan);
+  if (Status status = plan_meshes(scene, profile, plan); !status) return status.error();
+  return plan;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,212 @@
+// SPDX-License-Identifier: MIT
+// Types, ranges, and messages that say what would be right.
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/scene/profile_fields.h>
+
+namespace boxtree::cooker {
+namespace {
+
+std::optional<double> number_in(const TomlNode& node) {
+  if (const auto* integer = std::get_if<std::int64_t>(&node.value)) {
+    return static_cast<double>(*integer);
+  }
+  const auto* number = std::get_if<double>(&node.value);
+  return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
+}
+
+// Insertions, deletions and changes of one byte (Levenshtein), row by row.
+std::size_t edits(std::string_view from, std::string_view to) {
+  std::vector<std::size_t> row(to.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 0; i < from.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i + 1;
+    for (std::size_t j = 0; j < to.size(); ++j) {
+      const std::size_t changed = diagonal + (from[i] == to[j] ? 0u : 1u);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+    }
+  }
+  return row.back();
+}
+
+std::string with_nearest(std::string_view wording, std::string_view name,
+                         std::span<const std::string> names) {
+  if (names.empty()) return fmt::format("{} (there are none)", wording);
+  return fmt::format("{} (nearest: \"{}\")", wording, nearest_name(name, names));
+}
+
+}  // namespace
+
+void Complaints::add(std::uint32_t line, const std::string& text) {
+  if (!wants(line)) return;
+  line_ = line;
+  text_ = text;
+}
+
+void Complaints::expected(std::uint32_t line, std::string_view where, std::string_view expected,
+                          std::string_view found) {
+  if (wants(line)) add(line, fmt::format("{}: expected {}, found {}", where, expected, found));
+}
+
+Status Complaints::status() const {
+  if (text_.empty()) return {};
+  return Error{Errc::kProfileInvalid, fmt::format("{}:{}: {}", path_, line_, text_)};
+}
+
+std::string nearest_name(std::string_view name, std::span<const std::string> names) {
+  std::string nearest;
+  std::size_t fewest = 0;
+  for (const std::string& other : names) {
+    const std::size_t count = edits(name, other);
+    if (!nearest.empty() && count >= fewest) continue;
+    nearest = other;
+    fewest = count;
+  }
+  return nearest;
+}
+
+const TomlEntry* Fields::find(std::string_view key) {
+  known_.emplace_back(key);
+  const auto found = std::find_if(table_.begin(), table_.end(),
+                                  [&](const TomlEntry& entry) { return entry.key == key; });
+  return found == table_.end() ? nullptr : &*found;
+}
+
+std::optional<Stated<bool>> Fields::flag(std::string_view key) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  if (const auto* value = std::get_if<bool>(&entry->node.value)) {
+    return Stated<bool>{*value, entry->line};
+  }
+  complaints_.expected(entry->line, key, "true or false", shown(entry->node));
+  return std::nullopt;
+}
+
+std::optional<Stated<double>> Fields::number(std::string_view key, const NumberRange& range) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const std::optional<double> value = number_in(entry->node);
+  if (value && (range.low_included ? *value >= range.low : *value > range.low)) {
+    return Stated<double>{*value, entry->line};
+  }
+  complaints_.expected(entry->line, key, range.wording, shown(entry->node));
+  return std::nullopt;
+}
+
+std::optional<Stated<std::uint64_t>> Fields::count(std::string_view key) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* value = std::get_if<std::int64_t>(&entry->node.value);
+  if (value != nullptr && *value >= 1) {
+    return Stated<std::uint64_t>{static_cast<std::uint64_t>(*value), entry->line};
+  }
+  complaints_.expected(entry->line, key, "a whole number of 1 or more", shown(entry->node));
+  return std::nullopt;
+}
+
+std::optional<Stated<std::string>> Fields::text(std::string_view key) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* value = std::get_if<std::string>(&entry->node.value);
+  if (value != nullptr && !value->empty()) return Stated<std::string>{*value, entry->line};
+  complaints_.expected(entry->line, key, "a text that is not empty", shown(entry->node));
+  return std::nullopt;
+}
+
+std::optional<Stated<std::string>> Fields::required_text(std::string_view key) {
+  auto value = text(key);
+  const bool is_there = std::any_of(table_.begin(), table_.end(),
+                                    [&](const TomlEntry& entry) { return entry.key == key; });
+  if (!is_there) complaints_.expected(line_, where_, fmt::format("the key \"{}\"", key), "none");
+  return value;
+}
+
+std::optional<std::vector<Stated<std::string>>> Fields::texts(std::string_view key) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* array = std::get_if<TomlArray>(&entry->node.value);
+  if (array == nullptr) {
+    complaints_.expected(entry->line, key, "an array of texts", shown(entry->node));
+    return std::nullopt;
+  }
+  std::vector<Stated<std::string>> values;
+  for (const TomlNode& node : *array) {
+    const auto* value = std::get_if<std::string>(&node.value);
+    if (value == nullptr || value->empty()) {
+      complaints_.expected(node.line, key, "texts that are not empty", shown(node));
+      return std::nullopt;
+    }
+    values.push_back({*value, node.line});
+  }
+  return values;
+}
+
+std::optional<Stated<std::vector<double>>> Fields::numbers(std::string_view key, std::size_t count,
+                                                           std::string_view wording) {
+  const TomlEntry* entry = find(key);
+  if (entry == nullptr) return std::nullopt;
+  const auto* array = std::get_if<TomlArray>(&entry->node.value);
+  if (array == nullptr || array->size() != count) {
+    complaints_.expected(entry->line, key, wording, shown(entry->node));
+    return std::nullopt;
+  }
+  std::vector<double> values;
+  for (const TomlNode& node : *array) {
+    const std::optional<double> value = number_in(node);
+    if (!value) {
+      complaints_.expected(node.line, key, kAnyNumber.wording, shown(node));
+      return std::nullopt;
+    }
+    values.push_back(*value);
+  }
+  return Stated<std::vector<double>>{std::move(values), entry->line};
+}
+
+std::optional<Stated<std::uint32_t>> Fields::one_of(std::string_view key,
+                                                    std::span<const std::string> names,
+                                                    std::string_view wording) {
+  const auto name = text(key);
+  if (!name) return std::nullopt;
+  const auto number = number_of(*name, key, names, wording);
+  if (!number) return std::nullopt;
+  return Stated<std::uint32_t>{*number, name->line};
+}
+
+std::optional<std::uint32_t> Fields::number_of(const Stated<std::string>& name,
+                                               std::string_view key,
+                                               std::span<const std::string> names,
+                                               std::string_view wording) {
+  const auto found = std::find(names.begin(), names.end(), name.value);
+  if (found != names.end()) return static_cast<std::uint32_t>(found - names.begin());
+  if (complaints_.wants(name.line)) {
+    complaints_.expected(name.line, key, with_nearest(wording, name.value, names),
+                         '"' + name.value + '"');
+  }
+  return std::nullopt;
+}
+
+void Fields::exclude(std::string_view first, std::string_view second) {
+  const TomlEntry* one = find(first);
+  const TomlEntry* other = find(second);
+  if (one == nullptr || other == nullptr) return;
+  if (one->line > other->line) std::swap(one, other);
+  complaints_.expected(other->line, other->key,
+                       fmt::format("either \"{}\" or \"{}\"", first, second), "both");
+}
+
+void Fields::finish() {
+  for (const TomlEntry& entry : table_) {
+    const bool is_known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
+    if (is_known || !complaints_.wants(entry.line)) continue;
+    complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known_),
+                         '"' + entry.key + '"');
+  }
+}
+
+}  // namespace boxtree::cooker

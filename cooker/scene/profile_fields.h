@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// Typed reading of a profile's tables: each key asked for is known, all others are complained of.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <boxtree/cooker/scene/profile.h>
+#include <boxtree/cooker/scene/toml_tree.h>
+
+namespace boxtree::cooker {
+
+/// What is wrong with a profile; of several complaints, the one that stands first is kept.
+class Complaints {
+ public:
+  explicit Complaints(std::string path) : path_(std::move(path)) {}
+
+  /// Whether a complaint of this line would be kept: what is costly to word need not be worded.
+  [[nodiscard]] bool wants(std::uint32_t line) const { return text_.empty() || line < line_; }
+  void add(std::uint32_t line, const std::string& text);
+  /// "WHERE: expected EXPECTED, found FOUND".
+  void expected(std::uint32_t line, std::string_view where, std::string_view expected,
+                std::string_view found);
+  [[nodiscard]] Status status() const;
+
+ private:
+  std::string path_;
+  std::string text_;
+  std::uint32_t line_ = 0;
+};
+
+/// The one of `names` that takes the fewest edits to become `name`, the earlier of equals; empty if
+/// there are none.
+[[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
+
+/// What numbers are allowed.
+struct NumberRange {
+  const char* wording;  // "a number above 0"
+  double low;
+  bool low_included;
+};
+inline constexpr NumberRange kAnyNumber = {"a finite number", std::numeric_limits<double>::lowest(),
+                                           true};
+inline constexpr NumberRange kAboveZero = {"a number above 0", 0, false};
+inline constexpr NumberRange kAtLeastOne = {"a number of 1 or more", 1, true};
+
+/// The keys of one table. Each reader returns nothing if the key is missing or its value is not as
+/// it must be; the latter is complained of.
+class Fields {
+ public:
+  /// `where` names the table in messages: "[scene]". `line`: of its header.
+  Fields(const TomlTable& table, std::string where, std::uint32_t line, Complaints& complaints)
+      : table_(table), where_(std::move(where)), line_(line), complaints_(complaints) {}
+
+  [[nodiscard]] std::uint32_t line() const { return line_; }
+  [[nodiscard]] Complaints& complaints() { return complaints_; }
+
+  const TomlEntry* find(std::string_view key);
+  std::optional<Stated<bool>> flag(std::string_view key);
+  std::optional<Stated<double>> number(std::string_view key, const NumberRange& range);
+  std::optional<Stated<std::uint64_t>> count(std::string_view key);  // 1 or more
+  std::optional<Stated<std::string>> text(std::string_view key);     // not empty
+  std::optional<Stated<std::string>> required_text(std::string_view key);
+  /// Each with its own line.
+  std::optional<std::vector<Stated<std::string>>> texts(std::string_view key);
+  std::optional<Stated<std::vector<double>>> numbers(std::string_view key, std::size_t count,
+                                                     std::string_view wording);
+  /// One of `names`: its number.
+  std::optional<Stated<std::uint32_t>> one_of(std::string_view key,
+                                              std::span<const std::string> names,
+                                              std::string_view wording);
+  /// The number of a name that was read, or a complaint that names the nearest.
+  std::optional<std::uint32_t> number_of(const Stated<std::string>& name, std::string_view key,
+                                         std::span<const std::string> names,
+                                         std::string_view wording);
+  /// Complains of two keys that exclude each other, at the later one.
+  void exclude(std::string_view first, std::string_view second);
+  /// Complains of all keys that were not asked for.
+  void finish();
+
+ private:
+  const TomlTable& table_;
+  std::string where_;
+  std::uint32_t line_;
+  Complaints& complaints_;
+  std::vector<std::string> known_;
+};
+
+}  // namespace boxtree::cooker
