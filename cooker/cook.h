@@ -61,4 +61,8 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress = {});
 
+/// The same for one mesh that was imported already, under the name it has.
+Result<CookReport> cook(Imported imported, const std::filesystem::path& output,
+                        const CookOptions& options, const Progress& progress = {});
+
 }  // namespace boxtree::cooker

@@ -2,51 +2,21 @@
 // Files through all stages, and the record of how they were cooked.
 #include <utility>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
 #include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/version.h>
+#include <boxtree/cooker/cook_record.h>
 #include <boxtree/cooker/write/blob_writer.h>
 #include <boxtree/runtime/query/float_state.h>
 
 namespace boxtree::cooker {
 namespace {
 
-nlohmann::ordered_json grid_record(const CookOptions& options) {
-  if (options.geometry != GeometryId::kGrid && !options.may_use_grid) return nullptr;
-  if (options.grid.tolerance) return {{"tolerance", *options.grid.tolerance}};
-  return {{"bits", options.grid.bits}};
-}
-
-nlohmann::ordered_json budget(const std::optional<double>& limit) {
-  if (!limit) return nullptr;
-  return *limit;
-}
-
 std::string cook_record(const CookOptions& options, const std::vector<CookedTree>& trees,
                         const std::vector<ImportReport>& imports) {
-  nlohmann::ordered_json record;
-  record["tool"] = fmt::format("boxtree {}", kVersion);
-  record["options"] = {
-      {"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
-      {"for", goal_name(options.wishes.goal)},
-      {"max_bytes_per_triangle", budget(options.wishes.max_bytes_per_triangle)},
-      {"max_slowdown", budget(options.wishes.max_slowdown)},
-      {"builder", options.builder == Builder::kPaper ? "paper" : "sah"},
-      {"widths", options.widths == FieldWidths::kExact ? "exact" : "estimated"},
-      {"geometry", options.may_use_grid ? "auto" : std::string(geometry_name(options.geometry))},
-      {"grid", grid_record(options)},
-      {"face_ids", options.face_ids},
-      {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
-      {"skip_bad", options.import.skip_bad}};
-  record["sources"] = nlohmann::ordered_json::array();
+  std::vector<RecordedSource> sources;
   for (std::size_t i = 0; i < imports.size(); ++i) {
-    record["sources"].push_back({{"name", trees[i].tree.name},
-                                 {"xxh3", fmt::format("{:016x}", imports[i].content_hash)},
-                                 {"faces", imports[i].source_faces}});
+    sources.push_back({trees[i].tree.name, imports[i].content_hash, imports[i].source_faces});
   }
-  return record.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return make_cook_record(options, sources);
 }
 
 // One grid for all inputs, so that what touches still does. Each is imported for its bounds, and
@@ -70,62 +40,93 @@ void release(CookedTree& cooked) {
   cooked.tree.geometry.face_ids = {};
 }
 
+// Inputs one after the other, then the file. All that may be chosen stays until the geometry store,
+// which the trees share, is known.
+class FileCook {
+ public:
+  FileCook(const CookOptions& options, const Progress& progress)
+      : options_(options), progress_(progress) {}
+
+  void step(const std::string& what) const {
+    if (progress_) progress_(what);
+  }
+
+  Status add(Imported imported, const std::optional<Grid>& scene) {
+    step("build " + imported.mesh.name);
+    Result<TriedTree> tree = try_encodings(imported.mesh, options_, scene);
+    if (!tree) return tree.error();
+    contests_.push_back(std::move(tree->contest));
+    tried_.push_back(std::move(*tree));
+    report_.imports.push_back(std::move(imported.report));
+    return {};
+  }
+
+  Result<CookReport> write(const std::filesystem::path& output) {
+    const auto chosen = choose(contests_, options_.wishes);
+    if (!chosen) return chosen.error();
+    std::vector<EncodedTree> trees;
+    for (std::size_t i = 0; i < tried_.size(); ++i) {
+      tried_[i].contest = std::move(contests_[i]);
+      CookedTree cooked = cooked_of(std::move(tried_[i]), (*chosen)[i], options_);
+      trees.push_back(std::move(cooked.tree));
+      cooked.tree.name = trees.back().name;
+      report_.trees.push_back(std::move(cooked));
+    }
+    step("write " + output.filename().string());
+    const std::string record = options_.cook_record
+                                   ? cook_record(options_, report_.trees, report_.imports)
+                                   : std::string();
+    const FileParts parts{trees, record};
+    const Status written =
+        options_.blob ? write_blob(output, parts, *options_.blob) : write_file(output, parts);
+    if (!written) return written.error();
+    for (std::size_t i = 0; i < trees.size(); ++i) {
+      report_.trees[i].tree = std::move(trees[i]);
+      release(report_.trees[i]);
+    }
+    return std::move(report_);
+  }
+
+ private:
+  const CookOptions& options_;
+  const Progress& progress_;
+  std::vector<TriedTree> tried_;
+  std::vector<Contest> contests_;
+  CookReport report_;
+};
+
 }  // namespace
 
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress) {
   const DefaultFloatState state;
-  const auto step = [&](const std::string& what) {
-    if (progress) progress(what);
-  };
+  FileCook file(options, progress);
   const bool is_scene =
       inputs.size() > 1 && (options.geometry == GeometryId::kGrid || options.may_use_grid);
   std::optional<Grid> scene;
   if (is_scene) {
-    step("measure the scene");
+    file.step("measure the scene");
     Result<Grid> grid = scene_grid(inputs, options);
     if (!grid && !options.may_use_grid) return grid.error();
     if (grid) scene = *grid;
   }
-  // All that may be chosen stays until the geometry store, which the trees share, is known.
-  std::vector<TriedTree> tried;
-  std::vector<Contest> contests;
-  CookReport report;
   for (const std::filesystem::path& input : inputs) {
-    const std::string name = input.filename().string();
-    step("import " + name);
+    file.step("import " + input.filename().string());
     Result<Imported> imported = import_mesh(input, options.import);
     if (!imported) return imported.error();
     imported->mesh.name = input.stem().string();
-    step("build " + name);
-    Result<TriedTree> tree = try_encodings(imported->mesh, options, scene);
-    if (!tree) return tree.error();
-    contests.push_back(std::move(tree->contest));
-    tried.push_back(std::move(*tree));
-    report.imports.push_back(std::move(imported->report));
+    if (Status status = file.add(std::move(*imported), scene); !status) return status.error();
   }
-  const auto chosen = choose(contests, options.wishes);
-  if (!chosen) return chosen.error();
-  std::vector<EncodedTree> trees;
-  for (std::size_t i = 0; i < tried.size(); ++i) {
-    tried[i].contest = std::move(contests[i]);
-    CookedTree cooked = cooked_of(std::move(tried[i]), (*chosen)[i], options);
-    trees.push_back(std::move(cooked.tree));
-    cooked.tree.name = trees.back().name;
-    report.trees.push_back(std::move(cooked));
-  }
-  step("write " + output.filename().string());
-  const std::string record =
-      options.cook_record ? cook_record(options, report.trees, report.imports) : std::string();
-  const Status written = options.blob ? write_blob(output, trees, record, *options.blob)
-                                      : write_file(output, trees, record);
-  if (!written) return written.error();
-  for (std::size_t i = 0; i < trees.size(); ++i) {
-    report.trees[i].tree = std::move(trees[i]);
-    release(report.trees[i]);
-  }
-  return report;
+  return file.write(output);
+}
+
+Result<CookReport> cook(Imported imported, const std::filesystem::path& output,
+                        const CookOptions& options, const Progress& progress) {
+  const DefaultFloatState state;
+  FileCook file(options, progress);
+  if (Status status = file.add(std::move(imported), {}); !status) return status.error();
+  return file.write(output);
 }
 
 }  // namespace boxtree::cooker

@@ -34,7 +34,7 @@ double score_of(double bytes, double slowdown, Goal goal) {
 }
 
 std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
-  const std::vector<double> slower = slowdowns(tree.candidates);
+  const std::vector<double> slower = slowdowns(tree.candidates, wishes.queries);
   std::vector<Judged> judged;
   for (std::size_t i = 0; i < tree.candidates.size(); ++i) {
     const Candidate& candidate = tree.candidates[i];
@@ -128,7 +128,9 @@ const char* goal_name(Goal goal) noexcept {
   return "balance";
 }
 
-std::vector<double> slowdowns(std::span<const Candidate> candidates) {
+std::vector<double> slowdowns(std::span<const Candidate> candidates, QueryKinds queries) {
+  static_assert(kQueryKinds == 4 && kRayQueries == 1 && kPairQueries == 8);  // bits in their order
+  if ((queries & kAllQueries) == 0) queries = kAllQueries;
   QueryCost fastest;
   fastest.fill(kNone);
   for (const Candidate& candidate : candidates) {
@@ -140,36 +142,51 @@ std::vector<double> slowdowns(std::span<const Candidate> candidates) {
   std::vector<double> slower;
   for (const Candidate& candidate : candidates) {
     double sum = 0;
+    int counted = 0;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      if (((queries >> kind) & 1u) == 0) continue;
       // Of an empty tree nothing costs anything.
       sum += fastest[kind] > 0 ? candidate.cost[kind] / fastest[kind] : 1;
+      ++counted;
     }
-    slower.push_back(sum / kQueryKinds);
+    slower.push_back(sum / counted);
   }
   return slower;
 }
 
 Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes) {
+  const std::vector<Wishes> same(trees.size(), wishes);
+  return choose_each(trees, same);
+}
+
+Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
+                                             std::span<const Wishes> wishes) {
   std::vector<std::vector<Judged>> judged;
-  for (const Contest& tree : trees) judged.push_back(judge(tree, wishes));
+  for (std::size_t t = 0; t < trees.size(); ++t) {
+    trees[t].queries = wishes[t].queries;
+    judged.push_back(judge(trees[t], wishes[t]));
+  }
+  const auto least_score = [&](std::size_t t) {
+    double least = kNone;
+    for (const Judged& candidate : judged[t]) least = std::min(least, candidate.score);
+    return least;
+  };
 
   std::vector<std::size_t> chosen;
   double least = kNone;
   for (const GeometryId store : kStores) {
     std::vector<std::size_t> of_store;
-    double triangles = 0, bytes = 0, slowdown = 0;
+    double score = 0;
     for (std::size_t t = 0; t < trees.size(); ++t) {
       const auto best = best_of(trees[t], judged[t], store);
       if (!best) break;
       of_store.push_back(*best);
       // At least one, so that trees without faces have a say as well.
       const double weight = std::max(1.0, static_cast<double>(trees[t].triangles));
-      triangles += weight;
-      bytes += weight * judged[t][*best].bytes;
-      slowdown += weight * judged[t][*best].slowdown;
+      const double own = least_score(t);
+      score += own > 0 ? weight * (judged[t][*best].score / own) : weight;
     }
     if (of_store.size() < trees.size()) continue;
-    const double score = score_of(bytes / triangles, slowdown / triangles, wishes.goal);
     if (chosen.empty() || score < least) {
       chosen = std::move(of_store);
       least = score;
@@ -184,13 +201,13 @@ Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& 
                                         [](const Judged& j) { return j.score != kNone; });
       if (!possible) worst = t;
     }
-    return refusal(trees[worst], judged[worst], wishes);
+    return refusal(trees[worst], judged[worst], wishes[worst]);
   }
   for (std::size_t t = 0; t < trees.size(); ++t) {
     for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
       Candidate& candidate = trees[t].candidates[i];
       const Candidate& winner = trees[t].candidates[chosen[t]];
-      candidate.rejected = i == chosen[t] ? "" : reason(candidate, judged[t][i], winner, wishes);
+      candidate.rejected = i == chosen[t] ? "" : reason(candidate, judged[t][i], winner, wishes[t]);
     }
   }
   return chosen;

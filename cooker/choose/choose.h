@@ -11,6 +11,7 @@
 
 #include <boxtree/cooker/choose/cost.h>
 #include <boxtree/cooker/proof/gates.h>
+#include <boxtree/format/scene_record.h>
 
 namespace boxtree::cooker {
 
@@ -25,6 +26,7 @@ struct Wishes {
   Goal goal = Goal::kBalance;
   std::optional<double> max_bytes_per_triangle;  // nodes and geometry
   std::optional<double> max_slowdown;            // of the fastest candidate, see slowdowns()
+  QueryKinds queries = kAllQueries;              // whose time counts; none: all
 };
 
 /// One encoding that was tried.
@@ -54,16 +56,23 @@ struct Contest {
   std::uint32_t triangles = 0;
   std::vector<Candidate> candidates;
   std::vector<NotTried> not_tried;
+  QueryKinds queries = kAllQueries;  // that its choice counted
 };
 
 /// How many times as long each candidate takes as the fastest one that passes its gates: the mean
-/// over the kinds of queries of the ratios of costs, each kind against its own fastest.
-[[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates);
+/// over the kinds of queries that count of the ratios of costs, each kind against its own fastest.
+[[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates,
+                                            QueryKinds queries = kAllQueries);
 
 /// Chooses for trees that share a file, one candidate each, all with the same geometry store, so
 /// that what touches still does. Fills Candidate::rejected of the others; ties go to the earlier
 /// candidate. Returns the number of the chosen candidate of each tree. Errors: kInternal when
 /// nothing passes its gates; kBudgetUnreachable, naming the nearest that is possible.
 Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes);
+
+/// The same when each tree has wishes of its own, as many as trees; the store that all share is
+/// the one with the least total score, scores being relative to the best of each tree.
+Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
+                                             std::span<const Wishes> wishes);
 
 }  // namespace boxtree::cooker

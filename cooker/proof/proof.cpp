@@ -12,6 +12,7 @@
 
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/proof/scene_proof.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -253,6 +254,7 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
       findings.push_back(std::move(finding));
     }
   }
+  for (Error& finding : prove_scene(file)) findings.push_back(std::move(finding));
   return findings;
 }
 

@@ -10,10 +10,10 @@
 
 namespace boxtree::cooker {
 
-Status write_blob(const std::filesystem::path& path, std::span<const EncodedTree> trees,
-                  const std::string& cook_record, BlobMethod method) {
-  const std::vector<std::byte> file = serialize(trees, cook_record);
-  const Result<std::vector<std::byte>> blob = make_blob(file, method);
+Status write_blob(const std::filesystem::path& path, const FileParts& parts, BlobMethod method) {
+  const Result<std::vector<std::byte>> file = serialize(parts);
+  if (!file) return file.error();
+  const Result<std::vector<std::byte>> blob = make_blob(*file, method);
   if (!blob) return blob.error();
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
@@ -22,7 +22,7 @@ Status write_blob(const std::filesystem::path& path, std::span<const EncodedTree
   if (!written) return written.error();
   const Result<File> opened = open_blob(written->bytes(), ~std::uint64_t{0});
   if (!opened) return opened.error();
-  if (!std::ranges::equal(opened->bytes(), file)) {
+  if (!std::ranges::equal(opened->bytes(), *file)) {
     return Error{Errc::kBlobCorrupt, path.string() + ": the file inside did not come back"};
   }
   if (const Findings findings = verify_file(*opened); !findings.empty()) return findings.front();

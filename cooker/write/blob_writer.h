@@ -3,10 +3,8 @@
 #pragma once
 
 #include <filesystem>
-#include <span>
-#include <string>
 
-#include <boxtree/cooker/encode/encoded_tree.h>
+#include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/format/blob.h>
 
 namespace boxtree::cooker {
@@ -14,7 +12,6 @@ namespace boxtree::cooker {
 /// Writes the blob of what write_file() would write, opens what was written, compares it bit for
 /// bit with what was meant, proves every tree, and only then lets it take the place of `path`.
 /// Errors: as write_file(); kBlobCorrupt if it does not come back, which is a defect of ours.
-Status write_blob(const std::filesystem::path& path, std::span<const EncodedTree> trees,
-                  const std::string& cook_record, BlobMethod method);
+Status write_blob(const std::filesystem::path& path, const FileParts& parts, BlobMethod method);
 
 }  // namespace boxtree::cooker

@@ -26,22 +26,29 @@ Bytes bytes_of(const auto& container) {
 // Holds the small sections and lists all; the large ones stay where the encoders put them.
 class Layout {
  public:
-  Layout(std::span<const EncodedTree> trees, const std::string& cook_record)
-      : cook_record_(cook_record) {
-    for (const EncodedTree& tree : trees) {
-      records_.push_back(record_of(tree, static_cast<std::uint32_t>(names_.size())));
+  // Precondition: `scene` is encoded from these trees, or nothing, and its names are `names`.
+  Layout(const FileParts& parts, const EncodedScene* scene, std::string names)
+      : names_(std::move(names)), cook_record_(parts.cook_record) {
+    std::uint32_t name_offset = 0;
+    for (const EncodedTree& tree : parts.trees) {
+      records_.push_back(record_of(tree, name_offset));
       certificates_.push_back(certificate_of(tree));
-      names_ += tree.name;
+      name_offset += static_cast<std::uint32_t>(tree.name.size());
     }
     sections_.push_back({SectionKind::kTrees, kNoOwner, bytes_of(records_)});
     add(SectionKind::kNames, kNoOwner, bytes_of(names_));
-    for (std::uint32_t i = 0; i < trees.size(); ++i) {
+    if (scene != nullptr) add_scene(*scene);
+    for (std::uint32_t i = 0; i < parts.trees.size(); ++i) {
+      const EncodedTree& tree = parts.trees[i];
       sections_.push_back(
           {SectionKind::kCertificate, i, bytes_of(std::span(certificates_).subspan(i, 1))});
-      add(SectionKind::kNodes, i, trees[i].nodes.bytes);
-      add(SectionKind::kVertices, i, trees[i].geometry.vertices);
-      add(SectionKind::kCorners, i, trees[i].geometry.corners);
-      add(SectionKind::kFaceIds, i, trees[i].geometry.face_ids);
+      add(SectionKind::kNodes, i, tree.nodes.bytes);
+      add(SectionKind::kVertices, i, tree.geometry.vertices);
+      add(SectionKind::kCorners, i, tree.geometry.corners);
+      add(SectionKind::kFaceIds, i, tree.geometry.face_ids);
+      if (scene == nullptr || i >= scene->material_runs.size()) continue;
+      add(SectionKind::kMaterialRuns, i, scene->material_runs[i]);
+      add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);
     }
     add(SectionKind::kCookRecord, kNoOwner, bytes_of(cook_record_));
     place();
@@ -73,14 +80,27 @@ class Layout {
     if (!bytes.empty()) sections_.push_back({kind, owner, bytes});
   }
 
+  // What a top-level walk reads stands together.
+  void add_scene(const EncodedScene& scene) {
+    add(SectionKind::kScene, kNoOwner, scene.scene);
+    add(SectionKind::kLayers, kNoOwner, scene.layers);
+    add(SectionKind::kSceneNodes, kNoOwner, scene.nodes);
+    add(SectionKind::kInstances, kNoOwner, scene.instances);
+    add(SectionKind::kPoses, kNoOwner, scene.poses);
+    add(SectionKind::kMaterials, kNoOwner, scene.materials);
+    add(SectionKind::kLeftOut, kNoOwner, scene.left_out);
+  }
+
   void place() {
     std::uint64_t at = sizeof(FileHeader) + sections_.size() * sizeof(SectionEntry);
     for (const Section& section : sections_) {
       SectionEntry entry{};
       entry.kind = static_cast<std::uint32_t>(section.kind);
-      const bool informative = section.kind == SectionKind::kCertificate ||
-                               section.kind == SectionKind::kNames ||
-                               section.kind == SectionKind::kCookRecord;
+      const bool informative =
+          section.kind == SectionKind::kCertificate || section.kind == SectionKind::kNames ||
+          section.kind == SectionKind::kMaterials || section.kind == SectionKind::kMaterialRuns ||
+          section.kind == SectionKind::kFaceMaterials || section.kind == SectionKind::kLeftOut ||
+          section.kind == SectionKind::kCookRecord;
       entry.flags = informative ? 0 : kSectionRequired;
       entry.owner = section.owner;
       entry.offset = align_up(at, kSectionAlignment);
@@ -101,11 +121,7 @@ class Layout {
   FileHeader header_{};
 };
 
-}  // namespace
-
-std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
-                                 const std::string& cook_record) {
-  const Layout layout(trees, cook_record);
+std::vector<std::byte> bytes_of_file(const Layout& layout) {
   std::vector<std::byte> out(layout.file_bytes());
   static_cast<void>(layout.emit([at = out.data()](Bytes bytes) mutable {
     at = std::copy(bytes.begin(), bytes.end(), at);
@@ -114,16 +130,66 @@ std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
   return out;
 }
 
-Status write_file(const std::filesystem::path& path, std::span<const EncodedTree> trees,
-                  const std::string& cook_record) {
-  if (trees.size() > kMaxTrees) {
-    return Error{Errc::kMeshTooLarge, path.string() + ": " + std::to_string(trees.size()) +
-                                          " trees, limit " + std::to_string(kMaxTrees)};
-  }
+// The names of all trees, to which a scene adds its own.
+std::string tree_names(std::span<const EncodedTree> trees) {
+  std::string names;
+  for (const EncodedTree& tree : trees) names += tree.name;
+  return names;
+}
+
+// Calls use(const Layout&) with the file's layout.
+template <class Use>
+Status with_layout(const FileParts& parts, Use use) {
+  std::string names = tree_names(parts.trees);
+  if (parts.scene == nullptr) return use(Layout(parts, nullptr, std::move(names)));
+  const Result<EncodedScene> scene = encode_scene(parts.trees, *parts.scene, names);
+  if (!scene) return scene.error();
+  return use(Layout(parts, &*scene, std::move(names)));
+}
+
+Status check_tree_count(std::size_t count) {
+  if (count <= kMaxTrees) return {};
+  return Error{Errc::kMeshTooLarge,
+               std::to_string(count) + " trees, limit " + std::to_string(kMaxTrees)};
+}
+
+}  // namespace
+
+Result<std::vector<std::byte>> serialize(const FileParts& parts) {
+  std::vector<std::byte> out;
+  const Status status = with_layout(parts, [&](const Layout& layout) {
+    out = bytes_of_file(layout);
+    return Status{};
+  });
+  if (!status) return status.error();
+  return out;
+}
+
+Result<std::uint64_t> file_bytes(const FileParts& parts) {
+  std::uint64_t bytes = 0;
+  const Status status = with_layout(parts, [&](const Layout& layout) {
+    bytes = layout.file_bytes();
+    return Status{};
+  });
+  if (!status) return status.error();
+  return bytes;
+}
+
+std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
+                                 const std::string& cook_record) {
+  return bytes_of_file(Layout({trees, cook_record, nullptr}, nullptr, tree_names(trees)));
+}
+
+Status write_file(const std::filesystem::path& path, const FileParts& parts) {
+  if (Status status = check_tree_count(parts.trees.size()); !status) return status;
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
-  const Layout layout(trees, cook_record);
-  if (Status status = layout.emit([&](Bytes bytes) { return file->write(bytes); }); !status) {
+  if (Status status =
+          with_layout(parts,
+                      [&](const Layout& layout) {
+                        return layout.emit([&](Bytes bytes) { return file->write(bytes); });
+                      });
+      !status) {
     return status;
   }
   const Result<Mapping> written = Mapping::map(file->descriptor(), path);

@@ -8,18 +8,32 @@
 #include <vector>
 
 #include <boxtree/cooker/encode/encoded_tree.h>
+#include <boxtree/cooker/scene/encoded_scene.h>
 #include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
 
-/// The whole file in memory: what write_file writes. `cook_record` is omitted when empty.
+/// What a file holds. `cook_record` is omitted when empty, the scene when there is none.
+struct FileParts {
+  std::span<const EncodedTree> trees;
+  std::string cook_record;
+  const SceneParts* scene = nullptr;
+};
+
+/// The whole file in memory: what write_file writes. Errors: those of encode_scene.
+Result<std::vector<std::byte>> serialize(const FileParts& parts);
+
+/// How many bytes the file would have. Errors likewise.
+Result<std::uint64_t> file_bytes(const FileParts& parts);
+
+/// The same as serialize() for trees alone, which cannot fail.
 [[nodiscard]] std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                                const std::string& cook_record = {});
 
 /// Writes the file, maps what was written, proves every tree of it (cooker/proof/proof.h), and only
 /// then lets it take the place of `path`. On any error the old file is untouched.
-/// Errors: kWriteFailed; the first finding if the proof fails, which is a defect of ours.
-Status write_file(const std::filesystem::path& path, std::span<const EncodedTree> trees,
-                  const std::string& cook_record);
+/// Errors: kWriteFailed; kMeshTooLarge for more trees than a file can hold; those of encode_scene;
+/// the first finding if the proof fails, which is a defect of ours.
+Status write_file(const std::filesystem::path& path, const FileParts& parts);
 
 }  // namespace boxtree::cooker

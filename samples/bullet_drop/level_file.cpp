@@ -14,7 +14,7 @@ boxtree::Status cook_level(const Level& level, const std::filesystem::path& path
   }
   auto cooked = boxtree::cooker::cook_mesh(mesh, options);
   if (!cooked) return cooked.error();
-  return boxtree::cooker::write_file(path, std::span(&cooked->tree, 1), "");
+  return boxtree::cooker::write_file(path, {std::span(&cooked->tree, 1), {}});
 }
 
 btTriangleIndexVertexArray arrays_of(Level& level) {

@@ -126,13 +126,13 @@ TEST(WriteFile, FullDiskLeavesTheOldAndNamesTheFile) {
   Status status;
   {
     const FullDisk full(4096);
-    status = write_file(target, std::span(&cooked->tree, 1), "{}\n");
+    status = write_file(target, {std::span(&cooked->tree, 1), "{}\n"});
   }
   ASSERT_EQ(status.code(), Errc::kWriteFailed);
   EXPECT_NE(status.error().detail.find(target.string()), std::string::npos);
   EXPECT_EQ(test::read_text(target), "old");
   EXPECT_EQ(entries(folder.path()), 1u);
-  ASSERT_TRUE(write_file(target, std::span(&cooked->tree, 1), "{}\n").ok());
+  ASSERT_TRUE(write_file(target, {std::span(&cooked->tree, 1), "{}\n"}).ok());
   EXPECT_TRUE(File::open(target).ok());
 }
 
@@ -142,7 +142,7 @@ TEST(WriteFile, ATreeThatDoesNotHoldIsNotReleased) {
   const auto target = folder.write("torus.bxt", "old");
   Result<CookedTree> cooked = cook_mesh(test::torus(24, 16), {});
   cooked->tree.nodes.root_box.high[0] -= 1;
-  const Status status = write_file(target, std::span(&cooked->tree, 1), "");
+  const Status status = write_file(target, {std::span(&cooked->tree, 1), {}});
   EXPECT_EQ(status.code(), Errc::kBoxEscape) << status.error().message();
   EXPECT_EQ(test::read_text(target), "old");
   EXPECT_EQ(entries(folder.path()), 1u);

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: MIT
+// Proof by walking the top level that was written.
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/proof/scene_proof.h>
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/scene/scene.h>
+
+namespace boxtree::cooker {
+namespace {
+
+class SceneWalk {
+ public:
+  SceneWalk(const File& file, const Scene& scene) : file_(file), scene_(scene) {}
+
+  Findings run() {
+    const SceneRecord& record = scene_.record();
+    reached_.assign(record.static_count, false);
+    if (record.root == RootKind::kLeaf) visit_leaf(0, root_box<float>(scene_.top_level()));
+    if (record.root == RootKind::kSubtree) {
+      visit_node({0, 0}, root_box<float>(scene_.top_level()), 1);
+    }
+    for (std::uint32_t i = 0; i < record.static_count; ++i) {
+      if (!reached_[i]) add(Errc::kFaceUnreachable, name(i) + "no leaf of the top level is it");
+    }
+    compare("nodes", nodes_, record.node_count);
+    compare("depth", depth_, record.depth);
+    for (std::uint32_t i = 0; i < record.instance_count; ++i) check_instance(i);
+    check_layers();
+    check_materials();
+    check_left_out();
+    return std::move(findings_);
+  }
+
+ private:
+  void add(Errc code, const std::string& what) {
+    if (findings_.size() < kMaxFindings) findings_.push_back({code, "scene: " + what});
+  }
+  static std::string name(std::uint32_t instance) {
+    return "instance " + std::to_string(instance) + ": ";
+  }
+  void compare(const char* what, std::uint32_t found, std::uint32_t stated) {
+    if (found == stated) return;
+    add(Errc::kRecordInvalid, "the record states " + std::to_string(stated) + " " + what +
+                                  ", the top level has " + std::to_string(found));
+  }
+
+  // The bounds of all instances below, in the scene's frame. Children stand behind their parents,
+  // so that numbers grow on every path; the depth is limited all the same.
+  Box<double> visit_node(NodeRef node, const Box<float>& box, std::uint32_t depth) {
+    Box<double> content = empty_box<double>();
+    TopLevel::Codec::Children children;
+    if (depth > kMaxWideDepth || nodes_ == scene_.record().node_count) {
+      add(Errc::kDepthExceeded,
+          "node " + std::to_string(node.first) + " is too deep, or met twice");
+      return content;
+    }
+    if (!scene_.top_level().codec.expand(node, box, children)) {
+      add(Errc::kNodeCorrupt, "node " + std::to_string(node.first) + " contradicts itself");
+      return content;
+    }
+    ++nodes_;
+    depth_ = std::max(depth_, depth);
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      const Box<double> below =
+          children.is_leaf(i)
+              ? visit_leaf(scene_.top_level().instance(children.ref[i]), children.box(i))
+              : visit_node(children.ref[i], children.box(i), depth + 1);
+      expand(content, below);
+    }
+    check_box("node " + std::to_string(node.first), content, box);
+    return content;
+  }
+
+  Box<double> visit_leaf(std::uint32_t instance, const Box<float>& box) {
+    if (reached_[instance]) add(Errc::kFaceRepeated, name(instance) + "is two leaves");
+    reached_[instance] = true;
+    Errc error = Errc::kOk;
+    const std::optional<Scene::Placed> placed = scene_.place(instance, error);
+    if (!placed) return empty_box<double>();  // check_instance says why
+    const Box<double> content = scene_.to_frame(placed->placement.world_box());
+    check_box(name(instance) + "its leaf", content, box);
+    return content;
+  }
+
+  void check_box(const std::string& what, const Box<double>& content, const Box<float>& box) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (content.low[k] >= box.low[k] && content.high[k] <= box.high[k]) continue;
+      if (content.low[k] > content.high[k]) return;  // nothing below, already reported
+      add(Errc::kBoxEscape, what + " does not hold what is below it on axis " + std::to_string(k));
+      return;
+    }
+  }
+
+  void check_instance(std::uint32_t instance) {
+    const auto record =
+        load<InstanceRecord>(file_.section(SectionKind::kInstances).data(), instance);
+    const bool is_static = instance < scene_.record().static_count;
+    if (is_static == ((record.flags & kInstanceMoves) != 0) ||
+        (record.flags & ~kInstanceKnownFlags) != 0) {
+      add(Errc::kRecordInvalid, name(instance) + "flags " + std::to_string(record.flags));
+    }
+    check_text(name(instance) + "its name", record.name_offset, record.name_bytes);
+    Errc error = Errc::kOk;
+    const std::optional<Scene::Placed> placed = scene_.place(instance, error);
+    if (!placed) {
+      add(error, name(instance) + "its tree, layer or pose");
+    } else if (is_static && placed->placement.condition() > scene_.record().condition) {
+      add(Errc::kRecordInvalid, name(instance) + "its condition is above the scene's");
+    }
+  }
+
+  void check_text(const std::string& what, std::uint32_t offset, std::uint32_t bytes) {
+    if (in_range(offset, bytes, file_.section(SectionKind::kNames).size())) return;
+    add(Errc::kRecordInvalid, what + " lies outside section names");
+  }
+
+  void check_layers() {
+    const std::uint32_t count = scene_.layer_count();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const LayerRecord layer = scene_.layer(i);
+      const std::string what = "layer " + std::to_string(i) + ": ";
+      check_text(what + "its name", layer.name_offset, layer.name_bytes);
+      if ((layer.query_kinds & ~std::uint32_t{scene_.query_kinds()}) != 0) {
+        add(Errc::kRecordInvalid, what + "answers queries that the scene does not");
+      }
+      for (std::uint32_t j = 0; j < i; ++j) {
+        if (((layer.meets >> j) & 1u) == ((scene_.layer(j).meets >> i) & 1u)) continue;
+        add(Errc::kRecordInvalid, what + "meets layer " + std::to_string(j) + " one way alone");
+      }
+    }
+  }
+
+  void check_materials() {
+    const std::uint32_t count = scene_.material_count();
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const auto record = load<MaterialRecord>(file_.section(SectionKind::kMaterials).data(), i);
+      check_text("material " + std::to_string(i) + ": its name", record.name_offset,
+                 record.name_bytes);
+    }
+    for (std::uint32_t tree = 0; tree < file_.tree_count(); ++tree) {
+      const std::string what = "materials of tree " + std::to_string(tree) + ": ";
+      const Bytes runs = file_.section(SectionKind::kMaterialRuns, tree);
+      for (std::size_t i = 0; i < runs.size() / sizeof(MaterialRun); ++i) {
+        const auto run = load<MaterialRun>(runs.data(), i);
+        const bool is_ordered =
+            i == 0 ? run.first_face == 0
+                   : run.first_face > load<MaterialRun>(runs.data(), i - 1).first_face;
+        if (!is_ordered || run.material >= count) {
+          add(Errc::kRecordInvalid, what + "run " + std::to_string(i));
+        }
+      }
+      const Bytes faces = file_.section(SectionKind::kFaceMaterials, tree);
+      const std::uint32_t face_count = file_.tree_record(tree).face_count;
+      const std::uint8_t bytes = faces.size() == face_count ? 1 : 2;
+      for (std::size_t face = 0; face < faces.size() / bytes; ++face) {
+        if (load_number(faces.data(), bytes, face) >= count) {
+          add(Errc::kRecordInvalid, what + "face " + std::to_string(face));
+        }
+      }
+    }
+  }
+
+  void check_left_out() {
+    const Bytes bytes = file_.section(SectionKind::kLeftOut);
+    for (std::size_t i = 0; i < bytes.size() / sizeof(LeftOutRecord); ++i) {
+      const auto record = load<LeftOutRecord>(bytes.data(), i);
+      const std::string what = "left out " + std::to_string(i) + ": ";
+      check_text(what + "its reason", record.text_offset, record.text_bytes);
+      if (record.reserved0 != 0 || record.reserved1 != 0 ||
+          (record.owner != kNoOwner && record.owner >= file_.tree_count())) {
+        add(Errc::kRecordInvalid, what + "its record");
+      }
+    }
+  }
+
+  const File& file_;
+  const Scene& scene_;
+  std::vector<bool> reached_;
+  std::uint32_t nodes_ = 0;
+  std::uint32_t depth_ = 0;
+  Findings findings_;
+};
+
+}  // namespace
+
+Findings prove_scene(const File& file) {
+  if (file.section(SectionKind::kScene).empty()) return {};
+  std::vector<SceneMeshArrays> absent;
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    absent.push_back({i, absent_arrays(file.tree_record(i))});
+  }
+  SceneOptions options;
+  options.meshes = absent;
+  const Result<Scene> scene = Scene::bind(file, options);
+  if (!scene) return {{scene.code(), "scene: " + scene.error().detail}};
+  return SceneWalk(file, *scene).run();
+}
+
+}  // namespace boxtree::cooker

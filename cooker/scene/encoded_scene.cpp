@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: MIT
+// Records and sections of a scene.
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/scene/encoded_scene.h>
+#include <boxtree/format/container.h>
+#include <boxtree/runtime/scene/placement.h>
+
+namespace boxtree::cooker {
+namespace {
+
+template <class T>
+void append(std::vector<std::byte>& bytes, const T& value) {
+  const auto* const from = reinterpret_cast<const std::byte*>(&value);
+  bytes.insert(bytes.end(), from, from + sizeof(T));
+}
+
+class SceneEncoder {
+ public:
+  SceneEncoder(std::span<const EncodedTree> trees, const SceneParts& parts, std::string& names)
+      : trees_(trees), parts_(parts), names_(names) {}
+
+  Result<EncodedScene> run() {
+    if (parts_.instances.size() > kMaxInstances) {
+      return Error{Errc::kMeshTooLarge,
+                   fmt::format("{} instances, limit {}", parts_.instances.size(), kMaxInstances)};
+    }
+    if (Status status = order_instances(); !status) return status.error();
+    write_instances();
+    write_layers();
+    write_materials();
+    write_left_out();
+    write_record();
+    if (names_.size() > std::numeric_limits<std::uint32_t>::max()) {
+      return Error{Errc::kMeshTooLarge, "names take more than 4 GiB"};
+    }
+    return std::move(out_);
+  }
+
+ private:
+  // Leaves of the top level first, then what moves.
+  Status order_instances() {
+    std::vector<std::uint32_t> resting;
+    std::vector<Box<double>> boxes;
+    for (std::uint32_t i = 0; i < parts_.instances.size(); ++i) {
+      const PlacedTree& instance = parts_.instances[i];
+      const EncodedTree& tree = trees_[instance.tree];
+      const Frame frame(Eigen::Vector3d(tree.origin[0], tree.origin[1], tree.origin[2]),
+                        tree.scale_exponent);
+      const std::optional<Placement> placed =
+          Placement::make(frame, tree.nodes.root_box, instance.pose);
+      if (!placed) {
+        return Error{
+            Errc::kInvalidPose,
+            fmt::format("instance {} '{}': its transform is not finite, or cannot be undone",
+                        instance.id, instance.name)};
+      }
+      if (instance.moves) {
+        order_.push_back(i);
+      } else {
+        resting.push_back(i);
+        boxes.push_back(placed->world_box());
+        condition_ = std::max(condition_, placed->condition());
+      }
+    }
+    std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return parts_.instances[a].id < parts_.instances[b].id;
+    });
+    top_ = build_top_level(boxes);
+    std::vector<std::uint32_t> leaves;
+    leaves.reserve(parts_.instances.size());
+    for (const std::uint32_t leaf : top_.order) leaves.push_back(resting[leaf]);
+    order_.insert(order_.begin(), leaves.begin(), leaves.end());
+    return {};
+  }
+
+  // Equal names share their bytes: rows of props, and lines of a profile.
+  std::uint32_t add_name(const std::string& name) {
+    const auto [known, is_new] =
+        offsets_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_ += name;
+    return name.empty() ? 0 : known->second;
+  }
+
+  void write_instances() {
+    has_f32_poses_ = std::ranges::all_of(parts_.instances, [](const PlacedTree& instance) {
+      const auto numbers = instance.pose.matrix().topRows<3>();
+      return (numbers.cast<float>().cast<double>().array() == numbers.array()).all();
+    });
+    for (const std::uint32_t i : order_) {
+      const PlacedTree& instance = parts_.instances[i];
+      // Longer names than the record can count are cut: names serve people.
+      const std::string name = instance.name.substr(0, std::numeric_limits<std::uint16_t>::max());
+      append(out_.instances, InstanceRecord{instance.tree, instance.id, add_name(name),
+                                            static_cast<std::uint16_t>(name.size()),
+                                            static_cast<std::uint8_t>(instance.layer),
+                                            instance.moves ? kInstanceMoves : std::uint8_t{0}});
+      for (Eigen::Index row = 0; row < 3; ++row) {
+        for (Eigen::Index column = 0; column < 4; ++column) {
+          const double number = instance.pose.matrix()(row, column);
+          if (has_f32_poses_) {
+            append(out_.poses, static_cast<float>(number));
+          } else {
+            append(out_.poses, number);
+          }
+        }
+      }
+    }
+  }
+
+  void write_layers() {
+    for (const SceneLayer& layer : parts_.layers) {
+      append(out_.layers,
+             LayerRecord{layer.meets, static_cast<QueryKinds>(layer.queries & parts_.queries),
+                         add_name(layer.name), static_cast<std::uint32_t>(layer.name.size())});
+    }
+  }
+
+  void write_materials() {
+    for (const std::string& material : parts_.materials) {
+      append(out_.materials,
+             MaterialRecord{add_name(material), static_cast<std::uint32_t>(material.size())});
+    }
+    const bool is_narrow = parts_.materials.size() <= 256;
+    for (const TreeMaterials& materials : parts_.tree_materials) {
+      std::vector<std::byte> runs, faces;
+      for (const MaterialRun& run : materials.runs) append(runs, run);
+      for (const std::uint32_t material : materials.faces) {
+        if (is_narrow) {
+          append(faces, static_cast<std::uint8_t>(material));
+        } else {
+          append(faces, static_cast<std::uint16_t>(material));
+        }
+      }
+      out_.material_runs.push_back(std::move(runs));
+      out_.face_materials.push_back(std::move(faces));
+    }
+  }
+
+  void write_left_out() {
+    for (const LeftOutPart& part : parts_.left_out) {
+      append(out_.left_out, LeftOutRecord{part.part, 0, part.owner, part.line, add_name(part.text),
+                                          static_cast<std::uint32_t>(part.text.size()), 0});
+    }
+  }
+
+  void write_record() {
+    SceneRecord record{};
+    record.instance_count = static_cast<std::uint32_t>(parts_.instances.size());
+    record.static_count = static_cast<std::uint32_t>(top_.order.size());
+    record.node_count = top_.nodes.node_count;
+    record.root = top_.nodes.root;
+    record.depth = top_.nodes.depth;
+    record.pose_bytes = has_f32_poses_ ? sizeof(float) : sizeof(double);
+    record.layer_count = static_cast<std::uint8_t>(parts_.layers.size());
+    record.query_kinds = parts_.queries;
+    record.scale_exponent = top_.scale_exponent;
+    record.material_count = static_cast<std::uint32_t>(parts_.materials.size());
+    record.origin = top_.origin;
+    record.root_low = top_.nodes.root_box.low;
+    record.root_high = top_.nodes.root_box.high;
+    record.condition = condition_;
+    append(out_.scene, record);
+    out_.nodes = std::move(top_.nodes.bytes);
+  }
+
+  std::span<const EncodedTree> trees_;
+  const SceneParts& parts_;
+  std::string& names_;
+  std::unordered_map<std::string, std::uint32_t> offsets_;
+  EncodedTopLevel top_;
+  std::vector<std::uint32_t> order_;
+  double condition_ = 0;
+  bool has_f32_poses_ = true;
+  EncodedScene out_;
+};
+
+}  // namespace
+
+Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
+                                  std::string& names) {
+  return SceneEncoder(trees, parts, names).run();
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,334 @@
+// SPDX-License-Identifier: MIT
+// Sections to lines of kept bytes, decisions to lines of what was left out.
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/scene/scene_account.h>
+#include <boxtree/format/container.h>
+#include <boxtree/runtime/file/checksum.h>
+#include <boxtree/runtime/file/file.h>
+
+namespace boxtree::cooker {
+namespace {
+
+class Account {
+ public:
+  Account(const CookedParts& cooked, std::vector<WhyLine>& why) : cooked_(cooked), why_(why) {}
+
+  void add_kept(const File& file) {
+    std::uint64_t of_sections = 0;
+    for (const SectionEntry& entry : file.container().sections) {
+      add_section(entry);
+      of_sections += entry.size;
+    }
+    const std::uint64_t table =
+        sizeof(FileHeader) + file.container().sections.size() * sizeof(SectionEntry);
+    keep("header and section table", table, "what a reader opens the file by");
+    keep("padding", file.bytes().size() - of_sections - table,
+         "every section starts at a multiple of 64 bytes");
+  }
+
+  void add_left_out() {
+    for (const Decision& decision : cooked_.plan.decisions) {
+      // Digits are told by what was chosen of what the plan allows.
+      if (decision.kept || decision.aspect == Aspect::kPrecision) continue;
+      const Estimate estimate = bytes_of(decision);
+      why_.push_back({aspect_name(decision.aspect), owner_of(decision), false, estimate.bytes,
+                      estimate.is_estimate, decision.reason, cited(decision.line)});
+    }
+    if (cooked_.profile.path.empty() && !cooked_.options.face_ids) {
+      std::uint64_t bytes = 0;
+      for (const EncodedTree& tree : cooked_.trees) bytes += face_id_bytes(tree);
+      why_.push_back(
+          {aspect_name(Aspect::kFaceIds), "file", false, bytes, true, "--no-face-ids", {}});
+    }
+    if (!cooked_.options.cook_record) {
+      why_.push_back({"cook record", "file", false, 0, true, "--strip", {}});
+    }
+    add_rounding();
+  }
+
+ private:
+  struct Estimate {
+    std::uint64_t bytes = 0;
+    bool is_estimate = true;
+  };
+
+  [[nodiscard]] std::string cited(std::uint32_t line) const {
+    return line == 0 ? std::string() : cooked_.profile.cite(line);
+  }
+  [[nodiscard]] std::string mesh_name(std::size_t mesh) const {
+    return "mesh " + cooked_.scene.meshes[mesh].mesh.name;
+  }
+  [[nodiscard]] std::string owner_of(const Decision& decision) const {
+    switch (decision.owner_kind) {
+      case OwnerKind::kFile:
+        return "file";
+      case OwnerKind::kObject:
+        return "object " + cooked_.profile.objects[decision.owner].name.value;
+      case OwnerKind::kMesh:
+        return mesh_name(decision.owner);
+    }
+    return {};
+  }
+
+  void keep(std::string part, std::uint64_t bytes, std::string reason) {
+    why_.push_back({std::move(part), "file", true, bytes, false, std::move(reason), {}});
+  }
+
+  // What the plan decided of a part of a mesh, else of the whole file.
+  [[nodiscard]] const Decision* decision_on(Aspect aspect, std::optional<std::size_t> mesh) const {
+    const Decision* of_file = nullptr;
+    for (const Decision& decision : cooked_.plan.decisions) {
+      if (decision.aspect != aspect) continue;
+      if (mesh && decision.owner_kind == OwnerKind::kMesh && decision.owner == *mesh) {
+        return &decision;
+      }
+      if (decision.owner_kind == OwnerKind::kFile) of_file = &decision;
+    }
+    return of_file;
+  }
+
+  void add_section(const SectionEntry& entry) {
+    const auto kind = static_cast<SectionKind>(entry.kind);
+    WhyLine line;
+    line.part = section_name(kind);
+    line.bytes = entry.size;
+    std::optional<std::size_t> mesh;
+    if (entry.owner != kNoOwner) mesh = cooked_.mesh_of_tree[entry.owner];
+    line.owner = mesh ? mesh_name(*mesh) : "file";
+    std::optional<Aspect> aspect;
+    line.reason = purpose(kind, entry, aspect);
+    const Decision* decision = aspect ? decision_on(*aspect, mesh) : nullptr;
+    if (decision != nullptr) {
+      line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
+      line.line = cited(decision->line);
+    }
+    why_.push_back(std::move(line));
+  }
+
+  // Why a section is there, and what the plan may have said of it.
+  [[nodiscard]] std::string purpose(SectionKind kind, const SectionEntry& entry,
+                                    std::optional<Aspect>& aspect) const {
+    switch (kind) {
+      case SectionKind::kTrees:
+        return "one record a tree";
+      case SectionKind::kNodes:
+        aspect = Aspect::kCodec;
+        return fmt::format("codec {}", codec_name(cooked_.trees[entry.owner].nodes.codec));
+      case SectionKind::kVertices:
+      case SectionKind::kCorners:
+        if (cooked_.trees[entry.owner].geometry.geometry == GeometryId::kGrid) {
+          aspect = Aspect::kPrecision;
+        }
+        return geometry_reason(kind, cooked_.trees[entry.owner]);
+      case SectionKind::kFaceIds:
+        aspect = Aspect::kFaceIds;
+        return {};
+      case SectionKind::kCertificate:
+        return "what was proven of the tree";
+      case SectionKind::kNames:
+        aspect = Aspect::kNames;
+        return {};
+      case SectionKind::kCookRecord:
+        return "how the file was made; --strip leaves it out";
+      case SectionKind::kScene:
+      case SectionKind::kSceneNodes:
+      case SectionKind::kInstances:
+        return fmt::format("{} instances", cooked_.parts.instances.size());
+      case SectionKind::kPoses:
+        return entry.size == cooked_.parts.instances.size() * kNumbersOfPose * sizeof(float)
+                   ? "f32 holds every number"
+                   : "some number needs f64";
+      case SectionKind::kLayers:
+        return "who answers what and meets whom";
+      case SectionKind::kMaterials:
+      case SectionKind::kMaterialRuns:
+      case SectionKind::kFaceMaterials:
+        aspect = Aspect::kMaterials;
+        return {};
+      case SectionKind::kLeftOut:
+        return "so that a query for what is left out is told why";
+      case SectionKind::kBlob:
+        return "the file, compressed whole";
+    }
+    return {};
+  }
+
+  static std::string geometry_reason(SectionKind kind, const EncodedTree& tree) {
+    if (tree.geometry.geometry == GeometryId::kGrid) {
+      return fmt::format("grid, no vertex moved by more than {:.2g}",
+                         tree.geometry.max_vertex_error);
+    }
+    if (kind == SectionKind::kVertices) {
+      return tree.positions_f64 ? "exact, f64" : "exact, f32";
+    }
+    return tree.geometry.corner_bytes == 2 ? "16 bits number every vertex"
+                                           : "vertices take numbers of 32 bits";
+  }
+
+  static std::uint64_t face_id_bytes(const EncodedTree& tree) {
+    const std::uint64_t width = tree.face_count <= 0x100 ? 1 : tree.face_count <= 0x10000 ? 2 : 4;
+    return tree.face_count * width;
+  }
+
+  // Bytes that a triangle takes in this file: what those of a mesh that was never cooked would
+  // have taken, about.
+  [[nodiscard]] double bytes_per_triangle() const {
+    double bytes = 0, triangles = 0;
+    for (const EncodedTree& tree : cooked_.trees) {
+      bytes += static_cast<double>(tree.nodes.bytes.size() + tree.geometry.vertices.size() +
+                                   tree.geometry.corners.size());
+      triangles += tree.triangle_count;
+    }
+    return triangles > 0 ? bytes / triangles : 0;
+  }
+
+  [[nodiscard]] Estimate bytes_of(const Decision& decision) const {
+    switch (decision.aspect) {
+      case Aspect::kFaceIds:
+        return {sum_over_trees(decision, face_id_bytes), true};
+      case Aspect::kMaterials:
+        return {material_bytes(decision), true};
+      case Aspect::kNames:
+        return {name_bytes(decision), true};
+      case Aspect::kInstances:
+        return {instance_bytes(decision), true};
+      case Aspect::kMesh:
+        return {about(mesh_triangles(decision.owner)), true};
+      case Aspect::kHiddenFaces:
+        return {about(static_cast<double>(cooked_.plan.meshes[decision.owner].hidden_face_count)),
+                true};
+      case Aspect::kGeometry:
+        return {about(mesh_triangles(decision.owner)), true};
+      case Aspect::kRay:
+      case Aspect::kBox:
+      case Aspect::kPoint:
+      case Aspect::kPair:
+      case Aspect::kContacts:
+      case Aspect::kPrecision:
+      case Aspect::kCodec:
+        break;  // no part of the file serves one of them alone
+    }
+    return {0, false};
+  }
+
+  [[nodiscard]] std::uint64_t about(double triangles) const {
+    return static_cast<std::uint64_t>(triangles * bytes_per_triangle());
+  }
+  [[nodiscard]] double mesh_triangles(std::size_t mesh) const {
+    const auto at = std::find(cooked_.mesh_of_tree.begin(), cooked_.mesh_of_tree.end(), mesh);
+    if (at != cooked_.mesh_of_tree.end()) {
+      return cooked_.trees[static_cast<std::size_t>(at - cooked_.mesh_of_tree.begin())]
+          .triangle_count;
+    }
+    return static_cast<double>(cooked_.scene.meshes[mesh].mesh.triangle_count());
+  }
+
+  template <class Bytes>
+  [[nodiscard]] std::uint64_t sum_over_trees(const Decision& decision, Bytes bytes) const {
+    std::uint64_t sum = 0;
+    for (std::size_t t = 0; t < cooked_.trees.size(); ++t) {
+      if (decision.owner_kind == OwnerKind::kMesh && cooked_.mesh_of_tree[t] != decision.owner) {
+        continue;
+      }
+      if (decision.owner_kind == OwnerKind::kObject) continue;
+      sum += bytes(cooked_.trees[t]);
+    }
+    return sum;
+  }
+
+  [[nodiscard]] std::uint64_t material_bytes(const Decision& decision) const {
+    std::uint64_t bytes = 0;
+    for (std::size_t m = 0; m < cooked_.scene.meshes.size(); ++m) {
+      if (decision.owner_kind == OwnerKind::kMesh && m != decision.owner) continue;
+      bytes += cooked_.scene.meshes[m].materials.size() * sizeof(MaterialRun);
+    }
+    return bytes;
+  }
+
+  [[nodiscard]] std::uint64_t name_bytes(const Decision& decision) const {
+    std::uint64_t bytes = 0;
+    if (decision.owner_kind == OwnerKind::kMesh) {
+      return cooked_.scene.meshes[decision.owner].mesh.name.size();
+    }
+    for (std::size_t i = 0; i < cooked_.plan.instances.size(); ++i) {
+      const PlannedInstance& planned = cooked_.plan.instances[i];
+      const bool is_meant =
+          decision.owner_kind == OwnerKind::kFile || planned.object == decision.owner;
+      if (planned.kept && !planned.names && is_meant) {
+        bytes += cooked_.scene.instances[i].name.size();
+      }
+    }
+    return bytes;
+  }
+
+  [[nodiscard]] std::uint64_t instance_bytes(const Decision& decision) const {
+    std::uint64_t count = 0;
+    for (const PlannedInstance& planned : cooked_.plan.instances) {
+      const bool is_meant =
+          decision.owner_kind == OwnerKind::kFile || planned.object == decision.owner;
+      count += !planned.kept && is_meant ? 1 : 0;
+    }
+    return count * (sizeof(InstanceRecord) + kNumbersOfPose * sizeof(float));
+  }
+
+  // Positions that a grid saved: the difference to the exact candidate of the same codec.
+  void add_rounding() {
+    for (std::size_t t = 0; t < cooked_.trees.size(); ++t) {
+      const std::vector<Candidate>& candidates = cooked_.contests[t]->candidates;
+      const Candidate& chosen = candidates[cooked_.chosen[t]];
+      if (chosen.geometry != GeometryId::kGrid) continue;
+      std::uint64_t saved = 0;
+      for (const Candidate& other : candidates) {
+        if (other.geometry != GeometryId::kExact || other.geometry_bytes <= chosen.geometry_bytes) {
+          continue;
+        }
+        saved = std::max(saved, other.geometry_bytes - chosen.geometry_bytes);
+      }
+      if (saved == 0) continue;  // exact geometry was not tried
+      const std::size_t mesh = cooked_.mesh_of_tree[t];
+      const Decision* decision = decision_on(Aspect::kPrecision, mesh);
+      why_.push_back(
+          {"digits of positions", mesh_name(mesh), false, saved, false,
+           decision != nullptr ? decision->reason : "a grid keeps what the scene can tell apart",
+           decision != nullptr ? cited(decision->line) : std::string()});
+    }
+  }
+
+  const CookedParts& cooked_;
+  std::vector<WhyLine>& why_;
+};
+
+}  // namespace
+
+Status account(const CookedParts& cooked, const std::filesystem::path& written,
+               SceneReport& report) {
+  report.why.clear();
+  Account lines(cooked, report.why);
+  if (cooked.options.blob) {
+    report.file_bytes = std::filesystem::file_size(written);
+    report.why.push_back(
+        {"blob", "file", true, report.file_bytes, false, "the file, compressed whole", {}});
+  } else {
+    const Result<File> file = File::open(written);
+    if (!file) return file.error();
+    report.file_bytes = file->bytes().size();
+    lines.add_kept(*file);
+  }
+  lines.add_left_out();
+  return {};
+}
+
+std::uint64_t profile_hash(const Profile& profile) {
+  if (profile.path.empty()) return 0;
+  std::string text;
+  for (const std::string& line : profile.lines) text += line + "\n";
+  return checksum(std::as_bytes(std::span(text)));
+}
+
+}  // namespace boxtree::cooker

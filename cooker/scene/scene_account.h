@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The account behind --why: every byte of the file with what it is for and who wanted it, and every
+// part that is not there with what it would have taken.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <vector>
+
+#include <boxtree/cooker/scene/cook_scene.h>
+#include <boxtree/cooker/scene/encoded_scene.h>
+
+namespace boxtree::cooker {
+
+/// What a scene was cooked from and into; one tree, contest and choice for each tree of the file.
+struct CookedParts {
+  const SourceScene& scene;  // positions and faces of meshes may be gone
+  const Profile& profile;
+  const ScenePlan& plan;
+  std::span<const std::size_t> mesh_of_tree;
+  std::span<const EncodedTree> trees;
+  std::span<const Contest* const> contests;
+  std::span<const std::size_t> chosen;
+  const SceneParts& parts;
+  const CookOptions& options;
+};
+
+/// Fills file_bytes and why of `report` from the sections of the file that was written.
+/// Errors: those of File::open.
+Status account(const CookedParts& cooked, const std::filesystem::path& written,
+               SceneReport& report);
+
+/// A number that tells profiles apart; 0 without one.
+[[nodiscard]] std::uint64_t profile_hash(const Profile& profile);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,519 @@
+// SPDX-License-Identifier: MIT
+// Files to scenes: answers against brute force over all placed triangles of the source, what
+// leaving out does not change, and the account of the bytes.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/scene/cook_scene.h>
+#include <boxtree/runtime/boxtree.h>
+#include <boxtree/runtime/primitive/predicates.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+using test::require;
+
+struct PlacedFace {
+  std::uint32_t id;  // of the instance
+  std::uint32_t face;
+  Triangle triangle;
+};
+
+// Every corner as ((t + m0 x) + m1 y) + m2 z, as FORMAT.md says.
+std::vector<PlacedFace> placed_faces(const SourceScene& scene) {
+  std::vector<PlacedFace> faces;
+  for (const SceneInstance& instance : scene.instances) {
+    const SourceMesh& mesh = scene.meshes[instance.mesh].mesh;
+    const auto placed = [&](std::uint32_t vertex) {
+      const Eigen::Vector3d p = mesh.positions[vertex];
+      Eigen::Vector3d world;
+      for (Eigen::Index i = 0; i < 3; ++i) {
+        const auto row = instance.pose.linear().row(i);
+        world[i] =
+            ((instance.pose.translation()[i] + row[0] * p[0]) + row[1] * p[1]) + row[2] * p[2];
+      }
+      return world;
+    };
+    for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+      const auto& corner = mesh.faces[f].corner;
+      const auto a = placed(corner[0]), b = placed(corner[1]), c = placed(corner[2]);
+      faces.push_back({instance.id, mesh.face_id(f), {{a, b, c}}});
+      if (mesh.faces[f].is_quad()) {
+        faces.push_back({instance.id, mesh.face_id(f), {{a, c, placed(corner[3])}}});
+      }
+    }
+  }
+  return faces;
+}
+
+CookOptions exact_options() {
+  CookOptions options;
+  options.geometry = GeometryId::kExact;
+  return options;
+}
+
+class CookedFileOf {
+ public:
+  CookedFileOf(const fs::path& source, const CookOptions& options, const Profile& profile = {},
+               bool profile_names_source = false)
+      : report(require(
+            cook_scene(profile_names_source ? std::span<const fs::path>() : std::span(&source, 1),
+                       folder_.path() / "scene.bxt", options, profile))),
+        file(require(File::open(folder_.path() / "scene.bxt"))),
+        scene(require(Scene::bind(file))) {}
+
+ private:
+  test::TempFolder folder_;
+
+ public:
+  SceneReport report;
+  File file;
+  Scene scene;
+};
+
+// Compares rays, boxes, spheres and closest points with brute force over the source.
+void expect_brute_force(const fs::path& source, const Scene& scene, int questions) {
+  const SourceScene from = require(import_scene(source));
+  const std::vector<PlacedFace> faces = placed_faces(from);
+  ASSERT_EQ(scene.instance_count(), from.instances.size());
+  Eigen::AlignedBox3d bounds;
+  for (const PlacedFace& face : faces) {
+    for (const Eigen::Vector3d& corner : face.triangle.corner) bounds.extend(corner);
+  }
+  std::mt19937_64 random(17);
+  const auto point = [&](double reach) {
+    Eigen::Vector3d p;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double share = std::uniform_real_distribution<double>(-reach, 1 + reach)(random);
+      p[k] = bounds.min()[k] + share * bounds.sizes()[k];
+    }
+    return p;
+  };
+  const auto id_of = [&](std::uint32_t instance) { return require(scene.info(instance)).id; };
+  std::size_t hits = 0;
+  for (int i = 0; i < questions; ++i) {
+    const Eigen::Vector3d from_point = point(1);
+    const Ray ray{from_point, point(0) - from_point};
+    const RayShear shear(ray.origin, ray.direction);
+    double best = std::numeric_limits<double>::infinity();
+    for (const PlacedFace& face : faces) {
+      const auto hit = intersect_ray_triangle(shear, face.triangle);
+      if (hit && hit->t >= 0) best = std::min(best, hit->t);
+    }
+    const auto hit = require(closest_hit(scene, ray));
+    ASSERT_EQ(hit.has_value(), std::isfinite(best)) << i;
+    if (hit) {
+      ++hits;
+      ASSERT_NEAR(hit->hit.t, best, 1e-9 * (1 + best));
+    }
+    const Eigen::Vector3d half = 0.03 * bounds.sizes();
+    const Eigen::Vector3d middle = point(0);
+    const Eigen::AlignedBox3d box(middle - half, middle + half);
+    const double radius = 0.03 * bounds.diagonal().norm();
+    std::set<std::pair<std::uint32_t, std::uint32_t>> in_box, in_sphere, found_box, found_sphere;
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const PlacedFace& face : faces) {
+      if (triangle_intersects_box(face.triangle, box.min(), box.max())) {
+        in_box.insert({face.id, face.face});
+      }
+      const double squared =
+          (closest_point_on_triangle(middle, face.triangle) - middle).squaredNorm();
+      if (squared <= radius * radius) in_sphere.insert({face.id, face.face});
+      nearest = std::min(nearest, squared);
+    }
+    static_cast<void>(require(overlap_box(scene, box, [&](const SceneFace& face) {
+      return found_box.insert({id_of(face.instance), face.face.id}).second;
+    })));
+    static_cast<void>(require(overlap_sphere(scene, middle, radius, [&](const SceneFace& face) {
+      return found_sphere.insert({id_of(face.instance), face.face.id}).second;
+    })));
+    ASSERT_EQ(found_box, in_box);
+    ASSERT_EQ(found_sphere, in_sphere);
+    ASSERT_EQ(require(closest_point(scene, middle))->closest.distance, std::sqrt(nearest));
+  }
+  EXPECT_GT(hits, static_cast<std::size_t>(questions / 20));
+}
+
+std::uint64_t kept_bytes(const SceneReport& report) {
+  std::uint64_t sum = 0;
+  for (const WhyLine& line : report.why) sum += line.kept ? line.bytes : 0;
+  return sum;
+}
+
+const fs::path kLevel = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/level/level.gltf";
+
+TEST(CookScene, TheSampleLevelEqualsBruteForce) {
+  const CookedFileOf cooked(kLevel, exact_options());
+  EXPECT_EQ(cooked.report.instances, 53u);
+  EXPECT_EQ(cooked.report.cook.trees.size(), 8u);
+  EXPECT_TRUE(verify_file(cooked.file).empty());
+  expect_brute_force(kLevel, cooked.scene, 150);
+}
+
+class CookSceneModels : public testing::TestWithParam<const char*> {};
+
+TEST_P(CookSceneModels, EqualBruteForce) {
+  const fs::path model = fs::path("/usr/share/assimp/models") / GetParam();
+  if (!fs::exists(model)) GTEST_SKIP() << "package assimp-testmodels is not installed";
+  const CookedFileOf cooked(model, exact_options());
+  EXPECT_TRUE(verify_file(cooked.file).empty());
+  EXPECT_EQ(kept_bytes(cooked.report), cooked.file.bytes().size());
+  expect_brute_force(model, cooked.scene, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(Assimp, CookSceneModels,
+                         testing::Values("glTF2/2CylinderEngine-glTF-Binary/2CylinderEngine.glb",
+                                         "glTF/CesiumMilkTruck/CesiumMilkTruck.gltf",
+                                         "Collada/teapot_instancenodes.DAE",
+                                         "NFF/NFF/WithCamera.nff", "IFC/AC14-FZK-Haus.ifc"));
+
+// Strips the digits of positions, too: answers are those of the rounded triangles, the same for all
+// that is kept.
+TEST(CookScene, LeavingOutChangesNoAnswerToWhatIsKept) {
+  test::TempFolder folder;
+  const fs::path text = folder.write("scene.toml", R"([scene]
+queries = ["ray", "pair"]
+face_ids = false
+materials = false
+names = false
+exact = true
+[[object]]
+name = "crate"
+match = ["Crate"]
+motion = "moving"
+)");
+  const CookedFileOf whole(kLevel, exact_options());
+  const CookedFileOf stripped(kLevel, CookOptions(), require(read_profile(text)));
+  EXPECT_LT(stripped.report.file_bytes, whole.report.file_bytes);
+  EXPECT_EQ(kept_bytes(stripped.report), stripped.report.file_bytes);
+  EXPECT_EQ(stripped.scene.moving().size(), 1u);
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 2000; ++i) {
+    const Ray ray{{12 * unit(random), 5 + 4 * unit(random), 12 * unit(random)},
+                  {unit(random), unit(random) - 0.5, unit(random)}};
+    const auto a = require(closest_hit(whole.scene, ray));
+    const auto b = require(closest_hit(stripped.scene, ray));
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    ASSERT_EQ(a->hit.t, b->hit.t);
+    ASSERT_EQ(require(whole.scene.info(a->instance)).id,
+              require(stripped.scene.info(b->instance)).id);
+    ASSERT_EQ(b->hit.face.id, kNoFaceId);
+    ASSERT_EQ(stripped.scene.material(b->instance, b->hit.face), kNoMaterial);
+  }
+  const auto refusal = [&](const SceneOptions& options) {
+    const Result<Scene> refused = Scene::bind(stripped.file, options);
+    return refused.ok() ? "bound" : refused.error().detail;
+  };
+  SceneOptions options;
+  options.require_face_ids = true;
+  EXPECT_EQ(refusal(options), "tree 0: face ids were left out by scene.toml:3: face_ids = false");
+  options = {};
+  options.queries = kBoxQueries;
+  EXPECT_EQ(refusal(options),
+            "the scene: box queries were left out by scene.toml:2: queries = [\"ray\", \"pair\"]");
+  options = {};
+  options.require_materials = true;
+  EXPECT_EQ(refusal(options),
+            "the scene: materials were left out by scene.toml:4: materials = false");
+  options = {};
+  options.require_names = true;
+  EXPECT_EQ(refusal(options), "the scene: names were left out by scene.toml:5: names = false");
+}
+
+// Materials without face ids are told face by face.
+TEST(CookScene, MaterialsSurviveWithoutFaceIds) {
+  test::TempFolder folder;
+  const fs::path text = folder.write("scene.toml", "[scene]\nface_ids = false\nexact = true\n");
+  const CookedFileOf whole(kLevel, exact_options());
+  const CookedFileOf stripped(kLevel, CookOptions(), require(read_profile(text)));
+  std::mt19937_64 random(4);
+  std::uniform_real_distribution<double> unit(-12, 12);
+  std::set<std::string> seen;
+  for (int i = 0; i < 3000; ++i) {
+    const Ray ray{{unit(random), 8, unit(random)}, {0.01, -1, 0.02}};
+    const auto a = require(closest_hit(whole.scene, ray));
+    const auto b = require(closest_hit(stripped.scene, ray));
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    const std::string name(
+        whole.scene.material_name(whole.scene.material(a->instance, a->hit.face)));
+    ASSERT_EQ(name,
+              stripped.scene.material_name(stripped.scene.material(b->instance, b->hit.face)));
+    seen.insert(name);
+  }
+  EXPECT_TRUE(seen.contains("stone") && seen.contains("grass") && seen.contains("wood"));
+}
+
+TEST(CookScene, ABudgetOfBytesIsKeptOrRefusedWithTheNearest) {
+  test::TempFolder folder;
+  const auto cook = [&](const std::string& bytes) {
+    const fs::path text =
+        folder.write("scene.toml", "[scene]\nfor = \"speed\"\n[budget]\nbytes = " + bytes + "\n");
+    return cook_scene(std::span(&kLevel, 1), folder.path() / "out.bxt", CookOptions(),
+                      require(read_profile(text)));
+  };
+  const Result<SceneReport> free = cook("1000000");
+  ASSERT_TRUE(free.ok()) << free.error().message();
+  const std::uint64_t limit = free->file_bytes * 9 / 10;
+  const Result<SceneReport> tight = cook(std::to_string(limit));
+  ASSERT_TRUE(tight.ok()) << tight.error().message();
+  EXPECT_LE(tight->file_bytes, limit);
+  const fs::path out = folder.path() / "out.bxt";
+  const std::string before = test::read_text(out);
+  const Result<SceneReport> refused = cook("1000");
+  EXPECT_EQ(refused.code(), Errc::kBudgetUnreachable);
+  EXPECT_NE(refused.error().detail.find("scene.toml:4"), std::string::npos);
+  EXPECT_NE(refused.error().detail.find("the smallest that is possible has "), std::string::npos);
+  EXPECT_EQ(test::read_text(out), before);
+}
+
+// Objects ask for themselves: far scenery small, the rest fast, and the line that said so is told.
+TEST(CookScene, EachObjectGetsItsCodecAndPrecision) {
+  test::TempFolder folder;
+  const fs::path text = folder.write("scene.toml", R"([scene]
+for = "speed"
+[[object]]
+name = "scenery"
+match = ["Wall*", "Pillar*"]
+codec = "wide4"
+tolerance = 0.01
+[[object]]
+name = "barrels"
+match = ["Barrel*"]
+leave_out = true
+)");
+  const CookedFileOf cooked(kLevel, CookOptions(), require(read_profile(text)));
+  EXPECT_EQ(cooked.report.instances, 41u);
+  EXPECT_EQ(cooked.report.instances_left_out, 12u);
+  for (const Tree& tree : cooked.scene.trees()) {
+    const bool is_scenery = tree.name() == "wall" || tree.name() == "pillar";
+    EXPECT_NE(tree.name(), "barrel");
+    if (is_scenery) {
+      EXPECT_EQ(tree.codec(), CodecId::kWide4) << tree.name();
+    }
+  }
+  const auto told = [&](const std::string& owner, const std::string& line) {
+    return std::any_of(cooked.report.why.begin(), cooked.report.why.end(), [&](const WhyLine& why) {
+      return why.owner == owner && why.line.find(line) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(told("mesh wall", "scene.toml:6"));
+  EXPECT_TRUE(told("object barrels", "scene.toml:11"));
+  EXPECT_EQ(kept_bytes(cooked.report), cooked.report.file_bytes);
+}
+
+// A thousand instances of twenty props take a tenth of the bytes of cooking every one as triangles,
+// and far less.
+TEST(CookScene, InstancesTakeATenthOfTheirTriangles) {
+  test::TempFolder folder;
+  std::string text = "[scene]\nexact = true\n";
+  for (unsigned i = 0; i < 20; ++i) {
+    const SourceMesh mesh = i % 2 == 0 ? test::torus(12 + i, 16) : test::sphere(10 + i, 16);
+    std::ostringstream obj;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Eigen::Vector3d p = mesh.positions[v];
+      obj << "v " << p[0] << ' ' << p[1] << ' ' << p[2] << '\n';
+    }
+    for (const Face& face : mesh.faces) {
+      obj << 'f';
+      for (std::size_t c = 0; c < (face.is_quad() ? 4u : 3u); ++c) obj << ' ' << face.corner[c] + 1;
+      obj << '\n';
+    }
+    const std::string name = "prop" + std::to_string(i);
+    folder.write(name + ".obj", obj.str());
+    text += "[[mesh]]\nname = \"" + name + "\"\nfile = \"" + name + ".obj\"\n";
+  }
+  SourceMesh merged;
+  merged.name = "merged";
+  for (int i = 0; i < 1000; ++i) {
+    text += "[[instance]]\nmesh = \"prop" + std::to_string(i % 20) + "\"\ntranslation = [" +
+            std::to_string(3 * (i % 32)) + ", 0, " + std::to_string(3 * (i / 32)) +
+            "]\naxis = [0, 1, 0]\ndegrees = " + std::to_string(i % 360) + "\n";
+  }
+  const Profile profile = require(read_profile(folder.write("scene.toml", text)));
+  const CookedFileOf cooked({}, CookOptions(), profile, true);
+  ASSERT_EQ(cooked.report.instances, 1000u);
+  ASSERT_EQ(cooked.report.cook.trees.size(), 20u);
+  for (std::uint32_t i = 0; i < 1000; ++i) {
+    const InstanceInfo info = require(cooked.scene.info(i));
+    const Pose pose = require(cooked.scene.pose(i));
+    const Tree& tree = cooked.scene.trees()[info.tree];
+    const auto base = static_cast<std::uint32_t>(merged.positions.size());
+    const SourceMesh mesh =
+        require(import_mesh(folder.path() / (std::string(tree.name()) + ".obj"))).mesh;
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+      const Eigen::Vector3d p = pose * mesh.positions[v];
+      for (Eigen::Index k = 0; k < 3; ++k) merged.positions.f32.push_back(static_cast<float>(p[k]));
+    }
+    for (Face face : mesh.faces) {
+      for (std::uint32_t& corner : face.corner) corner += corner == kNoCorner ? 0 : base;
+      merged.faces.push_back(face);
+    }
+  }
+  CookOptions options = exact_options();
+  options.codec = CodecId::kWide4;
+  const EncodedTree one = require(cook_as(merged, CodecId::kWide4, options));
+  const std::uint64_t triangles = one.nodes.bytes.size() + one.geometry.vertices.size() +
+                                  one.geometry.corners.size() + one.geometry.face_ids.size();
+  EXPECT_LT(cooked.report.file_bytes * 10, triangles)
+      << cooked.report.file_bytes << " of " << triangles;
+}
+
+// Geometry that the application shares with its render mesh: not in the file, the same answers.
+TEST(CookScene, ExternalGeometryIsBoundFromTheApplication) {
+  test::TempFolder folder;
+  const fs::path text = folder.write("scene.toml", R"([scene]
+exact = true
+[[object]]
+name = "shared"
+match = ["Floor", "Barrel*"]
+external = true
+)");
+  const fs::path out = folder.path() / "out.bxt";
+  const SceneReport report =
+      require(cook_scene(std::span(&kLevel, 1), out, CookOptions(), require(read_profile(text))));
+  EXPECT_EQ(kept_bytes(report), report.file_bytes);
+  const File file = require(File::open(out));
+  EXPECT_TRUE(verify_file(file).empty());
+  EXPECT_EQ(Scene::bind(file).code(), Errc::kExternalMeshNeeded);
+  const SourceScene source = require(import_scene(kLevel));
+  std::vector<SceneMeshArrays> arrays;
+  for (std::uint32_t tree = 0; tree < file.tree_count(); ++tree) {
+    if (file.tree_record(tree).geometry != GeometryId::kExternal) continue;
+    for (const SceneMesh& mesh : source.meshes) {
+      if (mesh.mesh.name == file.tree_name(tree)) arrays.push_back({tree, arrays_of(mesh.mesh)});
+    }
+  }
+  ASSERT_EQ(arrays.size(), 2u);
+  SceneOptions options;
+  options.meshes = arrays;
+  const Scene scene = require(Scene::bind(file, options));
+  expect_brute_force(kLevel, scene, 60);
+}
+
+// Only faces of the user's own list are ever dropped, and they are counted.
+TEST(CookScene, HiddenFacesAreThoseOfTheList) {
+  test::TempFolder folder;
+  folder.write("hidden.txt", "# the bottom of the crate\n0\n3-4\n");
+  const fs::path text = folder.write("scene.toml", R"([scene]
+exact = true
+[[mesh]]
+name = "crate"
+hidden_faces = "hidden.txt"
+)");
+  const CookedFileOf cooked(kLevel, CookOptions(), require(read_profile(text)));
+  for (const Tree& tree : cooked.scene.trees()) {
+    if (tree.name() != "crate") continue;
+    ASSERT_EQ(tree.record().face_count, 9u);
+    std::set<std::uint32_t> ids;
+    for (std::uint32_t face = 0; face < 9; ++face) ids.insert(tree.face_id(face));
+    EXPECT_EQ(ids, (std::set<std::uint32_t>{1, 2, 5, 6, 7, 8, 9, 10, 11}));
+  }
+  const auto dropped = std::ranges::find_if(cooked.report.why, [](const WhyLine& line) {
+    return !line.kept && line.part == "hidden faces";
+  });
+  ASSERT_NE(dropped, cooked.report.why.end());
+  EXPECT_NE(dropped->reason.find('3'), std::string::npos) << dropped->reason;
+  folder.write("hidden.txt", "0-11\n");
+  EXPECT_EQ(cook_scene(std::span(&kLevel, 1), folder.path() / "out.bxt", CookOptions(),
+                       require(read_profile(text)))
+                .code(),
+            Errc::kProfileInvalid);
+}
+
+TEST(CookScene, OneFileIsCookedAsWhatItIs) {
+  test::TempFolder folder;
+  const fs::path obj = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/meshes/crate.obj";
+  const CookedFile mesh = require(cook_file(obj, folder.path() / "mesh.bxt", CookOptions()));
+  EXPECT_TRUE(std::holds_alternative<CookReport>(mesh));
+  EXPECT_EQ(Scene::bind(require(File::open(folder.path() / "mesh.bxt"))).code(), Errc::kNoScene);
+  const CookedFile scene = require(cook_file(kLevel, folder.path() / "scene.bxt", CookOptions()));
+  EXPECT_TRUE(std::holds_alternative<SceneReport>(scene));
+  EXPECT_TRUE(Scene::bind(require(File::open(folder.path() / "scene.bxt"))).ok());
+}
+
+// A tile whose left and right border are alike, side by side with itself on the grid: the points of
+// the border are the same bits in the world from both sides.
+TEST(CookScene, NeighboursStayTogetherOnTheGrid) {
+  test::TempFolder folder;
+  constexpr int kCells = 20;
+  std::ostringstream obj;
+  for (int z = 0; z <= kCells; ++z) {
+    for (int x = 0; x <= kCells; ++x) {
+      const double along = 6.283185307179586 * (x % kCells) / kCells;
+      obj << "v " << double(x) / kCells << ' ' << 0.1 * std::sin(along + z) << ' ' << 0.0517 * z
+          << '\n';
+    }
+  }
+  for (int z = 0; z < kCells; ++z) {
+    for (int x = 0; x < kCells; ++x) {
+      const int a = z * (kCells + 1) + x + 1, b = a + kCells + 1;
+      obj << "f " << a << ' ' << a + 1 << ' ' << b << "\nf " << a + 1 << ' ' << b + 1 << ' ' << b
+          << '\n';
+    }
+  }
+  folder.write("tile.obj", obj.str());
+  const fs::path text = folder.write("scene.toml", R"([scene]
+tolerance = 0.0005
+for = "memory"
+[[mesh]]
+name = "tile"
+file = "tile.obj"
+[[instance]]
+mesh = "tile"
+[[instance]]
+mesh = "tile"
+translation = [1, 0, 0]
+)");
+  const CookedFileOf cooked({}, CookOptions(), require(read_profile(text)), true);
+  ASSERT_EQ(cooked.scene.trees().size(), 1u);
+  const Tree& tree = cooked.scene.trees()[0];
+  ASSERT_EQ(tree.record().geometry, GeometryId::kGrid);
+  EXPECT_LE(std::ldexp(0.866, tree.record().grid_exponent), 0.0005);
+  std::set<std::array<double, 3>> border[2];
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    const Pose pose = require(cooked.scene.pose(i));
+    const auto placed = Placement::make(tree, pose);
+    const double side = pose.translation()[0] == 0 ? 1 : 0;  // of the tile, where they meet
+    for (const Triangle& triangle : test::all_triangles(tree)) {
+      for (const Eigen::Vector3d& corner : triangle.corner) {
+        if (tree.frame().to_object(corner)[0] != side) continue;
+        const Eigen::Vector3d world = placed->to_world().apply(corner);
+        border[i].insert({world[0], world[1], world[2]});
+      }
+    }
+  }
+  EXPECT_EQ(border[0].size(), kCells + 1u);
+  EXPECT_EQ(border[0], border[1]);
+}
+
+TEST(CookScene, InvalidScenesAreRefused) {
+  test::TempFolder folder;
+  const fs::path out = folder.path() / "out.bxt";
+  const std::vector<fs::path> none;
+  EXPECT_EQ(cook_scene(none, out, CookOptions(), Profile()).code(), Errc::kProfileInvalid);
+  const fs::path text = folder.write("scene.toml", "[scene]\nsource = \"absent.gltf\"\n");
+  const Profile profile = require(read_profile(text));
+  EXPECT_EQ(cook_scene(none, out, CookOptions(), profile).code(), Errc::kFileNotFound);
+  EXPECT_EQ(cook_scene(std::span(&kLevel, 1), out, CookOptions(), profile).code(),
+            Errc::kProfileInvalid);
+  EXPECT_FALSE(fs::exists(out));
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
