@@ -67,6 +67,7 @@ CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& sam
   CodecCost cost{codec, geometry, {}};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     std::vector<Measured> measured;
+    measured.reserve(samples.size());
     for (const Sample& of_mesh : samples) {
       measured.push_back({of_mesh.work[kind], of_mesh.ns[kind]});
     }

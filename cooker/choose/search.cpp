@@ -11,7 +11,6 @@
 
 #include <boxtree/cooker/build/face_boxes.h>
 #include <boxtree/cooker/choose/search.h>
-#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/primitive/triangle.h>
@@ -119,7 +118,9 @@ Family binary_family(const Source& source, const SearchOptions& options,
     const auto cut = static_cast<PlainCut>(i);
     const bool is_wanted = std::any_of(codecs.begin(), codecs.end(),
                                        [&](CodecId codec) { return plain_cut_of(codec) == cut; });
-    if (is_wanted) plain[i] = encode_plain(build, source.built(), cut, order);
+    if (is_wanted) {
+      plain[i] = encode_plain(build, source.built(), cut, order, options.shrink_share);
+    }
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, plain.size(), 1),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -150,7 +151,7 @@ Family wide_family(const Source& source, const SearchOptions& options) {
 
 // Proves a candidate and counts what it takes.
 Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
-                          const Workload& questions) {
+                          const Workload& questions, std::span<const CodecCost> costs) {
   Candidate candidate{tree.nodes.codec,
                       tree.geometry.geometry,
                       tree.nodes.bytes.size(),
@@ -168,7 +169,7 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
   const Result<WorkOfKinds> work = count_work(*bound, questions);
   if (!work) return work.error();
   candidate.work = *work;
-  candidate.cost = cost_of(*work, candidate.codec, candidate.geometry);
+  candidate.cost = cost_of(*work, candidate.codec, candidate.geometry, costs);
   return candidate;
 }
 
@@ -179,6 +180,8 @@ class Search {
       : mesh_(mesh),
         options_(options),
         scene_(scene),
+        costs_(options.costs.empty() ? compiled_costs()
+                                     : std::span<const CodecCost>(options.costs)),
         questions_(choice_questions(bounds_of(mesh))) {
     out_.contest.triangles = static_cast<std::uint32_t>(mesh.triangle_count());
   }
@@ -308,7 +311,7 @@ class Search {
     EncodedTree& tree = family.tree;
     for (const CodecId codec : codecs) {
       tree.nodes = family.nodes_of(codec);
-      Result<Candidate> candidate = examine(tree, mesh_, questions_);
+      Result<Candidate> candidate = examine(tree, mesh_, questions_, costs_);
       if (!candidate) return candidate.error();
       out_.contest.candidates.push_back(std::move(*candidate));
       out_.nodes.push_back({out_.families.size(), std::exchange(tree.nodes, {})});
@@ -329,6 +332,7 @@ class Search {
   const SourceMesh& mesh_;
   const SearchOptions& options_;
   const std::optional<Grid>& scene_;
+  const std::span<const CodecCost> costs_;
   const Workload questions_;
   TriedTree out_;
 };

@@ -10,6 +10,7 @@
 #include <boxtree/cooker/build/build_tree.h>
 #include <boxtree/cooker/choose/choose.h>
 #include <boxtree/cooker/encode/encoded_tree.h>
+#include <boxtree/cooker/encode/encoders.h>
 #include <boxtree/cooker/import/source_mesh.h>
 #include <boxtree/cooker/quantise/grid.h>
 
@@ -25,6 +26,10 @@ struct SearchOptions {
   GridChoice grid;            // of geometry grid
   bool try_all = false;       // also what cannot win
   bool face_ids = true;
+  std::vector<CodecCost> costs;  // of the user's machine; empty: those compiled in [default]
+  /// Of binary codecs: the share of a box that must be empty to be cut off [kShrinkShare] [0.01 to
+  /// 1; 1: never].
+  double shrink_share = kShrinkShare;
 };
 
 /// Below so many faces all codecs are tried: that takes no time. From there on, codecs with one

@@ -57,7 +57,7 @@ struct LeafPairCounter {
   Counts* counts;
 
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
-  void leaf_pair(NodeRef, NodeRef) noexcept { ++counts->leaves; }
+  void leaf_pair(NodeRef, NodeRef) const noexcept { ++counts->leaves; }
 };
 
 Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {

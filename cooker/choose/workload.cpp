@@ -142,6 +142,10 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
   for (std::size_t i = 0; i < size.poses; ++i) {
     workload.poses.push_back(random_pose(bounds, kShares[i % kShares.size()], random));
   }
+  constexpr std::array kSharesApart = {1.05, 1.2, 1.5, 2.0};
+  for (std::size_t i = 0; i < size.apart; ++i) {
+    workload.apart.push_back(random_pose(bounds, kSharesApart[i % kSharesApart.size()], random));
+  }
   return workload;
 }
 

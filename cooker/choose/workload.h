@@ -15,6 +15,7 @@ struct WorkloadSize {
   std::size_t boxes = 20'000;
   std::size_t points = 20'000;
   std::size_t poses = 200;
+  std::size_t apart = 100;
 };
 
 struct Workload {
@@ -27,6 +28,8 @@ struct Workload {
   /// Of a copy of the mesh: random rotations, at 0.6, 0.8, 0.9 and 1.0 of the distance at which the
   /// mesh's bounding box and that of the copy, turned with it, touch; in random directions.
   std::vector<Pose> poses;
+  /// Likewise at 1.05, 1.2, 1.5 and 2 of that distance: the two are apart.
+  std::vector<Pose> apart;
 };
 
 /// Questions for a mesh with these bounds (object space). Deterministic.

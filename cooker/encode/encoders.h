@@ -23,9 +23,9 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 
 /// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. `mesh` is
 /// the source of the tree and serves f64 alone: the build tree's own bounds are f32. Precondition:
-/// a tree with a face a leaf.
+/// a tree with a face a leaf. `shrink_share` is above 0.
 [[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
-                                        FaceOrder order);
+                                        FaceOrder order, double shrink_share = kShrinkShare);
 
 /// The nodes of a binary codec from plain nodes with the cuts of plain_cut_of(codec). `widths`
 /// matters to packed codecs and dedup alone.

@@ -56,8 +56,8 @@ class PlainEncoder {
   using Node = PlainNode<Cut>;
   using S = std::conditional_t<std::is_same_v<Cut, double>, double, float>;  // of the reader
 
-  PlainEncoder(const BuildTree& tree, FaceOrder order, Bounds bounds)
-      : tree_(tree), order_(order), bounds_(bounds) {}
+  PlainEncoder(const BuildTree& tree, FaceOrder order, double shrink_share, Bounds bounds)
+      : tree_(tree), order_(order), shrink_share_(shrink_share), bounds_(bounds) {}
 
   // Encodes the whole tree. The root is the first node added.
   EncodedNodes run() {
@@ -195,7 +195,7 @@ class PlainEncoder {
         best.axis = k;
       }
     }
-    if (share < kShrinkShare) return best;
+    if (share < shrink_share_) return best;
     best.cut = best.side == 0 ? cut_down_to(content, item.box, best.axis)
                               : cut_up_to(content, item.box, best.axis);
     best.box = child_box(item.box, best.axis, best.side, best.cut);
@@ -240,6 +240,7 @@ class PlainEncoder {
 
   const BuildTree& tree_;
   FaceOrder order_;
+  double shrink_share_;
   Bounds bounds_;
   std::vector<std::byte> bytes_;
   VisitCost cost_;
@@ -248,8 +249,8 @@ class PlainEncoder {
 };
 
 template <class Cut, class Bounds>
-EncodedNodes encode(const BuildTree& tree, FaceOrder order, Bounds bounds) {
-  return PlainEncoder<Cut, Bounds>(tree, order, bounds).run();
+EncodedNodes encode(const BuildTree& tree, FaceOrder order, double shrink_share, Bounds bounds) {
+  return PlainEncoder<Cut, Bounds>(tree, order, shrink_share, bounds).run();
 }
 
 // What each node of the build tree must hold, without rounding to f32: from the leaves up, which
@@ -276,19 +277,19 @@ std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMes
 }  // namespace
 
 EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
-                          FaceOrder order) {
+                          FaceOrder order, double shrink_share) {
   if (cut == PlainCut::kF64) {
     const std::vector<Box<double>> bounds = bounds_in_double(tree, mesh);
     const auto at = [&bounds](std::uint32_t node) -> const Box<double>& { return bounds[node]; };
-    return encode<double>(tree, order, at);
+    return encode<double>(tree, order, shrink_share, at);
   }
   // The bounds that the build tree holds: f32, rounded outward.
   const auto at = [&tree](std::uint32_t node) -> const Box<float>& {
     return tree.nodes[node].bounds;
   };
   const bool is_f16 = cut == PlainCut::kF16;
-  EncodedNodes nodes =
-      is_f16 ? encode<std::uint16_t>(tree, order, at) : encode<float>(tree, order, at);
+  EncodedNodes nodes = is_f16 ? encode<std::uint16_t>(tree, order, shrink_share, at)
+                              : encode<float>(tree, order, shrink_share, at);
   nodes.codec = is_f16 ? CodecId::kPlainF16 : CodecId::kPlainF32;
   return nodes;
 }

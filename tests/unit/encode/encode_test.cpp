@@ -42,6 +42,28 @@ TEST(PlainNodes, OfTwoTrianglesAreAsWorkedOutByHand) {
   EXPECT_EQ(half.shrink_count, 0u);
 }
 
+// The larger the slab that must be empty, the fewer are cut off; every tree holds its triangles.
+TEST(PlainNodes, ShrinkShareDecidesHowManySlabsAreCutOff) {
+  const SourceMesh mesh = test::terrain(20, 3);
+  const BuildTree build = build_tree(mesh, Builder::kSah);
+  std::uint32_t last = ~std::uint32_t{0};
+  for (const double share : {0.02, 0.15, 0.5, 1.0}) {
+    const EncodedNodes nodes = encode_plain(build, mesh, PlainCut::kF32, FaceOrder::kTree, share);
+    EXPECT_LT(nodes.shrink_count, last) << share;
+    EXPECT_EQ(nodes.node_count, nodes.leaf_count - 1 + nodes.shrink_count);
+    last = nodes.shrink_count;
+    CookOptions options;
+    options.shrink_share = share;
+    for (const CodecId codec : {CodecId::kPlainF16, CodecId::kPackedF32, CodecId::kPackedF64}) {
+      options.codec = codec;
+      const auto cooked = cook_mesh(mesh, options);
+      ASSERT_TRUE(cooked);
+      EXPECT_TRUE(cooked->contest.candidates.front().gates.pass()) << share;
+    }
+  }
+  EXPECT_EQ(last, 0u);
+}
+
 TEST(ExpectedVisits, OfTwoTrianglesAreTheRootAlone) {
   const BuildTree build = build_tree(two_triangles(), Builder::kSah);
   const EncodedNodes nodes = encode_plain(build, two_triangles(), PlainCut::kF32, FaceOrder::kTree);

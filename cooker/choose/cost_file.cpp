@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: MIT
+// JSON in both directions; every number is checked on its way in.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/choose/cost_file.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::array kStores = {GeometryId::kExact, GeometryId::kGrid};
+constexpr std::array kSteps = {"question_ns", "node_ns", "leaf_ns"};
+
+Error fault(std::string what) {
+  return {Errc::kFileUnreadable, "costs: " + std::move(what)};
+}
+
+std::string member(const Json& row, const char* key) {
+  const auto found = row.find(key);
+  return found != row.end() && found->is_string() ? found->get<std::string>() : std::string();
+}
+
+Result<StepCost> parse_steps(const Json& row, const std::string& place, const char* kind) {
+  const auto found = row.find(kind);
+  if (found == row.end() || !found->is_object()) {
+    return fault(fmt::format("{}: expected an object \"{}\"", place, kind));
+  }
+  std::array<double, kSteps.size()> steps{};
+  for (std::size_t i = 0; i < kSteps.size(); ++i) {
+    const auto step = found->find(kSteps[i]);
+    const bool is_number = step != found->end() && step->is_number();
+    steps[i] = is_number ? step->get<double>() : -1;
+    if (!(steps[i] >= 0) || !std::isfinite(steps[i])) {
+      return fault(fmt::format("{}, {}: expected \"{}\", nanoseconds, 0 or more, found {}", place,
+                               kind, kSteps[i], step == found->end() ? "nothing" : step->dump()));
+    }
+  }
+  if (std::all_of(steps.begin(), steps.end(), [](double step) { return step == 0; })) {
+    return fault(fmt::format("{}, {}: all steps are 0, but no query is free", place, kind));
+  }
+  return StepCost{steps[0], steps[1], steps[2]};
+}
+
+Result<CodecCost> parse_row(const Json& row, std::size_t number) {
+  if (!row.is_object()) return fault(fmt::format("row {}: expected an object", number));
+  const std::string codec = member(row, "codec");
+  const std::string geometry = member(row, "geometry");
+  const std::optional<CodecId> id = find_codec(codec);
+  if (!id) return fault(fmt::format("row {}: unknown codec \"{}\"", number, codec));
+  const auto store = std::find_if(kStores.begin(), kStores.end(),
+                                  [&](GeometryId s) { return geometry_name(s) == geometry; });
+  if (store == kStores.end()) {
+    return fault(fmt::format("row {}: geometry \"{}\": expected exact or grid", number, geometry));
+  }
+  CodecCost cost{*id, *store, {}};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    const Result<StepCost> steps =
+        parse_steps(row, fmt::format("{}, {}", codec, geometry), kQueryNames[kind]);
+    if (!steps) return steps.error();
+    cost.of_kind[kind] = *steps;
+  }
+  return cost;
+}
+
+}  // namespace
+
+std::string costs_to_json(const Calibration& calibration) {
+  Json costs = Json::array();
+  for (const CodecCost& cost : calibration.costs) {
+    Json row = {{"codec", codec_name(cost.codec)}, {"geometry", geometry_name(cost.geometry)}};
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      const StepCost& step = cost.of_kind[kind];
+      row[kQueryNames[kind]] = {
+          {kSteps[0], step.question}, {kSteps[1], step.node}, {kSteps[2], step.leaf}};
+    }
+    costs.push_back(std::move(row));
+  }
+  return Json{{"worst_ratio", calibration.worst_ratio}, {"costs", costs}}.dump(2);
+}
+
+Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
+  const Json document = Json::parse(text, nullptr, false);
+  if (document.is_discarded()) return fault("no JSON");
+  const auto rows = document.is_object() ? document.find("costs") : document.end();
+  if (!document.is_object() || rows == document.end() || !rows->is_array()) {
+    return fault("expected an object with an array \"costs\"");
+  }
+  std::vector<CodecCost> costs;
+  for (std::size_t i = 0; i < rows->size(); ++i) {
+    const Result<CodecCost> cost = parse_row((*rows)[i], i);
+    if (!cost) return cost.error();
+    costs.push_back(*cost);
+  }
+  for (const CodecInfo& codec : kCodecs) {
+    for (const GeometryId store : kStores) {
+      const auto count = std::count_if(costs.begin(), costs.end(), [&](const CodecCost& cost) {
+        return cost.codec == codec.id && cost.geometry == store;
+      });
+      if (count != 1) {
+        return fault(fmt::format("{}, {}: expected one row, found {}", codec.name,
+                                 geometry_name(store), count));
+      }
+    }
+  }
+  return costs;
+}
+
+Result<std::vector<CodecCost>> read_costs(const std::filesystem::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!in) return Error{Errc::kFileUnreadable, path.string()};
+  Result<std::vector<CodecCost>> costs = parse_costs(text);
+  if (!costs) return Error{costs.code(), path.string() + ": " + costs.error().detail};
+  return costs;
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// Constants survive their file, and decide; what is missing or makes no sense is refused by name.
+#include <functional>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/choose/cost_file.h>
+#include <boxtree/cooker/cook.h>
+
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using test::require;
+
+Calibration compiled() {
+  const std::span<const CodecCost> costs = compiled_costs();
+  return {{costs.begin(), costs.end()}, 1.5};
+}
+
+TEST(CostFile, GivesBackWhatWasWritten) {
+  const test::TempFolder folder;
+  const auto path = folder.write("costs.json", costs_to_json(compiled()));
+  const std::vector<CodecCost> read = require(read_costs(path));
+  ASSERT_EQ(read.size(), compiled_costs().size());
+  const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
+  for (const CodecInfo& codec : kCodecs) {
+    for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+      EXPECT_EQ(cost_of(work, codec.id, geometry, read), cost_of(work, codec.id, geometry));
+    }
+  }
+  EXPECT_EQ(read_costs(folder.path() / "none").code(), Errc::kFileUnreadable);
+}
+
+TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
+  const Json good = Json::parse(costs_to_json(compiled()));
+  const auto refusal = [&](const std::function<void(Json&)>& spoil) {
+    Json bad = good;
+    spoil(bad);
+    const auto parsed = parse_costs(bad.dump());
+    if (parsed) return std::string("accepted");
+    EXPECT_EQ(parsed.code(), Errc::kFileUnreadable);
+    return parsed.error().detail;
+  };
+  EXPECT_EQ(refusal([](Json&) {}), "accepted");
+  EXPECT_EQ(refusal([](Json& j) { j = Json::array(); }),
+            "costs: expected an object with an array \"costs\"");
+  EXPECT_EQ(refusal([](Json& j) { j.erase("costs"); }),
+            "costs: expected an object with an array \"costs\"");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"].erase(0); }),
+            "costs: plain-f32, exact: expected one row, found 0");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"].push_back(j["costs"][0]); }),
+            "costs: plain-f32, exact: expected one row, found 2");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][1] = 3; }), "costs: row 1: expected an object");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["codec"] = "wide9"; }),
+            "costs: row 0: unknown codec \"wide9\"");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["geometry"] = "external"; }),
+            "costs: row 0: geometry \"external\": expected exact or grid");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][0].erase("box"); }),
+            "costs: plain-f32, exact: expected an object \"box\"");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["ray"].erase("node_ns"); }),
+            "costs: plain-f32, exact, ray: expected \"node_ns\", nanoseconds, 0 or more, found "
+            "nothing");
+  for (const Json& value : {Json(-1), Json("7"), Json(nullptr)}) {
+    EXPECT_EQ(refusal([&](Json& j) { j["costs"][0]["ray"]["leaf_ns"] = value; }),
+              "costs: plain-f32, exact, ray: expected \"leaf_ns\", nanoseconds, 0 or more, found " +
+                  value.dump());
+  }
+  EXPECT_EQ(refusal([](Json& j) {
+              j["costs"][0]["ray"] = {{"question_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
+            }),
+            "costs: plain-f32, exact, ray: all steps are 0, but no query is free");
+  EXPECT_EQ(parse_costs("{").error().detail, "costs: no JSON");
+  // Numbers that double cannot hold.
+  EXPECT_FALSE(parse_costs(R"({"costs":[{"codec":"wide8","geometry":"exact","ray":)"
+                           R"({"question_ns":1e999,"node_ns":1,"leaf_ns":1}}]})"));
+}
+
+// On a machine where wide4 were a hundred times as fast, it would be the fastest.
+TEST(CostFile, OwnConstantsDecide) {
+  const SourceMesh mesh = test::torus(24, 40);
+  CookOptions options;
+  options.wishes.goal = Goal::kSpeed;
+  EXPECT_EQ(require(cook_mesh(mesh, options)).tree.nodes.codec, CodecId::kWide8);
+  options.costs = compiled().costs;
+  for (CodecCost& cost : options.costs) {
+    if (cost.codec != CodecId::kWide4) continue;
+    for (StepCost& step : cost.of_kind) {
+      step = {step.question / 100, step.node / 100, step.leaf / 100};
+    }
+  }
+  EXPECT_EQ(require(cook_mesh(mesh, options)).tree.nodes.codec, CodecId::kWide4);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
