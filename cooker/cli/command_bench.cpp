@@ -6,10 +6,12 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/choose/calibrate.h>
+#include <boxtree/cooker/choose/cost_file.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/report/approximate.h>
 #include <boxtree/cooker/report/measure.h>
+#include <boxtree/cooker/report/pages.h>
 #include <boxtree/runtime/boxtree.h>
 
 namespace boxtree::cooker {
@@ -19,12 +21,14 @@ struct Arguments {
   std::vector<std::filesystem::path> files;
   std::size_t runs = 5;
   bool calibrate = false;
+  bool pages = false;
   bool quick = false;
+  bool approximate = false;
   bool json = false;
 };
 
 // A tenth of the questions: for a look, not for a figure.
-constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20};
+constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
                    const Arguments& arguments) {
@@ -53,10 +57,68 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"pair_pairs", figures->pair_pairs}};
 }
 
+Json to_json(const std::vector<ApproximateStep>& steps) {
+  Json rows = Json::array();
+  for (const ApproximateStep& step : steps) {
+    const bool has_budget = step.node_budget != kUnlimitedNodes;
+    rows.push_back({{"relative_error", step.relative_error},
+                    {"node_budget", has_budget ? Json(step.node_budget) : Json(nullptr)},
+                    {"median_ns", step.times.median_ns},
+                    {"nodes", step.nodes_mean},
+                    {"found", step.found},
+                    {"measured_error", step.error_max},
+                    {"false_bounds", step.false_bounds}});
+  }
+  return rows;
+}
+
+// Cost against the error that is allowed, and against budgets.
+Result<Json> bench_approximate(const std::filesystem::path& path, const Tree& tree,
+                               const Arguments& arguments) {
+  constexpr WorkloadSize kAll{0, 0, 5'000, 0, 100};
+  constexpr WorkloadSize kTenth{0, 0, 500, 0, 20};
+  const Workload workload =
+      make_workload(bounds_in_object_space(tree), arguments.quick ? kTenth : kAll);
+  const auto truth = true_distances(tree, workload);
+  if (!truth) return truth.error();
+  const auto figures = measure_approximate(tree, workload, *truth, {false, arguments.runs});
+  if (!figures) return figures.error();
+  Json json = {{"file", path.string()},
+               {"tree", tree.name()},
+               {"codec", codec_name(tree.codec())},
+               {"triangles", tree.record().triangle_count}};
+  for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
+    json["approximate"][kApproximateNames[kind]] = {
+        {"by_error", to_json((*figures)[kind].by_error)},
+        {"by_budget", to_json((*figures)[kind].by_budget)}};
+  }
+  return json;
+}
+
+void print_approximate(const Json& kinds) {
+  for (const auto& [kind, curves] : kinds.items()) {
+    fmt::print("  {:<16} {:>12} {:>10} {:>14}\n", kind, "median, ns", "nodes", "largest error");
+    for (const char* curve : {"by_error", "by_budget"}) {
+      for (const Json& row : curves[curve]) {
+        const std::string allowed =
+            row["node_budget"].is_null()
+                ? fmt::format("error {}", row["relative_error"].get<double>())
+                : fmt::format("budget {}", row["node_budget"].get<std::uint64_t>());
+        const std::string error =
+            row["found"] == 0 ? "-" : fmt::format("{:.2g}", row["measured_error"].get<double>());
+        fmt::print("    {:<14} {:12.0f} {:10.1f} {:>14}{}\n", allowed,
+                   row["median_ns"].get<double>(), row["nodes"].get<double>(), error,
+                   row["false_bounds"] == 0 ? "" : "  FALSE BOUNDS");
+      }
+    }
+  }
+}
+
 void print_row(const Json& row) {
   fmt::print("{} ({}, {}, {} triangles)\n", row["file"].get<std::string>(),
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
+  if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
@@ -70,16 +132,6 @@ void print_row(const Json& row) {
   fmt::print("  open  {:9.1f} us  to the first answer, {} page faults; {:.1f} us before it\n",
              row["open_us"].get<double>(), row["open_page_faults"].get<std::uint64_t>(),
              row["open_alone_us"].get<double>());
-}
-
-Json to_json(const CodecCost& cost) {
-  Json json = {{"codec", codec_name(cost.codec)}, {"geometry", geometry_name(cost.geometry)}};
-  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-    const StepCost& step = cost.of_kind[kind];
-    json[kQueryNames[kind]] = {
-        {"question_ns", step.question}, {"node_ns", step.node}, {"leaf_ns", step.leaf}};
-  }
-  return json;
 }
 
 // A row for each codec and store: nanoseconds of a question, a node and a leaf for each kind.
@@ -101,21 +153,47 @@ int run_calibration(const Arguments& arguments) {
   }
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
-  Json costs = Json::array();
-  for (const CodecCost& cost : calibration->costs) {
-    if (arguments.json) {
-      costs.push_back(to_json(cost));
-    } else {
-      print_row(cost);
-    }
-  }
   if (arguments.json) {
-    print({{"worst_ratio", calibration->worst_ratio}, {"costs", costs}});
-  } else {
-    fmt::print("modelled and measured times differ by at most {:.2f} times\n",
-               calibration->worst_ratio);
+    fmt::print("{}\n", costs_to_json(*calibration));
+    return 0;
   }
+  for (const CodecCost& cost : calibration->costs) print_row(cost);
+  fmt::print("modelled and measured times differ by at most {:.2f} times\n",
+             calibration->worst_ratio);
   return 0;
+}
+
+Json to_json(const PageCount& count) {
+  return {{"questions", count.questions}, {"median", count.median}, {"worst", count.worst}};
+}
+
+void print_row(const char* kind, const PageCount& count) {
+  fmt::print("  {:<5} {:5} pages at the median, {:5} at worst, of {} questions\n", kind,
+             count.median, count.worst, count.questions);
+}
+
+// What questions read of a file of which nothing has been read.
+Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
+                   const Arguments& arguments) {
+  const Result<PageFigures> figures = measure_pages(path, index, arguments.quick ? 100 : 1000);
+  if (!figures) return figures.error();
+  if (!arguments.json) {
+    fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", path.string(), tree.name(),
+               codec_name(tree.codec()), tree.record().triangle_count, figures->file_pages);
+    fmt::print("  open  {:5} pages\n", figures->open);
+    print_row("ray", figures->ray);
+    print_row("box", figures->box);
+    print_row("point", figures->point);
+  }
+  return Json{{"file", path.string()},
+              {"tree", tree.name()},
+              {"codec", codec_name(tree.codec())},
+              {"triangles", tree.record().triangle_count},
+              {"file_pages", figures->file_pages},
+              {"open_pages", figures->open},
+              {"ray_pages", to_json(figures->ray)},
+              {"box_pages", to_json(figures->box)},
+              {"point_pages", to_json(figures->point)}};
 }
 
 int run(const Arguments& arguments) {
@@ -127,11 +205,13 @@ int run(const Arguments& arguments) {
     for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
       const Result<Tree> tree = Tree::bind(*file, i);
       if (!tree) return fail({tree.code(), path.string() + ": " + tree.error().detail});
-      const Result<Json> row = bench(path, i, *tree, arguments);
+      const Result<Json> row = arguments.pages         ? pages(path, i, *tree, arguments)
+                               : arguments.approximate ? bench_approximate(path, *tree, arguments)
+                                                       : bench(path, i, *tree, arguments);
       if (!row) return fail(row.error());
       if (arguments.json) {
         rows.push_back(*row);
-      } else {
+      } else if (!arguments.pages) {
         print_row(*row);
       }
     }
@@ -153,7 +233,11 @@ void add_bench_command(CLI::App& app, int& status) {
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
+  command.add_flag("--pages", arguments->pages,
+                   "Count the pages of a cold file that questions read, in place of times");
   command.add_flag("--quick", arguments->quick, "A tenth of the questions");
+  command.add_flag("--approximate", arguments->approximate,
+                   "Instead: closest points and distances against the error that is allowed");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.callback([arguments, &status] { status = run(*arguments); });
 }

@@ -11,9 +11,11 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include <boxtree/cooker/choose/cost_file.h>
+#include <boxtree/cooker/cli/cook_report.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/cli/step_printer.h>
-#include <boxtree/cooker/cook.h>
+#include <boxtree/cooker/scene/cook_scene.h>
 #include <boxtree/format/grid.h>
 
 namespace boxtree::cooker {
@@ -29,7 +31,12 @@ struct Arguments {
   std::string builder = "sah";
   std::string widths = "exact";
   std::filesystem::path depfile;
+  std::filesystem::path profile;
+  std::filesystem::path costs;
   CookOptions options;
+  bool scene = false;
+  bool flatten = false;
+  bool why = false;
   bool exact = false;
   bool external = false;
   bool no_face_ids = false;
@@ -51,10 +58,19 @@ std::string make_name(const std::filesystem::path& path) {
   return out;
 }
 
-Status write_depfile(const Arguments& arguments, const CookReport& report) {
+const CookReport& trees_of(const CookedFile& cooked) {
+  const auto* scene = std::get_if<SceneReport>(&cooked);
+  return scene != nullptr ? scene->cook : std::get<CookReport>(cooked);
+}
+
+Status write_depfile(const Arguments& arguments, const CookedFile& cooked) {
   std::string text = make_name(arguments.output) + ":";
-  for (const ImportReport& import : report.imports) {
-    for (const std::filesystem::path& file : import.files_read) text += " \\\n  " + make_name(file);
+  const auto add = [&](const std::filesystem::path& file) { text += " \\\n  " + make_name(file); };
+  if (const auto* scene = std::get_if<SceneReport>(&cooked)) {
+    for (const std::filesystem::path& file : scene->files_read) add(file);
+  }
+  for (const ImportReport& import : trees_of(cooked).imports) {
+    for (const std::filesystem::path& file : import.files_read) add(file);
   }
   text += "\n";
   Result<AtomicFile> file = AtomicFile::create(arguments.depfile);
@@ -63,85 +79,43 @@ Status write_depfile(const Arguments& arguments, const CookReport& report) {
   return file->commit();
 }
 
-double per_triangle(std::uint64_t bytes, const EncodedTree& tree) {
-  return tree.triangle_count == 0
-             ? 0
-             : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
+// What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
+std::string positive_fault(const std::string& text) {
+  const double number = std::strtod(text.c_str(), nullptr);
+  return number > 0 && std::isfinite(number) ? "" : text + " is not above zero";
 }
 
-Json work_json(const WorkOfKinds& work) {
-  Json json;
-  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-    json[kQueryNames[kind]] = {{"nodes", work[kind].nodes}, {"leaves", work[kind].leaves}};
-  }
-  return json;
+template <class Report>
+Result<CookedFile> as_cooked(Result<Report> report) {
+  if (!report) return report.error();
+  return CookedFile(std::move(*report));
 }
 
-Json candidate_json(const Candidate& candidate, double slowdown, const EncodedTree& tree) {
-  Json json;
-  json["codec"] = codec_name(candidate.codec);
-  json["geometry"] = geometry_name(candidate.geometry);
-  json["bytes_per_triangle"] = {
-      {"tree", per_triangle(candidate.tree_bytes, tree)},
-      {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
-  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-    json["cost"][kQueryNames[kind]] = candidate.cost[kind];
-  }
-  json["slowdown"] = slowdown;
-  json["work"] = work_json(candidate.work);
-  json["error"] = {{"max_vertex_error", candidate.max_vertex_error}};
-  json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
-  json["gates"] = {{"missed", candidate.gates.missed},
-                   {"escapes", candidate.gates.escapes},
-                   {"certificate", candidate.gates.certificate}};
-  return json;
-}
-
-Json import_json(const ImportReport& report) {
-  Json json = {{"meshes", report.meshes},
-               {"source_faces", report.source_faces},
-               {"points_skipped", report.points_skipped},
-               {"lines_skipped", report.lines_skipped},
-               {"quads_kept", report.quads_kept},
-               {"quads_split", report.quads_split},
-               {"ngons_split", report.ngons_split},
-               {"vertices_welded", report.vertices_welded},
-               {"degenerate_faces", report.degenerate_faces}};
-  json["skipped"] = Json::array();
-  for (const SkippedFace& face : report.skipped) {
-    json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
-  }
-  return json;
-}
-
-Json report_json(const Arguments& arguments, const CookReport& report, double seconds) {
-  Json json;
-  json["output"] = arguments.output.string();
-  json["trees"] = Json::array();
-  for (std::size_t i = 0; i < report.trees.size(); ++i) {
-    const CookedTree& cooked = report.trees[i];
-    Json tree = {{"name", cooked.tree.name},
-                 {"triangles", cooked.tree.triangle_count},
-                 {"chosen", codec_name(cooked.tree.nodes.codec)},
-                 {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)}};
-    tree["candidates"] = Json::array();
-    const std::vector<double> slower = slowdowns(cooked.contest.candidates);
-    for (std::size_t c = 0; c < slower.size(); ++c) {
-      tree["candidates"].push_back(
-          candidate_json(cooked.contest.candidates[c], slower[c], cooked.tree));
+// Several inputs are trees side by side, as ever; one input is what it is.
+Result<CookedFile> cook_inputs(const Arguments& arguments, const Progress& progress) {
+  if (!arguments.profile.empty() || arguments.scene) {
+    Profile profile;
+    if (!arguments.profile.empty()) {
+      Result<Profile> read = read_profile(arguments.profile);
+      if (!read) return read.error();
+      profile = std::move(*read);
     }
-    tree["not_tried"] = Json::array();
-    for (const NotTried& other : cooked.contest.not_tried) {
-      tree["not_tried"].push_back({{"codec", codec_name(other.codec)},
-                                   {"geometry", geometry_name(other.geometry)},
-                                   {"why", other.why}});
-    }
-    tree["left_out"] = Json::array();
-    for (const LeftOut& part : cooked.left_out) {
-      tree["left_out"].push_back({{"what", part.what}, {"bytes", part.bytes}, {"why", part.why}});
-    }
-    tree["import"] = import_json(report.imports[i]);
-    json["trees"].push_back(tree);
+    return as_cooked(
+        cook_scene(arguments.inputs, arguments.output, arguments.options, profile, progress));
+  }
+  if (arguments.flatten || arguments.inputs.size() != 1) {
+    return as_cooked(cook(arguments.inputs, arguments.output, arguments.options, progress));
+  }
+  return cook_file(arguments.inputs.front(), arguments.output, arguments.options, progress);
+}
+
+Json report_json(const Arguments& arguments, const CookedFile& cooked, double seconds) {
+  Json json = {{"output", arguments.output.string()}};
+  const auto* scene = std::get_if<SceneReport>(&cooked);
+  if (scene != nullptr) {
+    json.update(report_json(*scene));
+  } else {
+    json["trees"] = trees_json(trees_of(cooked));
   }
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -150,70 +124,21 @@ Json report_json(const Arguments& arguments, const CookReport& report, double se
   return json;
 }
 
-// What was tried and what was not, with the reasons.
-void print_contest(const CookedTree& cooked) {
-  const std::vector<Candidate>& candidates = cooked.contest.candidates;
-  const std::vector<double> slower = slowdowns(candidates);
-  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>5} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
-             "geometry", "tree B/tri", "with geom.", "times", "ray ns", "box ns", "point ns",
-             "pairs us", "error");
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const Candidate& candidate = candidates[i];
-    fmt::print(
-        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
-        "  {:>9.2g}{}{}\n",
-        candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
-        geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
-        per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.cost[0],
-        candidate.cost[1], candidate.cost[2], candidate.cost[3] / 1000, candidate.max_vertex_error,
-        candidate.rejected.empty() ? "" : "  ", candidate.rejected);
-  }
-  // Codecs that share a reason stand together.
-  const std::vector<NotTried>& others = cooked.contest.not_tried;
-  for (std::size_t i = 0; i < others.size();) {
-    std::string names;
-    const NotTried& first = others[i];
-    for (; i < others.size() && others[i].why == first.why; ++i) {
-      if (others[i].geometry != first.geometry) break;
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", codec_name(others[i].codec));
-    }
-    fmt::print("    not tried, geometry {}: {}: {}\n", geometry_name(first.geometry), names,
-               first.why);
-  }
-}
-
-void print_report(const Arguments& arguments, const CookReport& report, double seconds) {
-  for (std::size_t i = 0; i < report.trees.size(); ++i) {
-    const CookedTree& cooked = report.trees[i];
-    const ImportReport& import = report.imports[i];
-    fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
-    print_contest(cooked);
-    if (import.points_skipped + import.lines_skipped > 0) {
-      fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
-                 import.lines_skipped);
-    }
-    if (cooked.tree.geometry.geometry == GeometryId::kGrid) {
-      fmt::print(
-          "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
-          "area and are kept\n",
-          cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
-          cooked.collapsed);
-    }
-    if (import.degenerate_faces > 0) {
-      fmt::print("  kept {} faces without area\n", import.degenerate_faces);
-    }
-    for (const SkippedFace& face : import.skipped) {
-      fmt::print("  skipped face {}: {}\n", face.face_id, face.reason);
-    }
+void print_report(const Arguments& arguments, const CookedFile& cooked, double seconds) {
+  if (const auto* scene = std::get_if<SceneReport>(&cooked)) {
+    print_scene(*scene);
+    if (arguments.why) print_why(*scene);
+  } else {
+    print_trees(trees_of(cooked));
   }
   fmt::print("wrote {} in {:.2f} s; every triangle proven inside every box above it\n",
              arguments.output.string(), seconds);
 }
 
-// What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
-std::string positive_fault(const std::string& text) {
+// The same of a share, for which CLI11's Range lets NaN pass.
+std::string share_fault(const std::string& text) {
   const double number = std::strtod(text.c_str(), nullptr);
-  return number > 0 && std::isfinite(number) ? "" : text + " is not above zero";
+  return number >= 0.01 && number <= 1 ? "" : text + " is not from 0.01 to 1";
 }
 
 int run(Arguments& arguments) {
@@ -238,26 +163,30 @@ int run(Arguments& arguments) {
                          !options.blob && is_grid_welcome;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
+  if (!arguments.costs.empty()) {
+    Result<std::vector<CodecCost>> costs = read_costs(arguments.costs);
+    if (!costs) return fail(costs.error());
+    options.costs = std::move(*costs);
+  }
 
   const Clock::time_point start = Clock::now();
-  Result<CookReport> report = Errc::kInternal;
+  Result<CookedFile> cooked = Errc::kInternal;
   {
     StepPrinter steps(!arguments.quiet);
     tbb::task_arena arena(arguments.jobs);
     arena.execute([&] {
-      report = cook(arguments.inputs, arguments.output, options,
-                    [&steps](const std::string& step) { steps(step); });
+      cooked = cook_inputs(arguments, [&steps](const std::string& step) { steps(step); });
     });
   }
-  if (!report) return fail(report.error());
+  if (!cooked) return fail(cooked.error());
   if (!arguments.depfile.empty()) {
-    if (Status status = write_depfile(arguments, *report); !status) return fail(status.error());
+    if (Status status = write_depfile(arguments, *cooked); !status) return fail(status.error());
   }
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
-    print(report_json(arguments, *report, seconds));
+    print(report_json(arguments, *cooked, seconds));
   } else if (!arguments.quiet) {
-    print_report(arguments, *report, seconds);
+    print_report(arguments, *cooked, seconds);
   }
   return 0;
 }
@@ -271,14 +200,26 @@ void add_cook_command(CLI::App& app, int& status) {
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
-  command.add_option("inputs", arguments->inputs, "Mesh files, one tree each")->required();
+  CLI::Option* inputs = command.add_option(
+      "inputs", arguments->inputs,
+      "Mesh files, one tree each; one file with a node graph that places several is a scene");
   command.add_option("-o,--output", arguments->output, "The file to write")->required();
-  command.add_option("--codec", arguments->codec, "How nodes are stored")
-      ->check(CLI::IsMember(codecs))
-      ->capture_default_str();
-  command.add_option("--for", arguments->goal, "What auto minimises")
-      ->check(CLI::IsMember({"memory", "speed", "balance"}))
-      ->capture_default_str();
+  CLI::Option* profile =
+      command.add_option("--profile", arguments->profile,
+                         "A scene.toml: what is asked of the scene, and so what may be left out");
+  CLI::Option* scene =
+      command.add_flag("--scene", arguments->scene, "Make all inputs one scene of placed trees");
+  command.add_flag("--flatten", arguments->flatten, "Make each input one tree, never a scene")
+      ->excludes(profile)
+      ->excludes(scene);
+  command.add_flag("--why", arguments->why,
+                   "Of a scene: print each part, its bytes, and what decided that it is there");
+  CLI::Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")
+                           ->check(CLI::IsMember(codecs))
+                           ->capture_default_str();
+  CLI::Option* goal = command.add_option("--for", arguments->goal, "What auto minimises")
+                          ->check(CLI::IsMember({"memory", "speed", "balance"}))
+                          ->capture_default_str();
   CLI::Option* exact =
       command.add_flag("--exact", arguments->exact,
                        "Keep every bit of every position [else auto may choose a grid of 24 bits]");
@@ -290,15 +231,18 @@ void add_cook_command(CLI::App& app, int& status) {
       "--grid-bits", arguments->options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
-  command
-      .add_option("--max-bytes-per-triangle", arguments->options.wishes.max_bytes_per_triangle,
-                  "Choose nothing larger, nodes and geometry together")
-      ->check(positive_fault, "POSITIVE");
-  command
-      .add_option("--max-slowdown", arguments->options.wishes.max_slowdown,
-                  "Choose nothing slower, in times of the fastest candidate")
-      ->check(positive_fault, "POSITIVE");
-  command.add_flag("--no-face-ids", arguments->no_face_ids, "Leave the source face numbers out");
+  CLI::Option* budget =
+      command
+          .add_option("--max-bytes-per-triangle", arguments->options.wishes.max_bytes_per_triangle,
+                      "Choose nothing larger, nodes and geometry together")
+          ->check(positive_fault, "POSITIVE");
+  CLI::Option* slowdown =
+      command
+          .add_option("--max-slowdown", arguments->options.wishes.max_slowdown,
+                      "Choose nothing slower, in times of the fastest candidate")
+          ->check(positive_fault, "POSITIVE");
+  CLI::Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
+                                              "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
   command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it")
@@ -310,12 +254,21 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_option("--widths", arguments->widths, "Widths of bit-packed fields"))
       ->check(CLI::IsMember({"exact", "estimated"}))
       ->capture_default_str();
-  rare(command.add_flag("--external", arguments->external,
-                        "Leave positions and corners to the application, which binds its own "
-                        "arrays"))
-      ->excludes(exact)
-      ->excludes(tolerance)
-      ->excludes(grid_bits);
+  rare(command.add_option("--shrink-share", arguments->options.shrink_share,
+                          "Codecs with a face a leaf cut off empty slabs from this share of a box "
+                          "on; 1: never"))
+      ->check(share_fault, "0.01 to 1")
+      ->capture_default_str();
+  rare(command.add_option("--costs", arguments->costs,
+                          "Choose by the constants of your own machine, as `bench --calibrate "
+                          "--json` prints them: the choice may then differ from other machines'"));
+  CLI::Option* external =
+      rare(command.add_flag("--external", arguments->external,
+                            "Leave positions and corners to the application, which binds its own "
+                            "arrays"))
+          ->excludes(exact)
+          ->excludes(tolerance)
+          ->excludes(grid_bits);
   rare(command.add_flag("--f64", arguments->f64,
                         "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
@@ -324,7 +277,15 @@ void add_cook_command(CLI::App& app, int& status) {
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   rare(command.add_flag("--try-all", arguments->options.try_all,
                         "Try also what cannot win, for the table"));
-  command.callback([arguments, grid_bits, &status] {
+  // What a profile says of all this would be contradicted.
+  for (CLI::Option* option :
+       {codec, goal, exact, tolerance, grid_bits, budget, slowdown, no_face_ids, external}) {
+    profile->excludes(option);
+  }
+  command.callback([arguments, inputs, profile, grid_bits, &status] {
+    if (inputs->count() == 0 && profile->count() == 0) {
+      throw CLI::RequiredError("inputs, or --profile with a source");
+    }
     if (grid_bits->count() > 0) arguments->options.geometry = GeometryId::kGrid;
     status = run(*arguments);
   });

@@ -7,6 +7,7 @@
 
 #include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/cli/scene_info.h>
 #include <boxtree/runtime/boxtree.h>
 
 namespace boxtree::cooker {
@@ -106,6 +107,7 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["face_ids"].get<double>());
     fmt::print("  bounds {} to {}\n", tree["bounds"]["min"].dump(), tree["bounds"]["max"].dump());
   }
+  if (json.contains("scene")) print_scene(json["scene"]);
 }
 
 int run(const Arguments& arguments) {
@@ -118,6 +120,9 @@ int run(const Arguments& arguments) {
     }
   }
   Json json = file_json(*file);
+  const Result<Json> scene = scene_json(*file);
+  if (!scene) return fail(scene.error());
+  if (!scene->is_null()) json["scene"] = *scene;
   if (opened->blob_bytes != 0) {
     json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
   }

@@ -1,20 +1,26 @@
 // SPDX-License-Identifier: MIT
 // `boxtree query`: asks one tree of a mapped file, or two trees against each other, one question
 // from options or many from a file of JSON lines.
+#include <algorithm>
 #include <fstream>
+#include <functional>
 #include <iostream>
 #include <memory>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/question.h>
+#include <boxtree/cooker/cli/scene_question.h>
 
 namespace boxtree::cooker {
 namespace {
 
 struct Arguments {
   std::filesystem::path file;
-  std::string tree = "0";
+  std::string tree;  // empty: the scene of the file, or else its first tree
+  std::vector<std::string> moves;
   std::filesystem::path mesh;
   std::filesystem::path batch;
   bool json = false;
@@ -23,6 +29,10 @@ struct Arguments {
   SphereQuestion sphere;
   PointQuestion point;
   PairQuestion pair;
+  ContactsQuestion contacts;
+  SecondTree second;
+  Approximation options;
+  OverlapOptions overlap;
   std::string pose;
 };
 
@@ -41,7 +51,8 @@ int usage(const std::string& what) {
 
 // Answers each line of the batch: JSON lines as they come, or one document with --json. A line that
 // cannot be answered gets an error in its place; the exit status is that of the first such line.
-int run_batch(const Arguments& arguments, const Tree& tree, const std::string& kind) {
+using Ask = std::function<Result<Json>(const Question& question, TreeCache& others)>;
+int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& kind) {
   std::ifstream opened;
   const bool from_input = arguments.batch == "-";
   if (!from_input) {
@@ -58,7 +69,7 @@ int run_batch(const Arguments& arguments, const Tree& tree, const std::string& k
   for (std::size_t number = 1; std::getline(in, line); ++number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const Result<Question> question = parse_question(line, kind);
-    Result<Json> answer = question ? ask(tree, *question, others) : Result<Json>(question.error());
+    Result<Json> answer = question ? ask_it(*question, others) : Result<Json>(question.error());
     if (!answer) {
       const Error error{answer.code(), fmt::format("line {}: {}", number, answer.error().detail)};
       if (status == 0) status = error_info(error.code).exit_status;
@@ -80,31 +91,81 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
   if (arguments.batch.empty() && missing != nullptr) {
     return usage(fmt::format("{} is required", missing));
   }
-  const Result<OpenedTree> opened = open_tree(arguments.file, arguments.tree, arguments.mesh);
+  Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
-  if (!arguments.batch.empty()) return run_batch(arguments, opened->tree, kind);
-  TreeCache others;
-  const Result<Json> answer = ask(opened->tree, question, others);
-  if (!answer) return fail(answer.error());
-  print_answer(arguments, *answer);
-  return 0;
+  const bool has_scene = !opened->file.section(SectionKind::kScene).empty();
+  if (!arguments.moves.empty() && (!has_scene || !arguments.tree.empty())) {
+    return usage("--move is for instances of a scene");
+  }
+  const auto answer_all = [&](const Ask& ask_it) {
+    if (!arguments.batch.empty()) return run_batch(arguments, ask_it, kind);
+    TreeCache others;
+    const Result<Json> answer = ask_it(question, others);
+    if (!answer) return fail(answer.error());
+    print_answer(arguments, *answer);
+    return 0;
+  };
+  if (has_scene && arguments.tree.empty()) {
+    const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
+    if (!scene) {
+      return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
+    }
+    return answer_all(
+        [&](const Question& asked, TreeCache& others) { return ask(scene->scene, asked, others); });
+  }
+  const Result<OpenedTree> tree =
+      bind_tree(std::move(opened->file), arguments.file,
+                arguments.tree.empty() ? "0" : arguments.tree, arguments.mesh);
+  if (!tree) return fail(tree.error());
+  return answer_all(
+      [&](const Question& asked, TreeCache& others) { return ask(tree->tree, asked, others); });
 }
 
-int run_pair(Arguments& arguments) {
+// A question about two trees: `question` is made when the second one is known.
+template <class Make>
+int run_pair(Arguments& arguments, const std::string& kind, Make question) {
   if (!arguments.pose.empty()) {
     const std::optional<Pose> pose = parse_pose(arguments.pose);
     if (!pose) {
       return usage(
           fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", arguments.pose));
     }
-    arguments.pair.pose = *pose;
+    arguments.second.pose = *pose;
   }
-  return run(arguments, "pair", arguments.pair,
-             arguments.pair.file.empty() ? "the second file" : nullptr);
+  return run(arguments, kind, question(),
+             arguments.second.file.empty() ? "the second file" : nullptr);
 }
 
 const char* first_missing(const VectorOption& first, const VectorOption& second) {
   return !first.given ? first.name.c_str() : !second.given ? second.name.c_str() : nullptr;
+}
+
+CLI::Option* add_budget(CLI::App& query, std::uint64_t& nodes) {
+  // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
+  return query.add_option("--budget", nodes, "Stop after so many nodes")
+      ->check(CLI::NonNegativeNumber);
+}
+
+// How near to the truth an answer has to be; returns those that make it one with bounds.
+std::vector<CLI::Option*> add_approximation(CLI::App& query, Approximation& options) {
+  query.add_option("--max-distance", options.max_distance, "Look no farther");
+  return {query.add_option("--relative-error", options.relative_error,
+                           "Be content if upper <= lower * (1 + this)"),
+          query.add_option("--absolute-error", options.absolute_error,
+                           "Be content if upper <= lower + this"),
+          add_budget(query, options.node_budget)};
+}
+
+// What may be left undecided; returns those that ask for no more than whether there is an overlap.
+std::vector<CLI::Option*> add_overlap(CLI::App& query, OverlapOptions& options) {
+  return {query.add_option("--within", options.within,
+                           "Answer hit or free, or undecided if closer than this"),
+          add_budget(query, options.node_budget)};
+}
+
+bool any_given(const std::vector<CLI::Option*>& options) {
+  return std::any_of(options.begin(), options.end(),
+                     [](const CLI::Option* option) { return option->count() > 0; });
 }
 
 void add_ray_and_point(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
@@ -121,9 +182,11 @@ void add_ray_and_point(CLI::App& query, const std::shared_ptr<Arguments>& a, int
 
   CLI::App& point = *query.add_subcommand("point", "Closest point of the surface");
   a->at.add_to(point, "--at", "The point");
-  point.add_option("--max-distance", a->point.max_distance, "Look no farther");
-  point.callback([a, &status] {
+  const std::vector<CLI::Option*> given = add_approximation(point, a->options);
+  point.callback([a, given, &status] {
     a->point.at = a->at.value;
+    a->point.options = a->options;
+    a->point.with_bounds = any_given(given);
     status = run(*a, "point", a->point, first_missing(a->at, a->at));
   });
 }
@@ -132,9 +195,11 @@ void add_box_and_sphere(CLI::App& query, const std::shared_ptr<Arguments>& a, in
   CLI::App& box = *query.add_subcommand("box", "Faces that touch an axis-aligned box");
   a->low.add_to(box, "--min", "Lower corner");
   a->high.add_to(box, "--max", "Upper corner");
-  box.callback([a, &status] {
-    status =
-        run(*a, "box", BoxQuestion{{a->low.value, a->high.value}}, first_missing(a->low, a->high));
+  const std::vector<CLI::Option*> given = add_overlap(box, a->overlap);
+  box.callback([a, given, &status] {
+    BoxQuestion question{{a->low.value, a->high.value}, {}};
+    if (any_given(given)) question.overlap = a->overlap;
+    status = run(*a, "box", question, first_missing(a->low, a->high));
   });
 
   CLI::App& sphere = *query.add_subcommand("sphere", "Faces within a radius of a point");
@@ -148,16 +213,46 @@ void add_box_and_sphere(CLI::App& query, const std::shared_ptr<Arguments>& a, in
   });
 }
 
-void add_pair(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
-  CLI::App& pair = *query.add_subcommand("pair", "Pairs of faces of two trees that touch");
-  pair.add_option("file2", a->pair.file, "The second .bxt file");
-  pair.add_option("--pose", a->pose,
-                  "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row");
-  pair.add_flag("--first", a->pair.first_only, "Stop at the first contact");
-  pair.add_option("--tree2", a->pair.tree, "Its tree, by number or name")->group(kRareOptions);
-  pair.add_option("--mesh2", a->pair.mesh, "Its source mesh, if it was cooked with --external")
+void add_second(CLI::App& query, Arguments& arguments) {
+  query.add_option("file2", arguments.second.file, "The second .bxt file");
+  query.add_option("--pose", arguments.pose,
+                   "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row");
+  query.add_option("--tree2", arguments.second.tree, "Its tree, by number or name")
       ->group(kRareOptions);
-  pair.callback([a, &status] { status = run_pair(*a); });
+  query
+      .add_option("--mesh2", arguments.second.mesh,
+                  "Its source mesh, if it was cooked with --external")
+      ->group(kRareOptions);
+}
+
+void add_two_trees(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
+  CLI::App& pair = *query.add_subcommand("pair", "Pairs of faces of two trees that touch");
+  add_second(pair, *a);
+  pair.add_flag("--first", a->pair.first_only, "Stop at the first contact");
+  pair.callback([a, &status] {
+    status = run_pair(*a, "pair", [&] { return PairQuestion{a->second, a->pair.first_only}; });
+  });
+
+  CLI::App& distance = *query.add_subcommand("distance", "Distance of two trees");
+  add_second(distance, *a);
+  add_approximation(distance, a->options);
+  distance.callback([a, &status] {
+    status = run_pair(*a, "distance", [&] { return DistanceQuestion{a->second, a->options}; });
+  });
+
+  CLI::App& overlap = *query.add_subcommand("overlap", "Whether two trees touch: hit or free");
+  add_second(overlap, *a);
+  add_overlap(overlap, a->overlap);
+  overlap.callback([a, &status] {
+    status = run_pair(*a, "overlap", [&] { return OverlapQuestion{a->second, a->overlap}; });
+  });
+}
+
+void add_contacts(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
+  CLI::App& command = *query.add_subcommand(
+      "contacts", "Of a scene: pairs of faces of what moves and all else that touch");
+  command.add_flag("--first", a->contacts.first_only, "Stop at the first contact");
+  command.callback([a, &status] { status = run(*a, "contacts", a->contacts, nullptr); });
 }
 
 }  // namespace
@@ -166,7 +261,11 @@ void add_query_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("query", "Ask a .bxt file");
   command.add_option("file", arguments->file, "A .bxt file")->required();
-  command.add_option("--tree", arguments->tree, "Which tree, by number or name");
+  command.add_option("--tree", arguments->tree,
+                     "Which tree, by number or name [the scene of the file, or else tree 0]");
+  command.add_option("--move", arguments->moves,
+                     "Of a scene, as often as needed: INSTANCE=POSE, the instance by number or "
+                     "name, the pose as X,Y,Z or 12 numbers");
   command.add_option("--batch", arguments->batch,
                      "Ask every line of a file (- for standard input): JSON objects with the names "
                      "of the options as keys, and \"kind\" if no kind of query is given here");
@@ -177,7 +276,8 @@ void add_query_command(CLI::App& app, int& status) {
   command.fallthrough();
   add_ray_and_point(command, arguments, status);
   add_box_and_sphere(command, arguments, status);
-  add_pair(command, arguments, status);
+  add_two_trees(command, arguments, status);
+  add_contacts(command, arguments, status);
   command.callback([&command, arguments, &status] {
     if (!command.get_subcommands().empty()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")

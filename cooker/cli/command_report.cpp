@@ -22,6 +22,7 @@ struct Arguments {
   std::filesystem::path output;
   std::filesystem::path json;
   std::filesystem::path csv;
+  std::filesystem::path approximate_csv;
   std::filesystem::path peers;
   std::vector<std::filesystem::path> included;
   bool paper = false;
@@ -31,6 +32,7 @@ struct Arguments {
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {
   std::vector<std::string> names;
+  names.reserve(meshes.size());
   for (const std::filesystem::path& mesh : meshes) names.push_back(mesh.string());
   return names;
 }
@@ -245,6 +247,9 @@ int run_tradeoff(const Arguments& arguments) {
   }
   if (Status status = write(arguments.json, to_json(*report)); !status) return fail(status.error());
   if (Status status = write(arguments.csv, to_csv(*report)); !status) return fail(status.error());
+  if (Status status = write(arguments.approximate_csv, approximate_to_csv(*report)); !status) {
+    return fail(status.error());
+  }
   return 0;
 }
 
@@ -265,6 +270,10 @@ void add_report_command(CLI::App& app, int& status) {
   command.add_option("-o,--output", arguments->output, "Write an HTML page");
   command.add_option("--json", arguments->json, "Write all figures as JSON");
   command.add_option("--csv", arguments->csv, "Write a row for each encoding as CSV")
+      ->excludes(paper);
+  command
+      .add_option("--csv-approximate", arguments->approximate_csv,
+                  "Write a row for each allowed error and budget of approximate queries as CSV")
       ->excludes(paper);
   command.add_flag("--quick", arguments->quick, "Few encodings, questions and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,

@@ -48,7 +48,29 @@ Result<Json> answer_faces(Overlap overlap) {
   return Json{{"count", faces.size()}, {"faces", faces}};
 }
 
+const char* name_of(Overlap overlap) {
+  switch (overlap) {
+    case Overlap::kHit:
+      return "hit";
+    case Overlap::kFree:
+      return "free";
+    case Overlap::kUndecided:
+      return "undecided";
+    case Overlap::kBudgetSpent:
+      return "budget_spent";
+  }
+  return "";
+}
+
 Result<Json> answer(const Tree& tree, const BoxQuestion& question) {
+  if (question.overlap) {
+    const auto found = overlap_box_within(tree, question.box, question.overlap->within,
+                                          question.overlap->node_budget);
+    if (!found) return found.error();
+    Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
+    if (found->face) json["face"] = face_json(*found->face);
+    return json;
+  }
   return answer_faces(
       [&](FaceVisitor visitor) { return overlap_box(tree, question.box, visitor); });
 }
@@ -59,28 +81,77 @@ Result<Json> answer(const Tree& tree, const SphereQuestion& question) {
   });
 }
 
+void add_closest(Json& json, const std::optional<ClosestPoint>& closest) {
+  json["found"] = closest.has_value();
+  if (!closest) return;
+  json["distance"] = closest->distance;
+  json["point"] = vector_json(closest->point);
+  json["face"] = face_json(closest->face);
+  json["triangle"] = closest->triangle;
+}
+
+// What is known, for any answer with bounds. An infinite upper bound is null: JSON has no infinity.
+template <class Bounded>
+Json bounds_json(const Bounded& bounds) {
+  return {{"lower", bounds.lower},
+          {"upper", bounds.upper},
+          {"near_enough", bounds.is_near_enough},
+          {"nodes", bounds.nodes_expanded}};
+}
+
 Result<Json> answer(const Tree& tree, const PointQuestion& question) {
-  const auto closest = closest_point(tree, question.at, question.max_distance);
-  if (!closest) return closest.error();
-  Json json = {{"found", closest->has_value()}};
-  if (*closest) {
-    json["distance"] = (*closest)->distance;
-    json["point"] = vector_json((*closest)->point);
-    json["face"] = face_json((*closest)->face);
-    json["triangle"] = (*closest)->triangle;
+  if (question.with_bounds) {
+    const auto found = closest_point(tree, question.at, question.options);
+    if (!found) return found.error();
+    Json json = bounds_json(*found);
+    add_closest(json, found->witness);
+    return json;
   }
+  const auto closest = closest_point(tree, question.at, question.options.max_distance);
+  if (!closest) return closest.error();
+  Json json;
+  add_closest(json, *closest);
   return json;
 }
 
 Result<Json> answer_pair(const Tree& first, const Tree& second, const PairQuestion& question) {
   Json pairs = Json::array();
-  const Result<Visit> visit =
-      overlap_pairs(first, Pose::Identity(), second, question.pose, [&](const FacePair& pair) {
+  const Result<Visit> visit = overlap_pairs(
+      first, Pose::Identity(), second, question.second.pose, [&](const FacePair& pair) {
         pairs.push_back({face_json(pair.first), face_json(pair.second)});
         return !question.first_only;
       });
   if (!visit) return visit.error();
   return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
+}
+
+Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceQuestion& question) {
+  const auto found =
+      distance(first, Pose::Identity(), second, question.second.pose, question.options);
+  if (!found) return found.error();
+  Json json = bounds_json(*found);
+  json["found"] = found->witness.has_value();
+  if (found->witness) {
+    const DistanceWitness& witness = *found->witness;
+    json["faces"] = {face_json(witness.faces.first), face_json(witness.faces.second)};
+    json["points"] = {vector_json(witness.first), vector_json(witness.second)};
+  }
+  return json;
+}
+
+Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapQuestion& question) {
+  const auto found = overlap_within(first, Pose::Identity(), second, question.second.pose,
+                                    question.options.within, question.options.node_budget);
+  if (!found) return found.error();
+  Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
+  if (found->contact) {
+    json["faces"] = {face_json(found->contact->first), face_json(found->contact->second)};
+  }
+  return json;
+}
+
+Result<Json> answer(const Tree& /*tree*/, const ContactsQuestion& /*question*/) {
+  return Error{Errc::kNoScene, "contacts are those of a scene, and this is one tree"};
 }
 
 Error invalid(std::string what) {
@@ -119,11 +190,19 @@ class Fields {
     if (!value->is_boolean()) return fail(key, "true or false");
     out = value->get<bool>();
   }
+  void read(const char* key, std::uint64_t& out) {
+    const Json* value = require(key);
+    if (value == nullptr) return;
+    if (!value->is_number_unsigned()) return fail(key, "a whole number, 0 or more");
+    out = value->get<std::uint64_t>();
+  }
   // The same, but the key may be missing.
   template <class T>
-  void read_if_given(const char* key, T& out) {
+  bool read_if_given(const char* key, T& out) {
     known_.emplace_back(key);
-    if (json_.contains(key)) read(key, out);
+    const bool given = json_.contains(key);
+    if (given) read(key, out);
+    return given;
   }
   [[nodiscard]] Status finish(std::string_view kind) {
     for (const auto& [key, value] : json_.items()) {
@@ -150,6 +229,37 @@ class Fields {
   std::string error_;
 };
 
+// Whether an error or a budget was given.
+bool read_options(Fields& fields, Approximation& options) {
+  const bool relative = fields.read_if_given("relative_error", options.relative_error);
+  const bool absolute = fields.read_if_given("absolute_error", options.absolute_error);
+  const bool budget = fields.read_if_given("budget", options.node_budget);
+  fields.read_if_given("max_distance", options.max_distance);
+  return relative || absolute || budget;
+}
+
+// Whether a distance or a budget was given.
+bool read_options(Fields& fields, OverlapOptions& options) {
+  const bool within = fields.read_if_given("within", options.within);
+  const bool budget = fields.read_if_given("budget", options.node_budget);
+  return within || budget;
+}
+
+void read_second(Fields& fields, SecondTree& second) {
+  std::string file;
+  std::string mesh;
+  std::string pose = "0,0,0";
+  fields.read("file", file);
+  fields.read_if_given("tree", second.tree);
+  fields.read_if_given("mesh", mesh);
+  fields.read_if_given("pose", pose);
+  second.file = file;
+  second.mesh = mesh;
+  const std::optional<Pose> parsed = parse_pose(pose);
+  if (!parsed) fields.fail("pose", "\"X,Y,Z\" or 12 numbers");
+  second.pose = parsed.value_or(Pose::Identity());
+}
+
 Result<Question> question_of(std::string_view kind, Fields& fields) {
   Question result;
   if (kind == "ray") {
@@ -163,6 +273,8 @@ Result<Question> question_of(std::string_view kind, Fields& fields) {
     BoxQuestion box;
     fields.read("min", box.box.min());
     fields.read("max", box.box.max());
+    OverlapOptions overlap;
+    if (read_options(fields, overlap)) box.overlap = overlap;
     result = box;
   } else if (kind == "sphere") {
     SphereQuestion sphere;
@@ -172,26 +284,31 @@ Result<Question> question_of(std::string_view kind, Fields& fields) {
   } else if (kind == "point") {
     PointQuestion point;
     fields.read("at", point.at);
-    fields.read_if_given("max_distance", point.max_distance);
+    point.with_bounds = read_options(fields, point.options);
     result = point;
   } else if (kind == "pair") {
     PairQuestion pair;
-    std::string file;
-    std::string mesh;
-    std::string pose = "0,0,0";
-    fields.read("file", file);
-    fields.read_if_given("tree", pair.tree);
-    fields.read_if_given("mesh", mesh);
-    fields.read_if_given("pose", pose);
+    read_second(fields, pair.second);
     fields.read_if_given("first", pair.first_only);
-    pair.file = file;
-    pair.mesh = mesh;
-    const std::optional<Pose> parsed = parse_pose(pose);
-    if (!parsed) fields.fail("pose", "\"X,Y,Z\" or 12 numbers");
-    pair.pose = parsed.value_or(Pose::Identity());
     result = pair;
+  } else if (kind == "distance") {
+    DistanceQuestion distance;
+    read_second(fields, distance.second);
+    read_options(fields, distance.options);
+    result = distance;
+  } else if (kind == "contacts") {
+    ContactsQuestion contacts;
+    fields.read_if_given("first", contacts.first_only);
+    result = contacts;
+  } else if (kind == "overlap") {
+    OverlapQuestion overlap;
+    read_second(fields, overlap.second);
+    read_options(fields, overlap.options);
+    result = overlap;
   } else {
-    return invalid(fmt::format("kind \"{}\": expected ray, box, sphere, point or pair", kind));
+    return invalid(fmt::format(
+        "kind \"{}\": expected ray, box, sphere, point, pair, distance, overlap or contacts",
+        kind));
   }
   if (Status status = fields.finish(kind); !status) return status.error();
   return result;
@@ -203,7 +320,12 @@ Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::strin
                              const std::filesystem::path& mesh) {
   Result<OpenedFile> opened = open_file(path);
   if (!opened) return opened.error();
-  File* const file = &opened->file;
+  return bind_tree(std::move(opened->file), path, which, mesh);
+}
+
+Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
+                             const std::string& which, const std::filesystem::path& mesh) {
+  File* const file = &opened;
   const Result<std::uint32_t> index = find_tree(*file, which);
   if (!index) return index.error();
   BindOptions options;
@@ -224,10 +346,10 @@ Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::strin
   return OpenedTree{std::move(*file), std::move(source), std::move(*tree)};
 }
 
-Result<const Tree*> TreeCache::get(const PairQuestion& question) {
-  std::unique_ptr<OpenedTree>& place = opened_[{question.file.string(), question.tree}];
+Result<const Tree*> TreeCache::get(const SecondTree& second) {
+  std::unique_ptr<OpenedTree>& place = opened_[{second.file.string(), second.tree}];
   if (place == nullptr) {
-    Result<OpenedTree> opened = open_tree(question.file, question.tree, question.mesh);
+    Result<OpenedTree> opened = open_tree(second.file, second.tree, second.mesh);
     if (!opened) return opened.error();
     place = std::make_unique<OpenedTree>(std::move(*opened));
   }
@@ -274,20 +396,9 @@ Result<Question> parse_question(std::string_view line, std::string_view default_
 }
 
 Result<Json> ask(const Tree& tree, const Question& question, TreeCache& others) {
-  if (const auto* pair = std::get_if<PairQuestion>(&question)) {
-    const Result<const Tree*> second = others.get(*pair);
-    if (!second) return second.error();
-    return answer_pair(tree, **second, *pair);
-  }
-  return std::visit(
-      [&](const auto& q) -> Result<Json> {
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(q)>, PairQuestion>) {
-          return Errc::kInternal;  // answered above
-        } else {
-          return answer(tree, q);
-        }
-      },
-      question);
+  return ask_one_or_two(
+      question, others, [&](const auto& q) { return answer(tree, q); },
+      [&](const Tree& second, const auto& q) { return answer_pair(tree, second, q); });
 }
 
 }  // namespace boxtree::cooker

@@ -2,23 +2,12 @@
 # SPDX-License-Identifier: MIT
 # The command line: outputs, errors, exit statuses, same bytes, old file kept on failure.
 set -euo pipefail
+# shellcheck source=tests/cli/expect.sh
+. "$(dirname "$0")/expect.sh"
 boxtree=$1
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cd "$work"
-
-# expect STATUS COMMAND...: runs it, output in ./out and ./err.
-expect() {
-  local want=$1 got=0
-  shift
-  "$@" >out 2>err || got=$?
-  if [ "$got" -ne "$want" ]; then
-    echo "expected exit $want, got $got: $*"
-    cat out err
-    exit 1
-  fi
-}
-same() { [ "$1" = "$2" ] || { echo "expected '$2', found '$1'"; exit 1; }; }
 
 cat >cube.obj <<'OBJ'
 v 0 0 0
@@ -102,6 +91,52 @@ same "$(jq -c '.hit' out)" true
 expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1.001,0.25,0.25 --json
 same "$(jq -c '.hit' out)" false
 
+# Answers with bounds: exact ones, allowed errors, budgets. The cube is one leaf.
+expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 3,0,0 --json
+same "$(jq -c '[.lower <= 2, .upper >= 2, .upper - .lower < 1e-12, .near_enough, .found]' out)" \
+  '[true,true,true,true,true]'
+same "$(jq -c '[.points[][0], .faces[]]' out)" '[1,3,5,4]'
+expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 1,0.25,0.25 --json
+same "$(jq -c '[.lower,.upper]' out)" '[0,0]'
+expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 3,0,0 --max-distance 1 --json
+same "$(jq -c '[.lower >= 1, .lower <= 2, .upper, .found]' out)" '[true,true,null,false]'
+for kind in 'point --at 3,0.5,0.5' 'distance cube.bxt --pose 3,0,0'; do
+  expect 0 "$boxtree" query cube.bxt $kind --relative-error 0.5 --absolute-error 0.1 --json
+  jq -e '.lower <= 2 and .upper >= 2 and .upper <= 1.5 * .lower + 1e-12 and .near_enough' out >/dev/null
+  expect 0 "$boxtree" query cube.bxt $kind --budget 0 --json
+  jq -e '.lower <= 2 and .lower > 1.9 and .upper == null and .near_enough == false and .nodes == 0' \
+    out >/dev/null
+  expect 0 "$boxtree" query cube.bxt $kind --budget 9 --json
+  jq -e '.lower <= 2 and .upper >= 2 and .near_enough and .nodes > 0 and .nodes <= 9' out >/dev/null
+  for bad in '--relative-error=-1' '--absolute-error=nan' '--budget=-1' '--budget=x'; do
+    expect 1 "$boxtree" query cube.bxt $kind "$bad"
+  done
+done
+# Overlap: hits and frees are certain; what is near enough may be left open, even where it touches.
+for kind in 'overlap cube.bxt --pose' 'box --max 9,9,9 --min'; do
+  expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --within 0 --json
+  same "$(jq -c '.overlap' out)" '"hit"'
+  expect 0 "$boxtree" query cube.bxt $kind 1.25,0.25,0.25 --within 0 --json
+  same "$(jq -c '[.overlap, .face, .faces]' out)" '["free",null,null]'
+  expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --within 99 --json
+  same "$(jq -c '.overlap' out)" '"undecided"'
+  expect 0 "$boxtree" query cube.bxt $kind 1.0009765625,0.25,0.25 --within 0.0001 --json
+  same "$(jq -c '.overlap' out)" '"free"'
+  expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --budget 0 --json
+  same "$(jq -c '[.overlap, .nodes]' out)" '["budget_spent",0]'
+  for bad in '--within=-1' '--within=nan' '--budget=-1'; do
+    expect 1 "$boxtree" query cube.bxt $kind 1,0.25,0.25 "$bad"
+  done
+done
+expect 0 "$boxtree" query cube.bxt overlap cube.bxt --pose 1,0.25,0.25 --json
+contact=$(jq -c '.faces' out)
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25 --json
+same "$(jq -c "any(.pairs[]; . == $contact)" out)" true
+for kind in distance overlap; do
+  expect 1 "$boxtree" query cube.bxt $kind
+  grep -q 'second file' err
+done
+
 # Same bytes from another folder and with other thread counts.
 mkdir elsewhere && cp cube.obj elsewhere/
 (cd elsewhere && "$boxtree" cook cube.obj -o cube.bxt --jobs 1 -q)
@@ -151,15 +186,24 @@ cat >questions.jsonl <<'BATCH'
 {"kind":"sphere","center":[0.5,0.5,1.5],"radius":0.5}
 {"kind":"point","at":[0.5,0.5,3]}
 {"kind":"pair","file":"cube.bxt","pose":"1,0.25,0.25","first":true}
+{"kind":"distance","file":"cube.bxt","pose":"3,0,0","relative_error":0.1}
+{"kind":"point","at":[0.5,0.5,3],"absolute_error":0.5,"budget":100}
+{"kind":"overlap","file":"cube.bxt","pose":"1,0.25,0.25","within":0}
+{"kind":"box","min":[2,2,2],"max":[3,3,3],"within":0.5}
 BATCH
 expect 0 "$boxtree" query cube.bxt --batch questions.jsonl
-same "$(wc -l <out)" 5
+same "$(wc -l <out)" 9
 same "$(jq -cs '[.[0].t,.[1].faces,.[2].count,.[3].distance,.[4].count]' out)" '[4,[5],1,2,1]'
+same "$(jq -cs '.[5:7] | map(.lower <= 2 and .upper >= 2)' out)" '[true,true]'
+same "$(jq -cs '.[7:] | map(.overlap)' out)" '["hit","free"]'
 expect 0 "$boxtree" query cube.bxt --batch questions.jsonl --json
-same "$(jq -c '.answers | length' out)" 5
+same "$(jq -c '.answers | length' out)" 9
 expect 0 sh -c "echo '{\"at\":[0.5,0.5,3]}' | '$boxtree' query cube.bxt point --batch -"
 same "$(jq -c '.distance' out)" 2
 for bad in 'nonsense' '[1]' '{"kind":"cone"}' '{"kind":"point"}' '{"kind":"point","at":[1,2]}' \
+  '{"kind":"distance"}' '{"kind":"point","at":[0,0,0],"budget":-1}' \
+  '{"kind":"distance","file":"cube.bxt","relative_error":-1}' \
+  '{"kind":"overlap","file":"cube.bxt","within":-1}' '{"kind":"box","min":[0,0,0],"max":[1,1,1],"within":"x"}' \
   '{"kind":"point","at":[0,0,0],"hat":1}' '{"kind":"ray","origin":[0,0,0],"direction":[0,0,0]}'; do
   printf '{"kind":"point","at":[0.5,0.5,3]}\n%s\n' "$bad" >bad.jsonl
   expect 1 "$boxtree" query cube.bxt --batch bad.jsonl
@@ -170,6 +214,29 @@ expect 1 "$boxtree" query cube.bxt
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
 grep -q -- '--direction is required' err
 expect 2 "$boxtree" query cube.bxt --batch missing.jsonl
+
+# Own constants: what the calibration prints decides; what makes no sense is refused by name.
+expect 0 "$boxtree" bench --calibrate cube.obj --runs 1 --json
+cp out costs.json
+expect 0 "$boxtree" cook cube.obj -o own.bxt --costs costs.json --json
+jq -e '.trees[0].candidates | all(.cost.ray > 0)' out >/dev/null
+cp out before.json
+jq '.costs |= map(.ray |= map_values(. * 8))' costs.json >dearer.json
+expect 0 "$boxtree" cook cube.obj -o own.bxt --costs dearer.json --json
+jq -e --slurpfile before before.json '[.trees[0].candidates, $before[0].trees[0].candidates] | transpose |
+  all(.[0].codec == .[1].codec and (.[0].cost.ray / .[1].cost.ray - 8 | fabs) < 1e-9)' out >/dev/null
+jq '.costs |= .[1:]' costs.json >short.json
+expect 2 "$boxtree" cook cube.obj -o refused.bxt --costs short.json
+grep -q 'short.json: costs: .*: expected one row, found 0' err
+expect 2 "$boxtree" cook cube.obj -o refused.bxt --costs missing.json
+[ ! -e refused.bxt ]
+
+# Empty slabs: never cut off, or soon.
+for share in 1 0.05; do
+  expect 0 "$boxtree" cook cube.obj -o own.bxt --codec packed-f16 --shrink-share $share
+  expect 0 "$boxtree" verify own.bxt
+done
+for share in 0 1.5 nan; do expect 1 "$boxtree" cook cube.obj -o own.bxt --shrink-share=$share; done
 
 # Several inputs: one tree each, found by number and by name; bad faces dropped by number.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv nan 0 0\nf 1 2 4\nf 1 2 3\n' >flat.obj
@@ -205,6 +272,11 @@ expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
 same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
 same "$(jq -c '.files[0] | .ray_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
 expect 1 "$boxtree" bench external.bxt --quick --runs 1
+expect 0 "$boxtree" bench cube.bxt --approximate --quick --runs 1 --json
+jq -e '.files[0].approximate | [.point, .distance] | all(
+  (.by_error | length > 3 and .[0].relative_error == 0 and all(.median_ns > 0 and .false_bounds == 0
+    and .measured_error <= .relative_error + 1e-9)) and
+  (.by_budget | length > 3 and all(.nodes <= .node_budget and .false_bounds == 0)))' out >/dev/null
 
 # f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
 printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj
@@ -257,7 +329,7 @@ expect 0 "$boxtree" verify external.bxt --mesh shown.obj
 expect 0 "$boxtree" export both.bxt -o shown.glb --triangles
 same "$(head -c 4 shown.glb)" glTF
 grep -q '^cube: 12 triangles$' out && grep -q '^flat: 1 triangles$' out
-expect 0 "$boxtree" cook shown.glb -o again.bxt --json
+expect 0 "$boxtree" cook shown.glb -o again.bxt --flatten --json
 same "$(jq -r '.trees[0].triangles' out)" 13
 for tree in 1 flat; do
   expect 0 "$boxtree" export both.bxt -o flat-shown.obj --tree "$tree" --triangles

@@ -127,7 +127,7 @@ def main(boxtree):
         with open("probe.html", "w", encoding="utf-8") as file:
             file.write(page.replace("</body>", PROBE + "</body>"))
         _, light, dom = probe(chromium, "probe.html", "--window-size=1200,900")
-        assert dom.count("<svg") == page.count("<svg") >= 17, "plots were lost"
+        assert dom.count("<svg") == page.count("<svg") >= 23, "plots were lost"
         assert min(light) > 200, f"light: {light}"
         _, dark, _ = probe(chromium, "probe.html", "--window-size=1200,900",
                            "--blink-settings=preferredColorScheme=0")

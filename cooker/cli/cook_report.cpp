@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: MIT
+// Reports of cooking.
+#include <algorithm>
+#include <cstdio>
+#include <string>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/cli/cook_report.h>
+
+namespace boxtree::cooker {
+namespace {
+
+double per_triangle(std::uint64_t bytes, const EncodedTree& tree) {
+  return tree.triangle_count == 0
+             ? 0
+             : static_cast<double>(bytes) / static_cast<double>(tree.triangle_count);
+}
+
+Json work_json(const WorkOfKinds& work) {
+  Json json;
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    json[kQueryNames[kind]] = {{"nodes", work[kind].nodes}, {"leaves", work[kind].leaves}};
+  }
+  return json;
+}
+
+Json candidate_json(const Candidate& candidate, double slowdown, const EncodedTree& tree) {
+  Json json;
+  json["codec"] = codec_name(candidate.codec);
+  json["geometry"] = geometry_name(candidate.geometry);
+  json["bytes_per_triangle"] = {
+      {"tree", per_triangle(candidate.tree_bytes, tree)},
+      {"total", per_triangle(candidate.tree_bytes + candidate.geometry_bytes, tree)}};
+  for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+    json["cost"][kQueryNames[kind]] = candidate.cost[kind];
+  }
+  json["slowdown"] = slowdown;
+  json["work"] = work_json(candidate.work);
+  json["error"] = {{"max_vertex_error", candidate.max_vertex_error}};
+  json["rejected"] = candidate.rejected.empty() ? Json(nullptr) : Json(candidate.rejected);
+  json["gates"] = {{"missed", candidate.gates.missed},
+                   {"escapes", candidate.gates.escapes},
+                   {"certificate", candidate.gates.certificate}};
+  return json;
+}
+
+Json import_json(const ImportReport& report) {
+  Json json = {{"meshes", report.meshes},
+               {"source_faces", report.source_faces},
+               {"points_skipped", report.points_skipped},
+               {"lines_skipped", report.lines_skipped},
+               {"quads_kept", report.quads_kept},
+               {"quads_split", report.quads_split},
+               {"ngons_split", report.ngons_split},
+               {"vertices_welded", report.vertices_welded},
+               {"degenerate_faces", report.degenerate_faces}};
+  json["skipped"] = Json::array();
+  for (const SkippedFace& face : report.skipped) {
+    json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
+  }
+  return json;
+}
+
+// What was tried and what was not, with the reasons.
+void print_contest(const CookedTree& cooked) {
+  const std::vector<Candidate>& candidates = cooked.contest.candidates;
+  const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>5} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
+             "geometry", "tree B/tri", "with geom.", "times", "ray ns", "box ns", "point ns",
+             "pairs us", "error");
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    fmt::print(
+        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
+        "  {:>9.2g}{}{}\n",
+        candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
+        geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
+        per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.cost[0],
+        candidate.cost[1], candidate.cost[2], candidate.cost[3] / 1000, candidate.max_vertex_error,
+        candidate.rejected.empty() ? "" : "  ", candidate.rejected);
+  }
+  // Codecs that share a reason stand together.
+  const std::vector<NotTried>& others = cooked.contest.not_tried;
+  for (std::size_t i = 0; i < others.size();) {
+    std::string names;
+    const NotTried& first = others[i];
+    for (; i < others.size() && others[i].why == first.why; ++i) {
+      if (others[i].geometry != first.geometry) break;
+      names += fmt::format("{}{}", names.empty() ? "" : ", ", codec_name(others[i].codec));
+    }
+    fmt::print("    not tried, geometry {}: {}: {}\n", geometry_name(first.geometry), names,
+               first.why);
+  }
+}
+
+void print_import(const ImportReport& import) {
+  if (import.points_skipped + import.lines_skipped > 0) {
+    fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
+               import.lines_skipped);
+  }
+  if (import.degenerate_faces > 0) {
+    fmt::print("  kept {} faces without area\n", import.degenerate_faces);
+  }
+  for (const SkippedFace& face : import.skipped) {
+    fmt::print("  skipped face {}: {}\n", face.face_id, face.reason);
+  }
+}
+
+// The parts of one tree that were left out, for tools that look at trees alone.
+void add_left_out(const SceneReport& report, Json& trees) {
+  for (const WhyLine& line : report.why) {
+    if (line.kept) continue;
+    for (Json& tree : trees) {
+      if (line.owner != "mesh " + tree["name"].get<std::string>()) continue;
+      tree["left_out"].push_back(
+          {{"what", line.part},
+           {"bytes", line.bytes},
+           {"why", line.line.empty() ? line.reason : line.reason + " (" + line.line + ")"}});
+    }
+  }
+}
+
+}  // namespace
+
+Json trees_json(const CookReport& report) {
+  Json trees = Json::array();
+  for (std::size_t i = 0; i < report.trees.size(); ++i) {
+    const CookedTree& cooked = report.trees[i];
+    Json tree = {{"name", cooked.tree.name},
+                 {"triangles", cooked.tree.triangle_count},
+                 {"chosen", codec_name(cooked.tree.nodes.codec)},
+                 {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)}};
+    tree["candidates"] = Json::array();
+    const std::vector<double> slower = slowdowns(cooked.contest.candidates, cooked.contest.queries);
+    for (std::size_t c = 0; c < slower.size(); ++c) {
+      tree["candidates"].push_back(
+          candidate_json(cooked.contest.candidates[c], slower[c], cooked.tree));
+    }
+    tree["not_tried"] = Json::array();
+    for (const NotTried& other : cooked.contest.not_tried) {
+      tree["not_tried"].push_back({{"codec", codec_name(other.codec)},
+                                   {"geometry", geometry_name(other.geometry)},
+                                   {"why", other.why}});
+    }
+    tree["left_out"] = Json::array();
+    for (const LeftOut& part : cooked.left_out) {
+      tree["left_out"].push_back({{"what", part.what}, {"bytes", part.bytes}, {"why", part.why}});
+    }
+    if (report.imports.size() == report.trees.size()) {
+      tree["import"] = import_json(report.imports[i]);
+    }
+    trees.push_back(tree);
+  }
+  return trees;
+}
+
+Json imports_json(const std::vector<ImportReport>& imports) {
+  Json json = Json::array();
+  for (const ImportReport& import : imports) json.push_back(import_json(import));
+  return json;
+}
+
+Json report_json(const SceneReport& report) {
+  Json json;
+  json["trees"] = trees_json(report.cook);
+  add_left_out(report, json["trees"]);
+  json["imports"] = imports_json(report.cook.imports);
+  json["scene"] = {{"instances", report.instances},
+                   {"moving", report.moving},
+                   {"instances_left_out", report.instances_left_out},
+                   {"source_meshes", report.meshes},
+                   {"placed_triangles", report.placed_triangles},
+                   {"file_bytes", report.file_bytes}};
+  json["why"] = Json::array();
+  for (const WhyLine& line : report.why) {
+    json["why"].push_back({{"part", line.part},
+                           {"owner", line.owner},
+                           {"kept", line.kept},
+                           {"bytes", line.bytes},
+                           {"estimate", line.is_estimate},
+                           {"reason", line.reason},
+                           {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
+  }
+  json["notices"] = report.notices;
+  return json;
+}
+
+void print_trees(const CookReport& report) {
+  for (std::size_t i = 0; i < report.trees.size(); ++i) {
+    const CookedTree& cooked = report.trees[i];
+    fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
+    print_contest(cooked);
+    if (cooked.tree.geometry.geometry == GeometryId::kGrid) {
+      fmt::print(
+          "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
+          "area and are kept\n",
+          cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
+          cooked.collapsed);
+    }
+  }
+  for (const ImportReport& import : report.imports) print_import(import);
+}
+
+void print_scene(const SceneReport& report) {
+  print_trees(report.cook);
+  fmt::print("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
+             report.instances, report.moving, report.cook.trees.size(), report.placed_triangles,
+             report.file_bytes);
+  if (report.instances_left_out > 0 || report.meshes > report.cook.trees.size()) {
+    fmt::print("  left out: {} instances, {} meshes\n", report.instances_left_out,
+               report.meshes - report.cook.trees.size());
+  }
+  for (const std::string& notice : report.notices) fmt::print("  {}\n", notice);
+}
+
+void print_why(const SceneReport& report) {
+  std::size_t part_width = 4, owner_width = 5;
+  for (const WhyLine& line : report.why) {
+    part_width = std::max(part_width, line.part.size());
+    owner_width = std::max(owner_width, line.owner.size());
+  }
+  std::uint64_t kept = 0;
+  for (const bool wanted : {true, false}) {
+    fmt::print("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
+    for (const WhyLine& line : report.why) {
+      if (line.kept != wanted) continue;
+      if (wanted) kept += line.bytes;
+      const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)
+                                                            : fmt::format("~{}", line.bytes);
+      fmt::print("  {:<{}}  {:<{}}  {:>12}  {}{}{}\n", line.part, part_width, line.owner,
+                 owner_width, bytes, line.reason, line.line.empty() ? "" : "  <- ", line.line);
+    }
+    if (wanted) fmt::print("  {:<{}}  {:<{}}  {:>12}\n", "sum", part_width, "", owner_width, kept);
+  }
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: MIT
+// The scene of a file as JSON, and the JSON as text.
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/cli/scene_info.h>
+#include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/runtime/scene/scene.h>
+
+namespace boxtree::cooker {
+namespace {
+
+Json kinds_json(std::uint32_t kinds) {
+  Json json = Json::array();
+  constexpr std::pair<QueryKinds, const char*> kNames[] = {
+      {kRayQueries, "ray"}, {kBoxQueries, "box"}, {kPointQueries, "point"}, {kPairQueries, "pair"}};
+  for (const auto& [kind, name] : kNames) {
+    if ((kinds & kind) != 0) json.push_back(name);
+  }
+  return json;
+}
+
+Json instance_json(const File& file, const Scene& scene, std::uint32_t number) {
+  const Result<InstanceInfo> info = scene.info(number);
+  const Result<Pose> pose = scene.pose(number);
+  if (!info || !pose) return {{"number", number}, {"error", "corrupt"}};
+  Json rows = Json::array();
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    Json numbers = Json::array();
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      numbers.push_back(pose->matrix()(row, column));
+    }
+    rows.push_back(numbers);
+  }
+  return {{"number", number},
+          {"id", info->id},
+          {"name", info->name},
+          {"tree", info->tree},
+          {"layer", info->layer},
+          {"moves", info->moves},
+          {"triangles", file.tree_record(info->tree).triangle_count},
+          {"pose", rows}};
+}
+
+Json left_out_json(const File& file) {
+  Json json = Json::array();
+  const Bytes bytes = file.section(SectionKind::kLeftOut);
+  const Bytes names = file.section(SectionKind::kNames);
+  for (std::size_t i = 0; i < bytes.size() / sizeof(LeftOutRecord); ++i) {
+    const auto record = load<LeftOutRecord>(bytes.data(), i);
+    const bool is_text = in_range(record.text_offset, record.text_bytes, names.size());
+    json.push_back({{"part", part_name(record.part)},
+                    {"tree", record.owner == kNoOwner ? Json(nullptr) : Json(record.owner)},
+                    {"by", is_text ? std::string(reinterpret_cast<const char*>(names.data()) +
+                                                     record.text_offset,
+                                                 record.text_bytes)
+                                   : std::string()}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Result<Json> scene_json(const File& file) {
+  if (file.section(SectionKind::kScene).empty()) return Json(nullptr);
+  std::vector<SceneMeshArrays> absent;  // no leaf is read
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    absent.push_back({i, absent_arrays(file.tree_record(i))});
+  }
+  SceneOptions options;
+  options.meshes = absent;
+  const Result<Scene> scene = Scene::bind(file, options);
+  if (!scene) return scene.error();
+  std::uint64_t triangles = 0;
+  Json instances = Json::array();
+  for (std::uint32_t i = 0; i < scene->instance_count(); ++i) {
+    instances.push_back(instance_json(file, *scene, i));
+    if (instances.back().contains("triangles")) {
+      triangles += instances.back()["triangles"].get<std::uint64_t>();
+    }
+  }
+  Json layers = Json::array();
+  for (std::uint32_t i = 0; i < scene->layer_count(); ++i) {
+    const LayerRecord layer = scene->layer(i);
+    Json meets = Json::array();
+    for (std::uint32_t other = 0; other < scene->layer_count(); ++other) {
+      if (((layer.meets >> other) & 1u) != 0) meets.push_back(other);
+    }
+    layers.push_back({{"name", scene->layer_name(i)},
+                      {"queries", kinds_json(layer.query_kinds)},
+                      {"meets", meets}});
+  }
+  Json materials = Json::array();
+  for (std::uint32_t i = 0; i < scene->material_count(); ++i) {
+    materials.push_back(scene->material_name(i));
+  }
+  return Json{{"instance_count", scene->instance_count()},
+              {"moving", scene->moving().size()},
+              {"placed_triangles", triangles},
+              {"queries", kinds_json(scene->query_kinds())},
+              {"layers", layers},
+              {"materials", materials},
+              {"left_out", left_out_json(file)},
+              {"instances", instances}};
+}
+
+void print_scene(const Json& scene) {
+  fmt::print("scene: {} instances ({} moving), {} triangles placed; answers {}\n",
+             scene["instance_count"].get<std::uint32_t>(), scene["moving"].get<std::size_t>(),
+             scene["placed_triangles"].get<std::uint64_t>(), scene["queries"].dump());
+  std::map<std::uint32_t, std::size_t> of_layer;
+  for (const Json& instance : scene["instances"]) {
+    if (instance.contains("layer")) ++of_layer[instance["layer"].get<std::uint32_t>()];
+  }
+  for (std::uint32_t i = 0; i < scene["layers"].size(); ++i) {
+    const Json& layer = scene["layers"][i];
+    fmt::print("  layer {} {}: {} instances, answers {}, meets layers {}\n", i,
+               layer["name"].dump(), of_layer[i], layer["queries"].dump(), layer["meets"].dump());
+  }
+  if (!scene["materials"].empty()) fmt::print("  materials {}\n", scene["materials"].dump());
+  for (const Json& part : scene["left_out"]) {
+    const std::string owner =
+        part["tree"].is_null() ? "" : fmt::format(" of tree {}", part["tree"].get<std::uint32_t>());
+    fmt::print("  left out: {}{}, by {}\n", part["part"].get<std::string>(), owner,
+               part["by"].get<std::string>());
+  }
+}
+
+}  // namespace boxtree::cooker

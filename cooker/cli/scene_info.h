@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// What `boxtree info` says of a scene.
+#pragma once
+
+#include <boxtree/cooker/cli/output.h>
+#include <boxtree/runtime/file/file.h>
+
+namespace boxtree::cooker {
+
+/// Counts, instances, layers, materials and what was left out; null for a file without a scene.
+/// Errors: those of Scene::bind.
+Result<Json> scene_json(const File& file);
+
+void print_scene(const Json& scene);
+
+}  // namespace boxtree::cooker

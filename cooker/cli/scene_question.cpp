@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// Moving, asking, and the JSON of answers.
+#include <charconv>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/cli/scene_question.h>
+
+namespace boxtree::cooker {
+namespace {
+
+Json vector_json(const Eigen::Vector3d& v) {
+  return {v[0], v[1], v[2]};
+}
+
+// The same keys wherever a face of an instance is named.
+void add_face(const Scene& scene, const SceneFace& face, Json& json) {
+  const Result<InstanceInfo> info = scene.info(face.instance);
+  json["instance"] = face.instance;
+  if (info) {
+    json["id"] = info->id;
+    if (!info->name.empty()) json["name"] = info->name;
+  }
+  json["face"] = face.face.id == kNoFaceId ? Json(nullptr) : Json(face.face.id);
+  const std::uint32_t material = scene.material(face.instance, face.face);
+  if (material == kNoMaterial) return;
+  const std::string_view name = scene.material_name(material);
+  json["material"] = name.empty() ? Json(material) : Json(name);
+}
+
+Result<Json> answer(const Scene& scene, const RayQuestion& question) {
+  const auto hit = question.any ? any_hit(scene, question.ray) : closest_hit(scene, question.ray);
+  if (!hit) return hit.error();
+  Json json = {{"hit", hit->has_value()}};
+  if (*hit) {
+    const RayHit& found = (*hit)->hit;
+    json["t"] = found.t;
+    add_face(scene, {(*hit)->instance, found.face}, json);
+    json["triangle"] = found.triangle;
+    json["point"] = vector_json(question.ray.origin + found.t * question.ray.direction);
+    json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
+  }
+  return json;
+}
+
+template <class Overlap>
+Result<Json> answer_faces(const Scene& scene, Overlap overlap) {
+  Json faces = Json::array();
+  const Result<Visit> visit = overlap([&](const SceneFace& face) {
+    Json json;
+    add_face(scene, face, json);
+    faces.push_back(std::move(json));
+    return true;
+  });
+  if (!visit) return visit.error();
+  return Json{{"count", faces.size()}, {"faces", faces}};
+}
+
+Error not_for_scenes(const std::string& what) {
+  return {Errc::kInvalidQuery,
+          what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
+}
+
+Result<Json> answer(const Scene& scene, const BoxQuestion& question) {
+  if (question.overlap) return not_for_scenes("whether something is within a distance");
+  return answer_faces(
+      scene, [&](SceneFaceVisitor visitor) { return overlap_box(scene, question.box, visitor); });
+}
+
+Result<Json> answer(const Scene& scene, const SphereQuestion& question) {
+  return answer_faces(scene, [&](SceneFaceVisitor visitor) {
+    return overlap_sphere(scene, question.center, question.radius, visitor);
+  });
+}
+
+Result<Json> answer(const Scene& scene, const PointQuestion& question) {
+  if (question.with_bounds) return not_for_scenes("an allowed error or a budget");
+  const auto found = closest_point(scene, question.at, question.options.max_distance);
+  if (!found) return found.error();
+  Json json = {{"found", found->has_value()}};
+  if (*found) {
+    const ClosestPoint& closest = (*found)->closest;
+    json["distance"] = closest.distance;
+    json["point"] = vector_json(closest.point);
+    add_face(scene, {(*found)->instance, closest.face}, json);
+    json["triangle"] = closest.triangle;
+  }
+  return json;
+}
+
+// Pairs as two objects each, of which the second is the other body's.
+template <class Ask>
+Result<Json> answer_pairs(const Scene& scene, bool first_only, Ask ask_pairs) {
+  Json pairs = Json::array();
+  const Result<Visit> visit = ask_pairs([&](const ScenePair& pair) {
+    Json first, second;
+    add_face(scene, pair.first, first);
+    if (pair.second.instance == kNoInstance) {
+      const std::uint32_t id = pair.second.face.id;
+      second["face"] = id == kNoFaceId ? Json(nullptr) : Json(id);
+    } else {
+      add_face(scene, pair.second, second);
+    }
+    pairs.push_back({first, second});
+    return !first_only;
+  });
+  if (!visit) return visit.error();
+  return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
+}
+
+Result<Json> answer(const Scene& scene, const ContactsQuestion& question) {
+  return answer_pairs(scene, question.first_only,
+                      [&](ScenePairVisitor visitor) { return contacts(scene, visitor); });
+}
+
+Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairQuestion& question) {
+  return answer_pairs(scene, question.first_only, [&](ScenePairVisitor visitor) {
+    return overlap_pairs(scene, second, question.second.pose, visitor);
+  });
+}
+Result<Json> answer_pair(const Scene&, const Tree&, const DistanceQuestion&) {
+  return not_for_scenes("a distance");
+}
+Result<Json> answer_pair(const Scene&, const Tree&, const OverlapQuestion&) {
+  return not_for_scenes("whether two trees touch within a distance");
+}
+
+struct Move {
+  std::uint32_t instance;
+  Pose pose;
+};
+
+Result<Move> parse_move(const Scene& scene, const std::string& text) {
+  const std::size_t at = text.rfind('=');
+  const std::optional<Pose> pose =
+      at == std::string::npos ? std::nullopt : parse_pose(std::string_view(text).substr(at + 1));
+  if (!pose) {
+    return Error{Errc::kInvalidQuery,
+                 fmt::format("--move: expected INSTANCE=X,Y,Z or INSTANCE= and 12 numbers, found "
+                             "\"{}\"",
+                             text)};
+  }
+  const std::string name = text.substr(0, at);
+  std::uint32_t number = 0;
+  const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+  if (error == std::errc() && end == name.data() + name.size()) return Move{number, *pose};
+  const Result<std::uint32_t> found = scene.find_instance(name);
+  if (!found) return found.error();
+  return Move{*found, *pose};
+}
+
+}  // namespace
+
+Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
+  Result<Scene> scene = Scene::bind(file);
+  if (!scene) return scene.error();
+  if (moves.empty()) return OpenedScene{std::move(file), std::move(*scene)};
+  std::vector<Move> parsed;
+  std::vector<std::uint32_t> moving;
+  for (const std::string& text : moves) {
+    const Result<Move> move = parse_move(*scene, text);
+    if (!move) return move.error();
+    parsed.push_back(*move);
+    moving.push_back(move->instance);
+  }
+  SceneOptions options;
+  options.moving = moving;
+  scene = Scene::bind(file, options);
+  if (!scene) return scene.error();
+  for (const Move& move : parsed) {
+    if (Status status = scene->update(move.instance, move.pose); !status) return status.error();
+  }
+  return OpenedScene{std::move(file), std::move(*scene)};
+}
+
+Result<Json> ask(const Scene& scene, const Question& question, TreeCache& others) {
+  return ask_one_or_two(
+      question, others, [&](const auto& q) { return answer(scene, q); },
+      [&](const Tree& second, const auto& q) { return answer_pair(scene, second, q); });
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Questions to scenes.
+#pragma once
+
+#include <filesystem>
+#include <span>
+#include <string>
+
+#include <boxtree/cooker/cli/open_file.h>
+#include <boxtree/cooker/cli/question.h>
+
+namespace boxtree::cooker {
+
+/// A file and its scene.
+struct OpenedScene {
+  File file;
+  Scene scene;
+};
+
+/// Opens the scene of a file and moves instances: each of `moves` is "INSTANCE=POSE", the instance
+/// by its number or name. Errors: those of Scene::bind; kInvalidQuery for a move that says nothing.
+Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
+
+/// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.
+/// Error: kInvalidQuery for kinds that only trees answer.
+Result<Json> ask(const Scene& scene, const Question& question, TreeCache& others);
+
+}  // namespace boxtree::cooker

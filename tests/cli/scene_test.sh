@@ -1,0 +1,95 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Scenes on the command line: cooked from a node graph or a profile, asked in world coordinates.
+set -euo pipefail
+# shellcheck source=tests/cli/expect.sh
+. "$(dirname "$0")/expect.sh"
+boxtree=$1
+level=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work"
+
+# A file with several placed meshes is a scene by itself; --flatten makes one tree of it.
+expect 0 "$boxtree" cook "$level/level.gltf" -o level.bxt --exact --json --depfile level.d
+same "$(jq -c '[.scene.instances, .scene.moving, (.trees | length)]' out)" '[53,0,8]'
+same "$(jq '[.why[] | select(.kept) | .bytes] | add' out)" "$(stat -c %s level.bxt)"
+same "$(jq '.scene.file_bytes' out)" "$(stat -c %s level.bxt)"
+grep -q 'level.gltf' level.d
+expect 0 "$boxtree" verify level.bxt
+expect 0 "$boxtree" cook "$level/level.gltf" -o flat.bxt --flatten --exact --json
+same "$(jq -c '[has("scene"), (.trees | length), .trees[0].triangles]' out)" '[false,1,9648]'
+expect 0 "$boxtree" info level.bxt --json
+same "$(jq -c '[.scene.instance_count, .scene.placed_triangles, (.scene.instances | length)]' out)" '[53,9648,53]'
+same "$(jq -c '.scene.materials' out)" '["stone","grass","brick","wood","iron","glass"]'
+expect 0 "$boxtree" info level.bxt
+grep -q '^scene: 53 instances (0 moving), 9648 triangles placed' out
+expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --jobs 1 --why
+grep -q 'what a reader opens the file by' out
+cmp level.bxt again.bxt
+
+# Answers in the world, with instance and material; those of the flattened tree are the same.
+expect 0 "$boxtree" query level.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --json
+same "$(jq -c '[.hit, .name, .material]' out)" '[true,"Step 2","stone"]'
+t=$(jq .t out)
+expect 0 "$boxtree" query flat.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --json
+jq -e --argjson t "$t" '(.t - $t) | fabs < 1e-6' out >/dev/null
+expect 0 "$boxtree" query level.bxt box --min=-1,0,-5 --max 1,1,-3 --json
+count=$(jq .count out)
+expect 0 "$boxtree" query flat.bxt box --min=-1,0,-5 --max 1,1,-3 --json
+same "$(jq .count out)" "$count"
+expect 0 "$boxtree" query level.bxt sphere --center 0,1,-4 --radius 0.5 --json
+jq -e '.count > 0 and ([.faces[].name] | unique | all(startswith("Step")))' out >/dev/null
+expect 0 "$boxtree" query level.bxt point --at 3,2,1 --json
+same "$(jq -c '[.distance, .name]' out)" '[2,"Floor"]'
+
+# Instances that are moved for a question; contacts of what moves with the rest.
+expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.25,-7' --json
+same "$(jq -c '[.hit, .count]' out)" '[false,0]'
+expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --json
+jq -e '.hit and ([.pairs[][0].name] | unique == ["Crate"]) and ([.pairs[][1].name] | unique == ["Landing"])' out >/dev/null
+expect 0 "$boxtree" query level.bxt ray --origin 0.5,9,-4.5 --direction 0,-1,0 --move 'Crate=0.5,6,-4.5' --json
+same "$(jq -c '.name' out)" '"Crate"'
+jq -e '(.t - 2.6) | fabs < 1e-6' out >/dev/null
+expect 1 "$boxtree" query level.bxt contacts --move 'Crate=up'
+grep -q 'expected INSTANCE=X,Y,Z' err
+expect 1 "$boxtree" query level.bxt contacts --move 'Nobody=0,0,0'
+grep -q 'Nobody' err
+expect 1 "$boxtree" query flat.bxt contacts
+grep -q 'no_scene' err
+expect 1 "$boxtree" query level.bxt distance flat.bxt
+grep -q -- '--tree' err
+
+# One of its trees alone, in its own coordinates; a body that is no part of the scene.
+expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
+jq -e '(.distance - 1.6) | fabs < 1e-6' out >/dev/null
+expect 0 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0 --json
+jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
+printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind":"contacts"}' >batch
+expect 0 "$boxtree" query level.bxt --batch batch
+same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
+
+# The profile: what it names decides, what it says wrong is told by its line, and options that
+# would contradict it are refused.
+cp "$level/level.gltf" "$level/scene.toml" .
+expect 0 "$boxtree" cook --profile scene.toml -o profiled.bxt --json --depfile profiled.d
+same "$(jq -c '[.scene.instances, .scene.moving]' out)" '[53,1]'
+same "$(jq '[.why[] | select(.kept) | .bytes] | add' out)" "$(stat -c %s profiled.bxt)"
+jq -e '[.why[] | select(.kept | not) | .line // ""] | any(contains("scene.toml:")) ' out >/dev/null
+jq -e '.trees | all(.left_out | any(.what == "face ids"))' out >/dev/null
+grep -q 'scene.toml' profiled.d && grep -q 'level.gltf' profiled.d
+expect 0 "$boxtree" verify profiled.bxt
+expect 5 "$boxtree" query profiled.bxt point --at 0,0,0
+expect 0 "$boxtree" info profiled.bxt
+grep -q 'left out: point queries, by scene.toml:[0-9]*: queries' out
+expect 1 "$boxtree" cook --profile scene.toml --codec wide8 -o x.bxt
+sed 's/^tolerance = .*/tolerence = 1/' scene.toml >wrong.toml
+expect 3 "$boxtree" cook --profile wrong.toml -o x.bxt
+grep -Eq 'wrong.toml:[0-9]+: .*tolerance' err
+expect 1 "$boxtree" cook -o x.bxt
+[ ! -e x.bxt ]
+
+# The same bytes from another folder and with one thread.
+mkdir other && cp level.gltf scene.toml other/
+expect 0 "$boxtree" cook --profile other/scene.toml -o other.bxt --jobs 1 --quiet
+cmp profiled.bxt other.bxt
