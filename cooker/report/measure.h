@@ -3,8 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -39,6 +42,39 @@ template <class Body>
   std::vector<double> seconds;
   for (std::size_t i = 0; i < runs; ++i) seconds.push_back(seconds_taken(body));
   return median(std::move(seconds));
+}
+
+/// Of one kind of questions. A question's time is the least of several runs: other work on the
+/// machine can only add to it.
+struct KindTimes {
+  double median_ns = 0;
+  double p99_ns = 0;
+  double mean_ns = 0;
+};
+
+/// What reading the clock twice takes: it is in every time of a single question.
+[[nodiscard]] double clock_cost_ns();
+
+/// Times each question on its own. `ask` returns an Errc; `status` gets the first that is not kOk.
+template <class Question, class Ask>
+[[nodiscard]] KindTimes time_each(const std::vector<Question>& questions, std::size_t runs,
+                                  Status& status, Ask ask) {
+  using Clock = std::chrono::steady_clock;
+  if (questions.empty()) return {};
+  const double clock = clock_cost_ns();
+  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const Clock::time_point start = Clock::now();
+      const Errc error = ask(questions[i]);
+      const std::chrono::duration<double, std::nano> taken = Clock::now() - start;
+      least[i] = std::min(least[i], std::max(0.0, taken.count() - clock));
+      if (error != Errc::kOk && status.ok()) status = error;
+    }
+  }
+  std::sort(least.begin(), least.end());
+  return {least[least.size() / 2], least[(least.size() - 1) * 99 / 100],
+          std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size())};
 }
 
 /// Times of one query each, and what was answered in all of them.

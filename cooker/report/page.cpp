@@ -34,8 +34,9 @@ svg{display:block;width:100%;min-width:27rem;max-width:44rem;height:auto}
 svg text{fill:var(--ink);font:12px system-ui,sans-serif}
 svg .band{fill:var(--well)}svg .grid{stroke:var(--line);fill:none}
 svg .line{fill:none;stroke-width:1.6}svg .front{stroke-width:2.5;stroke-dasharray:6 4;opacity:.55}
-@media print{body{max-width:none;font-size:11px}h2{break-after:avoid}figure{break-inside:avoid}
-.scroll{overflow:visible}svg{min-width:0}.plots{grid-template-columns:1fr 1fr}th,td{padding:.1rem .3rem}}
+@media print{body{max-width:none;font-size:11px}h1{font-size:20px}h2{font-size:15px;break-after:avoid}
+p{max-width:none}.conclusion,figure,tr{break-inside:avoid}.scroll{overflow:visible}svg{min-width:0}
+.plots{grid-template-columns:1fr 1fr}table{font-size:8px}th,td{padding:1px 3px}th{white-space:normal}}
 )";
 
 void add_html(const PageTable& table, std::string& out) {

@@ -20,6 +20,8 @@ constexpr double kRight = 24;
 constexpr double kBelow = 48;
 constexpr double kBand = 90;  // left of a logarithmic axis, for values at zero
 constexpr double kLegendLine = 20;
+// Seen without scrolling on a window of 390 pixels, where the page draws 432 of its own wide.
+constexpr double kLegendWidth = 460;
 constexpr double kLetter = 6.8;  // mean width of a letter at 12 units, from common sans-serif faces
 constexpr double kLineHeight = 12;
 
@@ -168,7 +170,7 @@ std::size_t add_legend(const std::vector<std::string>& names, double left, doubl
   std::size_t lines = names.empty() ? 0 : 1;
   for (std::size_t i = 0; i < names.size(); ++i) {
     const double width = 34 + width_of(names[i]);
-    if (x > left && x + width > kWidth) {
+    if (x > left && x + width > kLegendWidth) {
       x = left;
       ++lines;
     }
@@ -269,9 +271,9 @@ class Drawing {
           if (plot_.series[s].marks) {
             add_mark(s, x, y, 5, colour(s), "", out);
           } else {
-            out +=
-                fmt::format("<path class=\"line front\" d=\"M{:.1f} {:.1f}h14\" stroke=\"{}\"/>\n",
-                            x - 6, y, colour(s));
+            const bool stairs = plot_.series[s].joined == PagePlot::Joined::kStaircase;
+            out += fmt::format("<path class=\"line{}\" d=\"M{:.1f} {:.1f}h14\" stroke=\"{}\"/>\n",
+                               stairs ? " front" : " key", x - 6, y, colour(s));
           }
         },
         out);
@@ -352,7 +354,35 @@ class Drawing {
                        path, colour(series));
   }
 
+  // Along every curve and front: better left free, but a label may lie there.
+  [[nodiscard]] Taken along_lines() const {
+    Taken lines;
+    const auto add = [&](double x0, double y0, double x1, double y1) {
+      constexpr double kEach = 3;
+      const double steps = std::ceil(std::hypot(x1 - x0, y1 - y0) / kEach);
+      for (double i = 0; i < steps; ++i) {
+        const double x = x0 + (x1 - x0) * i / steps;
+        const double y = y0 + (y1 - y0) * i / steps;
+        lines.add(x - 1, y - 1, x + 1, y + 1);
+      }
+    };
+    for (std::size_t i = 1; i < placed_.size(); ++i) {
+      const Placed& from = placed_[i - 1];
+      const Placed& to = placed_[i];
+      const PagePlot::Joined joined = plot_.series[to.series].joined;
+      if (from.series != to.series || joined == PagePlot::Joined::kNot) continue;
+      if (joined == PagePlot::Joined::kStaircase) {
+        add(from.x, from.y, to.x, from.y);
+        add(to.x, from.y, to.x, to.y);
+      } else if (!from.is_zero && !to.is_zero) {
+        add(from.x, from.y, to.x, to.y);
+      }
+    }
+    return lines;
+  }
+
   void add_labels(std::string& out) const {
+    const Taken lines = along_lines();
     Taken taken;
     for (const Placed& placed : placed_) {
       if (!plot_.series[placed.series].marks) continue;
@@ -363,20 +393,27 @@ class Drawing {
       if (placed.point->label.empty()) continue;
       const double width = width_of(placed.point->label);
       const double r = placed.point->radius + 3;
-      // Above, below, to the right, to the left: the first that covers nothing and lies inside.
+      // Above, below, to the right, to the left: the first that lies inside and covers nothing,
+      // else the first that covers a line alone.
       const std::array<std::pair<double, double>, 4> corners = {
           {{placed.x - width / 2, placed.y - r - kLineHeight},
            {placed.x - width / 2, placed.y + r},
            {placed.x + r, placed.y - kLineHeight / 2},
            {placed.x - r - width, placed.y - kLineHeight / 2}}};
-      for (const auto& [left, top] : corners) {
+      const std::pair<double, double>* best = nullptr;
+      for (const auto& corner : corners) {
+        const auto [left, top] = corner;
         const bool inside = left >= kLeft && left + width <= kWidth && top >= top_ - kLineHeight &&
                             top + kLineHeight <= bottom_;
         if (!inside || taken.overlaps(left, top, left + width, top + kLineHeight)) continue;
-        taken.add(left, top, left + width, top + kLineHeight);
-        add_text(left, top + kLineHeight - 2, "start", placed.point->label, out);
-        break;
+        const bool is_free = !lines.overlaps(left, top, left + width, top + kLineHeight);
+        if (best == nullptr || is_free) best = &corner;
+        if (is_free) break;
       }
+      if (best == nullptr) continue;
+      const auto [left, top] = *best;
+      taken.add(left, top, left + width, top + kLineHeight);
+      add_text(left, top + kLineHeight - 2, "start", placed.point->label, out);
     }
   }
 

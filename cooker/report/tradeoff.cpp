@@ -2,7 +2,6 @@
 // One store of geometry after the other: its candidates are counted by the search of the cooker,
 // then asked here.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -19,48 +18,19 @@
 namespace boxtree::cooker {
 namespace {
 
-using Clock = std::chrono::steady_clock;
-
 constexpr std::array kFullSweep = {8, 10, 12, 14, 16, 18, 21, 24, 27, 30};
 constexpr std::array kQuickSweep = {10, 14, 18, 24};
 
 struct Effort {
   WorkloadSize timed;
   WorkloadSize answered;
+  WorkloadSize approximate;
   std::size_t runs;
 };
-constexpr Effort kFullEffort{{20'000, 4'000, 4'000, 64}, {200'000, 0, 20'000, 0}, 7};
-constexpr Effort kQuickEffort{{2'000, 400, 400, 16}, {20'000, 0, 2'000, 0}, 3};
-
-double nanoseconds_since(Clock::time_point start) {
-  return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
-}
-
-// What reading the clock twice takes, in nanoseconds: it is in every time of a single question.
-double clock_cost() {
-  double least = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < 1000; ++i) least = std::min(least, nanoseconds_since(Clock::now()));
-  return least;
-}
-
-template <class Question, class Ask>
-KindTimes time_each(const std::vector<Question>& questions, std::size_t runs, Status& status,
-                    Ask ask) {
-  if (questions.empty()) return {};
-  const double clock = clock_cost();
-  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
-  for (std::size_t run = 0; run < runs; ++run) {
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-      const Clock::time_point start = Clock::now();
-      const Errc error = ask(questions[i]);
-      least[i] = std::min(least[i], std::max(0.0, nanoseconds_since(start) - clock));
-      if (error != Errc::kOk && status.ok()) status = error;
-    }
-  }
-  std::sort(least.begin(), least.end());
-  return {least[least.size() / 2], least[(least.size() - 1) * 99 / 100],
-          std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size())};
-}
+constexpr Effort kFullEffort{
+    {20'000, 4'000, 4'000, 64, 0}, {200'000, 0, 20'000, 0, 0}, {0, 0, 2'000, 0, 64}, 7};
+constexpr Effort kQuickEffort{
+    {2'000, 400, 400, 16, 0}, {20'000, 0, 2'000, 0, 0}, {0, 0, 400, 0, 16}, 3};
 
 Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& questions,
                                                       std::size_t runs) {
@@ -160,7 +130,8 @@ class Measurement {
         progress_(progress),
         effort_(options.quick ? kQuickEffort : kFullEffort),
         timed_(make_workload(bounds_of(mesh), effort_.timed)),
-        answered_(make_workload(bounds_of(mesh), effort_.answered, 2)) {
+        answered_(make_workload(bounds_of(mesh), effort_.answered, 2)),
+        approximate_(make_workload(bounds_of(mesh), effort_.approximate, 3)) {
     out_.name = mesh.name;
     out_.triangles = mesh.triangle_count();
     out_.vertices = mesh.positions.size();
@@ -170,7 +141,7 @@ class Measurement {
     out_.source.vertices = out_.vertices * 3 * coordinate;
     out_.source.corners = out_.triangles * 3 * 4;
     const std::size_t grids = grid_sweep(options.quick).size();
-    steps_ = kCodecs.size() + 2 * grids;
+    steps_ = kCodecs.size() + kApproximateCodecs.size() + 2 * grids;
   }
 
   Result<MeshTradeoff> run() {
@@ -269,6 +240,9 @@ class Measurement {
     Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();
     exact_ = std::move(*answers);
+    Result<TrueDistances> truth = true_distances(*tree, approximate_);
+    if (!truth) return truth.error();
+    truth_ = std::move(*truth);
     take_apart(tried, i);
     return {};
   }
@@ -287,6 +261,16 @@ class Measurement {
       if (!times) return times.error();
       point.times = *times;
     }
+    const bool is_approximated = std::find(kApproximateCodecs.begin(), kApproximateCodecs.end(),
+                                           point.codec) != kApproximateCodecs.end();
+    if (point.grid_bits != 0 || !is_approximated) return {};
+    ++step_;
+    tell("ask " + point.name() + ", approximately");
+    Result<ApproximateFigures> figures =
+        measure_approximate(*tree, approximate_, truth_,
+                            {options_.quick, options_.times ? effort_.runs : std::size_t{0}});
+    if (!figures) return figures.error();
+    point.approximate = std::move(*figures);
     return {};
   }
 
@@ -312,7 +296,9 @@ class Measurement {
   const Effort& effort_;
   const Workload timed_;
   const Workload answered_;
+  const Workload approximate_;
   Answers exact_;
+  TrueDistances truth_;
   std::size_t step_ = 0;
   std::size_t steps_ = 1;
   MeshTradeoff out_;

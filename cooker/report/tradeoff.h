@@ -12,6 +12,7 @@
 #include <boxtree/cooker/choose/cost.h>
 #include <boxtree/cooker/import/source_mesh.h>
 #include <boxtree/cooker/proof/gates.h>
+#include <boxtree/cooker/report/approximate.h>
 
 namespace boxtree::cooker {
 
@@ -20,6 +21,10 @@ namespace boxtree::cooker {
 inline constexpr std::size_t kTimedKinds = 4;
 inline constexpr std::array<const char*, kTimedKinds> kTimedNames = {"ray", "box", "point",
                                                                      "first_contact"};
+
+/// Codecs that are asked with allowed errors and budgets: ours and the paper's.
+inline constexpr std::array kApproximateCodecs = {CodecId::kWide8, CodecId::kWide4,
+                                                  CodecId::kPlainF32};
 
 /// Bytes of one file with one tree, by what they are for.
 struct ByteParts {
@@ -30,14 +35,6 @@ struct ByteParts {
   std::uint64_t rest = 0;  // header, records, name, padding
 
   [[nodiscard]] std::uint64_t total() const { return nodes + vertices + corners + face_ids + rest; }
-};
-
-/// Of one kind, over its questions. A question's time is the least of several runs: other work on
-/// the machine can only add to it.
-struct KindTimes {
-  double median_ns = 0;
-  double p99_ns = 0;
-  double mean_ns = 0;
 };
 
 /// How far answers are from those of exact geometry; lengths as shares of the mesh's diagonal.
@@ -65,6 +62,9 @@ struct TradePoint {
   AnswerErrors answers;
   QueryCost modelled{};                        // by counted work; its last kind is all contacts
   std::array<KindTimes, kTimedKinds> times{};  // zero unless timed
+
+  /// Of exact geometry and the codecs in kApproximateCodecs; empty otherwise.
+  ApproximateFigures approximate;
 
   [[nodiscard]] std::string name() const;  // "wide8, grid 24"
 };

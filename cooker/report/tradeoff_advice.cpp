@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/quantise/grid.h>
 #include <boxtree/cooker/report/tradeoff_advice.h>
 
 namespace boxtree::cooker {
@@ -113,6 +114,31 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
   });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};
+}
+
+std::optional<std::size_t> cooks_choice(const MeshTradeoff& mesh, Goal goal) {
+  Contest contest;
+  contest.triangles = static_cast<std::uint32_t>(mesh.triangles);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
+    const TradePoint& point = mesh.points[i];
+    if (point.grid_bits != 0 && point.grid_bits != GridChoice().bits) continue;
+    Candidate candidate;
+    candidate.codec = point.codec;
+    candidate.geometry = point.geometry;
+    candidate.tree_bytes = point.bytes.nodes;
+    candidate.geometry_bytes = point.bytes.vertices + point.bytes.corners;
+    candidate.work = point.work;
+    candidate.cost = point.modelled;
+    candidate.gates = point.gates;
+    contest.candidates.push_back(std::move(candidate));
+    places.push_back(i);
+  }
+  Wishes wishes;
+  wishes.goal = goal;
+  const auto chosen = choose(std::span(&contest, 1), wishes);
+  if (!chosen) return std::nullopt;
+  return places[chosen->front()];
 }
 
 std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include <boxtree/cooker/choose/choose.h>
 #include <boxtree/cooker/report/page.h>
 #include <boxtree/cooker/report/tradeoff.h>
 
@@ -35,6 +36,10 @@ struct Advice {
 /// Nothing when no point passes its gates. Exact points keep to every limit, so that each place is
 /// filled otherwise.
 [[nodiscard]] std::optional<Advice> advise(const MeshTradeoff& mesh);
+
+/// What `boxtree cook --for GOAL` chooses without budgets: by counted work, among exact geometry
+/// and its default grid. Nothing when no point passes its gates.
+[[nodiscard]] std::optional<std::size_t> cooks_choice(const MeshTradeoff& mesh, Goal goal);
 
 /// A paragraph for each recommendation.
 [[nodiscard]] std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh);

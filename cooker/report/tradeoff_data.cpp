@@ -67,6 +67,42 @@ Json to_json(const ByteParts& bytes) {
           {"face_ids", bytes.face_ids}, {"rest", bytes.rest},         {"total", bytes.total()}};
 }
 
+Json to_json(const KindTimes& times) {
+  return {{"median_ns", times.median_ns}, {"p99_ns", times.p99_ns}, {"mean_ns", times.mean_ns}};
+}
+
+Json to_json(const MeshTradeoff& mesh, const std::vector<ApproximateStep>& steps) {
+  Json json = Json::array();
+  for (const ApproximateStep& step : steps) {
+    const bool has_budget = step.node_budget != kUnlimitedNodes;
+    json.push_back({{"relative_error", step.relative_error},
+                    {"node_budget", has_budget ? Json(step.node_budget) : Json(nullptr)},
+                    {"times", mesh.timed ? to_json(step.times) : Json(nullptr)},
+                    {"nodes_mean", step.nodes_mean},
+                    {"nodes_median", step.nodes_median},
+                    {"error_max", step.error_max},
+                    {"error_median", step.error_median},
+                    {"gap_max", step.gap_max},
+                    {"gap_median", step.gap_median},
+                    {"questions", step.questions},
+                    {"found", step.found},
+                    {"near_enough", step.near_enough},
+                    {"false_bounds", step.false_bounds},
+                    {"dearer", step.dearer}});
+  }
+  return json;
+}
+
+Json to_json(const MeshTradeoff& mesh, const ApproximateFigures& figures) {
+  if (figures[0].by_error.empty()) return nullptr;
+  Json json;
+  for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
+    json[kApproximateNames[kind]] = {{"by_error", to_json(mesh, figures[kind].by_error)},
+                                     {"by_budget", to_json(mesh, figures[kind].by_budget)}};
+  }
+  return json;
+}
+
 Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
   Json work;
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
@@ -79,9 +115,7 @@ Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
   Json times = nullptr;
   if (mesh.timed) {
     for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
-      times[kTimedNames[kind]] = {{"median_ns", point.times[kind].median_ns},
-                                  {"p99_ns", point.times[kind].p99_ns},
-                                  {"mean_ns", point.times[kind].mean_ns}};
+      times[kTimedNames[kind]] = to_json(point.times[kind]);
     }
   }
   return {
@@ -105,7 +139,8 @@ Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
         {"distance_median", point.answers.distance_median},
         {"ray_median", point.answers.ray_median},
         {"flips_per_million", point.answers.flips_per_million}}},
-      {"times", times}};
+      {"times", times},
+      {"approximate", to_json(mesh, point.approximate)}};
 }
 
 Json to_json(const MeshTradeoff& mesh) {
@@ -241,6 +276,38 @@ std::string to_csv(const TradeoffReport& report) {
         out += mesh.timed ? fmt::format(",{},{}", times.median_ns, times.p99_ns) : ",,";
       }
       out += '\n';
+    }
+  }
+  return out;
+}
+
+std::string approximate_to_csv(const TradeoffReport& report) {
+  std::string out =
+      "mesh,triangles,codec,kind,relative_error,node_budget,median_ns,p99_ns,nodes_mean,"
+      "nodes_median,error_max,error_median,gap_max,gap_median,questions,found,near_enough,"
+      "false_bounds,dearer\n";
+  const auto add = [&](const MeshTradeoff& mesh, const TradePoint& point, const char* kind,
+                       const ApproximateStep& step) {
+    const bool has_budget = step.node_budget != kUnlimitedNodes;
+    out += fmt::format(
+        "{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{},{}\n", cell(mesh.name), mesh.triangles,
+        codec_name(point.codec), kind, step.relative_error,
+        has_budget ? std::to_string(step.node_budget) : "",
+        mesh.timed ? fmt::format("{},{}", step.times.median_ns, step.times.p99_ns) : ",",
+        step.nodes_mean, step.nodes_median, step.error_max, step.error_median, step.gap_max,
+        step.gap_median, step.questions, step.found, step.near_enough, step.false_bounds,
+        step.dearer);
+  };
+  for (const MeshTradeoff& mesh : report.meshes) {
+    for (const TradePoint& point : mesh.points) {
+      for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
+        const ApproximateCurves& curves = point.approximate[kind];
+        for (const auto* steps : {&curves.by_error, &curves.by_budget}) {
+          for (const ApproximateStep& step : *steps) {
+            add(mesh, point, kApproximateNames[kind], step);
+          }
+        }
+      }
     }
   }
   return out;

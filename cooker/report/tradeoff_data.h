@@ -60,4 +60,7 @@ Result<IncludedResults> read_results(const std::filesystem::path& path);
 /// One row a point, all figures in one table; lengths as shares of the diagonal.
 [[nodiscard]] std::string to_csv(const TradeoffReport& report);
 
+/// One row a setting of approximate queries: encoding, kind, what was allowed, costs and errors.
+[[nodiscard]] std::string approximate_to_csv(const TradeoffReport& report);
+
 }  // namespace boxtree::cooker

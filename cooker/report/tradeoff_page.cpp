@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/report/approximate_page.h>
 #include <boxtree/cooker/report/tradeoff_advice.h>
 #include <boxtree/cooker/report/tradeoff_page.h>
 
@@ -213,6 +214,18 @@ PageSection advice_section(const MeshTradeoff& mesh) {
     table.rows.push_back(std::move(row));
   }
   section.tables = {table};
+  std::string cooks;
+  for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+    const auto place = cooks_choice(mesh, goal);
+    if (!place) continue;
+    cooks += fmt::format("{}{} for {}", cooks.empty() ? "" : ", ", mesh.points[*place].name(),
+                         goal_name(goal));
+  }
+  section.text += fmt::format(
+      " Unless told a codec, boxtree cook chooses by counted work, the same on every machine: {}. "
+      "The choices below go by the times on this page, by whole files, and by how far a surface "
+      "may move, so that they may differ.",
+      cooks);
   return section;
 }
 
@@ -384,6 +397,7 @@ PageSection words_section() {
              {"gates", "what every file must pass: no face missed, every box holds what is below"},
              {"extra nodes", "nodes decoded beyond those of the reference tree"},
              {"false leaf tests", "leaves tested beyond those of the reference tree"},
+             {"allowed error", "an answer may be so much farther than the nearest, and is no more"},
              {"Pareto front", "encodings that no other one beats in both things at once"}},
             2}},
           {}};
@@ -405,9 +419,7 @@ PageSection machine_section(const TradeoffReport& report) {
   if (report.quick) left_out("more than half of the grids and most questions (--quick).");
   if (!report.no_peers.empty()) left_out("other libraries (" + report.no_peers + ").");
   if (report.included.empty()) {
-    left_out(
-        "approximate queries, stiff contacts and robustness: no results were given with "
-        "--include.");
+    left_out("stiff contacts and robustness: no results were given with --include.");
   }
   return section;
 }
@@ -437,6 +449,9 @@ Page tradeoff_page(const TradeoffReport& report) {
   for (const MeshTradeoff& mesh : report.meshes) {
     for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
       page.sections.push_back(kind_section(report, mesh, kind));
+    }
+    for (PageSection& section : approximate_sections(mesh)) {
+      page.sections.push_back(std::move(section));
     }
     page.sections.push_back(bytes_section(mesh));
     page.sections.push_back(gates_section(mesh));

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Plots: lines through all their points and inside the frame, files that need no page around them.
 #include <algorithm>
+#include <iterator>
 #include <regex>
 #include <set>
 #include <sstream>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -39,6 +41,26 @@ TEST(Plot, LinesGoThroughTheirPointsInsideTheFrame) {
   }
   EXPECT_EQ(counts, (std::vector<std::size_t>{3, 1}));
   EXPECT_EQ(svg.find("<circle"), std::string::npos) << "lines have no marks";
+}
+
+// Above the mark comes first, but there its own curve goes up.
+TEST(Plot, LabelsKeepOffLinesWhereAnotherSideIsFree) {
+  PagePlot plot{"x", "y", {{"s", {{5, 4, "here"}, {5, 9, ""}, {9, 9, ""}, {1, 1, ""}}}}};
+  plot.series[0].joined = PagePlot::Joined::kCurve;
+  const auto heights = [&] {
+    const std::string svg = to_svg(plot);
+    const std::regex circle("<circle [^>]*cy=\"([0-9.]+)\"");
+    const std::sregex_iterator legend(svg.begin(), svg.end(), circle);
+    std::smatch label;
+    EXPECT_TRUE(std::regex_search(svg, label, std::regex("y=\"([0-9.]+)\"[^>]*>here</text>")));
+    return std::pair(std::stod((*std::next(legend))[1]), std::stod(label[1]));
+  };
+  const auto [mark, label] = heights();
+  EXPECT_GT(label, mark) << "not below";
+  plot.series[0].joined = PagePlot::Joined::kNot;
+  const auto [same_mark, label_above] = heights();
+  EXPECT_EQ(same_mark, mark);
+  EXPECT_LT(label_above, mark) << "not above, where nothing is";
 }
 
 TEST(Plot, ZeroOnAnAxisIsZero) {

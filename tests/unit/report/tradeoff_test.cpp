@@ -280,6 +280,22 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
   EXPECT_FALSE(advise(made));
 }
 
+TEST(Advice, TellsWhatCookChooses) {
+  for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+    CookOptions options;
+    options.wishes.goal = goal;
+    options.may_use_grid = true;
+    options.try_all = true;
+    const CookedTree cooked = require(cook_mesh(mesh(), options));
+    const auto place = cooks_choice(counted(), goal);
+    ASSERT_TRUE(place);
+    const TradePoint& point = counted().points[*place];
+    EXPECT_EQ(point.codec, cooked.tree.nodes.codec) << goal_name(goal);
+    EXPECT_EQ(point.geometry, cooked.tree.geometry.geometry) << goal_name(goal);
+  }
+  EXPECT_FALSE(cooks_choice({}, Goal::kBalance));
+}
+
 std::size_t count(const std::string& text, const std::string& part) {
   std::size_t found = 0;
   for (std::size_t at = 0; (at = text.find(part, at)) != std::string::npos; at += part.size()) {
@@ -320,8 +336,9 @@ TEST(TradeoffPage, IsOneWellFormedPageWithoutNetwork) {
     }
   }
   EXPECT_TRUE(open.empty());
-  // Error and bytes for each of four kinds, two of work for each, and the bars.
-  EXPECT_EQ(count(html, "<svg"), 4u * 2 + 4u * 2 + 1);
+  // Error and bytes for each of four kinds, two of work for each, three of approximate queries for
+  // each of two, and the bars.
+  EXPECT_EQ(count(html, "<svg"), 4u * 2 + 4u * 2 + 2u * 3 + 1);
 }
 
 TEST(TradeoffPage, MarksOfPlotsLieInsideTheirFrames) {

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+// Curves of an allowed error or a budget against time, nodes and the error that was made.
+#pragma once
+
+#include <vector>
+
+#include <boxtree/cooker/report/page.h>
+#include <boxtree/cooker/report/tradeoff.h>
+
+namespace boxtree::cooker {
+
+/// One section for closest points and one for distances; none if no encoding was asked.
+[[nodiscard]] std::vector<PageSection> approximate_sections(const MeshTradeoff& mesh);
+
+}  // namespace boxtree::cooker
