@@ -131,6 +131,15 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
+  // The bound that some two points realise, as other libraries return it.
+  bool distances(std::span<const DistanceQuestion> questions, std::span<double> out) override {
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      DistanceOptions options;
+      options.relative_error = questions[i].relative_error;
+      out[i] = require(distance(tree_, Pose::Identity(), tree_, questions[i].pose, options)).upper;
+    }
+    return true;
+  }
   bool first_contacts(std::span<const Pose> poses, std::span<double> out) override {
     const Pose here = Pose::Identity();
     for (std::size_t i = 0; i < poses.size(); ++i) {

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/triangle_distance.h>
 
 namespace boxtree::bench {
 namespace {
@@ -80,6 +82,82 @@ std::size_t count_pairs(const std::vector<Triangle>& triangles, const Pose& pose
                     [&](const auto& b, const auto& a) { return start(b) <= start(a); });
 }
 
+// The point of the surface that is nearest to another.
+Eigen::Vector3d nearest_to(const std::vector<Triangle>& triangles, const Eigen::Vector3d& from) {
+  double best = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d nearest = from;
+  for (const Triangle& triangle : triangles) {
+    const Eigen::Vector3d point = closest_point_on_triangle(from, triangle);
+    if ((point - from).squaredNorm() >= best) continue;
+    best = (point - from).squaredNorm();
+    nearest = point;
+  }
+  return nearest;
+}
+
+// Triangles that lie together, by a sort along x and one along y: not a tree, but enough to leave
+// most pairs of a large mesh unread.
+struct Block {
+  Eigen::AlignedBox3d bounds;
+  std::span<const BoundedTriangle> triangles;
+};
+
+std::vector<Block> in_blocks(std::vector<BoundedTriangle>& triangles) {
+  constexpr std::size_t kBlock = 64;
+  const auto sort_along = [](std::span<BoundedTriangle> part, Eigen::Index axis) {
+    std::sort(part.begin(), part.end(), [&](const BoundedTriangle& a, const BoundedTriangle& b) {
+      return a.bounds.min()[axis] < b.bounds.min()[axis];
+    });
+  };
+  const std::span<BoundedTriangle> all(triangles);
+  sort_along(all, 0);
+  const auto slabs = static_cast<double>(all.size()) / static_cast<double>(kBlock);
+  const std::size_t slab = kBlock * static_cast<std::size_t>(std::ceil(std::sqrt(slabs)));
+  std::vector<Block> blocks;
+  for (std::size_t i = 0; i < all.size(); i += slab) {
+    const auto part = all.subspan(i, std::min(slab, all.size() - i));
+    sort_along(part, 1);
+    for (std::size_t j = 0; j < part.size(); j += kBlock) {
+      Block block{{}, part.subspan(j, std::min(kBlock, part.size() - j))};
+      for (const BoundedTriangle& triangle : block.triangles) block.bounds.extend(triangle.bounds);
+      blocks.push_back(block);
+    }
+  }
+  return blocks;
+}
+
+// Every pair of triangles whose bounds are nearer than some two points that are known: first those
+// that going from one surface to the other and back leads to, from the corners of the bounds.
+double distance_of_copy(const TriangleMesh& mesh, const std::vector<Triangle>& triangles,
+                        const Pose& pose) {
+  const Pose back = pose.inverse();
+  double best = std::numeric_limits<double>::infinity();
+  for (int corner = 0; corner < 8; ++corner) {
+    Eigen::Vector3d here = mesh.bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(corner));
+    for (int times = 0; times < 3; ++times) {
+      const Eigen::Vector3d there = pose * nearest_to(triangles, back * here);
+      here = nearest_to(triangles, there);
+      best = std::min(best, (there - here).norm());
+    }
+  }
+  auto first = sorted_along_x(triangles, Pose::Identity());
+  auto second = sorted_along_x(triangles, pose);
+  const std::vector<Block> second_blocks = in_blocks(second);
+  for (const Block& block : in_blocks(first)) {
+    for (const Block& other : second_blocks) {
+      if (block.bounds.squaredExteriorDistance(other.bounds) > best * best) continue;
+      for (const BoundedTriangle& a : block.triangles) {
+        if (a.bounds.squaredExteriorDistance(other.bounds) > best * best) continue;
+        for (const BoundedTriangle& b : other.triangles) {
+          if (a.bounds.squaredExteriorDistance(b.bounds) > best * best) continue;
+          best = std::min(best, triangle_distance(a.triangle, b.triangle).upper);
+        }
+      }
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& workload) {
@@ -117,6 +195,11 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
   constexpr double kSweepWork = 300;
   for (std::size_t i = 0; i < affordable(workload.poses.size(), kSweepWork * size); ++i) {
     answers.pairs.push_back(static_cast<double>(count_pairs(triangles, workload.poses[i])));
+  }
+  // The ways there and back, and the pairs that are left.
+  constexpr double kDistanceWork = 100;
+  for (std::size_t i = 0; i < affordable(workload.apart.size(), kDistanceWork * size); ++i) {
+    answers.distances.push_back(distance_of_copy(mesh, triangles, workload.apart[i]));
   }
   return answers;
 }

@@ -12,7 +12,8 @@ struct ExactAnswers {
   std::vector<double> rays;
   std::vector<double> boxes;
   std::vector<double> points;
-  std::vector<double> pairs;  // numbers of pairs; not zero means contact
+  std::vector<double> pairs;      // numbers of pairs; not zero means contact
+  std::vector<double> distances;  // in the poses apart
 };
 
 [[nodiscard]] ExactAnswers exact_answers(const TriangleMesh& mesh,

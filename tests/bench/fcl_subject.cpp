@@ -4,6 +4,7 @@
 #include <fcl/fcl.h>
 #include <limits>
 #include <set>
+#include <type_traits>
 
 #include "tests/bench/subject.h"
 
@@ -43,6 +44,17 @@ class FclSubject : public Subject {
     }
     return true;
   }
+  // The other volumes do not turn with a pose: FCL would build the copy anew for each question.
+  bool distances(std::span<const DistanceQuestion> questions, std::span<double> out) override {
+    if constexpr (!std::is_same_v<Volume, fcl::OBBRSSd>) return false;
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const fcl::DistanceRequestd request(true, false, questions[i].relative_error, 0);
+      fcl::DistanceResultd result;
+      out[i] = fcl::distance(model_.get(), fcl::Transform3d::Identity(), model_.get(),
+                             transform_of(questions[i].pose), request, result);
+    }
+    return true;
+  }
   bool first_contacts(std::span<const Pose> poses, std::span<double> out) override {
     return collide_with_copy(poses, out, 1);
   }
@@ -53,15 +65,19 @@ class FclSubject : public Subject {
  protected:
   static constexpr std::size_t kAll = 100'000'000;
 
+  static fcl::Transform3d transform_of(const Pose& pose) {
+    fcl::Transform3d transform = fcl::Transform3d::Identity();
+    transform.linear() = pose.linear();
+    transform.translation() = pose.translation();
+    return transform;
+  }
+
   bool collide_with_copy(std::span<const Pose> poses, std::span<double> out, std::size_t most) {
     for (std::size_t i = 0; i < poses.size(); ++i) {
-      fcl::Transform3d pose = fcl::Transform3d::Identity();
-      pose.linear() = poses[i].linear();
-      pose.translation() = poses[i].translation();
       fcl::CollisionResultd result;
-      out[i] =
-          static_cast<double>(fcl::collide(model_.get(), fcl::Transform3d::Identity(), model_.get(),
-                                           pose, fcl::CollisionRequestd(most, false), result));
+      out[i] = static_cast<double>(fcl::collide(model_.get(), fcl::Transform3d::Identity(),
+                                                model_.get(), transform_of(poses[i]),
+                                                fcl::CollisionRequestd(most, false), result));
     }
     return true;
   }

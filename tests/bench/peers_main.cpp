@@ -29,13 +29,13 @@ struct Arguments {
   std::size_t tumble_steps = 0;
   double longest_edge = 0;
   std::string builder = "sah";
-  std::vector<std::string> questions = {"single", "pairs", "tumble"};
+  std::vector<std::string> questions = {"single", "pairs", "distances", "tumble"};
   bool quick = false;
   bool json = false;
 };
 
 constexpr cooker::WorkloadSize kFull;
-constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20};
+constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20};
 
 // Collects rows of one library on one mesh.
 class Rows {
@@ -209,6 +209,38 @@ void measure_pairs(Subject& subject, const cooker::Workload& workload, const Exa
   }
 }
 
+// With no error allowed, and with errors: what was found may be that much farther than the nearest.
+void measure_distances(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
+                       const ExactAnswers& exact, std::size_t runs, Rows& rows) {
+  // A library in double cannot know distances better than some roundings of its coordinates.
+  const double slack = 1e-12 * mesh.bounds.diagonal().norm();
+  struct Allowed {
+    const char* name;
+    double error;
+  };
+  for (const Allowed& allowed : {Allowed{"distance", 0}, Allowed{"distance_1_percent", 0.01},
+                                 Allowed{"distance_10_percent", 0.1}}) {
+    std::vector<DistanceQuestion> questions;
+    for (const Pose& pose : workload.apart) questions.push_back({pose, allowed.error});
+    const std::string name = allowed.name;
+    const auto found = ask(subject, &Subject::distances, questions,
+                           {name, "us", name + "_sum", "summed"}, runs, rows);
+    if (!found) return;
+    double wrong = 0;
+    double largest = 0;
+    for (std::size_t i = 0; i < std::min(found->size(), exact.distances.size()); ++i) {
+      const double truth = exact.distances[i];
+      const bool holds =
+          (*found)[i] >= truth - slack && (*found)[i] <= truth * (1 + allowed.error) + slack;
+      wrong += holds ? 0 : 1;
+      largest = std::max(largest, std::abs((*found)[i] - truth) / truth);
+    }
+    rows.add(name + "_checked", checked(*found, exact.distances), "questions");
+    rows.add(name + "_wrong", wrong, "questions");
+    rows.add(name + "_error", largest, "of the distance");
+  }
+}
+
 // Protocol P1: 20 distances from 2.0 to 0.6 half extents, `steps` turns at each.
 std::vector<Pose> all_tumble_poses(const TriangleMesh& mesh, std::size_t steps) {
   constexpr std::size_t kDistances = 20;
@@ -276,6 +308,7 @@ void measure_library(const TriangleMesh& mesh, const Library& library,
   }
   measure_single(mesh, *subject, workload, exact, arguments.runs, rows);
   measure_pairs(*subject, workload, exact, arguments.runs, rows);
+  measure_distances(mesh, *subject, workload, exact, arguments.runs, rows);
   measure_tumble(*subject, tumble, arguments.runs, rows);
 }
 
@@ -288,6 +321,7 @@ cooker::WorkloadSize workload_size(const Arguments& arguments) {
   };
   if (!wanted("single")) size.rays = size.boxes = size.points = 0;
   if (!wanted("pairs")) size.poses = 0;
+  if (!wanted("distances")) size.apart = 0;
   return size;
 }
 
@@ -344,9 +378,9 @@ int main(int argc, char** argv) {
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   app.add_option("--questions", arguments.questions,
-                 "single (rays, boxes, points), pairs or tumble; may be repeated [all]")
+                 "single (rays, boxes, points), pairs, distances or tumble; may be repeated [all]")
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"single", "pairs", "tumble"}));
+      ->check(CLI::IsMember({"single", "pairs", "distances", "tumble"}));
   app.add_option("--tumble", arguments.tumble_steps,
                  "Protocol P1 with so many turns at each of 20 distances [none]");
   app.add_option("--longest-edge", arguments.longest_edge, "Scale the bounds of meshes to this");

@@ -91,11 +91,12 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
   for (const Pose& pose : workload.poses) {
     of_poses.push_back(1e6 * per_question(kTimes, [&] {
                          for (std::size_t i = 0; i < kTimes; ++i) {
-                           require(first_contact(tree, Pose::Identity(), tree, pose));
+                           static_cast<void>(
+                               require(first_contact(tree, Pose::Identity(), tree, pose)));
                          }
                        }));
   }
-  std::nth_element(of_poses.begin(), of_poses.begin() + of_poses.size() / 2, of_poses.end());
+  std::nth_element(of_poses.begin(), of_poses.begin() + std::ssize(of_poses) / 2, of_poses.end());
   row.pair_first_median_us = of_poses[of_poses.size() / 2];
   return row;
 }

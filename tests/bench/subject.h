@@ -39,6 +39,12 @@ struct PairWork {
   std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
 };
 
+/// Of the mesh and its copy in that pose.
+struct DistanceQuestion {
+  Pose pose;
+  double relative_error = 0;  // allowed
+};
+
 /// One mesh in one library's structure. A query that the library does not have returns false and
 /// leaves its answers alone.
 class Subject {
@@ -54,6 +60,8 @@ class Subject {
   virtual bool boxes(std::span<const Eigen::AlignedBox3d>, std::span<double>) { return false; }
   /// Distance to the closest point.
   virtual bool points(std::span<const Eigen::Vector3d>, std::span<double>) { return false; }
+  /// Distance to the copy: no more than the error allowed above the true one.
+  virtual bool distances(std::span<const DistanceQuestion>, std::span<double>) { return false; }
   /// Of the mesh against its copy in that pose: 1 if they touch, else 0.
   virtual bool first_contacts(std::span<const Pose>, std::span<double>) { return false; }
   /// Likewise: the number of pairs of triangles that touch.
