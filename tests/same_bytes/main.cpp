@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Cooks generated meshes in every codec and geometry store, and prints a line each: mesh, codec,
-// settings, size of the file and XXH3-64 of its bytes. And which encoding is chosen for each.
+// settings, size of the file and XXH3-64 of its bytes. And which encoding is chosen for each; and
+// scenes of all of them.
 //   boxtree_same_bytes [--jobs N] [--comma-locale] [--save FOLDER]
 //   --jobs N         on so many threads [as many as there are processors]
 //   --comma-locale   in the locale of the environment, whose decimal point must be a comma
 //   --save FOLDER    also write each file, to see where two builds differ
 #include <clocale>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -78,11 +80,14 @@ class Printer {
       fmt::print(stderr, "{} {} {}: {}\n", mesh.name, codec, settings.name, tree.error().message());
       return false;
     }
-    const std::vector<std::byte> bytes = cooker::serialize(std::span(&*tree, 1));
-    fmt::print("{} {} {} {} {:016x}\n", mesh.name, codec, settings.name, bytes.size(),
-               checksum(bytes));
+    return print(mesh.name, codec, settings.name, cooker::serialize(std::span(&*tree, 1)));
+  }
+
+  bool print(std::string_view what, std::string_view codec, std::string_view settings,
+             const std::vector<std::byte>& bytes) {
+    fmt::print("{} {} {} {} {:016x}\n", what, codec, settings, bytes.size(), checksum(bytes));
     if (save_.empty()) return true;
-    const std::string name = fmt::format("{}-{}-{}.bxt", mesh.name, codec, settings.name);
+    const std::string name = fmt::format("{}-{}-{}.bxt", what, codec, settings);
     std::ofstream file(save_ / name, std::ios::binary);
     file.write(reinterpret_cast<const char*>(bytes.data()),
                static_cast<std::streamsize>(bytes.size()));
@@ -122,6 +127,47 @@ bool print_choices(const SourceMesh& mesh) {
   return true;
 }
 
+// Poses of whole numbers over powers of two: turned, stretched, mirrored, some far away, some of a
+// precision that f32 does not have.
+Pose pose_of(std::uint64_t number, bool is_fine) {
+  std::uint64_t state = number * 0x9e3779b97f4a7c15u + 1;
+  const auto next = [&state] {  // in [-1, 1), 11 bits
+    state = state * 6364136223846793005u + 1442695040888963407u;
+    return static_cast<double>(static_cast<std::int64_t>(state) >> 53) * 0x1p-10;
+  };
+  Pose pose = Pose::Identity();
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 3; ++column) {
+      const double diagonal = row == column ? (number % 3 == 0 ? -4 : 4) : 0;
+      pose.linear()(row, column) = diagonal + next() + (is_fine ? next() * 0x1p-40 : 0);
+    }
+    pose.translation()[row] = next() * (number % 7 == 0 ? 0x1p20 : 0x1p7);
+  }
+  return pose;
+}
+
+// Instances of all meshes of a middling size in one scene: top level, poses, names, layers.
+bool print_scene(Printer& printer, bool is_fine) {
+  std::vector<EncodedTree> trees;
+  for (const SourceMesh& mesh : meshes()) {
+    Result<EncodedTree> tree = cook_as(mesh, CodecId::kWide8);
+    if (!tree) return false;
+    const bool is_middling = std::abs(tree->scale_exponent) < 40;
+    if (tree->face_count > 0 && is_middling) trees.push_back(std::move(*tree));
+  }
+  cooker::SceneParts parts;
+  parts.layers = {{"static", 0b11, kAllQueries}, {"moving", 0b11, kPairQueries}};
+  parts.materials = {"first", "second"};
+  parts.left_out = {{Part::kNames, 0xffffffffu, 3, "line 3"}};
+  for (std::uint32_t i = 0; i < 500; ++i) {
+    const bool moves = i % 50 == 0;
+    parts.instances.push_back({i % static_cast<std::uint32_t>(trees.size()), i, moves ? 1u : 0u,
+                               moves, fmt::format("instance {}", i % 40), pose_of(i, is_fine)});
+  }
+  const Result<std::vector<std::byte>> bytes = cooker::serialize({trees, {}, &parts});
+  return bytes && printer.print("scene", "wide8", is_fine ? "f64-poses" : "f32-poses", *bytes);
+}
+
 bool print_all(Printer& printer) {
   for (const SourceMesh& mesh : meshes()) {
     for (const Settings& settings : all_settings()) {
@@ -133,7 +179,7 @@ bool print_all(Printer& printer) {
     }
     if (!print_choices(mesh)) return false;
   }
-  return true;
+  return print_scene(printer, false) && print_scene(printer, true);
 }
 
 bool take_comma_locale() {
