@@ -178,6 +178,11 @@ int run(Arguments& arguments) {
       cooked = cook_inputs(arguments, [&steps](const std::string& step) { steps(step); });
     });
   }
+  if (!cooked && cooked.code() == Errc::kInvalidPose) {
+    return fail(
+        {cooked.code(),
+         cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
+  }
   if (!cooked) return fail(cooked.error());
   if (!arguments.depfile.empty()) {
     if (Status status = write_depfile(arguments, *cooked); !status) return fail(status.error());

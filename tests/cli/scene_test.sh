@@ -89,6 +89,13 @@ grep -Eq 'wrong.toml:[0-9]+: .*tolerance' err
 expect 1 "$boxtree" cook -o x.bxt
 [ ! -e x.bxt ]
 
+# A node that is scaled to nothing has no pose to be asked in; flattened it is a flat surface.
+jq '(.nodes[] | select(.name == "Crate")).scale = [1, 0, 1]' level.gltf >squashed.gltf
+expect 1 "$boxtree" cook squashed.gltf -o x.bxt
+grep -q 'Crate.*--flatten' err
+expect 0 "$boxtree" cook squashed.gltf -o squashed.bxt --flatten --quiet
+expect 0 "$boxtree" verify squashed.bxt
+
 # The same bytes from another folder and with one thread.
 mkdir other && cp level.gltf scene.toml other/
 expect 0 "$boxtree" cook --profile other/scene.toml -o other.bxt --jobs 1 --quiet
