@@ -22,24 +22,25 @@ void NearestTriangles::set_enough() noexcept {
 // then what is found in a leaf would depend on the error allowed, and a walk that may err more
 // could miss what ends another one early.
 Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
-  if (const Errc error = read(first, second); error != Errc::kOk) return error;
+  if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
   const GapWeights& gaps = metric_.in_first();
   set_ends();
-  for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-    const double to_leaf = gaps.squared_distance(first_bounds_[i], second_bounds_);
+  for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
+    const double to_leaf = gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds);
     if (!(to_leaf < best_)) {
       leave(to_leaf);
       continue;
     }
-    const Triangle triangle = first_batch_.triangle(i);
-    for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-      const double key = std::max(direction_.squared_distance(first_end_[i], second_end_[j]),
-                                  gaps.squared_distance(first_bounds_[i], moved_bounds_[j]));
+    const Triangle triangle = leaves_.first.triangle(i);
+    for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
+      const double key =
+          std::max(direction_.squared_distance(first_end_[i], second_end_[j]),
+                   gaps.squared_distance(leaves_.first_bounds[i], leaves_.moved_bounds[j]));
       if (!(key < best_)) {
         leave(key);
         continue;
       }
-      compare(triangle, i, moved_[j], j);
+      compare(triangle, i, leaves_.moved[j], j);
     }
   }
   return Errc::kOk;
@@ -47,11 +48,11 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
 
 // Where the triangles of the leaves at hand end along the direction.
 void NearestTriangles::set_ends() noexcept {
-  for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-    first_end_[i] = direction_.end_of_first(first_batch_.triangle(i));
+  for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
+    first_end_[i] = direction_.end_of_first(leaves_.first.triangle(i));
   }
-  for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-    second_end_[j] = direction_.end_of_moved(moved_[j]);
+  for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
+    second_end_[j] = direction_.end_of_moved(leaves_.moved[j]);
   }
 }
 
@@ -78,42 +79,14 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   pair_.lower = std::min(pair_.lower, found.lower);
   if (!(found.upper < pair_.upper)) return;
   pair_.upper = found.upper;
-  pair_.faces = {face_ref(first_, first_batch_.face[i]), face_ref(second_, second_batch_.face[j])};
+  pair_.faces = {face_ref(first_, leaves_.first.face[i]),
+                 face_ref(second_, leaves_.second.face[j])};
   pair_.origin = origin;
   pair_.first = found.first;
   pair_.second = found.second;
   set_enough();
   face(found.second - found.first);
   set_ends();
-}
-
-// Leaves are often met several times in a row; what was read of the last ones stays.
-Errc NearestTriangles::read(NodeRef first, NodeRef second) noexcept {
-  if (!(first == first_read_)) {
-    first_read_ = kNone;
-    const Errc error = first_.leaves().read(first.first, first.second, first_batch_);
-    if (error != Errc::kOk) return error;
-    for (std::uint32_t i = 0; i < first_batch_.count; ++i) {
-      first_bounds_[i] = bounds_of(first_batch_.triangle(i));
-    }
-    first_read_ = first;
-  }
-  if (second == second_read_) return Errc::kOk;
-  second_read_ = kNone;
-  const Errc error = second_.leaves().read(second.first, second.second, second_batch_);
-  if (error != Errc::kOk) return error;
-  second_bounds_ = empty_box<double>();
-  for (std::uint32_t j = 0; j < second_batch_.count; ++j) {
-    const Triangle triangle = second_batch_.triangle(j);
-    for (std::size_t c = 0; c < 3; ++c) {
-      moved_[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
-      if (!is_within_reach(moved_[j].corner[c])) return Errc::kVertexNotFinite;
-    }
-    moved_bounds_[j] = bounds_of(moved_[j]);
-    boxtree::expand(second_bounds_, moved_bounds_[j]);
-  }
-  second_read_ = second;
-  return Errc::kOk;
 }
 
 }  // namespace boxtree

@@ -8,11 +8,10 @@
 #include <cstdint>
 #include <limits>
 
-#include <boxtree/format/box.h>
 #include <boxtree/format/children.h>
 #include <boxtree/format/limits.h>
-#include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/query/approximation.h>
+#include <boxtree/runtime/query/leaf_reading.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/types.h>
 #include <boxtree/runtime/query/world_metric.h>
@@ -40,7 +39,8 @@ class NearestTriangles {
         second_(second),
         pose_(pose),
         metric_(metric),
-        approximation_(approximation) {
+        approximation_(approximation),
+        leaves_(first, second, pose) {
     set_enough();
   }
 
@@ -66,12 +66,9 @@ class NearestTriangles {
   [[nodiscard]] const NearestPair& pair() const noexcept { return pair_; }
 
  private:
-  [[nodiscard]] Errc read(NodeRef first, NodeRef second) noexcept;
   void compare(const Triangle& p, std::uint32_t i, const Triangle& q, std::uint32_t j) noexcept;
   void set_enough() noexcept;
   void set_ends() noexcept;
-
-  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
 
   const Tree& first_;
   const Tree& second_;
@@ -83,14 +80,7 @@ class NearestTriangles {
   double left_ = std::numeric_limits<double>::infinity();
   NearestPair pair_;
   Direction direction_;
-  NodeRef first_read_ = kNone;  // the leaf that first_batch_ holds
-  NodeRef second_read_ = kNone;
-  TriangleBatch first_batch_;
-  TriangleBatch second_batch_;
-  std::array<Box<double>, kMaxLeafTriangles> first_bounds_;
-  std::array<Triangle, kMaxLeafTriangles> moved_;  // the second leaf in the first tree's space
-  std::array<Box<double>, kMaxLeafTriangles> moved_bounds_;
-  Box<double> second_bounds_;
+  LeafReading leaves_;
   std::array<double, kMaxLeafTriangles> first_end_;
   std::array<double, kMaxLeafTriangles> second_end_;
 };

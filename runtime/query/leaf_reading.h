@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The triangles of a leaf of each tree, those of the second brought into the first one's space.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include <boxtree/format/box.h>
+#include <boxtree/format/children.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/types.h>
+
+namespace boxtree {
+
+/// Leaves are often met several times in a row; what was read of the last ones stays. Everything
+/// passed by reference must outlive it.
+class LeafReading {
+ public:
+  LeafReading(const Tree& first_tree, const Tree& second_tree, const RelativePose& pose) noexcept
+      : first_tree_(first_tree), second_tree_(second_tree), pose_(pose) {}
+
+  /// Errors: those of corrupt leaves.
+  [[nodiscard]] Errc read(NodeRef first_leaf, NodeRef second_leaf) noexcept;
+
+  // What was read last.
+  TriangleBatch first;
+  TriangleBatch second;
+  std::array<Box<double>, kMaxLeafTriangles> first_bounds;
+  std::array<Triangle, kMaxLeafTriangles> moved;  // the second leaf in the first tree's space
+  std::array<Box<double>, kMaxLeafTriangles> moved_bounds;
+  Box<double> all_moved_bounds;
+
+ private:
+  [[nodiscard]] Errc read_first(NodeRef leaf) noexcept;
+  [[nodiscard]] Errc read_second(NodeRef leaf) noexcept;
+
+  static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
+
+  const Tree& first_tree_;
+  const Tree& second_tree_;
+  const RelativePose& pose_;
+  NodeRef first_read_ = kNone;  // the leaf that `first` holds
+  NodeRef second_read_ = kNone;
+};
+
+}  // namespace boxtree
