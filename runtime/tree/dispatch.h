@@ -18,12 +18,9 @@ decltype(auto) with_codec(const Tree& tree, Visitor&& visitor) {
   return std::visit(std::forward<Visitor>(visitor), tree.codec_view());
 }
 
-/// The root box in the scalar of a codec, rounded outward. The cooker stores values of that scalar,
-/// so nothing is rounded but where a tree of f64 is a single leaf, which walks take for one of any
-/// codec; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
+/// The smallest box in another scalar that holds `exact`.
 template <class S>
-[[nodiscard]] Box<S> root_box(const Tree& tree) noexcept {
-  const Box<double> exact{tree.record().root_low, tree.record().root_high};
+[[nodiscard]] Box<S> rounded_outward(const Box<double>& exact) noexcept {
   Box<S> box = box_cast<S>(exact);
   constexpr S kInfinity = std::numeric_limits<S>::infinity();
   for (std::size_t k = 0; k < 3; ++k) {
@@ -31,6 +28,14 @@ template <class S>
     if (box.high[k] < exact.high[k]) box.high[k] = std::nextafter(box.high[k], kInfinity);
   }
   return box;
+}
+
+/// The root box in the scalar of a codec, rounded outward. The cooker stores values of that scalar,
+/// so nothing is rounded but where a tree of f64 is a single leaf, which walks take for one of any
+/// codec; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
+template <class S>
+[[nodiscard]] Box<S> root_box(const Tree& tree) noexcept {
+  return rounded_outward<S>({tree.record().root_low, tree.record().root_high});
 }
 
 }  // namespace boxtree
