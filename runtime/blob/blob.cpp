@@ -8,6 +8,7 @@
 #include <boxtree/runtime/blob/blob.h>
 #include <boxtree/runtime/blob/compressor.h>
 #include <boxtree/runtime/file/checksum.h>
+#include <boxtree/runtime/file/section.h>
 
 namespace boxtree {
 namespace {
@@ -45,7 +46,8 @@ Result<File> open_blob(Bytes blob, std::uint64_t memory_limit) {
   if (!section) return section.error();
   if (section->size() < sizeof(BlobHeader)) {
     return Error{Errc::kSectionSize,
-                 "section blob: " + section_size_error(section->size(), sizeof(BlobHeader)).detail};
+                 section_text(SectionKind::kBlob) + ": " +
+                     section_size_error(section->size(), sizeof(BlobHeader)).detail};
   }
   const auto header = load<BlobHeader>(section->data());
   if (header.reserved0 != 0 || header.reserved1 != 0) {

@@ -3,32 +3,11 @@
 #include <algorithm>
 #include <utility>
 
+#include <boxtree/runtime/file/section.h>
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/scene/scene.h>
 
 namespace boxtree {
-namespace {
-
-std::string section_text(SectionKind kind) {
-  return "section " + std::string(section_name(kind));
-}
-
-// The section's bytes if it has `count * element` of them.
-Result<const std::byte*> sized(const File& file, SectionKind kind, std::uint64_t count,
-                               std::uint64_t element) {
-  const Bytes section = file.section(kind);
-  if (section.empty() && count > 0) {
-    return Error{Errc::kSectionMissing, section_text(kind) + " is absent"};
-  }
-  if (section.size() != count * element) {
-    return Error{
-        Errc::kSectionSize,
-        section_text(kind) + ": " + section_size_error(section.size(), count * element).detail};
-  }
-  return section.data();
-}
-
-}  // namespace
 
 Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
   const DefaultFloatState state;
@@ -44,24 +23,25 @@ Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
 Status Scene::bind_sections(const File& file) {
   const Bytes section = file.section(SectionKind::kScene);
   if (section.empty()) return Error{Errc::kNoScene, "the file has no section \"scene\""};
-  if (section.size() != sizeof(SceneRecord)) {
-    return Error{Errc::kSectionSize,
-                 section_text(SectionKind::kScene) + ": " +
-                     section_size_error(section.size(), sizeof(SceneRecord)).detail};
+  const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
+    return sized_section(file.section(kind), kind, "", count, element);
+  };
+  if (const auto found = sized(SectionKind::kScene, 1, sizeof(SceneRecord)); !found) {
+    return found.error();
   }
   SceneRecord& record = top_.scene;
   record = load<SceneRecord>(section.data(), 0);
   if (Status status = check_scene_record(record); !status) return status;
   frame_ = Frame(Eigen::Vector3d(record.origin[0], record.origin[1], record.origin[2]),
                  record.scale_exponent);
-  const auto nodes = sized(file, SectionKind::kSceneNodes, record.node_count, sizeof(Wide8Node));
+  const auto nodes = sized(SectionKind::kSceneNodes, record.node_count, sizeof(Wide8Node));
   const auto instances =
-      sized(file, SectionKind::kInstances, record.instance_count, sizeof(InstanceRecord));
+      sized(SectionKind::kInstances, record.instance_count, sizeof(InstanceRecord));
   const auto poses =
-      sized(file, SectionKind::kPoses, record.instance_count, kNumbersOfPose * record.pose_bytes);
-  const auto layers = sized(file, SectionKind::kLayers, record.layer_count, sizeof(LayerRecord));
+      sized(SectionKind::kPoses, record.instance_count, kNumbersOfPose * record.pose_bytes);
+  const auto layers = sized(SectionKind::kLayers, record.layer_count, sizeof(LayerRecord));
   const auto materials =
-      sized(file, SectionKind::kMaterials, record.material_count, sizeof(MaterialRecord));
+      sized(SectionKind::kMaterials, record.material_count, sizeof(MaterialRecord));
   for (const auto* found : {&nodes, &instances, &poses, &layers, &materials}) {
     if (!*found) return found->error();
   }

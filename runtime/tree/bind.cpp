@@ -3,26 +3,10 @@
 #include <cmath>
 #include <string>
 
+#include <boxtree/runtime/file/section.h>
 #include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree {
-namespace {
-
-// The bytes of a section if there are `count * element`, all that its record allows.
-Result<const std::byte*> sized(Bytes section, SectionKind kind, const std::string& place,
-                               std::uint64_t count, std::uint64_t element) {
-  const std::string where = place + "section " + std::string(section_name(kind));
-  if (section.empty() && count * element > 0) {
-    return Error{Errc::kSectionMissing, where + " is absent"};
-  }
-  if (section.size() != count * element) {
-    return Error{Errc::kSectionSize,
-                 where + ": " + section_size_error(section.size(), count * element).detail};
-  }
-  return section.data();
-}
-
-}  // namespace
 
 Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions& options) {
   if (index >= file.tree_count()) {
@@ -56,7 +40,7 @@ Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindO
 
 Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
-  const std::string where = place + "section nodes";
+  const std::string where = place + section_text(SectionKind::kNodes);
   if (parts.nodes.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
   Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
   if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
@@ -69,10 +53,11 @@ Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& pla
   const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
   const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
   const auto positions =
-      sized(parts.vertices, SectionKind::kVertices, place, record_.vertex_count, stride);
+      sized_section(parts.vertices, SectionKind::kVertices, place, record_.vertex_count, stride);
   if (!positions) return positions.error();
-  const auto corners = sized(parts.corners, SectionKind::kCorners, place, record_.face_count,
-                             std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
+  const auto corners =
+      sized_section(parts.corners, SectionKind::kCorners, place, record_.face_count,
+                    std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
   if (!corners) return corners.error();
   leaves_ = LeafReader({*positions, stride, positions_f64, record_.vertex_count, *corners,
                         record_.corner_bytes, record_.corners_per_face, record_.face_count},
@@ -81,11 +66,12 @@ Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& pla
 }
 
 Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
-  const auto clusters = sized(parts.corners, SectionKind::kCorners, place,
-                              clusters_of(record_.face_count), sizeof(ClusterRecord));
+  const auto clusters = sized_section(parts.corners, SectionKind::kCorners, place,
+                                      clusters_of(record_.face_count), sizeof(ClusterRecord));
   if (!clusters) return clusters.error();
   if (record_.face_count > 0 && parts.vertices.empty()) {
-    return Error{Errc::kSectionMissing, place + "section vertices is absent"};
+    return Error{Errc::kSectionMissing,
+                 place + section_text(SectionKind::kVertices) + " is absent"};
   }
   const GridView grid{*clusters, parts.vertices, record_.face_count, record_.corners_per_face};
   leaves_ =
@@ -118,8 +104,8 @@ Status Tree::bind_external_geometry(const std::string& place, const BindOptions&
 Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
                            const BindOptions& options) {
   const auto ids =
-      sized(parts.face_ids, SectionKind::kFaceIds, place,
-            record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
+      sized_section(parts.face_ids, SectionKind::kFaceIds, place,
+                    record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
   if (!ids) return ids.error();
   if (record_.face_id_bytes != 0) face_ids_ = *ids;
   if (record_.geometry == GeometryId::kExternal && face_ids_ != nullptr) {
