@@ -43,7 +43,7 @@ Status Scene::update(std::uint32_t instance, const Pose& pose) {
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
   const std::optional<Placement> placement = Placement::make(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;
-  moving.pose = pose;
+  moving.placed.pose = pose;
   moving.placed.placement = *placement;
   condition_ = std::max(condition_, placement->condition());
   moving_tree_.refit(static_cast<std::uint32_t>(found - moving_.data()),
@@ -76,7 +76,7 @@ Result<Pose> Scene::pose(std::uint32_t number) const {
   const Result<InstanceInfo> known = info(number);
   if (!known) return known.error();
   const Moving* moving = find_moving(number);
-  return moving != nullptr ? moving->pose : stored_pose(number);
+  return moving != nullptr ? moving->placed.pose : stored_pose(number);
 }
 
 std::string_view Scene::layer_name(std::uint32_t number) const noexcept {
@@ -119,12 +119,18 @@ std::optional<Scene::Placed> Scene::place(std::uint32_t number, Errc& error) con
   const InstanceRecord record = instance(number);
   if (record.tree < trees_.size() && record.layer < layer_count()) {
     const Tree& tree = trees_[record.tree];
-    if (const std::optional<Placement> placement = Placement::make(tree, stored_pose(number))) {
-      return Placed{&tree, *placement, record.id, record.layer};
+    const Pose pose = stored_pose(number);
+    if (const std::optional<Placement> placement = Placement::make(tree, pose)) {
+      return Placed{&tree, pose, *placement, record.id, record.layer};
     }
   }
   error = Errc::kRecordInvalid;
   return std::nullopt;
+}
+
+std::optional<Scene::Placed> Scene::place_now(std::uint32_t number, Errc& error) const noexcept {
+  const Moving* moving = find_moving(number);
+  return moving != nullptr ? moving->placed : place(number, error);
 }
 
 bool Scene::is_detached(std::uint32_t number) const noexcept {

@@ -97,19 +97,21 @@ class Scene {
   // What the queries read.
   struct Placed {
     const Tree* tree;
-    Placement placement;
+    Pose pose;
+    Placement placement;  // by that pose
     std::uint32_t id;
     std::uint32_t layer;
   };
-  /// An instance of the top level. False and `error` where its bytes are corrupt.
+  /// An instance where the file has it. Nothing, and `error`, where its bytes are corrupt.
   [[nodiscard]] std::optional<Placed> place(std::uint32_t instance, Errc& error) const noexcept;
+  /// ... and where it is now, if it moves.
+  [[nodiscard]] std::optional<Placed> place_now(std::uint32_t instance, Errc& error) const noexcept;
   [[nodiscard]] const SceneRecord& record() const noexcept { return top_.scene; }
   [[nodiscard]] const TopLevel& top_level() const noexcept { return top_; }
   [[nodiscard]] const MovingTree& moving_tree() const noexcept { return moving_tree_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   struct Moving {
     std::uint32_t instance;
-    Pose pose;
     Placed placed;
   };
   [[nodiscard]] std::span<const Moving> moving() const noexcept { return moving_; }

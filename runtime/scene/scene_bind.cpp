@@ -159,7 +159,7 @@ Status Scene::bind_moving(const SceneOptions& options) {
     Errc error = Errc::kOk;
     std::optional<Placed> placed = place(number, error);
     if (!placed) return Error{error, "instance " + std::to_string(number) + ": its record"};
-    moving_.push_back({number, stored_pose(number), *placed});
+    moving_.push_back({number, *placed});
     condition_ = std::max(condition_, placed->placement.condition());
   }
   rebuild();

@@ -31,21 +31,15 @@ struct BodyInScene {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
     if (instance == own_instance) return true;
-    const Scene& scene = admission.scene;
-    const Result<Pose> other_pose = scene.pose(instance);
-    if (!other_pose) {
-      error = other_pose.code();
-      return false;
-    }
     const bool swap = other.placement.condition() < placement.condition();
     const auto report = [&](const FaceRef& own, const FaceRef& met) {
       const SceneFace body{own_instance, own}, placed{instance, met};
       return is_first ? visitor({body, placed}) : visitor({placed, body});
     };
     const Result<Visit> visited =
-        swap ? overlap_pairs(*other.tree, *other_pose, tree, pose,
+        swap ? overlap_pairs(*other.tree, other.pose, tree, pose,
                              [&](const FacePair& pair) { return report(pair.second, pair.first); })
-             : overlap_pairs(tree, pose, *other.tree, *other_pose,
+             : overlap_pairs(tree, pose, *other.tree, other.pose,
                              [&](const FacePair& pair) { return report(pair.first, pair.second); });
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
@@ -70,10 +64,15 @@ struct LaterMoving {
 };
 
 BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Placed& placed,
-                    const Pose& pose, ScenePairVisitor visitor) {
-  return {
-      {scene, kPairQueries, scene.layer(placed.layer).meets}, *placed.tree, pose, placed.placement,
-      scene.to_frame(placed.placement.world_box()),           instance,     true, visitor};
+                    ScenePairVisitor visitor) {
+  return {{scene, kPairQueries, scene.layer(placed.layer).meets},
+          *placed.tree,
+          placed.pose,
+          placed.placement,
+          scene.to_frame(placed.placement.world_box()),
+          instance,
+          true,
+          visitor};
 }
 
 bool asks_for_contacts(const Scene& scene, std::uint32_t layer) {
@@ -93,7 +92,7 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const Scene::Moving& moving : scene.moving()) {
     if (!asks_for_contacts(scene, moving.placed.layer)) continue;
-    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.pose, visitor);
+    BodyInScene body = body_of(scene, moving.instance, moving.placed, visitor);
     StaticLeaves<BodyInScene> resting{{body}};
     Errc walked = traverse_overlap(scene.top_level(), scene.top_level().codec, resting);
     if (walked == Errc::kOk && !body.is_done()) {
@@ -110,16 +109,12 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
 Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  const Result<Pose> pose = scene.pose(instance);
-  if (!pose) return pose.code();
-  const Result<InstanceInfo> info = scene.info(instance);
-  if (!info) return info.code();
-  if (!asks_for_contacts(scene, info->layer)) return Visit::kComplete;
-  const Tree& tree = scene.trees()[info->tree];
-  const std::optional<Placement> placement = Placement::make(tree, *pose);
-  if (!placement) return Errc::kRecordInvalid;
-  const Scene::Placed placed{&tree, *placement, info->id, info->layer};
-  BodyInScene body = body_of(scene, instance, placed, *pose, visitor);
+  if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
+  Errc corrupt = Errc::kOk;
+  const std::optional<Scene::Placed> placed = scene.place_now(instance, corrupt);
+  if (!placed) return corrupt;
+  if (!asks_for_contacts(scene, placed->layer)) return Visit::kComplete;
+  BodyInScene body = body_of(scene, instance, *placed, visitor);
   return outcome(walk_overlap(scene, body), body);
 }
 
