@@ -45,9 +45,7 @@ struct RayQuery {
 
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    const SlabInterval interval = slab.intersect(box);
-    const bool passes = interval.enter <= interval.leave && interval.leave >= t_min;
-    return passes ? interval.enter : std::numeric_limits<double>::infinity();
+    return slab.key(box, t_min);
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) noexcept {

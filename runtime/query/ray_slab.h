@@ -66,6 +66,14 @@ class RaySlab {
     return interval;
   }
 
+  /// Where the line enters a box; infinity where it misses it, or leaves it before `from`.
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box, double from) const noexcept {
+    const SlabInterval interval = intersect(box);
+    const bool passes = interval.enter <= interval.leave && interval.leave >= from;
+    return passes ? interval.enter : std::numeric_limits<double>::infinity();
+  }
+
   /// 1 where the line comes from the high side of an axis, else 0.
   [[nodiscard]] std::size_t near_side(std::size_t axis) const noexcept { return near_side_[axis]; }
   /// 1 / direction, but finite.

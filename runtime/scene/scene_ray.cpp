@@ -47,9 +47,7 @@ struct SceneRayQuery {
   [[nodiscard]] double bound() const noexcept { return s_max; }
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    const SlabInterval interval = slab.intersect(box);
-    const bool passes = interval.enter <= interval.leave && interval.leave >= s_min;
-    return passes ? interval.enter : std::numeric_limits<double>::infinity();
+    return slab.key(box, s_min);
   }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
