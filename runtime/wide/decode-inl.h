@@ -18,6 +18,11 @@ struct VectorBox {
   FloatVector high[3];
 };
 
+/// Points as boxes that have no extent.
+HWY_INLINE VectorBox box_at(const FloatVector (&point)[3]) {
+  return {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
+}
+
 /// The same in memory, all eight.
 struct ChildBoxes {
   HWY_ALIGN float low[3][kWideChildren];

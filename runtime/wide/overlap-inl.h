@@ -17,9 +17,8 @@ namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 /// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
-/// only
-// when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the shape
-/// beyond doubt.
+/// only when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the
+/// shape beyond doubt.
 struct Verdict {
   std::uint32_t touched;
   std::uint32_t inside;

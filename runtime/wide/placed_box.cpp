@@ -14,7 +14,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include <boxtree/runtime/wide/overlap-inl.h>
+#include <boxtree/runtime/wide/box_bounds-inl.h>
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -45,43 +45,33 @@ class PlacedBoxFilter {
       }
       const double error = 16 * kUnit * terms + double{std::numeric_limits<float>::min()};
       offset_[k] = static_cast<float>(offset);
-      low_[k] = float_below((query.box.low[k] - middle) - error);
-      high_[k] = float_above((query.box.high[k] - middle) + error);
-      inner_low_[k] = float_above((query.box.low[k] - middle) + error);
-      inner_high_[k] = float_below((query.box.high[k] - middle) - error);
+      bounds_.set(k, query.box.low[k] - middle, query.box.high[k] - middle, error);
     }
   }
 
-  HWY_INLINE Verdict judge(const VectorBox& box) const {
-    const Floats d;
-    auto touched = hn::Eq(hn::Zero(d), hn::Zero(d));
-    auto inside = touched;
-    for (std::size_t k = 0; k < 3; ++k) {
-      FloatVector low = hn::Set(d, offset_[k]);
-      FloatVector high = low;
-      for (std::size_t j = 0; j < 3; ++j) {
-        const FloatVector factor = hn::Set(d, linear_[k][j]);
-        const bool turns = linear_[k][j] < 0;
-        low = hn::MulAdd(factor, turns ? box.high[j] : box.low[j], low);
-        high = hn::MulAdd(factor, turns ? box.low[j] : box.high[j], high);
-      }
-      touched = hn::And(
-          touched, hn::And(hn::Le(low, hn::Set(d, high_[k])), hn::Ge(high, hn::Set(d, low_[k]))));
-      inside = hn::And(inside, hn::And(hn::Ge(low, hn::Set(d, inner_low_[k])),
-                                       hn::Le(high, hn::Set(d, inner_high_[k]))));
-    }
-    return {bits_of(touched), bits_of(inside)};
-  }
-
+  HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(hull(box)); }
   HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    return judge({{point[0], point[1], point[2]}, {point[0], point[1], point[2]}}).inside;
+    return bounds_.contained(hull(box_at(point)));
   }
 
  private:
+  HWY_INLINE VectorBox hull(const VectorBox& box) const {
+    VectorBox image;
+    for (std::size_t k = 0; k < 3; ++k) {
+      image.low[k] = image.high[k] = hn::Set(Floats(), offset_[k]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        const FloatVector factor = hn::Set(Floats(), linear_[k][j]);
+        const bool turns = linear_[k][j] < 0;
+        image.low[k] = hn::MulAdd(factor, turns ? box.high[j] : box.low[j], image.low[k]);
+        image.high[k] = hn::MulAdd(factor, turns ? box.low[j] : box.high[j], image.high[k]);
+      }
+    }
+    return image;
+  }
+
   std::array<std::array<float, 3>, 3> linear_;
   std::array<float, 3> offset_;
-  std::array<float, 3> low_, high_;
-  std::array<float, 3> inner_low_, inner_high_;
+  BoxBounds bounds_;
 };
 
 Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {

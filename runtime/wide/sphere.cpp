@@ -38,8 +38,7 @@ class SphereFilter {
   }
 
   HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    const VectorBox box{{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
-    return bits_of(hn::Le(farthest_squared(center_, box), hn::Set(Floats(), below_)));
+    return bits_of(hn::Le(farthest_squared(center_, box_at(point)), hn::Set(Floats(), below_)));
   }
 
  private:
