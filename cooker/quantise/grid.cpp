@@ -23,13 +23,6 @@ double half_extent(const Eigen::AlignedBox3d& bounds) {
   return (bounds.max() / 2 - bounds.min() / 2).maxCoeff();
 }
 
-// The smallest e with 2^e >= 2 x; x is positive.
-int exponent_above_twice(double x) {
-  int exponent = 0;
-  const double fraction = std::frexp(x, &exponent);
-  return fraction == 0.5 ? exponent : exponent + 1;
-}
-
 // A position in steps from the origin, not rounded. Halves where the difference overflows.
 double in_steps(double position, double origin, int step_exponent) {
   const double difference = position - origin;
@@ -55,6 +48,11 @@ double length_of(const std::array<double, 3>& vector) {
 
 }  // namespace
 
+int exponent_above(double x) {
+  int exponent = 0;
+  return std::frexp(x, &exponent) == 0.5 ? exponent - 1 : exponent;
+}
+
 Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
   Eigen::AlignedBox3d bounds;
   for (std::size_t i = 0; i < mesh.positions.size(); ++i) bounds.extend(mesh.positions[i]);
@@ -69,7 +67,7 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   }
   if (bounds.isEmpty()) return grid;
   const double half = half_extent(bounds);
-  const int extent_exponent = half > 0 ? exponent_above_twice(half) : 0;
+  const int extent_exponent = half > 0 ? exponent_above(half) + 1 : 0;
   grid.step_exponent = extent_exponent - choice.bits;
   if (choice.tolerance) {
     // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all. The
@@ -77,14 +75,18 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
     constexpr double kLargest = 0x1p1000;
     static_assert(kMaxStepExponent < 1000);
     grid.step_exponent = std::ilogb(std::min(*choice.tolerance, kLargest) / 0.8661);
-    if (half > 0 && extent_exponent - grid.step_exponent > kMaxGridBits) {
-      return Error{
-          Errc::kMeshUnsupported,
-          fmt::format("a tolerance of {} asks for a grid of {} bits over an extent of {}; "
-                      "at most {} are possible, a tolerance of {}",
-                      *choice.tolerance, extent_exponent - grid.step_exponent, 2 * half,
-                      kMaxGridBits, 0.8661 * std::ldexp(1.0, extent_exponent - kMaxGridBits))};
-    }
+  }
+  if (choice.step_exponent) grid.step_exponent = *choice.step_exponent;
+  const int bits = extent_exponent - grid.step_exponent;
+  if (half > 0 && bits > kMaxGridBits) {
+    const double possible = std::ldexp(1.0, extent_exponent - kMaxGridBits);
+    const std::string asked = choice.step_exponent
+                                  ? fmt::format("a step of 2^{}", *choice.step_exponent)
+                                  : fmt::format("a tolerance of {}", choice.tolerance.value_or(0));
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{} asks for a grid of {} bits over an extent of {}; at most {} are "
+                             "possible, a tolerance of {}",
+                             asked, bits, 2 * half, kMaxGridBits, 0.8661 * possible)};
   }
   grid.step_exponent = std::clamp(grid.step_exponent, -kMaxStepExponent, kMaxStepExponent);
   for (Eigen::Index k = 0; k < 3; ++k) {

@@ -13,10 +13,11 @@
 
 namespace boxtree::cooker {
 
-/// How fine a grid is to be: one of the two.
+/// How fine a grid is to be: the last of these that is given.
 struct GridChoice {
-  int bits = 24;                    // steps in the largest extent of the scene: 2^bits
-  std::optional<double> tolerance;  // or: no vertex moves farther, in object space
+  int bits = 24;                     // steps in the largest extent of the scene: 2^bits
+  std::optional<double> tolerance;   // no vertex moves farther, in object space
+  std::optional<int> step_exponent;  // the step is 2^step_exponent, in object space
 };
 
 /// Points origin + q * 2^step_exponent for whole q.
@@ -25,12 +26,15 @@ struct Grid {
   int step_exponent = 0;
 };
 
+/// The smallest e with 2^e >= x; x is positive.
+[[nodiscard]] int exponent_above(double x);
+
 /// Bounds of all positions; empty for a mesh without any.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh);
 
 /// A grid over `bounds` of all meshes that go into one file. Its origin is a multiple of its step
-/// where double can hold one. kMeshUnsupported when a tolerance asks for more than kMaxGridBits, or
-/// is not positive and finite.
+/// where double can hold one. kMeshUnsupported when a tolerance or a step asks for more than
+/// kMaxGridBits, or a tolerance is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
 
 /// A mesh on the grid, in grid steps around a middle of its own: whole numbers, so that float holds

@@ -5,11 +5,12 @@
 
 #include <boxtree/cooker/scene/scene_grid.h>
 #include <boxtree/format/grid.h>
+#include <boxtree/runtime/query/relative_pose.h>
 
 namespace boxtree::cooker {
 namespace {
 
-// Corners of boxes through poses, one product and sum after the other: the result goes into files.
+// By AffineMap, whose order of operations is fixed: the result goes into files.
 Eigen::AlignedBox3d world_bounds(const SourceScene& scene, const ScenePlan& plan,
                                  const std::vector<Eigen::AlignedBox3d>& mesh_bounds) {
   Eigen::AlignedBox3d world;
@@ -17,26 +18,13 @@ Eigen::AlignedBox3d world_bounds(const SourceScene& scene, const ScenePlan& plan
     const SceneInstance& instance = scene.instances[i];
     const Eigen::AlignedBox3d& box = mesh_bounds[instance.mesh];
     if (!plan.instances[i].kept || box.isEmpty()) continue;
-    Eigen::Vector3d low, high;
-    for (Eigen::Index k = 0; k < 3; ++k) {
-      low[k] = high[k] = instance.pose.translation()[k];
-      for (Eigen::Index j = 0; j < 3; ++j) {
-        const double factor = instance.pose.linear()(k, j);
-        const double a = factor * box.min()[j], b = factor * box.max()[j];
-        low[k] += std::min(a, b);
-        high[k] += std::max(a, b);
-      }
-    }
-    world.extend(low);
-    world.extend(high);
+    const AffineMap to_world{instance.pose.linear(), instance.pose.translation()};
+    const Box<double> placed = to_world.hull(Box<double>{
+        {box.min()[0], box.min()[1], box.min()[2]}, {box.max()[0], box.max()[1], box.max()[2]}});
+    world.extend(Eigen::Vector3d(placed.low[0], placed.low[1], placed.low[2]));
+    world.extend(Eigen::Vector3d(placed.high[0], placed.high[1], placed.high[2]));
   }
   return world;
-}
-
-// The smallest e with 2^e >= x; x is positive.
-int exponent_above(double x) {
-  int exponent = 0;
-  return std::frexp(x, &exponent) == 0.5 ? exponent - 1 : exponent;
 }
 
 }  // namespace
@@ -45,8 +33,7 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
                                              int bits) {
   std::vector<Eigen::AlignedBox3d> bounds;
   for (const SceneMesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh.mesh));
-  const Result<Grid> of_scene =
-      choose_grid(world_bounds(scene, plan, bounds), {bits, std::nullopt});
+  const Result<Grid> of_scene = choose_grid(world_bounds(scene, plan, bounds), {.bits = bits});
   std::vector<std::optional<Grid>> grids(scene.meshes.size());
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const PlannedMesh& mesh = plan.meshes[m];
@@ -59,15 +46,14 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
     };
     bool is_possible = true;
     if (mesh.tolerance) {
-      is_possible = take_finer(choose_grid(bounds[m], {bits, mesh.tolerance}));
+      is_possible = take_finer(choose_grid(bounds[m], {.tolerance = mesh.tolerance}));
     }
     if (mesh.default_precision || !mesh.tolerance) {
-      is_possible &= take_finer(choose_grid(bounds[m], {kLeastMeshBits, std::nullopt}));
+      is_possible &= take_finer(choose_grid(bounds[m], {.bits = kLeastMeshBits}));
       const double scale = mesh.largest_scale > 0 ? mesh.largest_scale : 1;
       const int step = of_scene->step_exponent - exponent_above(scale);
       if (grid && step < grid->step_exponent) {
-        // As fine as the scene's: by the tolerance that asks for just that step.
-        is_possible &= take_finer(choose_grid(bounds[m], {bits, std::ldexp(0.8662, step)}));
+        is_possible &= take_finer(choose_grid(bounds[m], {.step_exponent = step}));
       }
     }
     if (is_possible) grids[m] = grid;

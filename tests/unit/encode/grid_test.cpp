@@ -181,6 +181,20 @@ TEST(Grid, AnySizeAndPlace) {
   }
 }
 
+TEST(Grid, HasTheStepThatIsAskedFor) {
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Constant(-3), Eigen::Vector3d::Constant(5));
+  for (const int step : {-27, -20, 0, 9}) {
+    EXPECT_EQ(test::require(cooker::choose_grid(bounds, {.step_exponent = step})).step_exponent,
+              step);
+  }
+  // An extent of 2^3: 30 bits are steps of 2^-27.
+  const auto finer = cooker::choose_grid(bounds, {.step_exponent = -28});
+  EXPECT_EQ(finer.code(), Errc::kMeshUnsupported);
+  EXPECT_NE(finer.error().detail.find("a step of 2^-28 asks for a grid of 31 bits"),
+            std::string::npos)
+      << finer.error().detail;
+}
+
 // Two meshes that touch along an irrational line, cooked into one grid, still share their vertices.
 TEST(Grid, WhatTouchesStillTouches) {
   SourceMesh left = test::terrain(12, 5);
