@@ -37,10 +37,6 @@ double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
              : static_cast<double>(bytes) / static_cast<double>(record.triangle_count);
 }
 
-Json vector_json(const Eigen::Vector3d& v) {
-  return {v[0], v[1], v[2]};
-}
-
 Json tree_json(const File& file, std::uint32_t index) {
   const TreeRecord record = file.tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
@@ -71,8 +67,8 @@ Json tree_json(const File& file, std::uint32_t index) {
     low[static_cast<Eigen::Index>(k)] = record.root_low[k];
     high[static_cast<Eigen::Index>(k)] = record.root_high[k];
   }
-  json["bounds"] = {{"min", vector_json(frame.to_object(low))},
-                    {"max", vector_json(frame.to_object(high))}};
+  json["bounds"] = {{"min", to_json(frame.to_object(low))},
+                    {"max", to_json(frame.to_object(high))}};
   return json;
 }
 

@@ -32,6 +32,10 @@ int fail(const Error& error) {
   return error_info(error.code).exit_status;
 }
 
+Json to_json(const Eigen::Vector3d& vector) {
+  return {vector[0], vector[1], vector[2]};
+}
+
 void print(const Json& document) {
   fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
 }

@@ -27,6 +27,9 @@ int fail(const Error& error);
 /// Prints one JSON document to standard output.
 void print(const Json& document);
 
+/// A vector as three numbers.
+[[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+
 /// Group of options that `--help` leaves to `--help-all`.
 inline constexpr const char* kRareOptions = "Rarely needed";
 

@@ -14,10 +14,6 @@
 namespace boxtree::cooker {
 namespace {
 
-Json vector_json(const Eigen::Vector3d& v) {
-  return {v[0], v[1], v[2]};
-}
-
 Json face_json(const FaceRef& face) {
   return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
 }
@@ -31,7 +27,7 @@ Result<Json> answer(const Tree& tree, const RayQuestion& question) {
     json["t"] = found.t;
     json["face"] = face_json(found.face);
     json["triangle"] = found.triangle;
-    json["point"] = vector_json(question.ray.origin + found.t * question.ray.direction);
+    json["point"] = to_json(question.ray.origin + found.t * question.ray.direction);
     json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
   }
   return json;
@@ -85,7 +81,7 @@ void add_closest(Json& json, const std::optional<ClosestPoint>& closest) {
   json["found"] = closest.has_value();
   if (!closest) return;
   json["distance"] = closest->distance;
-  json["point"] = vector_json(closest->point);
+  json["point"] = to_json(closest->point);
   json["face"] = face_json(closest->face);
   json["triangle"] = closest->triangle;
 }
@@ -134,7 +130,7 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceQu
   if (found->witness) {
     const DistanceWitness& witness = *found->witness;
     json["faces"] = {face_json(witness.faces.first), face_json(witness.faces.second)};
-    json["points"] = {vector_json(witness.first), vector_json(witness.second)};
+    json["points"] = {to_json(witness.first), to_json(witness.second)};
   }
   return json;
 }

@@ -67,13 +67,7 @@ Json left_out_json(const File& file) {
 
 Result<Json> scene_json(const File& file) {
   if (file.section(SectionKind::kScene).empty()) return Json(nullptr);
-  std::vector<SceneMeshArrays> absent;  // no leaf is read
-  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    absent.push_back({i, absent_arrays(file.tree_record(i))});
-  }
-  SceneOptions options;
-  options.meshes = absent;
-  const Result<Scene> scene = Scene::bind(file, options);
+  const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return scene.error();
   std::uint64_t triangles = 0;
   Json instances = Json::array();

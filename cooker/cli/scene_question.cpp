@@ -10,10 +10,6 @@
 namespace boxtree::cooker {
 namespace {
 
-Json vector_json(const Eigen::Vector3d& v) {
-  return {v[0], v[1], v[2]};
-}
-
 // The same keys wherever a face of an instance is named.
 void add_face(const Scene& scene, const SceneFace& face, Json& json) {
   const Result<InstanceInfo> info = scene.info(face.instance);
@@ -38,7 +34,7 @@ Result<Json> answer(const Scene& scene, const RayQuestion& question) {
     json["t"] = found.t;
     add_face(scene, {(*hit)->instance, found.face}, json);
     json["triangle"] = found.triangle;
-    json["point"] = vector_json(question.ray.origin + found.t * question.ray.direction);
+    json["point"] = to_json(question.ray.origin + found.t * question.ray.direction);
     json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
   }
   return json;
@@ -82,7 +78,7 @@ Result<Json> answer(const Scene& scene, const PointQuestion& question) {
   if (*found) {
     const ClosestPoint& closest = (*found)->closest;
     json["distance"] = closest.distance;
-    json["point"] = vector_json(closest.point);
+    json["point"] = to_json(closest.point);
     add_face(scene, {(*found)->instance, closest.face}, json);
     json["triangle"] = closest.triangle;
   }

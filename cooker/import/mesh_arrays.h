@@ -2,7 +2,10 @@
 // A source mesh in the shape in which a runtime binds an application's arrays.
 #pragma once
 
+#include <vector>
+
 #include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/runtime/scene/scene.h>
 #include <boxtree/runtime/tree/geometry.h>
 
 namespace boxtree::cooker {
@@ -31,6 +34,18 @@ namespace boxtree::cooker {
   absent.face_count = record.face_count;
   absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
   return absent;
+}
+
+/// A scene of which no leaf will be read, whose external geometry need not be there. Errors as for
+/// Scene::bind.
+[[nodiscard]] inline Result<Scene> bind_without_meshes(const File& file) {
+  std::vector<SceneMeshArrays> absent;
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    absent.push_back({i, absent_arrays(file.tree_record(i))});
+  }
+  SceneOptions options;
+  options.meshes = absent;
+  return Scene::bind(file, options);
 }
 
 }  // namespace boxtree::cooker

@@ -188,13 +188,7 @@ class SceneWalk {
 
 Findings prove_scene(const File& file) {
   if (file.section(SectionKind::kScene).empty()) return {};
-  std::vector<SceneMeshArrays> absent;
-  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    absent.push_back({i, absent_arrays(file.tree_record(i))});
-  }
-  SceneOptions options;
-  options.meshes = absent;
-  const Result<Scene> scene = Scene::bind(file, options);
+  const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return {{scene.code(), "scene: " + scene.error().detail}};
   return SceneWalk(file, *scene).run();
 }
