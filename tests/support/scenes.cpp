@@ -8,7 +8,6 @@
 #include "tests/support/require.h"
 
 namespace boxtree::test {
-namespace {
 
 Eigen::Vector3d placed(const Pose& pose, const Eigen::Vector3d& p) {
   Eigen::Vector3d out;
@@ -18,8 +17,6 @@ Eigen::Vector3d placed(const Pose& pose, const Eigen::Vector3d& p) {
   }
   return out;
 }
-
-}  // namespace
 
 CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes, cooker::SceneParts parts,
                        const std::vector<CodecId>& codecs) {

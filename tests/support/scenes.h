@@ -36,8 +36,10 @@ struct CookedScene {
                                               std::uint32_t moving, std::uint32_t layers,
                                               unsigned seed);
 
-/// A triangle of an instance in the world, from the source mesh: each corner is
-/// ((t + m0 x) + m1 y) + m2 z in double.
+/// A point in the world: ((t + m0 x) + m1 y) + m2 z in double on each axis, as FORMAT.md says.
+[[nodiscard]] Eigen::Vector3d placed(const Pose& pose, const Eigen::Vector3d& point);
+
+/// A triangle of an instance in the world, from the source mesh.
 struct WorldTriangle {
   std::uint32_t instance;  // number in the scene
   std::uint32_t id;        // of the instance

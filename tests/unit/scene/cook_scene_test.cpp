@@ -18,6 +18,7 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
+#include "tests/support/scenes.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
@@ -32,20 +33,12 @@ struct PlacedFace {
   Triangle triangle;
 };
 
-// Every corner as ((t + m0 x) + m1 y) + m2 z, as FORMAT.md says.
 std::vector<PlacedFace> placed_faces(const SourceScene& scene) {
   std::vector<PlacedFace> faces;
   for (const SceneInstance& instance : scene.instances) {
     const SourceMesh& mesh = scene.meshes[instance.mesh].mesh;
     const auto placed = [&](std::uint32_t vertex) {
-      const Eigen::Vector3d p = mesh.positions[vertex];
-      Eigen::Vector3d world;
-      for (Eigen::Index i = 0; i < 3; ++i) {
-        const auto row = instance.pose.linear().row(i);
-        world[i] =
-            ((instance.pose.translation()[i] + row[0] * p[0]) + row[1] * p[1]) + row[2] * p[2];
-      }
-      return world;
+      return test::placed(instance.pose, mesh.positions[vertex]);
     };
     for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
       const auto& corner = mesh.faces[f].corner;
