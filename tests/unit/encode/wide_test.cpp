@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Full leaves, the collapse and the codes of the wide codecs.
 #include <algorithm>
+#include <bit>
 #include <numeric>
 
 #include <gtest/gtest.h>
@@ -127,6 +128,31 @@ TEST(WideLayout, TreesAreSmall) {
           << mesh.name << ", " << mesh.faces.size() << " faces";
     }
   }
+}
+
+// What every query reads some of lies together: the nodes of the top three levels have the first
+// numbers, level by level, whatever is below them.
+TEST(WideLayout, TopLevelsStandTogether) {
+  bool goes_deeper = false;
+  for (const SourceMesh& mesh :
+       {test::soup(40'000, 1), test::sphere(100, 100), test::soup(50, 2)}) {
+    const WideLayout layout = lay_out_wide(build_full_leaves(mesh));
+    std::uint32_t next = 1;
+    std::vector<std::uint32_t> level = {0};
+    for (int depth = 1; depth < 3; ++depth) {
+      std::vector<std::uint32_t> below;
+      for (const std::uint32_t node : level) {
+        const WideLinks& links = layout.nodes[node].links;
+        const auto count = static_cast<std::uint32_t>(std::popcount(links.inner_mask));
+        if (count == 0) continue;
+        EXPECT_EQ(links.first_node, next) << mesh.name << ", node " << node;
+        for (std::uint32_t i = 0; i < count; ++i) below.push_back(next++);
+      }
+      level = below;
+    }
+    goes_deeper |= next < layout.nodes.size();
+  }
+  EXPECT_TRUE(goes_deeper);
 }
 
 TEST(WideEncoder, LeavesFollowTheirNumbersWhateverTheCount) {
