@@ -11,7 +11,7 @@
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/report/approximate.h>
 #include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/pages.h>
+#include <boxtree/cooker/report/pages_json.h>
 #include <boxtree/runtime/boxtree.h>
 
 namespace boxtree::cooker {
@@ -163,10 +163,6 @@ int run_calibration(const Arguments& arguments) {
   return 0;
 }
 
-Json to_json(const PageCount& count) {
-  return {{"questions", count.questions}, {"median", count.median}, {"worst", count.worst}};
-}
-
 void print_row(const char* kind, const PageCount& count) {
   fmt::print("  {:<5} {:5} pages at the median, {:5} at worst, of {} questions\n", kind,
              count.median, count.worst, count.questions);
@@ -189,11 +185,7 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
               {"tree", tree.name()},
               {"codec", codec_name(tree.codec())},
               {"triangles", tree.record().triangle_count},
-              {"file_pages", figures->file_pages},
-              {"open_pages", figures->open},
-              {"ray_pages", to_json(figures->ray)},
-              {"box_pages", to_json(figures->box)},
-              {"point_pages", to_json(figures->point)}};
+              {"pages", to_json(*figures)}};
 }
 
 int run(const Arguments& arguments) {

@@ -11,6 +11,7 @@
 
 #include <boxtree/cooker/choose/search.h>
 #include <boxtree/cooker/report/measure.h>
+#include <boxtree/cooker/report/scratch_file.h>
 #include <boxtree/cooker/report/tradeoff.h>
 #include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/runtime/boxtree.h>
@@ -26,11 +27,12 @@ struct Effort {
   WorkloadSize answered;
   WorkloadSize approximate;
   std::size_t runs;
+  std::size_t cold;  // questions of a kind, each to a file of which nothing was read
 };
 constexpr Effort kFullEffort{
-    {20'000, 4'000, 4'000, 64, 0}, {200'000, 0, 20'000, 0, 0}, {0, 0, 2'000, 0, 64}, 7};
+    {20'000, 4'000, 4'000, 64, 0}, {200'000, 0, 20'000, 0, 0}, {0, 0, 2'000, 0, 64}, 7, 300};
 constexpr Effort kQuickEffort{
-    {2'000, 400, 400, 16, 0}, {20'000, 0, 2'000, 0, 0}, {0, 0, 400, 0, 16}, 3};
+    {2'000, 400, 400, 16, 0}, {20'000, 0, 2'000, 0, 0}, {0, 0, 400, 0, 16}, 3, 100};
 
 Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& questions,
                                                       std::size_t runs) {
@@ -114,10 +116,10 @@ double rms_move(const SourceMesh& mesh, const QuantisedMesh& quantised) {
   return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
 
-ByteParts bytes_of(const EncodedTree& tree) {
+ByteParts bytes_of(const EncodedTree& tree, std::size_t file_bytes) {
   ByteParts parts{tree.nodes.bytes.size(), tree.geometry.vertices.size(),
                   tree.geometry.corners.size(), tree.geometry.face_ids.size(), 0};
-  parts.rest = serialize(std::span(&tree, 1)).size() - parts.total();
+  parts.rest = file_bytes - parts.total();
   return parts;
 }
 
@@ -249,13 +251,19 @@ class Measurement {
 
   Status ask(TriedTree& tried, std::size_t candidate, TradePoint& point) {
     const EncodedTree& encoded = assemble(tried, candidate);
-    point.bytes = bytes_of(encoded);
+    const std::vector<std::byte> file = serialize(std::span(&encoded, 1));
+    point.bytes = bytes_of(encoded, file.size());
     if (!point.gates.pass()) return {};  // listed as failed, but it has no answers to look at
     const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
     if (!tree) return tree.error();
     const Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();
     point.answers = compare(*answers, exact_, out_.diagonal > 0 ? out_.diagonal : 1);
+    const Result<ScratchFile> on_disk = ScratchFile::create(file);
+    if (!on_disk) return on_disk.error();
+    const Result<PageFigures> pages = measure_pages(on_disk->path(), 0, effort_.cold);
+    if (!pages) return pages.error();
+    point.pages = *pages;
     if (options_.times) {
       const auto times = time_kinds(*tree, timed_, effort_.runs);
       if (!times) return times.error();

@@ -13,6 +13,7 @@
 #include <boxtree/cooker/import/source_mesh.h>
 #include <boxtree/cooker/proof/gates.h>
 #include <boxtree/cooker/report/approximate.h>
+#include <boxtree/cooker/report/pages.h>
 
 namespace boxtree::cooker {
 
@@ -62,6 +63,7 @@ struct TradePoint {
   AnswerErrors answers;
   QueryCost modelled{};                        // by counted work; its last kind is all contacts
   std::array<KindTimes, kTimedKinds> times{};  // zero unless timed
+  PageFigures pages;                           // of a file with this tree alone
 
   /// Of exact geometry and the codecs in kApproximateCodecs; empty otherwise.
   ApproximateFigures approximate;

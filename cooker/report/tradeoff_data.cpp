@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <boxtree/cooker/report/pages_json.h>
 #include <boxtree/cooker/report/tradeoff_advice.h>
 #include <boxtree/cooker/report/tradeoff_data.h>
 #include <boxtree/cooker/version.h>
@@ -139,6 +140,7 @@ Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
         {"distance_median", point.answers.distance_median},
         {"ray_median", point.answers.ray_median},
         {"flips_per_million", point.answers.flips_per_million}}},
+      {"pages", to_json(point.pages)},
       {"times", times},
       {"approximate", to_json(mesh, point.approximate)}};
 }
@@ -255,6 +257,9 @@ std::string to_csv(const TradeoffReport& report) {
                        kind);
   }
   for (const char* kind : kTimedNames) out += fmt::format(",{0}_median_ns,{0}_p99_ns", kind);
+  out += ",pages_file,pages_open";
+  for (const char* kind : {"ray", "box", "point"})
+    out += fmt::format(",pages_{0},pages_{0}_worst", kind);
   out += '\n';
   for (const MeshTradeoff& mesh : report.meshes) {
     for (const TradePoint& point : mesh.points) {
@@ -274,6 +279,10 @@ std::string to_csv(const TradeoffReport& report) {
       }
       for (const KindTimes& times : point.times) {
         out += mesh.timed ? fmt::format(",{},{}", times.median_ns, times.p99_ns) : ",,";
+      }
+      out += fmt::format(",{},{}", point.pages.file_pages, point.pages.open);
+      for (const PageCount& count : {point.pages.ray, point.pages.box, point.pages.point}) {
+        out += fmt::format(",{},{}", count.median, count.worst);
       }
       out += '\n';
     }

@@ -335,6 +335,36 @@ PageSection work_section(const MeshTradeoff& mesh) {
   return section;
 }
 
+PageSection pages_section(const MeshTradeoff& mesh) {
+  PageTable table{{"encoding", "pages in all", "open"}, {}};
+  for (const char* kind : {"ray", "box", "point"}) {
+    for (const char* what : {"median", "worst"}) {
+      table.columns.push_back(fmt::format("{}: {}", kind, what));
+    }
+  }
+  for (const TradePoint& point : mesh.points) {
+    const PageFigures& pages = point.pages;
+    Row row = {point.name(), std::to_string(pages.file_pages), std::to_string(pages.open)};
+    for (const PageCount& count : {pages.ray, pages.box, pages.point}) {
+      row.push_back(std::to_string(count.median));
+      row.push_back(std::to_string(count.worst));
+    }
+    table.rows.push_back(std::move(row));
+  }
+  const auto passing = std::find_if(mesh.points.begin(), mesh.points.end(),
+                                    [](const TradePoint& p) { return p.pages.ray.questions > 0; });
+  const std::size_t questions = passing == mesh.points.end() ? 0 : passing->pages.ray.questions;
+  return {
+      mesh.name + ": pages of a cold file",
+      fmt::format("Pages of 4 KiB that one question reads of a mapped file of which nothing was "
+                  "read before, opening included: median and worst of {}. Rays come from "
+                  "outside; boxes are as large as a leaf, in the middle of leaves, and points "
+                  "are there. What a question does not need is not read.",
+                  questions),
+      {table},
+      {}};
+}
+
 PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": times";
@@ -456,6 +486,7 @@ Page tradeoff_page(const TradeoffReport& report) {
     page.sections.push_back(bytes_section(mesh));
     page.sections.push_back(gates_section(mesh));
     page.sections.push_back(work_section(mesh));
+    page.sections.push_back(pages_section(mesh));
     if (mesh.timed) page.sections.push_back(times_section(report, mesh));
   }
   for (const IncludedResults& results : report.included) {

@@ -71,6 +71,22 @@ TEST(Tradeoff, BytesAreThoseOfTheFileThatACookWrites) {
   }
 }
 
+// A file smaller than some ten pages is read as a whole or in part, and opening reads its head.
+TEST(Tradeoff, PagesAreThoseOfTheFile) {
+  for (const TradePoint& point : counted().points) {
+    const PageFigures& pages = point.pages;
+    EXPECT_EQ(pages.file_pages, (point.bytes.total() + 4095) / 4096) << point.name();
+    EXPECT_EQ(pages.open, 1u) << point.name();
+    for (const PageCount& count : {pages.ray, pages.box, pages.point}) {
+      EXPECT_EQ(count.questions, 300u) << point.name();
+      EXPECT_GE(count.median, pages.open) << point.name();
+      EXPECT_LE(count.median, count.worst) << point.name();
+      EXPECT_LE(count.worst, pages.file_pages) << point.name();
+    }
+    EXPECT_GT(pages.point.median, pages.open) << point.name();
+  }
+}
+
 TEST(Tradeoff, EveryPointPassesItsGates) {
   for (const TradePoint& point : counted().points) EXPECT_TRUE(point.gates.pass()) << point.name();
 }
@@ -408,10 +424,14 @@ TEST(TradeoffData, JsonAndCsvSayWhatThePointsSay) {
     EXPECT_EQ(points[i].at("bytes").at("total"), point.bytes.total());
     EXPECT_EQ(points[i].at("surface").at("max"), point.surface_max);
     EXPECT_EQ(points[i].at("work").at("ray").at("nodes"), point.work[0].nodes);
+    EXPECT_EQ(points[i].at("pages").at("box").at("worst"), point.pages.box.worst);
     EXPECT_TRUE(points[i].at("times").is_null());
     ASSERT_TRUE(std::getline(lines, line));
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
     EXPECT_NE(line.find("," + std::to_string(point.bytes.total()) + ","), std::string::npos);
+    EXPECT_TRUE(line.ends_with("," + std::to_string(point.pages.point.median) + "," +
+                               std::to_string(point.pages.point.worst)))
+        << line;
   }
   EXPECT_FALSE(std::getline(lines, line));
 }
