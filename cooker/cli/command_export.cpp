@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree export`: triangles and boxes as a file for viewers.
+#include <algorithm>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -15,6 +16,7 @@
 #include <boxtree/cooker/export/export.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/import/source_scene.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -30,6 +32,7 @@ struct Arguments {
   bool boxes = false;
   bool leaves = false;
   bool solid = false;
+  bool trees = false;
   bool json = false;
 };
 
@@ -84,33 +87,84 @@ bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b
   return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, ignored);
 }
 
-// The trees asked for, bound to `mesh` where their geometry is external.
-Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& file,
-                                     bool with_triangles, Imported& mesh) {
+Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, const File& file) {
   std::vector<std::uint32_t> numbers;
   if (arguments.tree.empty()) {
     for (std::uint32_t i = 0; i < file.tree_count(); ++i) numbers.push_back(i);
-  } else {
-    const Result<std::uint32_t> number = find_tree(file, arguments.tree);
-    if (!number) return number.error();
-    numbers.push_back(*number);
+    return numbers;
   }
-  BindOptions options;
-  if (!arguments.mesh.empty()) {
-    ImportOptions import;
-    for (const std::uint32_t i : numbers) {
+  const Result<std::uint32_t> number = find_tree(file, arguments.tree);
+  if (!number) return number.error();
+  numbers.push_back(*number);
+  return numbers;
+}
+
+bool has_scene(const File& file) {
+  return !file.section(SectionKind::kScene).empty();
+}
+
+// The meshes that trees with external geometry are made of.
+class SourceMeshes {
+ public:
+  // What `path` is as one mesh and, as trees of a scene may come from nodes of it, its meshes one
+  // by one.
+  static Result<SourceMeshes> read(const std::filesystem::path& path, const File& file,
+                                   std::span<const std::uint32_t> trees) {
+    ImportOptions options;
+    for (const std::uint32_t i : trees) {
       if (i >= file.tree_count()) continue;
-      if ((file.tree_record(i).flags & kTreePositionsF64) != 0) import.precision = Precision::kF64;
+      if ((file.tree_record(i).flags & kTreePositionsF64) != 0) options.precision = Precision::kF64;
     }
-    Result<Imported> imported = import_mesh(arguments.mesh, import);
-    if (!imported) return imported.error();
-    mesh = std::move(*imported);
-    options.mesh = arrays_of(mesh.mesh);
-    options.verify_mesh = true;
+    SourceMeshes meshes;
+    Result<Imported> whole = import_mesh(path, options);
+    if (!whole) return whole.error();
+    if (Status status = meshes.add(std::move(whole->mesh)); !status) return status.error();
+    if (!has_scene(file)) return meshes;
+    Result<SourceScene> scene = import_scene(path, options);
+    if (!scene) return scene.error();
+    for (SceneMesh& mesh : scene->meshes) {
+      if (Status status = meshes.add(std::move(mesh.mesh)); !status) return status.error();
+    }
+    return meshes;
+  }
+
+  // The one with the content of the tree's; else any, for binding to say what is wrong with it.
+  [[nodiscard]] MeshArrays find(const TreeRecord& record) const {
+    const auto place = std::find(hashes_.begin(), hashes_.end(), record.geometry_hash);
+    if (place == hashes_.end()) return arrays_of(meshes_.front());
+    return arrays_of(meshes_[static_cast<std::size_t>(place - hashes_.begin())]);
+  }
+
+ private:
+  Status add(SourceMesh mesh) {
+    const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+    if (!hash) return hash.error();
+    hashes_.push_back(*hash);
+    meshes_.push_back(std::move(mesh));
+    return {};
+  }
+
+  std::vector<SourceMesh> meshes_;
+  std::vector<std::uint64_t> hashes_;  // of content, one a mesh
+};
+
+// The trees asked for, bound to `meshes` where their geometry is external.
+Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& file,
+                                     bool with_triangles, std::optional<SourceMeshes>& meshes) {
+  const Result<std::vector<std::uint32_t>> numbers = chosen_trees(arguments, file);
+  if (!numbers) return numbers.error();
+  if (!arguments.mesh.empty()) {
+    Result<SourceMeshes> read = SourceMeshes::read(arguments.mesh, file, *numbers);
+    if (!read) return read.error();
+    meshes = std::move(*read);
   }
   std::vector<Tree> trees;
-  for (const std::uint32_t i : numbers) {
-    if (arguments.mesh.empty() && !with_triangles && i < file.tree_count()) {
+  for (const std::uint32_t i : *numbers) {
+    BindOptions options;
+    if (i < file.tree_count() && meshes) {
+      options.mesh = meshes->find(file.tree_record(i));
+      options.verify_mesh = true;
+    } else if (i < file.tree_count() && !with_triangles) {
       options.mesh = absent_arrays(file.tree_record(i));
     }
     Result<Tree> tree = Tree::bind(file, i, options);
@@ -122,7 +176,18 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
   return trees;
 }
 
-Json tree_json(const ExportedTree& tree) {
+// The scene of the file, unless trees are asked for.
+Result<ExportReport> export_file(const Arguments& arguments, const File& file,
+                                 std::span<const Tree> trees, const ExportOptions& options) {
+  if (!has_scene(file) || arguments.trees || !arguments.tree.empty()) {
+    return export_trees(trees, arguments.output, options);
+  }
+  const Result<Scene> scene = bind_without_meshes(file);
+  if (!scene) return Error{scene.code(), arguments.file.string() + ": " + scene.error().detail};
+  return export_scene(*scene, trees, arguments.output, options);
+}
+
+Json tree_json(const ExportedTree& tree, bool is_placed) {
   Json json = {{"name", tree.name},
                {"vertices", tree.vertices},
                {"faces", tree.faces},
@@ -136,23 +201,42 @@ Json tree_json(const ExportedTree& tree) {
       json["leaves"] = group.count;
     }
   }
-  json["translation"] = {tree.translation[0], tree.translation[1], tree.translation[2]};
+  json["translation"] = to_json(tree.translation);
+  json["instances"] = is_placed ? Json(tree.instances) : Json(nullptr);
   return json;
 }
 
-void report(const Arguments& arguments, const ExportReport& report) {
-  if (arguments.json) {
-    Json json = {{"output", arguments.output.string()}, {"bytes", report.bytes}};
-    json["trees"] = Json::array();
-    for (const ExportedTree& tree : report.trees) json["trees"].push_back(tree_json(tree));
-    print(json);
-    return;
+Json report_json(const Arguments& arguments, const ExportReport& report) {
+  Json json = {{"output", arguments.output.string()}, {"bytes", report.bytes}};
+  json["scene"] = nullptr;
+  if (report.instances) {
+    json["scene"] = {{"instances", *report.instances},
+                     {"placed_triangles", report.placed_triangles}};
   }
+  json["trees"] = Json::array();
+  for (const ExportedTree& tree : report.trees) {
+    json["trees"].push_back(tree_json(tree, report.instances.has_value()));
+  }
+  return json;
+}
+
+std::string counted(std::uint64_t count, const char* one, const char* several) {
+  return fmt::format("{} {}", count, count == 1 ? one : several);
+}
+
+void print_report(const Arguments& arguments, const ExportReport& report) {
   fmt::print("{}: {} bytes\n", arguments.output.string(), report.bytes);
+  if (report.instances) {
+    fmt::print("scene: {}, {} triangles placed\n",
+               counted(*report.instances, "instance", "instances"), report.placed_triangles);
+  }
   for (const ExportedTree& tree : report.trees) {
     fmt::print("{}: {} triangles", tree.name, tree.triangles);
     for (const BoxGroup& group : tree.boxes) {
-      fmt::print(", {}: {} {}", group.name(), group.count, group.count == 1 ? "box" : "boxes");
+      fmt::print(", {}: {}", group.name(), counted(group.count, "box", "boxes"));
+    }
+    if (report.instances) {
+      fmt::print(", {}", counted(tree.instances, "instance", "instances"));
     }
     fmt::print("\n");
   }
@@ -170,13 +254,17 @@ int run(const Arguments& arguments) {
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
-  Imported mesh;
+  std::optional<SourceMeshes> meshes;  // what trees may point into
   const Result<std::vector<Tree>> trees =
-      bind_trees(arguments, opened->file, options->triangles, mesh);
+      bind_trees(arguments, opened->file, options->triangles, meshes);
   if (!trees) return fail(trees.error());
-  const Result<ExportReport> exported = export_trees(*trees, arguments.output, *options);
+  const Result<ExportReport> exported = export_file(arguments, opened->file, *trees, *options);
   if (!exported) return fail(exported.error());
-  report(arguments, *exported);
+  if (arguments.json) {
+    print(report_json(arguments, *exported));
+  } else {
+    print_report(arguments, *exported);
+  }
   return 0;
 }
 
@@ -188,7 +276,10 @@ void add_export_command(CLI::App& app, int& status) {
       *app.add_subcommand("export", "Show triangles and boxes in a viewer: OBJ or glTF");
   command.add_option("file", arguments->file, "A .bxt file")->required();
   command.add_option("-o,--output", arguments->output, "A name in .obj or .glb")->required();
-  command.add_option("--tree", arguments->tree, "Which tree, by number or name [all]");
+  command.add_option("--tree", arguments->tree,
+                     "One tree alone, in its own coordinates: number or name");
+  command.add_flag("--trees", arguments->trees,
+                   "Each tree once, in its own coordinates, not the scene that places them");
   command.add_flag("--triangles", arguments->triangles, "Show triangles");
   command.add_flag("--boxes", arguments->boxes, "Show boxes; neither of the two: both");
   command.add_option("--levels", arguments->levels,
@@ -200,7 +291,7 @@ void add_export_command(CLI::App& app, int& status) {
   command.add_option("--order", arguments->order, "Of faces [source, if face ids tell it]")
       ->check(CLI::IsMember({"source", "tree"}))
       ->group(kRareOptions);
-  command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
+  command.add_option("--mesh", arguments->mesh, "The source of trees cooked with --external")
       ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }

@@ -12,6 +12,7 @@
 
 #include <boxtree/cooker/export/decoded_faces.h>
 #include <boxtree/cooker/export/tree_boxes.h>
+#include <boxtree/runtime/scene/scene.h>
 #include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree::cooker {
@@ -31,12 +32,15 @@ struct ExportedTree {
   std::uint64_t faces = 0;
   std::uint64_t triangles = 0;
   std::vector<BoxGroup> boxes;
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of its node; glTF alone
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // what positions lack; glTF alone
+  std::uint64_t instances = 0;                            // that place it; 0 without a scene
 };
 
 struct ExportReport {
   std::uint64_t bytes = 0;
   std::vector<ExportedTree> trees;
+  std::optional<std::uint64_t> instances;  // nothing without a scene
+  std::uint64_t placed_triangles = 0;      // of all instances
 };
 
 /// Writes `trees` to `output`, as Wavefront OBJ or as binary glTF 2.0 by its extension (.obj,
@@ -46,6 +50,19 @@ struct ExportReport {
 /// Errors: kInvalidQuery for another extension, and for a range of levels that begins below the
 /// deepest of all trees; those of DecodedFaces::decode, walk_boxes and write_glb; kWriteFailed.
 Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesystem::path& output,
+                                  const ExportOptions& options);
+
+/// Writes the instances of `scene` in the order of their ids, each where its pose puts it: in glTF
+/// a node with a matrix, and a mesh that all instances of a tree share; in OBJ an object in world
+/// coordinates, whose faces are turned round where the pose mirrors, so that they keep their front.
+/// Instances without a name are called "instance N", their number in the scene. Trees without
+/// instances are left out. Boxes are those of the trees and turn with them.
+///
+/// Precondition: `trees` are all trees of the scene's file, in its order. They are what is read:
+/// those of `scene` may be bound without meshes. Errors: those of export_trees; kRecordInvalid,
+/// naming the instance, for corrupt bytes, and for poses that put shapes beyond all numbers.
+Result<ExportReport> export_scene(const Scene& scene, std::span<const Tree> trees,
+                                  const std::filesystem::path& output,
                                   const ExportOptions& options);
 
 }  // namespace boxtree::cooker

@@ -10,6 +10,7 @@
 
 #include <boxtree/cooker/export/byte_sink.h>
 #include <boxtree/cooker/export/glb_writer.h>
+#include <boxtree/cooker/export/placed_shape.h>
 #include <boxtree/cooker/version.h>
 
 namespace boxtree::cooker {
@@ -196,11 +197,17 @@ Json colour(int material) {
 
 class Document {
  public:
-  Document(const std::vector<PlannedTree>& trees, bool solid, std::uint64_t bytes) : solid_(solid) {
+  Document(const Shown& shown, const std::vector<PlannedTree>& trees, bool solid,
+           std::uint64_t bytes)
+      : solid_(solid) {
     json_["asset"] = {{"version", "2.0"}, {"generator", "boxtree " + std::string(kVersion)}};
     json_["scene"] = 0;
     json_["scenes"] = Json::array({Json::object()});
-    for (const PlannedTree& tree : trees) add_tree(tree);
+    if (shown.instances) {
+      add_instances(*shown.instances, trees);
+    } else {
+      for (const PlannedTree& tree : trees) add_tree(tree);
+    }
     if (bytes > 0) append("buffers", {{"byteLength", bytes}});
   }
 
@@ -222,13 +229,65 @@ class Document {
       node["translation"] = {tree.translation[0], tree.translation[1], tree.translation[2]};
     }
     for (const Part& part : tree.parts) {
-      const std::size_t mesh = add_mesh(part);
+      const std::size_t mesh = add_mesh(part, part.name());
       node["children"].push_back(append("nodes", {{"name", part.name()}, {"mesh", mesh}}));
     }
+    add_root(std::move(node));
+  }
+
+  void add_root(Json node) {
     json_["scenes"][0]["nodes"].push_back(append("nodes", std::move(node)));
   }
 
-  std::size_t add_mesh(const Part& part) {
+  void add_instances(const std::vector<ShownInstance>& instances,
+                     const std::vector<PlannedTree>& trees) {
+    std::vector<std::size_t> first_mesh;  // of each tree; those of its other parts follow
+    for (const PlannedTree& tree : trees) {
+      first_mesh.push_back(json_.contains("meshes") ? json_["meshes"].size() : 0);
+      for (const Part& part : tree.parts) {
+        const std::string& name = tree.shown->name;
+        add_mesh(part, part.group == nullptr ? name : name + " " + part.name());
+      }
+    }
+    for (const ShownInstance& instance : instances) {
+      add_instance(instance, trees[instance.tree], first_mesh[instance.tree]);
+    }
+  }
+
+  // Triangles belong to the node itself, so that who reads meshes alone meets the name and the pose
+  // of the instance.
+  void add_instance(const ShownInstance& instance, const PlannedTree& tree, std::size_t mesh) {
+    Pose pose = instance.pose;
+    pose.translation() = map_of(pose).apply(tree.translation);
+    const std::vector<Pose> matrices = node_matrices(pose);
+    Json node = {{"name", instance.name}};
+    set_matrix(node, matrices.back());
+    for (const Part& part : tree.parts) {
+      if (part.group == nullptr) {
+        node["mesh"] = mesh++;
+      } else {
+        node["children"].push_back(
+            append("nodes", {{"name", instance.name + " " + part.name()}, {"mesh", mesh++}}));
+      }
+    }
+    if (matrices.size() > 1) {
+      Json outer = {{"name", instance.name}};
+      set_matrix(outer, matrices.front());
+      outer["children"].push_back(append("nodes", std::move(node)));
+      node = std::move(outer);
+    }
+    add_root(std::move(node));
+  }
+
+  // Column by column, as glTF has it. The identity goes without saying.
+  static void set_matrix(Json& node, const Pose& pose) {
+    if (is_identity(pose)) return;
+    Json numbers = Json::array();
+    for (Eigen::Index i = 0; i < 16; ++i) numbers.push_back(pose.matrix()(i % 4, i / 4));
+    node["matrix"] = std::move(numbers);
+  }
+
+  std::size_t add_mesh(const Part& part, const std::string& name) {
     const std::size_t positions = append("bufferViews", {{"buffer", 0},
                                                          {"byteOffset", part.offset},
                                                          {"byteLength", part.position_bytes()},
@@ -253,8 +312,7 @@ class Document {
                       {"indices", index_accessor},
                       {"material", material_of(part)},
                       {"mode", part.group != nullptr && !solid_ ? kModeLines : kModeTriangles}};
-    return append("meshes",
-                  {{"name", part.name()}, {"primitives", Json::array({std::move(primitive)})}});
+    return append("meshes", {{"name", name}, {"primitives", Json::array({std::move(primitive)})}});
   }
 
   std::size_t material_of(const Part& part) {
@@ -359,11 +417,11 @@ Eigen::Vector3d glb_translation(const Tree& tree) {
   return translation;
 }
 
-Status write_glb(std::span<const ShownTree> trees, bool solid_boxes, ByteSink& out) {
+Status write_glb(const Shown& shown, bool solid_boxes, ByteSink& out) {
   std::uint64_t binary_bytes = 0;
-  const Result<std::vector<PlannedTree>> planned = plan(trees, solid_boxes, binary_bytes);
+  const Result<std::vector<PlannedTree>> planned = plan(shown.trees, solid_boxes, binary_bytes);
   if (!planned) return planned.error();
-  std::string json = Document(*planned, solid_boxes, binary_bytes).text();
+  std::string json = Document(shown, *planned, solid_boxes, binary_bytes).text();
   json.resize(align(json.size()), ' ');
   constexpr std::uint64_t kHeaderBytes = 12;
   constexpr std::uint64_t kChunkHeaderBytes = 8;

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Text of one tree after the other; vertices are numbered through the whole file, from 1.
+// Text of one tree or instance after the other; vertices are numbered through the whole file,
+// from 1.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <boxtree/cooker/export/byte_sink.h>
 #include <boxtree/cooker/export/obj_writer.h>
+#include <boxtree/cooker/export/placed_shape.h>
 #include <boxtree/cooker/version.h>
 
 namespace boxtree::cooker {
@@ -19,8 +21,8 @@ std::string object_name(std::string name) {
 }
 
 // Names of groups are words: a line may list several.
-std::string group_name(const ShownTree& shown, const std::string& part) {
-  std::string name = object_name(shown.name + "_" + part);
+std::string group_name(const std::string& object, const std::string& part) {
+  std::string name = object_name(object + "_" + part);
   std::replace(name.begin(), name.end(), ' ', '_');
   return name;
 }
@@ -29,33 +31,48 @@ class ObjText {
  public:
   ObjText(bool solid_boxes, ByteSink& out) : solid_boxes_(solid_boxes), out_(out) {}
 
-  void add(const ShownTree& shown) {
-    is_f32_ = has_f32_positions(shown.tree);
-    out_.print("o {}\n", object_name(shown.name));
+  void add(const ShownTree& tree) {
+    is_f32_ = has_f32_positions(tree.tree);
+    add_object(tree, tree.name);
+  }
+
+  void add(const ShownTree& tree, const ShownInstance& instance) {
+    is_f32_ = false;
+    to_world_.reset();
+    if (!is_identity(instance.pose)) to_world_ = map_of(instance.pose);
+    mirrors_ = mirrors(instance.pose);
+    add_object(tree, instance.name);
+  }
+
+ private:
+  void add_object(const ShownTree& shown, const std::string& name) {
+    out_.print("o {}\n", object_name(name));
     if (shown.faces) {
-      out_.print("g {}\n", group_name(shown, "triangles"));
+      out_.print("g {}\n", group_name(name, "triangles"));
       add_faces(*shown.faces);
     }
     for (const BoxGroup& group : shown.boxes) {
-      out_.print("g {}\n", group_name(shown, group.name()));
+      out_.print("g {}\n", group_name(name, group.name()));
       visit_group(shown.tree, group,
                   [&](const Box<double>& box) { add_box(shown.tree.to_object(box)); });
     }
   }
 
- private:
   void add_faces(const DecodedFaces& faces) {
     for (std::uint32_t v = 0; v < faces.vertex_count(); ++v) add_vertex(faces.position(v));
     for (std::uint32_t f = 0; f < faces.face_count(); ++f) {
-      const std::array<std::uint32_t, 4> corner = faces.face(f);
-      if (corner[3] == kMissingCorner) {
-        out_.print("f {} {} {}\n", next_ + corner[0], next_ + corner[1], next_ + corner[2]);
-      } else {
-        out_.print("f {} {} {} {}\n", next_ + corner[0], next_ + corner[1], next_ + corner[2],
-                   next_ + corner[3]);
-      }
+      add_face(faces.face(f));
     }
     next_ += faces.vertex_count();
+  }
+
+  void add_face(const std::array<std::uint32_t, 4>& corner) {
+    const std::size_t last = corner[3] == kMissingCorner ? 2 : 3;
+    out_.print("f {}", next_ + corner[0]);
+    for (std::size_t i = 1; i <= last; ++i) {
+      out_.print(" {}", next_ + corner[mirrors_ ? last + 1 - i : i]);
+    }
+    out_.print("\n");
   }
 
   void add_box(const Eigen::AlignedBox3d& box) {
@@ -68,10 +85,7 @@ class ObjText {
       add_vertex(position);
     }
     if (solid_boxes_) {
-      for (const auto& side : kBoxSides) {
-        out_.print("f {} {} {} {}\n", next_ + side[0], next_ + side[1], next_ + side[2],
-                   next_ + side[3]);
-      }
+      for (const auto& side : kBoxSides) add_face(side);
     } else {
       for (const auto& edge : kBoxEdges) {
         out_.print("l {} {}\n", next_ + edge[0], next_ + edge[1]);
@@ -80,7 +94,8 @@ class ObjText {
     next_ += 8;
   }
 
-  void add_vertex(const Eigen::Vector3d& p) {
+  void add_vertex(const Eigen::Vector3d& object) {
+    const Eigen::Vector3d p = to_world_ ? to_world_->apply(object) : object;
     if (is_f32_) {
       out_.print("v {} {} {}\n", f32_digits(static_cast<float>(p[0])),
                  f32_digits(static_cast<float>(p[1])), f32_digits(static_cast<float>(p[2])));
@@ -101,7 +116,9 @@ class ObjText {
   bool solid_boxes_;
   ByteSink& out_;
   bool is_f32_ = false;
-  std::uint64_t next_ = 1;  // number of the next vertex
+  bool mirrors_ = false;
+  std::optional<AffineMap> to_world_;  // nothing: points stay, to the sign of a zero
+  std::uint64_t next_ = 1;             // number of the next vertex
 };
 
 }  // namespace
@@ -127,10 +144,16 @@ std::string f32_digits(float value) {
   return digits;
 }
 
-void write_obj(std::span<const ShownTree> trees, bool solid_boxes, ByteSink& out) {
+void write_obj(const Shown& shown, bool solid_boxes, ByteSink& out) {
   out.print("# boxtree {}\n", kVersion);
   ObjText text(solid_boxes, out);
-  for (const ShownTree& shown : trees) text.add(shown);
+  if (!shown.instances) {
+    for (const ShownTree& tree : shown.trees) text.add(tree);
+    return;
+  }
+  for (const ShownInstance& instance : *shown.instances) {
+    text.add(shown.trees[instance.tree], instance);
+  }
 }
 
 }  // namespace boxtree::cooker

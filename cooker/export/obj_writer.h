@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ: an object a tree; a group for its triangles and one for each level of its boxes.
+// Wavefront OBJ: an object a tree, or an instance of a scene; a group for its triangles and one for
+// each level of its boxes.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include <boxtree/cooker/export/shown_tree.h>
@@ -16,7 +16,9 @@ class ByteSink;
 [[nodiscard]] std::string f32_digits(float value);
 
 /// Quads stay quads. Boxes are lines, or six quads each if `solid_boxes`. Numbers read back as they
-/// were: those of f32 positions as f32 and, with boxes rounded outward to f32, all others as f64.
-void write_obj(std::span<const ShownTree> trees, bool solid_boxes, ByteSink& out);
+/// were: those of trees with f32 positions as f32 and, with boxes rounded outward to f32, all
+/// others as f64. Instances are placed and told in f64, boxes by their corners; a pose that mirrors
+/// turns faces round, from the same first corner.
+void write_obj(const Shown& shown, bool solid_boxes, ByteSink& out);
 
 }  // namespace boxtree::cooker

@@ -69,6 +69,52 @@ printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
 
+# A file for viewers: every instance where it is, and what is cooked from it is the same place.
+expect 0 "$boxtree" export level.bxt -o shown.glb --json
+same "$(jq -c '[.scene.instances, .scene.placed_triangles, ([.trees[].instances] | add)]' out)" '[53,9648,53]'
+expect 0 "$boxtree" cook shown.glb -o shown.bxt --exact --json
+same "$(jq -c '[.scene.instances, (.trees | length)]' out)" '[53,8]'
+expect 0 "$boxtree" export level.bxt -o shown.obj --triangles
+grep -q '^scene: 53 instances, 9648 triangles placed$' out && grep -q '^step: 12 triangles, 10 instances$' out
+same "$(grep -c '^o ' shown.obj)" 53
+grep -q '^o Step 2$' shown.obj && grep -q '^g Step_2_triangles$' shown.obj
+expect 0 "$boxtree" cook shown.obj -o shown-flat.bxt --exact --json
+same "$(jq -c '.trees[0].triangles' out)" 9648
+for file in level shown; do
+  expect 0 "$boxtree" info $file.bxt --json
+  jq -c '[.scene.instances | sort_by(.id)[] | [.name, .tree]]' out >$file.names
+  expect 0 "$boxtree" query $file.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --json
+  same "$(jq -c .name out)" '"Step 2"'
+done
+cmp level.names shown.names
+for question in 'ray --origin 5,10,-3.3 --direction 0.1,-1,0' 'point --at 3,2,1' 'point --at=-7,1.5,4'; do
+  for file in level shown flat shown-flat; do
+    # shellcheck disable=SC2086
+    expect 0 "$boxtree" query $file.bxt $question --json
+    jq '.t // .distance' out
+  done | jq -se 'max - min < 1e-6' >/dev/null
+done
+# Trees by themselves, as they are stored.
+for trees in --trees '--tree crate'; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" export level.bxt -o trees.glb --triangles $trees --json
+  same "$(jq -c '[.scene, ([.trees[].instances] | unique)]' out)" '[null,[null]]'
+done
+same "$(jq -c '[.trees[].name]' out)" '["crate"]'
+# External geometry is found in the source, mesh by mesh.
+printf '[scene]\nsource = "level.gltf"\nexternal = true\n' >external.toml
+cp "$level/level.gltf" .
+expect 0 "$boxtree" cook --profile external.toml -o external.bxt --quiet
+expect 1 "$boxtree" export external.bxt -o external.obj
+grep -q 'external_mesh_needed' err
+expect 0 "$boxtree" export external.bxt -o boxes.glb --boxes
+expect 0 "$boxtree" export external.bxt -o external.obj --triangles --mesh level.gltf
+expect 0 "$boxtree" cook shown.obj -o whole.bxt --external --quiet
+expect 0 "$boxtree" verify whole.bxt --mesh external.obj
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >other.obj
+expect 3 "$boxtree" export external.bxt -o external.obj --mesh other.obj
+grep -q 'tree 0: expected 1152 faces' err
+
 # The profile: what it names decides, what it says wrong is told by its line, and options that
 # would contradict it are refused.
 cp "$level/level.gltf" "$level/scene.toml" .
@@ -79,6 +125,16 @@ jq -e '[.why[] | select(.kept | not) | .line // ""] | any(contains("scene.toml:"
 jq -e '.trees | all(.left_out | any(.what == "face ids"))' out >/dev/null
 grep -q 'scene.toml' profiled.d && grep -q 'level.gltf' profiled.d
 expect 0 "$boxtree" verify profiled.bxt
+# On grids and without face ids it is shown as it is asked.
+for name in profiled.obj profiled.glb; do
+  expect 0 "$boxtree" export profiled.bxt -o "$name"
+  grep -q '^scene: 53 instances, 9648 triangles placed$' out
+  expect 0 "$boxtree" cook "$name" -o again.bxt --exact --flatten --quiet
+  for file in profiled again; do
+    expect 0 "$boxtree" query $file.bxt ray --origin 5,10,-3.3 --direction 0.1,-1,0 --json
+    jq .t out
+  done | jq -se 'max - min < 1e-6' >/dev/null
+done
 expect 5 "$boxtree" query profiled.bxt point --at 0,0,0
 expect 0 "$boxtree" info profiled.bxt
 grep -q 'left out: point queries, by scene.toml:[0-9]*: queries' out

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstring>
+#include <set>
 #include <sstream>
 #include <stdexcept>
 
@@ -69,13 +71,9 @@ class GlbReader {
     const nlohmann::json& scene = json_.at("scenes").at(json_.at("scene").get<std::size_t>());
     for (const auto& root : scene.value("nodes", nlohmann::json::array())) {
       const nlohmann::json& node = json_.at("nodes").at(root.get<std::size_t>());
-      demand(!node.contains("children") || !node["children"].empty(), "empty children");
-      for (const auto& child : node.value("children", nlohmann::json::array())) {
-        add(node, json_.at("nodes").at(child.get<std::size_t>()));
-      }
+      walk(node, node, Eigen::Affine3d::Identity());
     }
-    demand(parts_.size() == (json_.contains("meshes") ? json_["meshes"].size() : 0),
-           "stray meshes");
+    demand(seen_.size() == (json_.contains("meshes") ? json_["meshes"].size() : 0), "stray meshes");
     return std::move(parts_);
   }
 
@@ -148,18 +146,50 @@ class GlbReader {
     }
   }
 
-  void add(const nlohmann::json& parent, const nlohmann::json& node) {
-    const nlohmann::json& mesh = json_.at("meshes").at(node.at("mesh").get<std::size_t>());
+  // A matrix, which must be made of a translation, a rotation and a scale, or a translation.
+  static Eigen::Affine3d transform_of(const nlohmann::json& node) {
+    Eigen::Affine3d transform = Eigen::Affine3d::Identity();
+    if (node.contains("translation")) {
+      demand(!node.contains("matrix"), "both matrix and translation");
+      for (int k = 0; k < 3; ++k) {
+        transform.translation()[k] = node["translation"].at(static_cast<std::size_t>(k));
+      }
+    }
+    if (!node.contains("matrix")) return transform;
+    demand(node["matrix"].size() == 16, "numbers of a matrix");
+    for (int i = 0; i < 16; ++i) {
+      transform.matrix()(i % 4, i / 4) = node["matrix"].at(static_cast<std::size_t>(i));
+    }
+    demand(transform.matrix().row(3) == Eigen::RowVector4d(0, 0, 0, 1), "last row of a matrix");
+    for (int k = 0; k < 3; ++k) {
+      const double cosine = transform.linear().col(k).normalized().dot(
+          transform.linear().col((k + 1) % 3).normalized());
+      demand(std::abs(cosine) < 1e-5, "a matrix that shears");
+    }
+    return transform;
+  }
+
+  void walk(const nlohmann::json& node, const nlohmann::json& root, const Eigen::Affine3d& above) {
+    demand(!node.contains("children") || !node["children"].empty(), "empty children");
+    const Eigen::Affine3d pose = above * transform_of(node);
+    if (node.contains("mesh")) add(root, node, pose);
+    for (const auto& child : node.value("children", nlohmann::json::array())) {
+      walk(json_.at("nodes").at(child.get<std::size_t>()), root, pose);
+    }
+  }
+
+  void add(const nlohmann::json& root, const nlohmann::json& node, const Eigen::Affine3d& pose) {
+    const std::size_t number = node.at("mesh");
+    seen_.insert(number);
+    const nlohmann::json& mesh = json_.at("meshes").at(number);
     demand(mesh.at("primitives").size() == 1, "one primitive a mesh");
     const nlohmann::json& primitive = mesh["primitives"][0];
     ViewedPart part;
-    part.object = parent.at("name");
+    part.object = root.at("name");
     part.name = node.at("name");
-    if (parent.contains("translation")) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        part.translation[static_cast<Eigen::Index>(k)] = parent["translation"][k];
-      }
-    }
+    part.translation = transform_of(root).translation();
+    part.pose = pose;
+    part.mesh = number;
     const int mode = primitive.at("mode");
     demand(mode == 1 || mode == 4, "mode");
     part.has_lines = mode == 1;
@@ -173,6 +203,7 @@ class GlbReader {
 
   nlohmann::json json_;
   std::string binary_;
+  std::set<std::size_t> seen_;  // meshes
   std::vector<ViewedPart> parts_;
 };
 

@@ -14,11 +14,13 @@ namespace boxtree::test {
 
 /// A group of OBJ or a mesh of glTF.
 struct ViewedPart {
-  std::string object;  // of OBJ, or the node above in glTF
+  std::string object;  // of OBJ, or the topmost node in glTF
   std::string name;
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
-  std::vector<Eigen::Vector3d> vertices;             // before the translation
-  std::vector<std::vector<std::uint32_t>> elements;  // corners, as places in `vertices`
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // of the topmost node
+  Eigen::Affine3d pose = Eigen::Affine3d::Identity();     // of all nodes from the top down
+  std::size_t mesh = 0;                                   // in glTF, where nodes may share one
+  std::vector<Eigen::Vector3d> vertices;                  // before translation and pose
+  std::vector<std::vector<std::uint32_t>> elements;       // corners, as places in `vertices`
   bool has_lines = false;
 
   [[nodiscard]] std::uint64_t box_count() const { return vertices.size() / 8; }
