@@ -179,7 +179,8 @@ class SceneCook {
   // decided already.
   [[nodiscard]] bool has_both_stores(std::size_t tree) const {
     const auto has = [&](GeometryId store) {
-      return std::ranges::any_of(contests_[tree].candidates, [&](const Candidate& candidate) {
+      const std::vector<Candidate>& candidates = contests_[tree].candidates;
+      return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
         return candidate.geometry == store && candidate.gates.pass();
       });
     };

@@ -88,10 +88,11 @@ class SceneEncoder {
   }
 
   void write_instances() {
-    has_f32_poses_ = std::ranges::all_of(parts_.instances, [](const PlacedTree& instance) {
+    const auto fits_f32 = [](const PlacedTree& instance) {
       const auto numbers = instance.pose.matrix().topRows<3>();
       return (numbers.cast<float>().cast<double>().array() == numbers.array()).all();
-    });
+    };
+    has_f32_poses_ = std::all_of(parts_.instances.begin(), parts_.instances.end(), fits_f32);
     for (const std::uint32_t i : order_) {
       const PlacedTree& instance = parts_.instances[i];
       // Longer names than the record can count are cut: names serve people.

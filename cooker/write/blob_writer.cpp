@@ -22,7 +22,8 @@ Status write_blob(const std::filesystem::path& path, const FileParts& parts, Blo
   if (!written) return written.error();
   const Result<File> opened = open_blob(written->bytes(), ~std::uint64_t{0});
   if (!opened) return opened.error();
-  if (!std::ranges::equal(opened->bytes(), *file)) {
+  const Bytes inside = opened->bytes();
+  if (!std::equal(inside.begin(), inside.end(), file->begin(), file->end())) {
     return Error{Errc::kBlobCorrupt, path.string() + ": the file inside did not come back"};
   }
   if (const Findings findings = verify_file(*opened); !findings.empty()) return findings.front();
