@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include <boxtree/cooker/choose/workload.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -35,16 +36,8 @@ std::array<double, 2> cosine_sine(double turns) {
   }
 }
 
-double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 double length_of(const Eigen::Vector3d& vector) {
-  return std::sqrt(dot(vector, vector));
-}
-
-Eigen::Vector3d turned(const Eigen::Matrix3d& rotation, const Eigen::Vector3d& vector) {
-  return {dot(rotation.row(0), vector), dot(rotation.row(1), vector), dot(rotation.row(2), vector)};
+  return std::sqrt(squared_length(vector));
 }
 
 // SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
@@ -95,14 +88,14 @@ double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rot
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Eigen::Vector3d& axis) {
     const double reach =
-        dot(half, axis.cwiseAbs()) + dot(half, turned(rotation.transpose(), axis).cwiseAbs());
+        dot(half, axis.cwiseAbs()) + dot(half, product(rotation.transpose(), axis).cwiseAbs());
     const double along = std::abs(dot(direction, axis));
     if (along > 0) distance = std::min(distance, reach / along);
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
     consider(Eigen::Vector3d::Unit(i));
     consider(rotation.col(i));
-    for (Eigen::Index j = 0; j < 3; ++j) consider(Eigen::Vector3d::Unit(i).cross(rotation.col(j)));
+    for (Eigen::Index j = 0; j < 3; ++j) consider(cross(Eigen::Vector3d::Unit(i), rotation.col(j)));
   }
   return distance;
 }
@@ -113,7 +106,7 @@ Pose random_pose(const Eigen::AlignedBox3d& bounds, double share, Random& random
   const double distance = share * touching_distance(bounds.sizes() / 2, rotation, direction);
   Pose pose = Pose::Identity();
   pose.linear() = rotation;
-  pose.translation() = bounds.center() - turned(rotation, bounds.center()) + distance * direction;
+  pose.translation() = bounds.center() - product(rotation, bounds.center()) + distance * direction;
   return pose;
 }
 

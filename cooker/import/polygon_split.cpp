@@ -7,6 +7,7 @@
 
 #include <boxtree/cooker/import/polygon_split.h>
 #include <boxtree/runtime/primitive/orientation.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -34,14 +35,6 @@ double largest_of(const Vector3d& a) {
 // Seen along `axis`, from its positive end.
 Vector2d flattened(const Vector3d& a, int axis) {
   return {a[(axis + 1) % 3], a[(axis + 2) % 3]};
-}
-
-Vector3d cross(const Vector3d& a, const Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
-double dot(const Vector3d& a, const Vector3d& b) {
-  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
 int dominant_axis(const Vector3d& normal) {

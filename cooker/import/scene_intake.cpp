@@ -17,6 +17,7 @@
 #include <xxhash.h>
 
 #include <boxtree/cooker/import/scene_intake.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -127,9 +128,9 @@ Pose pose_of(const Transform& transform) {
 const char* pose_fault(const Pose& pose) {
   if (!pose.matrix().allFinite()) return "is not finite";
   const Eigen::Matrix3d linear = pose.linear();
-  const Eigen::Matrix3d inverse = linear.inverse();
-  const Eigen::Matrix3d product = inverse * linear;
-  const Eigen::Matrix3d back = product.inverse();
+  const Eigen::Matrix3d inverse = inverse_of(linear);
+  const Eigen::Matrix3d product = matrix_product(inverse, linear);
+  const Eigen::Matrix3d back = inverse_of(product);
   if (!inverse.allFinite() || !product.allFinite() || !back.allFinite()) return "is not invertible";
   return nullptr;
 }

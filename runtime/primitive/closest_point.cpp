@@ -8,6 +8,7 @@
 #include <limits>
 
 #include <boxtree/runtime/primitive/closest_point.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree {
 namespace {
@@ -28,21 +29,12 @@ constexpr double kAreaUnderflow = 0x1p-800;
 // Below this squared sine (2 degrees) it pays to look for the corner with the best angle.
 constexpr double kThin = 0x1p-10;
 
-double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
-
 double largest(const Eigen::Vector3d& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
 double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d difference = a - b;
-  return dot(difference, difference);
+  return squared_length(a - b);
 }
 
 // The number of the corner opposite the longest edge. Edges from there are the two shortest, so

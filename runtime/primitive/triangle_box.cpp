@@ -21,6 +21,7 @@
 #include <limits>
 
 #include <boxtree/runtime/primitive/triangle_box.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree {
 namespace {
@@ -96,10 +97,6 @@ CenteredPair center(const Triangle& t, const Eigen::Vector3d& low, const Eigen::
     pair.half[k] = kGrow * reach + kProjectionError * farthest;
   }
   return pair;
-}
-
-Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
 }  // namespace

@@ -13,6 +13,7 @@
 #include <boxtree/runtime/primitive/closest_point.h>
 #include <boxtree/runtime/primitive/separation.h>
 #include <boxtree/runtime/primitive/triangle_distance.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree {
 namespace {
@@ -32,14 +33,6 @@ constexpr double kPlaneError = 40 * std::numeric_limits<double>::epsilon();
 constexpr double kUpperUnderflow = 0x1p-500;
 
 using Corners = std::array<Eigen::Vector3d, 3>;
-
-double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-}
-
-Eigen::Vector3d cross(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
-}
 
 Corners edges_of(const Corners& c) {
   return {c[1] - c[0], c[2] - c[1], c[0] - c[2]};

@@ -11,6 +11,7 @@
 
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/primitive/separation.h>
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
@@ -76,7 +77,7 @@ struct PointQuery {
     }
     const Eigen::Vector3d closest = closest_point_on_triangle(point, triangle);
     // Never below the distance of the bounds, so that it agrees with every key above.
-    const double distance = std::max(bounds_distance, (closest - point).squaredNorm());
+    const double distance = std::max(bounds_distance, squared_length(closest - point));
     if (approximation != nullptr) note_lower(triangle, closest, std::min(distance, best));
     const FaceRef face = face_ref(tree, face_order);
     if (distance > best) return;
@@ -90,7 +91,7 @@ struct PointQuery {
                    std::uint32_t half) noexcept {
     const Eigen::Vector3d closest =
         closest_point_on_triangle(placed->point, placed->to_world.apply(triangle));
-    const double distance = (closest - placed->point).squaredNorm();
+    const double distance = squared_length(closest - placed->point);
     if (distance > placed->best) return;
     const FaceRef face = face_ref(tree, face_order);
     if (found && distance == placed->best && !comes_before(face, found->face)) return;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Composition of two poses and two frames into one affine map and its inverse, with an error bound.
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -12,19 +13,21 @@ std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& fi
   const Frame& s = second.frame();
   const Eigen::Matrix3d first_linear = first_pose.linear();
   const Eigen::Matrix3d second_linear = second_pose.linear();
-  const Eigen::Matrix3d first_inverse = first_linear.inverse();
+  const Eigen::Matrix3d first_inverse = inverse_of(first_linear);
 
   RelativePose relative;
-  relative.to_first_.linear = (first_inverse * second_linear) * (s.scale * f.inverse_scale);
+  relative.to_first_.linear =
+      matrix_product(first_inverse, second_linear) * (s.scale * f.inverse_scale);
   // Differences first: two bodies far out in the world, or baked far from their origins, lose
   // nothing to the large common part.
-  const Eigen::Vector3d between = (second_pose.translation() - first_pose.translation()) +
-                                  (second_linear * s.origin - first_linear * f.origin);
-  relative.to_first_.translation = (first_inverse * between) * f.inverse_scale;
+  const Eigen::Vector3d between =
+      (second_pose.translation() - first_pose.translation()) +
+      (product(second_linear, s.origin) - product(first_linear, f.origin));
+  relative.to_first_.translation = product(first_inverse, between) * f.inverse_scale;
 
-  const Eigen::Matrix3d inverse = relative.to_first_.linear.inverse();
+  const Eigen::Matrix3d inverse = inverse_of(relative.to_first_.linear);
   relative.to_second_.linear = inverse;
-  relative.to_second_.translation = -(inverse * relative.to_first_.translation);
+  relative.to_second_.translation = -product(inverse, relative.to_first_.translation);
   if (!relative.to_first_.linear.allFinite() || !relative.to_first_.translation.allFinite() ||
       !inverse.allFinite() || !relative.to_second_.translation.allFinite()) {
     return std::nullopt;
@@ -37,14 +40,15 @@ std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& fi
   constexpr double kGamma16 = 16 * kUnitRoundoff / (1 - 16 * kUnitRoundoff);
   const Eigen::Vector3d y = reach_of(second);
   const Eigen::Vector3d x =
-      relative.to_first_.linear.cwiseAbs() * y + relative.to_first_.translation.cwiseAbs();
+      product(relative.to_first_.linear.cwiseAbs(), y) + relative.to_first_.translation.cwiseAbs();
   const Eigen::Matrix3d residual =
-      (inverse * relative.to_first_.linear - Eigen::Matrix3d::Identity()).cwiseAbs();
+      (matrix_product(inverse, relative.to_first_.linear) - Eigen::Matrix3d::Identity()).cwiseAbs();
   const Eigen::Vector3d offset =
-      (inverse * relative.to_first_.translation + relative.to_second_.translation).cwiseAbs();
+      (product(inverse, relative.to_first_.translation) + relative.to_second_.translation)
+          .cwiseAbs();
   relative.margin_ =
-      residual * y + offset +
-      kGamma16 * (inverse.cwiseAbs() * x + relative.to_second_.translation.cwiseAbs() + y);
+      product(residual, y) + offset +
+      kGamma16 * (product(inverse.cwiseAbs(), x) + relative.to_second_.translation.cwiseAbs() + y);
   if (!relative.margin_.allFinite() || !is_within_reach(x)) return std::nullopt;
   return relative;
 }

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -52,7 +53,7 @@ struct PlacedSphere {
 
   [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
     const Eigen::Vector3d closest = closest_point_on_triangle(center, to_world.apply(triangle));
-    return (closest - center).squaredNorm() <= squared_radius;
+    return squared_length(closest - center) <= squared_radius;
   }
 };
 
@@ -70,7 +71,7 @@ struct SphereQuery {
   }
   [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
     if (placed != nullptr) return placed->touches(triangle);
-    return (closest_point_on_triangle(center, triangle) - center).squaredNorm() <= squared_radius;
+    return squared_length(closest_point_on_triangle(center, triangle) - center) <= squared_radius;
   }
 };
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/scene/placement.h>
 
@@ -10,34 +11,6 @@ namespace boxtree {
 namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-
-// Cofactors over the determinant, each operation in the order written: Eigen's own inverse may add
-// in another order on another instruction set. Not finite where the matrix is not invertible.
-Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& m) noexcept {
-  Eigen::Matrix3d cofactor;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) {
-      const Eigen::Index r = (i + 1) % 3, s = (i + 2) % 3;
-      const Eigen::Index c = (j + 1) % 3, d = (j + 2) % 3;
-      cofactor(i, j) = m(r, c) * m(s, d) - m(r, d) * m(s, c);
-    }
-  }
-  const double determinant =
-      (m(0, 0) * cofactor(0, 0) + m(0, 1) * cofactor(0, 1)) + m(0, 2) * cofactor(0, 2);
-  Eigen::Matrix3d inverse;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    for (Eigen::Index j = 0; j < 3; ++j) inverse(i, j) = cofactor(j, i) / determinant;
-  }
-  return inverse;
-}
-
-Eigen::Vector3d product(const Eigen::Matrix3d& m, const Eigen::Vector3d& v) noexcept {
-  Eigen::Vector3d out;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    out[i] = (m(i, 0) * v[0] + m(i, 1) * v[1]) + m(i, 2) * v[2];
-  }
-  return out;
-}
 
 Eigen::Matrix3d magnitudes(const Eigen::Matrix3d& m) noexcept {
   return m.cwiseAbs();
