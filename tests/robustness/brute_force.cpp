@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -94,7 +95,7 @@ class Brute {
     const Eigen::Vector3d center = frame_.to_tree(sphere.center);
     const double radius = sphere.radius * frame_.inverse_scale;
     std::vector<std::uint32_t> expected = faces_that([&](const Triangle& triangle) {
-      return (closest_point_on_triangle(center, triangle) - center).squaredNorm() <=
+      return squared_length(closest_point_on_triangle(center, triangle) - center) <=
              radius * radius;
     });
     std::vector<std::uint32_t> found;

@@ -14,6 +14,7 @@
 #include <boxtree/cooker/scene/cook_scene.h>
 #include <boxtree/runtime/boxtree.h>
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -123,7 +124,7 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int question
         in_box.insert({face.id, face.face});
       }
       const double squared =
-          (closest_point_on_triangle(middle, face.triangle) - middle).squaredNorm();
+          squared_length(closest_point_on_triangle(middle, face.triangle) - middle);
       if (squared <= radius * radius) in_sphere.insert({face.id, face.face});
       nearest = std::min(nearest, squared);
     }

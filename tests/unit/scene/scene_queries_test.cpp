@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/vector3.h>
 
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -118,7 +119,7 @@ TEST_P(SceneQueries, SphereEqualsBruteForce) {
       FaceSet expected, found;
       for (const WorldTriangle& candidate : triangles) {
         const Eigen::Vector3d closest = closest_point_on_triangle(center, candidate.triangle);
-        if ((closest - center).squaredNorm() <= radius * radius) {
+        if (squared_length(closest - center) <= radius * radius) {
           expected.insert({candidate.instance, candidate.face});
         }
       }
@@ -141,7 +142,7 @@ TEST_P(SceneQueries, ClosestPointEqualsBruteForce) {
       std::tuple<std::uint32_t, std::uint32_t> first{};
       for (const WorldTriangle& candidate : triangles) {
         const double squared =
-            (closest_point_on_triangle(at, candidate.triangle) - at).squaredNorm();
+            squared_length(closest_point_on_triangle(at, candidate.triangle) - at);
         const std::tuple name{candidate.id, candidate.face};
         if (squared > best || (squared == best && name >= first)) continue;
         best = squared;
