@@ -133,16 +133,24 @@ test::CookedScene right_angled_scene() {
   return test::cook_scene(std::move(meshes), std::move(parts));
 }
 
+// The triangles of a scene as a viewer sees them.
+struct Exported {
+  std::vector<ViewedPart> obj;
+  std::vector<ViewedPart> glb;
+};
+
+Exported exported(const test::TempFolder& folder, const Scene& scene) {
+  return {test::read_viewer_file(export_as(folder, "out.obj", scene, triangles_only())),
+          test::read_viewer_file(export_as(folder, "out.glb", scene, triangles_only()))};
+}
+
 TEST(ExportScene, EveryInstanceIsWhereBruteForcePutsIt) {
   const test::TempFolder folder;
   for (const CodecId codec : {CodecId::kWide8, CodecId::kPlainF16, CodecId::kDedup}) {
     const test::CookedScene cooked = random_scene({codec});
     const Scene scene = test::require(Scene::bind(cooked.file));
     const std::vector<test::WorldTriangle> world = test::world_triangles(cooked, scene);
-    const std::vector<ViewedPart> obj =
-        test::read_viewer_file(export_as(folder, "out.obj", scene, triangles_only()));
-    const std::vector<ViewedPart> glb =
-        test::read_viewer_file(export_as(folder, "out.glb", scene, triangles_only()));
+    const auto [obj, glb] = exported(folder, scene);
     ASSERT_EQ(obj.size(), scene.instance_count());
     ASSERT_EQ(glb.size(), scene.instance_count());
     for (std::uint32_t id = 0; id < scene.instance_count(); ++id) {
@@ -336,10 +344,7 @@ TEST(ExportScene, FarTreesKeepTheirDigits) {
       test::cook_scene({far_away(test::torus(20, 12), 1e-3, {6.4e6, -6.4e6, 1.5e6})}, parts);
   const Scene scene = test::require(Scene::bind(cooked.file));
   const std::vector<test::WorldTriangle> world = test::world_triangles(cooked, scene);
-  const std::vector<ViewedPart> obj =
-      test::read_viewer_file(export_as(folder, "out.obj", scene, triangles_only()));
-  const std::vector<ViewedPart> glb =
-      test::read_viewer_file(export_as(folder, "out.glb", scene, triangles_only()));
+  const auto [obj, glb] = exported(folder, scene);
   for (std::uint32_t id = 0; id < 2; ++id) {
     EXPECT_EQ(seen_of(obj[id]), expected_of(world, scene, id));
   }
