@@ -77,8 +77,8 @@ struct OpenedTree {
 Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
                              const std::filesystem::path& mesh);
 /// The same for a file that is open; `path` serves messages.
-Result<OpenedTree> bind_tree(File file, const std::filesystem::path& path, const std::string& which,
-                             const std::filesystem::path& mesh);
+Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
+                             const std::string& which, const std::filesystem::path& mesh);
 
 /// Second trees of questions about two, each opened once.
 class TreeCache {

@@ -91,7 +91,7 @@ class SceneCook {
 
   [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
     const PlannedMesh& planned = plan_.meshes[mesh];
-    SearchOptions search = options_;
+    SearchOptions search = static_cast<const SearchOptions&>(options_);
     search.codec = planned.codec;
     search.wishes.goal = planned.goal;
     search.wishes.queries = planned.queries;
