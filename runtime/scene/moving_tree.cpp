@@ -69,8 +69,9 @@ void MovingTree::refit(std::uint32_t moving, const Box<double>& box) noexcept {
 }
 
 void MovingTree::join(std::uint32_t node) noexcept {
-  nodes_[node] = nodes_[2 * node];
-  expand(nodes_[node], nodes_[2 * node + 1]);
+  const std::size_t first = 2 * std::size_t{node};
+  nodes_[node] = nodes_[first];
+  expand(nodes_[node], nodes_[first + 1]);
 }
 
 }  // namespace boxtree

@@ -69,22 +69,22 @@ class Scene {
   [[nodiscard]] QueryKinds query_kinds() const noexcept { return record().query_kinds; }
 
   /// Error: kInstanceIndex; kRecordInvalid where the bytes of the instance are corrupt.
-  [[nodiscard]] Result<InstanceInfo> info(std::uint32_t instance) const;
+  [[nodiscard]] Result<InstanceInfo> info(std::uint32_t number) const;
   /// The number of the instance with that name, the first if several share it; O(instances).
   /// Error: kInstanceIndex.
   [[nodiscard]] Result<std::uint32_t> find_instance(std::string_view name) const;
   /// Its pose, object space to world: as last given to update(), else as in the file. Errors as for
   /// info().
-  [[nodiscard]] Result<Pose> pose(std::uint32_t instance) const;
+  [[nodiscard]] Result<Pose> pose(std::uint32_t number) const;
   /// Name of a layer; empty when it has none.
-  [[nodiscard]] std::string_view layer_name(std::uint32_t layer) const noexcept;
+  [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t layer_count() const noexcept { return record().layer_count; }
 
   /// The material of a face of an instance's tree; kNoMaterial without materials. Precondition: the
   /// face came from an answer for that instance.
-  [[nodiscard]] std::uint32_t material(std::uint32_t instance, const FaceRef& face) const noexcept;
+  [[nodiscard]] std::uint32_t material(std::uint32_t number, const FaceRef& face) const noexcept;
   /// Name of a material; empty when it has none.
-  [[nodiscard]] std::string_view material_name(std::uint32_t material) const noexcept;
+  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t material_count() const noexcept { return record().material_count; }
 
   /// Gives a moving instance another pose and refits the tree over the moving ones; O(log) of their
@@ -103,9 +103,9 @@ class Scene {
     std::uint32_t layer;
   };
   /// An instance where the file has it. Nothing, and `error`, where its bytes are corrupt.
-  [[nodiscard]] std::optional<Placed> place(std::uint32_t instance, Errc& error) const noexcept;
+  [[nodiscard]] std::optional<Placed> place(std::uint32_t number, Errc& error) const noexcept;
   /// ... and where it is now, if it moves.
-  [[nodiscard]] std::optional<Placed> place_now(std::uint32_t instance, Errc& error) const noexcept;
+  [[nodiscard]] std::optional<Placed> place_now(std::uint32_t number, Errc& error) const noexcept;
   [[nodiscard]] const SceneRecord& record() const noexcept { return top_.scene; }
   [[nodiscard]] const TopLevel& top_level() const noexcept { return top_; }
   [[nodiscard]] const MovingTree& moving_tree() const noexcept { return moving_tree_; }
@@ -116,8 +116,8 @@ class Scene {
   };
   [[nodiscard]] std::span<const Moving> moving() const noexcept { return moving_; }
   /// Whether a leaf of the top level is an instance that moves after all.
-  [[nodiscard]] bool is_detached(std::uint32_t instance) const noexcept;
-  [[nodiscard]] LayerRecord layer(std::uint32_t layer) const noexcept;
+  [[nodiscard]] bool is_detached(std::uint32_t number) const noexcept;
+  [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
   /// At least Placement::condition() of every instance.
   [[nodiscard]] double condition() const noexcept { return condition_; }
   /// A box of the world in the space of both trees. Rounded to nearest, which is monotone: boxes
@@ -134,9 +134,9 @@ class Scene {
   [[nodiscard]] bool has_names() const noexcept;
   [[nodiscard]] Error left_out(Part part, std::uint32_t owner, const std::string& what) const;
   [[nodiscard]] std::string_view text(std::uint32_t offset, std::uint32_t size) const noexcept;
-  [[nodiscard]] InstanceRecord instance(std::uint32_t instance) const noexcept;
-  [[nodiscard]] Pose stored_pose(std::uint32_t instance) const noexcept;
-  [[nodiscard]] const Moving* find_moving(std::uint32_t instance) const noexcept;
+  [[nodiscard]] InstanceRecord instance(std::uint32_t number) const noexcept;
+  [[nodiscard]] Pose stored_pose(std::uint32_t number) const noexcept;
+  [[nodiscard]] const Moving* find_moving(std::uint32_t number) const noexcept;
 
   struct TreeMaterials {
     const std::byte* runs = nullptr;  // MaterialRun[], or

@@ -100,7 +100,7 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
       MovingLeaves<LaterMoving> others{{later}};
       walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
     }
-    const Result<Visit> visit = outcome(walked, body);
+    Result<Visit> visit = outcome(walked, body);
     if (!visit || *visit == Visit::kStopped) return visit;
   }
   return Visit::kComplete;
