@@ -2,7 +2,6 @@
 // boxtree_scenes: a level of placed props as a scene, and as one tree over all their triangles:
 // bytes, and times of the same questions in one run.
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -13,6 +12,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/report/measure.h>
 
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"
@@ -33,7 +34,7 @@ struct Arguments {
   double spacing = 2;  // metres between props of about 1.5 metres
   std::string codec = "wide8";
   int questions = 20000;
-  int runs = 5;
+  int rounds = 9;
   bool json = false;
 };
 
@@ -100,24 +101,11 @@ SourceMesh merge(const std::vector<SourceMesh>& props, const cooker::SceneParts&
   return merged;
 }
 
-// The least of several runs, in nanoseconds a question: other work can only add.
-template <class Ask>
-double time(int runs, int questions, Ask ask) {
-  using Clock = std::chrono::steady_clock;
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run <= runs; ++run) {
-    const Clock::time_point start = Clock::now();
-    ask();
-    const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
-    if (run > 0) least = std::min(least, seconds);
-  }
-  return least / questions * 1e9;
-}
-
 struct Row {
   std::string kind;
-  double scene_ns = 0;
+  double scene_ns = 0;  // medians of the rounds, of each way and of their ratio
   double merged_ns = 0;
+  double ratio = 0;
   std::uint64_t scene_answers = 0;
   std::uint64_t merged_answers = 0;
 };
@@ -157,13 +145,24 @@ class Bench {
     return {middle - half, middle + half};
   }
 
-  // Times both, and counts the answers of one run of each.
+  // Both ways by turns, so that what slows the machine for a while slows both; the first round only
+  // warms up. Counts the answers of the last.
   template <class OfScene, class OfTree>
   Row compare(const char* kind, std::size_t questions, OfScene of_scene, OfTree of_tree) const {
     Row row{kind};
-    const int count = static_cast<int>(questions);
-    row.scene_ns = time(arguments_.runs, count, [&] { row.scene_answers = of_scene(); });
-    row.merged_ns = time(arguments_.runs, count, [&] { row.merged_answers = of_tree(); });
+    const double scale = 1e9 / static_cast<double>(questions);
+    std::vector<double> scene, merged, ratios;
+    for (int round = 0; round <= arguments_.rounds; ++round) {
+      const double of_one = cooker::seconds_taken([&] { row.scene_answers = of_scene(); });
+      const double of_other = cooker::seconds_taken([&] { row.merged_answers = of_tree(); });
+      if (round == 0) continue;
+      scene.push_back(of_one * scale);
+      merged.push_back(of_other * scale);
+      ratios.push_back(of_one / of_other);
+    }
+    row.scene_ns = cooker::median(scene);
+    row.merged_ns = cooker::median(merged);
+    row.ratio = cooker::median(ratios);
     return row;
   }
   // The sum of what `ask` says of each question.
@@ -290,6 +289,7 @@ void run(const Arguments& arguments) {
       json["rows"].push_back({{"kind", row.kind},
                               {"scene_ns", row.scene_ns},
                               {"merged_ns", row.merged_ns},
+                              {"ratio", row.ratio},
                               {"scene_answers", row.scene_answers},
                               {"merged_answers", row.merged_answers}});
     }
@@ -303,7 +303,7 @@ void run(const Arguments& arguments) {
              "ratio", "answers", "merged");
   for (const Row& row : rows) {
     fmt::print("  {:<8} {:>10.0f} {:>10.0f} {:>7.2f}  {:>10} {:>10}\n", row.kind, row.scene_ns,
-               row.merged_ns, row.scene_ns / row.merged_ns, row.scene_answers, row.merged_answers);
+               row.merged_ns, row.ratio, row.scene_answers, row.merged_answers);
   }
 }
 
@@ -318,7 +318,7 @@ int main(int argument_count, char** argument_values) {
   app.add_option("--spacing", arguments.spacing, "Metres between props of about 1.5 metres");
   app.add_option("--codec", arguments.codec)->check(CLI::IsMember({"wide8", "wide4"}));
   app.add_option("--questions", arguments.questions)->check(CLI::Range(10, 10'000'000));
-  app.add_option("--runs", arguments.runs)->check(CLI::Range(1, 1000));
+  app.add_option("--rounds", arguments.rounds)->check(CLI::Range(1, 1000));
   app.add_flag("--json", arguments.json);
   CLI11_PARSE(app, argument_count, argument_values);
   try {
