@@ -74,13 +74,18 @@ class SceneWalk {
     return content;
   }
 
+  static std::optional<PlacementBounds> bounds_of(const Scene::Placed& placed) {
+    return placed.placement.bounds(root_box<double>(*placed.tree));
+  }
+
   Box<double> visit_leaf(std::uint32_t instance, const Box<float>& box) {
     if (reached_[instance]) add(Errc::kFaceRepeated, name(instance) + "is two leaves");
     reached_[instance] = true;
     Errc error = Errc::kOk;
     const std::optional<Scene::Placed> placed = scene_.place(instance, error);
-    if (!placed) return empty_box<double>();  // check_instance says why
-    const Box<double> content = scene_.to_frame(placed->placement.world_box());
+    const auto bounds = placed ? bounds_of(*placed) : std::nullopt;
+    if (!bounds) return empty_box<double>();  // check_instance says why
+    const Box<double> content = scene_.to_frame(bounds->world);
     check_box(name(instance) + "its leaf", content, box);
     return content;
   }
@@ -105,9 +110,10 @@ class SceneWalk {
     check_text(name(instance) + "its name", record.name_offset, record.name_bytes);
     Errc error = Errc::kOk;
     const std::optional<Scene::Placed> placed = scene_.place(instance, error);
-    if (!placed) {
-      add(error, name(instance) + "its tree, layer or pose");
-    } else if (is_static && placed->placement.condition() > scene_.record().condition) {
+    const auto bounds = placed ? bounds_of(*placed) : std::nullopt;
+    if (!bounds) {
+      add(Errc::kRecordInvalid, name(instance) + "its tree, layer or pose");
+    } else if (is_static && bounds->condition > scene_.record().condition) {
       add(Errc::kRecordInvalid, name(instance) + "its condition is above the scene's");
     }
   }

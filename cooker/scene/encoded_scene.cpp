@@ -52,9 +52,9 @@ class SceneEncoder {
       const EncodedTree& tree = trees_[instance.tree];
       const Frame frame(Eigen::Vector3d(tree.origin[0], tree.origin[1], tree.origin[2]),
                         tree.scale_exponent);
-      const std::optional<Placement> placed =
-          Placement::make(frame, tree.nodes.root_box, instance.pose);
-      if (!placed) {
+      const std::optional<Placement> placed = Placement::make(frame, instance.pose);
+      const auto bounds = placed ? placed->bounds(tree.nodes.root_box) : std::nullopt;
+      if (!bounds) {
         return Error{
             Errc::kInvalidPose,
             fmt::format("instance {} '{}': its transform is not finite, or cannot be undone",
@@ -64,8 +64,8 @@ class SceneEncoder {
         order_.push_back(i);
       } else {
         resting.push_back(i);
-        boxes.push_back(placed->world_box());
-        condition_ = std::max(condition_, placed->condition());
+        boxes.push_back(bounds->world);
+        condition_ = std::max(condition_, bounds->condition);
       }
     }
     std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {

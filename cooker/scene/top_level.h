@@ -19,7 +19,7 @@ struct EncodedTopLevel {
   std::vector<std::uint32_t> order;  // instance of each leaf, as numbers in the span given
 };
 
-/// Deterministic. `world_boxes`: of the instances, as Placement::world_box() gives them. An
+/// Deterministic. `world_boxes`: of the instances, as PlacementBounds::world gives them. An
 /// instance is a leaf of its own: what a leaf costs a query is a whole tree, so boxes are as tight
 /// as they can be. Precondition: at most kMaxInstances boxes, finite.
 [[nodiscard]] EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes);

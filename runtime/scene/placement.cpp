@@ -2,15 +2,22 @@
 // Maps of placed trees and their error bounds.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/scene/placement.h>
 
 namespace boxtree {
 namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
+
+// Zero times a number that is not finite is not a number, and stays so in sums.
+bool is_finite(const Eigen::Matrix3d& m) noexcept {
+  double sum = 0;
+  for (Eigen::Index i = 0; i < m.size(); ++i) sum += 0 * m.data()[i];
+  return sum == 0;
+}
 
 Eigen::Matrix3d magnitudes(const Eigen::Matrix3d& m) noexcept {
   return m.cwiseAbs();
@@ -30,12 +37,7 @@ double condition_of(const Eigen::Matrix3d& m, const Eigen::Matrix3d& inverse) no
 
 }  // namespace
 
-std::optional<Placement> Placement::make(const Tree& tree, const Pose& pose) noexcept {
-  return make(tree.frame(), {tree.record().root_low, tree.record().root_high}, pose);
-}
-
-std::optional<Placement> Placement::make(const Frame& frame, const Box<double>& root,
-                                         const Pose& pose) noexcept {
+std::optional<Placement> Placement::make(const Frame& frame, const Pose& pose) noexcept {
   const Eigen::Matrix3d linear = pose.linear();
   Placement placed;
   placed.inverse_ = inverse_of(linear);
@@ -45,32 +47,47 @@ std::optional<Placement> Placement::make(const Frame& frame, const Box<double>& 
   placed.to_world_.linear = linear * frame.scale;  // a power of two: no rounding
   // Where the frame has no origin of its own the sum is the pose's translation, unrounded.
   placed.to_world_.translation = product(linear, frame.origin) + pose.translation();
+  if (!is_finite(placed.to_world_.linear) || !is_finite(placed.inverse_) ||
+      !is_within_reach(placed.to_world_.translation)) {
+    return std::nullopt;
+  }
+  return placed;
+}
+
+Eigen::Matrix3d Placement::linear() const noexcept {
+  return to_world_.linear * frame_inverse_scale_;  // a power of two: no rounding
+}
+
+double Placement::condition() const noexcept {
+  return condition_of(linear(), inverse_);
+}
+
+double Placement::magnitude(const Box<double>& root) const noexcept {
   Eigen::Vector3d reach;
   for (std::size_t k = 0; k < 3; ++k) {
     reach[static_cast<Eigen::Index>(k)] = std::max(std::abs(root.low[k]), std::abs(root.high[k]));
   }
-  const Eigen::Vector3d terms = product(magnitudes(placed.to_world_.linear), reach) +
-                                product(magnitudes(linear), frame.origin.cwiseAbs()) +
-                                pose.translation().cwiseAbs();
-  placed.magnitude_ = std::max({terms[0], terms[1], terms[2]});
-  placed.condition_ = condition_of(linear, placed.inverse_);
-  const bool is_finite = placed.to_world_.linear.allFinite() && placed.inverse_.allFinite() &&
-                         std::isfinite(placed.magnitude_) && std::isfinite(placed.condition_) &&
-                         placed.magnitude_ <= kReach;
-  if (!is_finite) return std::nullopt;
-  placed.world_box_ = placed.to_world_.hull(root);
+  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), reach) +
+                                product(magnitudes(linear()), frame_origin_.cwiseAbs()) +
+                                translation_.cwiseAbs();
+  return std::max({terms[0], terms[1], terms[2]});
+}
+
+std::optional<PlacementBounds> Placement::bounds(const Box<double>& root) const noexcept {
+  PlacementBounds bounds{to_world_.hull(root), condition(), magnitude(root)};
+  if (!std::isfinite(bounds.condition) || !(bounds.magnitude <= kReach)) return std::nullopt;
   for (std::size_t k = 0; k < 3; ++k) {
-    placed.world_box_.low[k] -= placed.error();
-    placed.world_box_.high[k] += placed.error();
+    bounds.world.low[k] -= bounds.error();
+    bounds.world.high[k] += bounds.error();
   }
-  return placed;
+  return bounds;
 }
 
 // A world coordinate is a sum of nine terms, each rounded; on the way back the error of each
 // coordinate is spread by |L| |L^-1|, whose rounding and that of the comparison itself are counted
 // generously: 64 roundings in all.
-double Placement::error_of(double magnitude) const noexcept {
-  return 64 * kUnitRoundoff * condition_ * magnitude + std::numeric_limits<double>::min();
+double PlacementBounds::error() const noexcept {
+  return 64 * kUnitRoundoff * condition * magnitude + std::numeric_limits<double>::min();
 }
 
 Ray Placement::to_object(const Ray& world) const noexcept {
@@ -87,11 +104,11 @@ Eigen::Vector3d Placement::to_tree(const Eigen::Vector3d& world) const noexcept 
 // What the inverse lacks is measured by going there and back. To that come the roundings of the
 // measurement, of a triangle's way to the world and of its distance, which are bounded by 26 of the
 // largest coordinate (see triangle_distance.cpp).
-double Placement::distance_error(const Eigen::Vector3d& tree,
-                                 const Eigen::Vector3d& world) const noexcept {
+double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vector3d& world,
+                                 const Box<double>& root) const noexcept {
   const Eigen::Vector3d back = to_world_.apply(tree) - world;
   const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
-  const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude_ +
+  const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude(root) +
                          std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
   return std::sqrt((back[0] * back[0] + back[1] * back[1]) + back[2] * back[2]) +
          128 * kUnitRoundoff * largest + std::numeric_limits<double>::min();

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include <Eigen/Core>
@@ -17,52 +16,61 @@
 
 namespace boxtree {
 
-/// A tree and its pose. The world coordinates of a triangle are to_world().apply() of each corner
-/// as the tree decodes it: what brute force over all instances compares, and what box, sphere and
-/// point queries of a scene compare in the end.
-class Placement {
- public:
-  /// Nothing when the pose is not finite or not invertible. Computed in one fixed order of
-  /// operations that IEEE 754 defines, because a cooked file rests on it.
-  /// Precondition: the tree is not empty.
-  static std::optional<Placement> make(const Tree& tree, const Pose& pose) noexcept;
-  /// The same for a tree with this frame and root box.
-  static std::optional<Placement> make(const Frame& frame, const Box<double>& root,
-                                       const Pose& pose) noexcept;
-
-  [[nodiscard]] const AffineMap& to_world() const noexcept { return to_world_; }
-
+/// Bounds of what a placed tree covers and of what rounding does to it.
+struct PlacementBounds {
   /// A box of the world that holds the tree, whatever rounding makes of its triangles; widened by
   /// error().
-  [[nodiscard]] const Box<double>& world_box() const noexcept { return world_box_; }
-
-  /// How far on any axis what is compared with the tree can be off by rounding, in the world: on
-  /// its way here, or back to where the tree compares it. The share of the tree; of another body's
-  /// coordinates it is error_of().
-  [[nodiscard]] double error() const noexcept { return error_of(magnitude_); }
-  [[nodiscard]] double error_of(double magnitude) const noexcept;
+  Box<double> world;
   /// By how much going back from the world magnifies errors at most: 1 for an axis-parallel map, up
   /// to 3 for a rotation, more for a map that shears or stretches unevenly.
-  [[nodiscard]] double condition() const noexcept { return condition_; }
+  double condition;
+  double magnitude;  // no term of a world coordinate's sum is larger
 
+  /// How far on any axis what is compared with the tree can be off by rounding, in the world: on
+  /// its way here, or back to where the tree compares it.
+  [[nodiscard]] double error() const noexcept;
+};
+
+/// A tree and its pose. The world coordinates of a triangle are to_world().apply() of each corner
+/// as the tree decodes it: what brute force over all instances compares, and what box, sphere and
+/// point queries of a scene compare in the end. Only what every query needs is kept: queries make
+/// one for each instance that they meet. Computed in one fixed order of operations that IEEE 754
+/// defines, because a cooked file rests on it.
+class Placement {
+ public:
+  /// Nothing when the pose is not finite or not invertible.
+  static std::optional<Placement> make(const Frame& frame, const Pose& pose) noexcept;
+  /// The same for a tree with that frame.
+  static std::optional<Placement> make(const Tree& tree, const Pose& pose) noexcept {
+    return make(tree.frame(), pose);
+  }
+
+  [[nodiscard]] const AffineMap& to_world() const noexcept { return to_world_; }
   /// The ray in object space; parameters stay.
   [[nodiscard]] Ray to_object(const Ray& world) const noexcept;
-  /// A point of the world in tree space, and how far, in the world, it may be from there.
+  /// A point of the world in tree space.
   [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& world) const noexcept;
-  [[nodiscard]] double distance_error(const Eigen::Vector3d& tree,
-                                      const Eigen::Vector3d& world) const noexcept;
+
+  /// See PlacementBounds.
+  [[nodiscard]] double condition() const noexcept;
+  /// For a tree with this root box. Nothing when they are not finite or beyond reach. Precondition:
+  /// the tree is not empty.
+  [[nodiscard]] std::optional<PlacementBounds> bounds(const Box<double>& root) const noexcept;
+  /// How far, in the world, `tree` = to_tree(world) may be from there; no distance to a triangle of
+  /// the tree is off by more. `root`: the box of the tree.
+  [[nodiscard]] double distance_error(const Eigen::Vector3d& tree, const Eigen::Vector3d& world,
+                                      const Box<double>& root) const noexcept;
 
  private:
   Placement() = default;
+  [[nodiscard]] Eigen::Matrix3d linear() const noexcept;
+  [[nodiscard]] double magnitude(const Box<double>& root) const noexcept;
 
   AffineMap to_world_;              // from tree space
   Eigen::Matrix3d inverse_;         // of the pose's linear part: world to object
   Eigen::Vector3d translation_;     // of the pose
   Eigen::Vector3d frame_origin_;    // of the tree
   double frame_inverse_scale_ = 1;  // object to tree
-  Box<double> world_box_{};
-  double magnitude_ = 0;
-  double condition_ = 0;
 };
 
 /// How much a placement changes lengths between tree space and world: for all vectors v,

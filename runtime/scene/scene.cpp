@@ -6,6 +6,7 @@
 
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/scene/scene.h>
+#include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
 namespace {
@@ -30,8 +31,7 @@ void Scene::rebuild() {
   const DefaultFloatState state;
   std::vector<Box<double>> boxes;
   boxes.reserve(moving_.size());
-  for (const Moving& moving : moving_)
-    boxes.push_back(to_frame(moving.placed.placement.world_box()));
+  for (const Moving& moving : moving_) boxes.push_back(to_frame(moving.bounds.world));
   moving_tree_.build(boxes);
 }
 
@@ -43,11 +43,13 @@ Status Scene::update(std::uint32_t instance, const Pose& pose) {
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
   const std::optional<Placement> placement = Placement::make(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;
+  const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
+  if (!bounds) return Errc::kInvalidPose;
   moving.placed.pose = pose;
   moving.placed.placement = *placement;
-  condition_ = std::max(condition_, placement->condition());
-  moving_tree_.refit(static_cast<std::uint32_t>(found - moving_.data()),
-                     to_frame(placement->world_box()));
+  moving.bounds = *bounds;
+  condition_ = std::max(condition_, bounds->condition);
+  moving_tree_.refit(static_cast<std::uint32_t>(found - moving_.data()), to_frame(bounds->world));
   return {};
 }
 

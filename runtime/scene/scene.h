@@ -113,12 +113,13 @@ class Scene {
   struct Moving {
     std::uint32_t instance;
     Placed placed;
+    PlacementBounds bounds;
   };
   [[nodiscard]] std::span<const Moving> moving() const noexcept { return moving_; }
   /// Whether a leaf of the top level is an instance that moves after all.
   [[nodiscard]] bool is_detached(std::uint32_t number) const noexcept;
   [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
-  /// At least Placement::condition() of every instance.
+  /// At least PlacementBounds::condition of every instance.
   [[nodiscard]] double condition() const noexcept { return condition_; }
   /// A box of the world in the space of both trees. Rounded to nearest, which is monotone: boxes
   /// that share a point still do.

@@ -6,6 +6,7 @@
 #include <boxtree/runtime/file/section.h>
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/scene/scene.h>
+#include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
 
@@ -159,8 +160,12 @@ Status Scene::bind_moving(const SceneOptions& options) {
     Errc error = Errc::kOk;
     std::optional<Placed> placed = place(number, error);
     if (!placed) return Error{error, "instance " + std::to_string(number) + ": its record"};
-    moving_.push_back({number, *placed});
-    condition_ = std::max(condition_, placed->placement.condition());
+    const auto bounds = placed->placement.bounds(root_box<double>(*placed->tree));
+    if (!bounds) {
+      return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + ": its pose"};
+    }
+    moving_.push_back({number, *placed, *bounds});
+    condition_ = std::max(condition_, bounds->condition);
   }
   rebuild();
   return {};

@@ -8,14 +8,14 @@ namespace boxtree {
 namespace {
 
 // One body asked against all instances that its box overlaps. Boxes are widened by what rounding
-// can do between there and the space in which two trees are compared (Placement::error), each by
-// the share of its own tree; the first tree of a comparison is the one whose pose magnifies errors
-// less, so both shares suffice.
+// can do between there and the space in which two trees are compared (PlacementBounds::error), each
+// by the share of its own tree; the first tree of a comparison is the one whose pose magnifies
+// errors less, so both shares suffice.
 struct BodyInScene {
   Admission admission;
   const Tree& tree;
   const Pose& pose;
-  const Placement& placement;
+  double condition;  // of its placement
   Box<double> in_frame;
   std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
   bool is_first;               // in what is reported
@@ -31,7 +31,7 @@ struct BodyInScene {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
     if (instance == own_instance) return true;
-    const bool swap = other.placement.condition() < placement.condition();
+    const bool swap = other.placement.condition() < condition;
     const auto report = [&](const FaceRef& own, const FaceRef& met) {
       const SceneFace body{own_instance, own}, placed{instance, met};
       return is_first ? visitor({body, placed}) : visitor({placed, body});
@@ -64,12 +64,12 @@ struct LaterMoving {
 };
 
 BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Placed& placed,
-                    ScenePairVisitor visitor) {
+                    const PlacementBounds& bounds, ScenePairVisitor visitor) {
   return {{scene, kPairQueries, scene.layer(placed.layer).meets},
           *placed.tree,
           placed.pose,
-          placed.placement,
-          scene.to_frame(placed.placement.world_box()),
+          bounds.condition,
+          scene.to_frame(bounds.world),
           instance,
           true,
           visitor};
@@ -92,7 +92,7 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const Scene::Moving& moving : scene.moving()) {
     if (!asks_for_contacts(scene, moving.placed.layer)) continue;
-    BodyInScene body = body_of(scene, moving.instance, moving.placed, visitor);
+    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor);
     StaticLeaves<BodyInScene> resting{{body}};
     Errc walked = traverse_overlap(scene.top_level(), scene.top_level().codec, resting);
     if (walked == Errc::kOk && !body.is_done()) {
@@ -114,7 +114,9 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
   const std::optional<Scene::Placed> placed = scene.place_now(instance, corrupt);
   if (!placed) return corrupt;
   if (!asks_for_contacts(scene, placed->layer)) return Visit::kComplete;
-  BodyInScene body = body_of(scene, instance, *placed, visitor);
+  const auto bounds = placed->placement.bounds(root_box<double>(*placed->tree));
+  if (!bounds) return Errc::kRecordInvalid;
+  BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor);
   return outcome(walk_overlap(scene, body), body);
 }
 
@@ -125,8 +127,10 @@ Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& po
   const std::optional<Placement> placement = Placement::make(tree, pose);
   if (!placement) return Errc::kInvalidPose;
   if (tree.empty()) return Visit::kComplete;
-  BodyInScene body{{scene, kPairQueries, layers},          tree,        pose,  *placement,
-                   scene.to_frame(placement->world_box()), kNoInstance, false, visitor};
+  const auto bounds = placement->bounds(root_box<double>(tree));
+  if (!bounds) return Errc::kInvalidPose;
+  BodyInScene body{{scene, kPairQueries, layers}, tree,        pose,  bounds->condition,
+                   scene.to_frame(bounds->world), kNoInstance, false, visitor};
   return outcome(walk_overlap(scene, body), body);
 }
 

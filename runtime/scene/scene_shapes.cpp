@@ -91,7 +91,7 @@ struct WorldSphere {
     const Eigen::Vector3d in_tree = placement.to_tree(center);
     if (!is_within_reach(in_tree)) return Errc::kInvalidQuery;
     const Stretch stretch = stretch_of(placement.to_world().linear);
-    const double error = placement.distance_error(in_tree, center);
+    const double error = placement.distance_error(in_tree, center, root_box<double>(*placed.tree));
     const double most =
         stretch.least > 0 ? std::min((radius + error) / stretch.least, 4 * kReach) : 4 * kReach;
     const double certain = std::max(0.0, radius - error) / stretch.most;
@@ -131,7 +131,7 @@ struct PointInScene {
     }
     PlacedPoint exact{placement.to_world(), point, best,
                       stretch_of(placement.to_world().linear).least,
-                      placement.distance_error(in_tree, point)};
+                      placement.distance_error(in_tree, point, root_box<double>(tree))};
     PointQuery query{tree, in_tree, exact.bound_in_tree(), {}, Errc::kOk, {}};
     query.placed = &exact;
     error = find_nearest(tree, query);

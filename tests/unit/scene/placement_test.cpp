@@ -39,16 +39,25 @@ TEST(Stretch, OfASingularMapSaysNothing) {
 }
 
 TEST(Placement, RefusesWhatCannotBeUndone) {
-  const Box<double> root{{-1, -1, -1}, {1, 1, 1}};
   Pose pose = Pose::Identity();
-  EXPECT_TRUE(Placement::make(Frame(), root, pose).has_value());
+  EXPECT_TRUE(Placement::make(Frame(), pose).has_value());
   pose.linear()(1, 1) = 0;
-  EXPECT_FALSE(Placement::make(Frame(), root, pose).has_value());
+  EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
   pose.linear()(1, 1) = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_FALSE(Placement::make(Frame(), root, pose).has_value());
+  EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
   pose = Pose::Identity();
   pose.translation()[0] = std::numeric_limits<double>::infinity();
-  EXPECT_FALSE(Placement::make(Frame(), root, pose).has_value());
+  EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
+  pose.translation()[0] = 2 * kReach;
+  EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
+}
+
+TEST(Placement, HasNoBoundsBeyondReach) {
+  Pose pose = Pose::Identity();
+  const auto placed = Placement::make(Frame(), pose);
+  ASSERT_TRUE(placed.has_value());
+  EXPECT_TRUE(placed->bounds({{-1, -1, -1}, {1, 1, 1}}).has_value());
+  EXPECT_FALSE(placed->bounds({{-1, -1, -1}, {1, 2 * kReach, 1}}).has_value());
 }
 
 // There and back in long double: what the bounds promise of coordinates that were rounded.
@@ -59,19 +68,21 @@ TEST(Placement, ErrorsHoldWhatRoundingDoes) {
   for (int i = 0; i < 2000; ++i) {
     const double far = std::exp2(unit(random) * 30);
     const Pose pose = test::random_pose(random, far, true);
-    const auto placed = Placement::make(Frame({far * unit(random), 0, 1}, 3), root, pose);
+    const auto placed = Placement::make(Frame({far * unit(random), 0, 1}, 3), pose);
     ASSERT_TRUE(placed.has_value());
+    const auto bounds = placed->bounds(root);
+    ASSERT_TRUE(bounds.has_value());
     const Eigen::Vector3d tree(3 * unit(random), 3 * unit(random), 3 * unit(random));
     const Eigen::Vector3d world = placed->to_world().apply(tree);
     for (std::size_t k = 0; k < 3; ++k) {
-      ASSERT_GE(world[static_cast<Eigen::Index>(k)], placed->world_box().low[k]);
-      ASSERT_LE(world[static_cast<Eigen::Index>(k)], placed->world_box().high[k]);
+      ASSERT_GE(world[static_cast<Eigen::Index>(k)], bounds->world.low[k]);
+      ASSERT_LE(world[static_cast<Eigen::Index>(k)], bounds->world.high[k]);
     }
     const Eigen::Vector3d back = placed->to_tree(world);
     const Eigen::Matrix<long double, 3, 3> linear = placed->to_world().linear.cast<long double>();
     const Eigen::Matrix<long double, 3, 1> exact = linear * (back - tree).cast<long double>();
     ASSERT_LE(static_cast<double>(exact.norm()),
-              placed->distance_error(back, world) + 3 * placed->error());
+              placed->distance_error(back, world, root) + 3 * bounds->error());
   }
 }
 
