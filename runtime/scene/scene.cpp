@@ -117,6 +117,10 @@ std::string_view Scene::material_name(std::uint32_t number) const noexcept {
   return text(record.name_offset, record.name_bytes);
 }
 
+std::uint32_t Scene::layer_of(std::uint32_t number) const noexcept {
+  return instance(number).layer;
+}
+
 std::optional<Scene::Placed> Scene::place(std::uint32_t number, Errc& error) const noexcept {
   const InstanceRecord record = instance(number);
   if (record.tree < trees_.size() && record.layer < layer_count()) {

@@ -102,6 +102,8 @@ class Scene {
     std::uint32_t id;
     std::uint32_t layer;
   };
+  /// The layer of an instance; layer_count() or more where its bytes are corrupt.
+  [[nodiscard]] std::uint32_t layer_of(std::uint32_t number) const noexcept;
   /// An instance where the file has it. Nothing, and `error`, where its bytes are corrupt.
   [[nodiscard]] std::optional<Placed> place(std::uint32_t number, Errc& error) const noexcept;
   /// ... and where it is now, if it moves.

@@ -28,6 +28,9 @@ struct BodyInScene {
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return boxes_overlap(box, in_frame);
   }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, in_frame, instances);
+  }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
     if (instance == own_instance) return true;
@@ -93,11 +96,10 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
   for (const Scene::Moving& moving : scene.moving()) {
     if (!asks_for_contacts(scene, moving.placed.layer)) continue;
     BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor);
-    StaticLeaves<BodyInScene> resting{{body}};
-    Errc walked = traverse_overlap(scene.top_level(), scene.top_level().codec, resting);
+    Errc walked = walk_static(scene, body);
     if (walked == Errc::kOk && !body.is_done()) {
       LaterMoving later{body, body.admission, body.error};
-      MovingLeaves<LaterMoving> others{{later}};
+      MovingInstances<LaterMoving> others{later};
       walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
     }
     Result<Visit> visit = outcome(walked, body);

@@ -20,17 +20,19 @@ struct SceneRayQuery {
         any(stop_at_first),
         exponent(direction_exponent(world.direction)),
         parameter_exponent(exponent - scene.record().scale_exponent),
-        slab(scene.frame().to_tree(world.origin), RayQuery::scaled(world.direction, -exponent),
-             reach(scene, world)),
-        s_min(RayQuery::scaled(world.t_min, parameter_exponent)),
+        in_frame(make_in_frame(scene)),
         s_max(RayQuery::scaled(world.t_max, parameter_exponent)) {}
 
+  [[nodiscard]] TopLevelRay make_in_frame(const Scene& scene) const noexcept {
+    const Eigen::Vector3d origin = scene.frame().to_tree(ray.origin);
+    const Eigen::Vector3d direction = RayQuery::scaled(ray.direction, -exponent);
+    const Eigen::Vector3d widened = reach(scene, ray);
+    return {origin, direction, widened, RaySlab(origin, direction, widened),
+            RayQuery::scaled(ray.t_min, parameter_exponent)};
+  }
+
   static Eigen::Vector3d reach(const Scene& scene, const Ray& world) noexcept {
-    const SceneRecord& record = scene.record();
-    double largest = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      largest = std::max({largest, std::abs(record.root_low[k]), std::abs(record.root_high[k])});
-    }
+    double largest = reach_of(scene.top_level());
     if (!scene.moving_tree().empty()) {
       const Box<double>& box = scene.moving_tree().root_box();
       for (std::size_t k = 0; k < 3; ++k) {
@@ -47,7 +49,10 @@ struct SceneRayQuery {
   [[nodiscard]] double bound() const noexcept { return s_max; }
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return slab.key(box, s_min);
+    return in_frame.slab.key(box, in_frame.s_min);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, in_frame, s_max, instances);
   }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
@@ -72,8 +77,7 @@ struct SceneRayQuery {
   bool any;
   int exponent;
   int parameter_exponent;
-  RaySlab slab;
-  double s_min;
+  TopLevelRay in_frame;
   double s_max;
   std::optional<SceneRayHit> best;
   std::uint32_t best_id = 0;

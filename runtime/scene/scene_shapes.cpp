@@ -28,6 +28,9 @@ struct ShapeInScene {
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return shape.overlaps(box);
   }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return shape.walk(top, instances);
+  }
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
     const auto report = [&](const FaceRef& face) { return visitor({instance, face}); };
     const Result<Visit> visited = shape.ask(placed, report);
@@ -54,6 +57,9 @@ struct WorldBox {
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return boxes_overlap(box, in_frame);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, in_frame, instances);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
     const PlacedBoxQuery query{placed.placement.to_world(), world};
@@ -84,6 +90,9 @@ struct WorldSphere {
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return squared_distance(center_in_frame, box) <= squared_radius_in_frame;
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, center_in_frame, squared_radius_in_frame, instances);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
     const Placement& placement = placed.placement;
@@ -117,6 +126,9 @@ struct PointInScene {
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
     return squared_distance(point_in_frame, box);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, point_in_frame, best_in_frame, instances);
   }
   void set_bound() noexcept {
     best_in_frame = frame_bound(admission.scene, std::sqrt(best), scene_margin);

@@ -4,6 +4,7 @@
 
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/scene/scene.h>
+#include <boxtree/runtime/scene/top_level_walk.h>
 
 namespace boxtree {
 
@@ -18,11 +19,14 @@ struct Admission {
   }
 };
 
-/// What the templates of query/traversal.h ask of boxes, in the scene's frame, passed on to
-/// `Query`, whose leaves are instances: query.visit(instance, const Scene::Placed&) -> bool:
-/// whether to go on query.admission, and query.error, which is set when an instance is corrupt.
+/// What a query of a scene has: query.visit(instance, const Scene::Placed&) -> bool: whether to go
+/// on; query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about;
+/// query.admission; query.error, which is set when an instance is corrupt; and what the templates
+/// of query/traversal.h ask of boxes, in the scene's frame.
+
+/// The query of query/traversal.h over moving instances.
 template <class Query>
-struct InstanceBoxes {
+struct MovingInstances {
   Query& query;
 
   [[nodiscard]] double bound() const noexcept { return query.bound(); }
@@ -34,50 +38,44 @@ struct InstanceBoxes {
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return query.overlaps(box);
   }
-};
 
-template <class Query>
-struct StaticLeaves : InstanceBoxes<Query> {
   [[nodiscard]] bool leaf(NodeRef ref) {
-    Query& asked = this->query;
-    const Scene& scene = asked.admission.scene;
-    const std::uint32_t instance = scene.top_level().instance(ref);
-    if (scene.is_detached(instance)) return true;
-    const std::optional<Scene::Placed> placed = scene.place(instance, asked.error);
-    if (!placed) return false;
-    return !asked.admission.admits(placed->layer) || asked.visit(instance, *placed);
-  }
-};
-
-template <class Query>
-struct MovingLeaves : InstanceBoxes<Query> {
-  [[nodiscard]] bool leaf(NodeRef ref) {
-    Query& asked = this->query;
-    const Scene& scene = asked.admission.scene;
+    const Scene& scene = query.admission.scene;
     const Scene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
-    return !asked.admission.admits(moving.placed.layer) ||
-           asked.visit(moving.instance, moving.placed);
+    return !query.admission.admits(moving.placed.layer) ||
+           query.visit(moving.instance, moving.placed);
   }
 };
+
+/// Visits the static instances that the query may meet.
+template <class Query>
+Errc walk_static(const Scene& scene, Query& query) {
+  return query.walk(scene.top_level(), [&](std::uint32_t instance) {
+    if (scene.is_detached(instance)) return true;
+    const std::uint32_t layer = scene.layer_of(instance);
+    const bool is_corrupt = layer >= scene.layer_count();  // place() says so
+    if (!is_corrupt && !query.admission.admits(layer)) return true;
+    const std::optional<Scene::Placed> placed = scene.place(instance, query.error);
+    return placed && query.visit(instance, *placed);
+  });
+}
 
 /// Visits the instances whose boxes overlap; the query may stop it, and holds errors of instances.
 template <class Query>
 Errc walk_overlap(const Scene& scene, Query& query) {
-  StaticLeaves<Query> resting{{query}};
-  const Errc walked = traverse_overlap(scene.top_level(), scene.top_level().codec, resting);
+  const Errc walked = walk_static(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
-  MovingLeaves<Query> moving{{query}};
+  MovingInstances<Query> moving{query};
   return traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), moving);
 }
 
 /// The same from near to far. Moving instances come first: they are few, and near what asks.
 template <class Query>
 Errc walk_nearest(const Scene& scene, Query& query) {
-  MovingLeaves<Query> moving{{query}};
+  MovingInstances<Query> moving{query};
   const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().codec(), moving);
   if (walked != Errc::kOk || query.is_done()) return walked;
-  StaticLeaves<Query> resting{{query}};
-  return traverse_nearest(scene.top_level(), scene.top_level().codec, resting);
+  return walk_static(scene, query);
 }
 
 }  // namespace boxtree

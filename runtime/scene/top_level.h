@@ -3,6 +3,7 @@
 // leaf n is instance n. Walked by the templates of query/traversal.h like any tree.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include <boxtree/format/codec_wide.h>
@@ -19,6 +20,7 @@ struct TopLevel {
   Codec codec;
 
   [[nodiscard]] bool empty() const noexcept { return scene.root == RootKind::kEmpty; }
+  [[nodiscard]] bool has_nodes() const noexcept { return scene.root == RootKind::kSubtree; }
   [[nodiscard]] const SceneRecord& record() const noexcept { return scene; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {0, 0}; }
   /// The instance that a leaf is.
@@ -26,6 +28,15 @@ struct TopLevel {
     return leaf.first / kLeafFaces;
   }
 };
+
+/// Largest magnitude of any box coordinate.
+[[nodiscard]] inline double reach_of(const TopLevel& top) noexcept {
+  double reach = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach = std::max({reach, std::abs(top.scene.root_low[k]), std::abs(top.scene.root_high[k])});
+  }
+  return reach;
+}
 
 /// The root box; writers store f32 values.
 template <class S>

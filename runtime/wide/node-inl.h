@@ -65,9 +65,13 @@ HWY_INLINE std::uint32_t rank(std::uint32_t mask, std::uint32_t i) {
 HWY_INLINE std::uint32_t node_number(const WideLinks& links, std::uint32_t i) {
   return links.first_node + rank(links.inner_mask, i);
 }
-/// First face of the leaf that child i is. Precondition: it is one.
+/// Number of the leaf that child i is. Precondition: it is one.
+HWY_INLINE std::uint32_t leaf_number(const WideLinks& links, std::uint32_t i) {
+  return links.first_leaf + rank(~links.inner_mask, i);
+}
+/// Its first face.
 HWY_INLINE std::uint32_t first_face(const WideLinks& links, std::uint32_t i) {
-  return (links.first_leaf + rank(~links.inner_mask, i)) * kLeafFaces;
+  return leaf_number(links, i) * kLeafFaces;
 }
 
 /// The checks of WideCodec::expand, once for all children of a kind: they stand in a row. Counts

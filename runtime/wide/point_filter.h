@@ -16,9 +16,9 @@ namespace boxtree {
 /// small box of that size, so that differences are bounds; what squares and sums lose after that is
 /// in above().
 struct PointFilter {
-  PointFilter(const Tree& tree, const Eigen::Vector3d& point) noexcept {
+  /// `reach`: the largest magnitude of any coordinate of the tree's boxes.
+  PointFilter(double reach, const Eigen::Vector3d& point) noexcept {
     constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
-    const double reach = reach_of(tree).maxCoeff();
     const double bound = 4 * kUnit * (point.cwiseAbs().maxCoeff() + reach) +
                          double{std::numeric_limits<float>::min()};
     error = float_above(bound);
@@ -31,8 +31,8 @@ struct PointFilter {
   }
 
   /// Whether single precision tells the parts of a tree apart from there: not from far away.
-  [[nodiscard]] static bool is_near(const Tree& tree, const Eigen::Vector3d& point) noexcept {
-    return point.cwiseAbs().maxCoeff() <= 64 * reach_of(tree).maxCoeff();
+  [[nodiscard]] static bool is_near(double reach, const Eigen::Vector3d& point) noexcept {
+    return point.cwiseAbs().maxCoeff() <= 64 * reach;
   }
 
   /// A float that a computed lower bound of a squared distance does not exceed if the squared

@@ -27,7 +27,7 @@ Errc walk_sphere(const Tree& tree, FaceWalk<SphereQuery>& faces) {
 class SphereFilter {
  public:
   SphereFilter(const Tree& tree, const SphereQuery& query)
-      : center_(tree, query.center),
+      : center_(reach_of(tree).maxCoeff(), query.center),
         above_(PointFilter::above(query.squared_radius)),
         below_(PointFilter::below(query.certain_squared_radius)) {}
 
@@ -65,7 +65,7 @@ HWY_EXPORT(walk_sphere);
 }  // namespace
 
 Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk) {
-  if (tree.has_nodes() && PointFilter::is_near(tree, walk.shape.center)) {
+  if (tree.has_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), walk.shape.center)) {
     return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// Walks of the top level of a scene, one child at a time.
+#include <boxtree/configuration.h>
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/scene/top_level_walk.h>
+
+namespace boxtree {
+namespace {
+
+// Queries of query/traversal.h whose leaves are instances.
+struct Instances {
+  const TopLevel& top;
+  InstanceVisitor visit;
+
+  [[nodiscard]] bool leaf(NodeRef ref) const { return visit(top.instance(ref)); }
+};
+
+struct InstancesInBox : Instances {
+  const Box<double>& asked;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return boxes_overlap(box, asked);
+  }
+};
+
+struct InstancesNearPoint : Instances {
+  const Eigen::Vector3d& point;
+  const double& best;
+
+  [[nodiscard]] double bound() const noexcept { return best; }
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+    return squared_distance(point, box);
+  }
+};
+
+struct InstancesOnRay : Instances {
+  const TopLevelRay& ray;
+  const double& s_max;
+
+  [[nodiscard]] double bound() const noexcept { return s_max; }
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+    return ray.slab.key(box, ray.s_min);
+  }
+};
+
+// Only where there are vectors is there a walk by them to link.
+template <bool kByVectors, class... Asked>
+Errc walk(const TopLevel& top, InstanceVisitor visit, const Asked&... asked) {
+  if constexpr (kByVectors) {
+    return walk_wide(top, asked..., visit);
+  } else {
+    return walk_top_level_plainly(top, asked..., visit);
+  }
+}
+
+}  // namespace
+
+Errc walk_top_level_plainly(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  InstancesInBox query{{top, visit}, box};
+  return traverse_overlap(top, top.codec, query);
+}
+
+Errc walk_top_level_plainly(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                            InstanceVisitor visit) {
+  InstancesNearPoint query{{top, visit}, point, bound};
+  return traverse_nearest(top, top.codec, query);
+}
+
+Errc walk_top_level_plainly(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                            InstanceVisitor visit) {
+  InstancesOnRay query{{top, visit}, ray, bound};
+  return traverse_nearest(top, top.codec, query);
+}
+
+Errc walk_top_level(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  return walk<kWalksByVectors>(top, visit, box);
+}
+
+Errc walk_top_level(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                    InstanceVisitor visit) {
+  return walk<kWalksByVectors>(top, visit, point, bound);
+}
+
+Errc walk_top_level(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                    InstanceVisitor visit) {
+  return walk<kWalksByVectors>(top, visit, ray, bound);
+}
+
+}  // namespace boxtree
