@@ -35,8 +35,8 @@ class BoxFilter {
   }
 
   HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(box); }
-  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    return bounds_.contained(box_at(point));
+  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
+    return judge_corners(bounds_, triangle);
   }
 
  private:

@@ -48,6 +48,9 @@ class BoxBounds {
     }
     return bits_of(inside);
   }
+  HWY_INLINE std::uint32_t contained(const VectorPoint& point) const {
+    return contained(box_at(point));
+  }
 
  private:
   std::array<float, 3> low_, high_;

@@ -18,9 +18,30 @@ struct VectorBox {
   FloatVector high[3];
 };
 
+/// As many points; and triangles.
+struct VectorPoint {
+  FloatVector axis[3];
+};
+struct VectorTriangle {
+  VectorPoint corner[3];
+};
+
 /// Points as boxes that have no extent.
-HWY_INLINE VectorBox box_at(const FloatVector (&point)[3]) {
-  return {{point[0], point[1], point[2]}, {point[0], point[1], point[2]}};
+HWY_INLINE VectorBox box_at(const VectorPoint& point) {
+  return {{point.axis[0], point.axis[1], point.axis[2]},
+          {point.axis[0], point.axis[1], point.axis[2]}};
+}
+
+HWY_INLINE VectorBox bounds_of(const VectorTriangle& triangle) {
+  VectorBox box;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const FloatVector a = triangle.corner[0].axis[k];
+    const FloatVector b = triangle.corner[1].axis[k];
+    const FloatVector c = triangle.corner[2].axis[k];
+    box.low[k] = hn::Min(a, hn::Min(b, c));
+    box.high[k] = hn::Max(a, hn::Max(b, c));
+  }
+  return box;
 }
 
 /// The same in memory, all eight.

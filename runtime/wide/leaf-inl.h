@@ -67,17 +67,16 @@ class LeafFloats {
     return hn::Load(Floats(), &coordinate_[corner][axis][group * kWideChildren + part * kLanes]);
   }
 
+  [[nodiscard]] VectorTriangle triangles(std::size_t group, std::size_t part) const {
+    VectorTriangle triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) triangle.corner[c].axis[k] = at(c, k, group, part);
+    }
+    return triangle;
+  }
   /// Their bounds.
   [[nodiscard]] VectorBox bounds(std::size_t group, std::size_t part) const {
-    VectorBox box;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const FloatVector a = at(0, k, group, part);
-      const FloatVector b = at(1, k, group, part);
-      const FloatVector c = at(2, k, group, part);
-      box.low[k] = hn::Min(a, hn::Min(b, c));
-      box.high[k] = hn::Max(a, hn::Max(b, c));
-    }
-    return box;
+    return bounds_of(triangles(group, part));
   }
 
   /// The face that a lane belongs to, in the tree's order.

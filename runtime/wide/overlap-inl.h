@@ -24,6 +24,16 @@ struct Verdict {
   std::uint32_t inside;
 };
 
+/// The verdict of a shape on triangles, by their bounds and corners; `inside`: they touch it beyond
+/// doubt. shape.judge(const VectorBox&) and shape.contained(const VectorPoint&), a bit set only for
+/// a point that lies in the shape beyond doubt.
+template <class Shape>
+HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& triangle) {
+  Verdict verdict = shape.judge(bounds_of(triangle));
+  for (const VectorPoint& corner : triangle.corner) verdict.inside |= shape.contained(corner);
+  return verdict;
+}
+
 template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
@@ -116,9 +126,9 @@ class OverlapWalk {
     for (std::size_t group = 0; group < leaf_.groups(); ++group) {
       std::uint32_t touched = 0, certain = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
-        const Verdict verdict = filter_.judge(leaf_.bounds(group, part));
+        const Verdict verdict = filter_.judge(leaf_.triangles(group, part));
         touched |= verdict.touched << (part * kLanes);
-        certain |= (verdict.inside | any_corner(group, part)) << (part * kLanes);
+        certain |= verdict.inside << (part * kLanes);
       }
       const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
         const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
@@ -130,17 +140,6 @@ class OverlapWalk {
       if (!go_on) return false;
     }
     return true;
-  }
-
-  // Bit i: a corner of triangle i is inside the shape.
-  HWY_INLINE std::uint32_t any_corner(std::size_t group, std::size_t part) const {
-    std::uint32_t any = 0;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const FloatVector corner[3] = {leaf_.at(c, 0, group, part), leaf_.at(c, 1, group, part),
-                                     leaf_.at(c, 2, group, part)};
-      any |= filter_.contained(corner);
-    }
-    return any;
   }
 
   bool touches(std::uint32_t lane) {

@@ -50,11 +50,23 @@ class PlacedBoxFilter {
   }
 
   HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(hull(box)); }
-  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
-    return bounds_.contained(hull(box_at(point)));
+  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
+    return judge_corners(
+        bounds_, {image(triangle.corner[0]), image(triangle.corner[1]), image(triangle.corner[2])});
   }
 
  private:
+  HWY_INLINE VectorPoint image(const VectorPoint& point) const {
+    VectorPoint image;
+    for (std::size_t k = 0; k < 3; ++k) {
+      image.axis[k] = hn::Set(Floats(), offset_[k]);
+      for (std::size_t j = 0; j < 3; ++j) {
+        image.axis[k] = hn::MulAdd(hn::Set(Floats(), linear_[k][j]), point.axis[j], image.axis[k]);
+      }
+    }
+    return image;
+  }
+
   HWY_INLINE VectorBox hull(const VectorBox& box) const {
     VectorBox image;
     for (std::size_t k = 0; k < 3; ++k) {

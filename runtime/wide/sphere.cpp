@@ -37,7 +37,10 @@ class SphereFilter {
             bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
   }
 
-  HWY_INLINE std::uint32_t contained(const FloatVector (&point)[3]) const {
+  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
+    return judge_corners(*this, triangle);
+  }
+  HWY_INLINE std::uint32_t contained(const VectorPoint& point) const {
     return bits_of(hn::Le(farthest_squared(center_, box_at(point)), hn::Set(Floats(), below_)));
   }
 
