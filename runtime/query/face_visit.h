@@ -8,12 +8,13 @@ namespace boxtree {
 
 /// The query of traverse_overlap for a shape.
 /// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap asks.
+/// Shape::Visitor: what is called with each face, FaceVisitor or another one; whether to go on.
 /// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
 template <class Shape>
 struct FaceWalk {
   const Tree& tree;
   const Shape& shape;
-  FaceVisitor visitor;
+  typename Shape::Visitor visitor;
   Errc error = Errc::kOk;
   bool stopped = false;
   TriangleBatch batch;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The shapes that overlap queries ask about: a monotone test of boxes and the exact test of
-// triangles, both in tree space.
+// triangles, both in tree space; and what receives the faces.
 #pragma once
 
 #include <boxtree/runtime/primitive/predicates.h>
@@ -11,6 +11,8 @@
 namespace boxtree {
 
 struct BoxQuery {
+  using Visitor = FaceVisitor;
+
   Eigen::Vector3d low;  // tree space
   Eigen::Vector3d high;
 
@@ -29,22 +31,6 @@ struct BoxQuery {
   }
 };
 
-/// A box of the world, asked of a tree that is placed there. Boxes of the tree are compared by the
-/// hulls of their images, which hold the images of what they hold exactly (AffineMap::hull).
-struct PlacedBoxQuery {
-  AffineMap to_world;  // from tree space
-  Box<double> box;     // world
-
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& of_tree) const noexcept {
-    return boxes_overlap(to_world.hull(of_tree), box);
-  }
-  [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
-    return triangle_intersects_box(to_world.apply(triangle), {box.low[0], box.low[1], box.low[2]},
-                                   {box.high[0], box.high[1], box.high[2]});
-  }
-};
-
 /// A sphere of the world, for the exact test of placed triangles.
 struct PlacedSphere {
   AffineMap to_world;  // from tree space
@@ -58,6 +44,8 @@ struct PlacedSphere {
 };
 
 struct SphereQuery {
+  using Visitor = FaceVisitor;
+
   Eigen::Vector3d center;  // tree space
   double squared_radius;
   /// For a placed tree: decides in the world. The radius above then holds all that may touch, in

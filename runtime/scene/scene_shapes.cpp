@@ -5,6 +5,7 @@
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/point_query.h>
 #include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/scene/placed_box.h>
 #include <boxtree/runtime/scene/scene_queries.h>
 #include <boxtree/runtime/scene/scene_walk.h>
 #include <boxtree/runtime/wide/walks.h>
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
-// What boxes and spheres share: `ask(placed, visitor)` answers for one instance.
+// What boxes and spheres share: `ask(placed, faces)` answers for one instance.
 template <class Shape>
 struct ShapeInScene {
   Admission admission;
@@ -32,8 +33,7 @@ struct ShapeInScene {
     return shape.walk(top, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
-    const auto report = [&](const FaceRef& face) { return visitor({instance, face}); };
-    const Result<Visit> visited = shape.ask(placed, report);
+    const Result<Visit> visited = shape.ask(placed, {visitor, instance});
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
     return !is_done();
@@ -61,9 +61,9 @@ struct WorldBox {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, in_frame, instances);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
     const PlacedBoxQuery query{placed.placement.to_world(), world};
-    return visit_faces_compactly(*placed.tree, query, visitor);
+    return visit_faces_compactly(*placed.tree, query, faces);
   }
 };
 
@@ -94,7 +94,7 @@ struct WorldSphere {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, center_in_frame, squared_radius_in_frame, instances);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, FaceVisitor visitor) const {
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
     const Placement& placement = placed.placement;
     const PlacedSphere exact{placement.to_world(), center, radius * radius};
     const Eigen::Vector3d in_tree = placement.to_tree(center);
@@ -106,7 +106,7 @@ struct WorldSphere {
     const double certain = std::max(0.0, radius - error) / stretch.most;
     const SphereQuery query{in_tree, most * most * (1 + 16 * kUnitRoundoff), &exact,
                             certain * certain * (1 - 16 * kUnitRoundoff)};
-    return visit_sphere(*placed.tree, query, visitor);
+    return visit_sphere(*placed.tree, query, faces);
   }
 };
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/shape_query.h>
+#include <boxtree/runtime/scene/placed_box.h>
 #include <boxtree/runtime/wide/targets.h>
 #include <boxtree/runtime/wide/walks.h>
 

@@ -72,7 +72,7 @@ Result<Visit> outcome_of(Errc walked, const FaceWalk<Shape>& walk) {
 
 /// Visits each face once of which some triangle touches the shape.
 template <class Shape>
-Result<Visit> visit_faces(const Tree& tree, const Shape& shape, FaceVisitor visitor) {
+Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::Visitor visitor) {
   FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_overlap(tree, codec, walk); });
@@ -81,7 +81,8 @@ Result<Visit> visit_faces(const Tree& tree, const Shape& shape, FaceVisitor visi
 
 /// The same without a walk of its own for each codec: by vectors, and one walk for all others.
 template <class Shape>
-Result<Visit> visit_faces_compactly(const Tree& tree, const Shape& shape, FaceVisitor visitor) {
+Result<Visit> visit_faces_compactly(const Tree& tree, const Shape& shape,
+                                    typename Shape::Visitor visitor) {
   FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
   if constexpr (kWalksByVectors) {
     if (is_wide(tree.codec())) return outcome_of(walk_wide(tree, walk), walk);

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: MIT
+// A box asked of an instance of a scene: a shape like those of query/shape_query.h.
+#pragma once
+
+#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/scene/scene_queries.h>
+
+namespace boxtree {
+
+/// Passes the faces of one instance on: by one call through a pointer each, not two, of which a
+/// query has hundreds.
+struct FacesOfInstance {
+  SceneFaceVisitor visitor;
+  std::uint32_t instance;
+
+  bool operator()(const FaceRef& face) const { return visitor({instance, face}); }
+};
+
+/// A box of the world, asked of a tree that is placed there. Boxes of the tree are compared by the
+/// hulls of their images, which hold the images of what they hold exactly (AffineMap::hull).
+struct PlacedBoxQuery {
+  using Visitor = FacesOfInstance;
+
+  AffineMap to_world;  // from tree space
+  Box<double> box;     // world
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& of_tree) const noexcept {
+    return boxes_overlap(to_world.hull(of_tree), box);
+  }
+  [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
+    return triangle_intersects_box(to_world.apply(triangle), {box.low[0], box.low[1], box.low[2]},
+                                   {box.high[0], box.high[1], box.high[2]});
+  }
+};
+
+}  // namespace boxtree
