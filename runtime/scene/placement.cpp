@@ -130,6 +130,8 @@ Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
   const double largest = std::max({xx + (xy + zx), yy + (xy + yz), zz + (zx + yz)}) + off;
   Stretch stretch{std::sqrt(std::max(0.0, smallest)) * (1 - 4 * kUnitRoundoff),
                   std::sqrt(largest) * (1 + 4 * kUnitRoundoff)};
+  // Within sqrt(3) of the shortest axis, and so of the best there is: the norm promises no more.
+  if (3 * smallest >= std::min({xx, yy, zz})) return stretch;
   const Eigen::Matrix3d inverse = inverse_of(linear);
   double norm = 0, lacking = 0;
   for (Eigen::Index i = 0; i < 3; ++i) {
