@@ -9,6 +9,7 @@
 
 #include <boxtree/cooker/cook_record.h>
 #include <boxtree/cooker/scene/cook_scene.h>
+#include <boxtree/cooker/scene/hidden_faces.h>
 #include <boxtree/cooker/scene/precision.h>
 #include <boxtree/cooker/scene/scene_account.h>
 #include <boxtree/cooker/scene/scene_grid.h>
@@ -39,16 +40,10 @@ void apply_options(const CookOptions& options, ScenePlan& plan) {
 
 void drop_hidden_faces(SourceMesh& mesh, const std::vector<FaceRange>& ranges) {
   if (ranges.empty()) return;
-  const auto is_hidden = [&](std::uint32_t id) {
-    const auto after = std::upper_bound(
-        ranges.begin(), ranges.end(), id,
-        [](std::uint32_t value, const FaceRange& range) { return value < range.first; });
-    return after != ranges.begin() && id <= std::prev(after)->last;
-  };
   SourceMesh kept;
   for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
     const std::uint32_t id = mesh.face_id(i);
-    if (is_hidden(id)) continue;
+    if (is_hidden(ranges, id)) continue;
     kept.faces.push_back(mesh.faces[i]);
     kept.face_ids.push_back(id);
   }

@@ -67,4 +67,11 @@ Result<std::vector<FaceRange>> parse_hidden_faces(std::string_view text, std::st
   return joined;
 }
 
+bool is_hidden(const std::vector<FaceRange>& ascending, std::uint32_t face) {
+  const auto range =
+      std::partition_point(ascending.begin(), ascending.end(),
+                           [&](const FaceRange& candidate) { return candidate.last < face; });
+  return range != ascending.end() && range->first <= face;
+}
+
 }  // namespace boxtree::cooker

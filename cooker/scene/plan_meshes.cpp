@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/scene/hidden_faces.h>
 #include <boxtree/cooker/scene/plan_meshes.h>
 #include <boxtree/cooker/scene/precision.h>
 #include <boxtree/cooker/scene/profile_fields.h>
@@ -299,11 +300,7 @@ Status MeshPlanner::decide_hidden_faces(std::uint32_t mesh) {
   for (std::size_t face = 0; face < source.faces.size(); ++face) {
     const std::uint32_t id = source.face_id(face);
     largest = std::max(largest, id);
-    const auto range =
-        std::partition_point(said->hidden_faces.begin(), said->hidden_faces.end(),
-                             [&](const FaceRange& candidate) { return candidate.last < id; });
-    const bool is_hidden = range != said->hidden_faces.end() && range->first <= id;
-    planned.hidden_face_count += is_hidden ? 1u : 0u;
+    planned.hidden_face_count += is_hidden(said->hidden_faces, id) ? 1u : 0u;
   }
   const std::uint32_t last = said->hidden_faces.back().last;
   if (source.faces.empty() || last > largest) {

@@ -23,6 +23,14 @@ std::string fault(std::string_view text) {
 
 using Pairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
 
+TEST(HiddenFaces, AFaceIsLookedUpInItsRange) {
+  const std::vector<FaceRange> ranges = {{3, 3}, {7, 9}};
+  for (std::uint32_t face = 0; face < 12; ++face) {
+    EXPECT_EQ(is_hidden(ranges, face), face == 3 || (face >= 7 && face <= 9)) << face;
+  }
+  EXPECT_FALSE(is_hidden({}, 0));
+}
+
 TEST(HiddenFaces, NumbersAndRangesInAnyOrder) {
   EXPECT_EQ(read("40\n7 - 9  # below ground\n\n# a comment\r\n\t3\r\n"),
             (Pairs{{3, 3}, {7, 9}, {40, 40}}));
