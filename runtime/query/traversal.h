@@ -80,6 +80,15 @@ template <class S>
 template <Codec C>
 inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
+/// How a walk for a visitor ended: `query` holds the error of a leaf, and whether its visitor asked
+/// to stop.
+template <class Query>
+[[nodiscard]] Result<Visit> outcome_of(Errc walked, const Query& query) {
+  if (walked != Errc::kOk) return walked;
+  if (query.error != Errc::kOk) return query.error;
+  return query.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
 /// Visits every leaf whose box passes, in no promised order. `tree`: a Tree, or whatever else has
 /// empty(), record(), root_ref() and root_box<S>() as a tree has.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.

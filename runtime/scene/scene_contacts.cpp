@@ -82,12 +82,6 @@ bool asks_for_contacts(const Scene& scene, std::uint32_t layer) {
   return (scene.layer(layer).query_kinds & kPairQueries) != 0;
 }
 
-Result<Visit> outcome(Errc walked, const BodyInScene& body) {
-  if (walked != Errc::kOk) return walked;
-  if (body.error != Errc::kOk) return body.error;
-  return body.stopped ? Visit::kStopped : Visit::kComplete;
-}
-
 }  // namespace
 
 Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
@@ -102,7 +96,7 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
       MovingInstances<LaterMoving> others{later};
       walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
     }
-    Result<Visit> visit = outcome(walked, body);
+    Result<Visit> visit = outcome_of(walked, body);
     if (!visit || *visit == Visit::kStopped) return visit;
   }
   return Visit::kComplete;
@@ -119,7 +113,7 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
   const auto bounds = placed->placement.bounds(root_box<double>(*placed->tree));
   if (!bounds) return Errc::kRecordInvalid;
   BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor);
-  return outcome(walk_overlap(scene, body), body);
+  return outcome_of(walk_overlap(scene, body), body);
 }
 
 Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
@@ -133,7 +127,7 @@ Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& po
   if (!bounds) return Errc::kInvalidPose;
   BodyInScene body{{scene, kPairQueries, layers}, tree,        pose,  bounds->condition,
                    scene.to_frame(bounds->world), kNoInstance, false, visitor};
-  return outcome(walk_overlap(scene, body), body);
+  return outcome_of(walk_overlap(scene, body), body);
 }
 
 }  // namespace boxtree

@@ -44,10 +44,7 @@ template <class Shape>
 Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
                         LayerMask layers) {
   ShapeInScene<Shape> query{{scene, kBoxQueries, layers}, shape, visitor};
-  const Errc walked = walk_overlap(scene, query);
-  if (walked != Errc::kOk) return walked;
-  if (query.error != Errc::kOk) return query.error;
-  return query.stopped ? Visit::kStopped : Visit::kComplete;
+  return outcome_of(walk_overlap(scene, query), query);
 }
 
 struct WorldBox {

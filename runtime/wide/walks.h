@@ -62,14 +62,6 @@ Errc walk_overlap(const Tree& tree, const C& codec, FaceWalk<Shape>& walk) {
   }
 }
 
-/// How a visit ended.
-template <class Shape>
-Result<Visit> outcome_of(Errc walked, const FaceWalk<Shape>& walk) {
-  if (walked != Errc::kOk) return walked;
-  if (walk.error != Errc::kOk) return walk.error;
-  return walk.stopped ? Visit::kStopped : Visit::kComplete;
-}
-
 /// Visits each face once of which some triangle touches the shape.
 template <class Shape>
 Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::Visitor visitor) {
