@@ -99,10 +99,6 @@ Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, cons
   return numbers;
 }
 
-bool has_scene(const File& file) {
-  return !file.section(SectionKind::kScene).empty();
-}
-
 // The meshes that trees with external geometry are made of.
 class SourceMeshes {
  public:
@@ -119,7 +115,7 @@ class SourceMeshes {
     Result<Imported> whole = import_mesh(path, options);
     if (!whole) return whole.error();
     if (Status status = meshes.add(std::move(whole->mesh)); !status) return status.error();
-    if (!has_scene(file)) return meshes;
+    if (!file.has_scene()) return meshes;
     Result<SourceScene> scene = import_scene(path, options);
     if (!scene) return scene.error();
     for (SceneMesh& mesh : scene->meshes) {
@@ -179,7 +175,7 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
 // The scene of the file, unless trees are asked for.
 Result<ExportReport> export_file(const Arguments& arguments, const File& file,
                                  std::span<const Tree> trees, const ExportOptions& options) {
-  if (!has_scene(file) || arguments.trees || !arguments.tree.empty()) {
+  if (!file.has_scene() || arguments.trees || !arguments.tree.empty()) {
     return export_trees(trees, arguments.output, options);
   }
   const Result<Scene> scene = bind_without_meshes(file);

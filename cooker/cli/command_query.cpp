@@ -93,8 +93,8 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
   }
   Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
-  const bool has_scene = !opened->file.section(SectionKind::kScene).empty();
-  if (!arguments.moves.empty() && (!has_scene || !arguments.tree.empty())) {
+  const File& file = opened->file;
+  if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
     return usage("--move is for instances of a scene");
   }
   const auto answer_all = [&](const Ask& ask_it) {
@@ -105,7 +105,7 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
     print_answer(arguments, *answer);
     return 0;
   };
-  if (has_scene && arguments.tree.empty()) {
+  if (file.has_scene() && arguments.tree.empty()) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
     if (!scene) {
       return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});

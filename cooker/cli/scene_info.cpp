@@ -66,7 +66,7 @@ Json left_out_json(const File& file) {
 }  // namespace
 
 Result<Json> scene_json(const File& file) {
-  if (file.section(SectionKind::kScene).empty()) return Json(nullptr);
+  if (!file.has_scene()) return Json(nullptr);
   const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return scene.error();
   std::uint64_t triangles = 0;

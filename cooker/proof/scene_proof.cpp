@@ -193,7 +193,7 @@ class SceneWalk {
 }  // namespace
 
 Findings prove_scene(const File& file) {
-  if (file.section(SectionKind::kScene).empty()) return {};
+  if (!file.has_scene()) return {};
   const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return {{scene.code(), "scene: " + scene.error().detail}};
   return SceneWalk(file, *scene).run();

@@ -39,6 +39,7 @@ class File {
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
   [[nodiscard]] const Container& container() const noexcept { return container_; }
   [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }
+  [[nodiscard]] bool has_scene() const noexcept { return !section(SectionKind::kScene).empty(); }
 
   /// The record of tree `index`, not yet checked (Tree::bind checks it). Precondition:
   /// index < tree_count().
