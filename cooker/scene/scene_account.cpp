@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/scene/scene_account.h>
+#include <boxtree/format/bytes.h>
 #include <boxtree/format/container.h>
 #include <boxtree/runtime/file/checksum.h>
 #include <boxtree/runtime/file/file.h>
@@ -172,8 +173,8 @@ class Account {
   }
 
   static std::uint64_t face_id_bytes(const EncodedTree& tree) {
-    const std::uint64_t width = tree.face_count <= 0x100 ? 1 : tree.face_count <= 0x10000 ? 2 : 4;
-    return tree.face_count * width;
+    if (tree.face_count == 0) return 0;
+    return std::uint64_t{tree.face_count} * number_bytes(tree.face_count - 1);
   }
 
   // Bytes that a triangle takes in this file: what those of a mesh that was never cooked would
