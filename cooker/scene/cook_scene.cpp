@@ -187,14 +187,15 @@ class SceneCook {
     return {error.code, name + ": " + error.detail};
   }
 
-  // A tree of the file: the chosen encoding without what only served to make it. Its family is
-  // kept where the file may turn out too large.
+  // A tree of the file: the chosen encoding without what only served to make it. What it was chosen
+  // from is kept where the file may turn out too large.
   [[nodiscard]] EncodedTree tree_of(std::size_t t) {
     const PlannedMesh& planned = plan_.meshes[mesh_of_tree_[t]];
-    const TriedTree::Nodes& nodes = tried_[t].nodes[chosen_[t]];
+    TriedTree::Nodes& nodes = tried_[t].nodes[chosen_[t]];
     EncodedTree& family = tried_[t].families[nodes.family];
-    EncodedTree tree = profile_.budget.bytes ? family : std::move(family);
-    tree.nodes = nodes.nodes;
+    const bool may_choose_again = profile_.budget.bytes.has_value();
+    EncodedTree tree = may_choose_again ? family : std::move(family);
+    tree.nodes = may_choose_again ? nodes.nodes : std::move(nodes.nodes);
     if (!planned.names) tree.name.clear();
     return tree;
   }
