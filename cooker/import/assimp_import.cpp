@@ -33,9 +33,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
+
 // What assimp's readers make up, leave out or reorder unless told otherwise, and what costs time
 // without being geometry.
-void configure(Assimp::Importer& importer) {
+void configure(Assimp::Importer& importer, FaceOrder order) {
   // Made up: a mesh around the bones of a file without meshes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // Made up: faces of a subdivision surface instead of those in the file.
@@ -45,7 +47,7 @@ void configure(Assimp::Importer& importer) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD5_NO_ANIM_AUTOLOAD, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_SMD_LOAD_ANIMATION_LIST, false);
   // Reordered: faces sorted by material.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, false);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_MATERIALS, order == FaceOrder::kByMaterial);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_SEPARATE_BFCULL, false);
   // Not geometry.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_TEXTURES, false);
@@ -66,10 +68,10 @@ struct StandIn {
 // Reads the scene, from the file or from what stands in for it; the files read are noted in
 // `files`. No post-processing flags: each of them may drop, reorder, merge or generate.
 Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, const StandIn* stand_in,
-                                            std::vector<fs::path>& files) {
+                                            FaceOrder order, std::vector<fs::path>& files) {
   const CLocaleScope numbers_in_c_locale;
   Assimp::Importer importer;
-  configure(importer);
+  configure(importer, order);
   auto io = std::make_unique<RecordingIo>(files);
   if (stand_in != nullptr) io->replace(stand_in->name, stand_in->text, path);
   importer.SetIOHandler(io.release());  // the importer owns it from here
@@ -98,7 +100,15 @@ bool has_node_graph(const fs::path& path) {
          !has_extension(path, "ply") && !has_extension(path, "stl");
 }
 
-Status take_over(const Request& request, aiScene& scene, const SourceContext& context,
+// Runs of materials, and the materials themselves in `scene`. Where assimp cannot read them they
+// are not known; the geometry it has read.
+std::vector<MeshMaterials> read_fbx_materials(const fs::path& path, aiScene& scene) {
+  std::vector<fs::path> read_already;
+  const auto sorted = read_scene(path, nullptr, FaceOrder::kByMaterial, read_already);
+  return sorted.ok() ? match_materials(scene, *sorted.value()) : std::vector<MeshMaterials>();
+}
+
+Status take_over(const Request& request, aiScene& scene, SourceContext context,
                  ImportReport&& report, ImportedFile& out) {
   const Placements placements = find_placements(scene);
   const bool has_graph = has_node_graph(request.path);
@@ -113,6 +123,9 @@ Status take_over(const Request& request, aiScene& scene, const SourceContext& co
   }
   SourceScene& whole = out.emplace<SourceScene>();
   whole.report = std::move(report);
+  std::vector<MeshMaterials> materials;
+  if (has_extension(request.path, "fbx")) materials = read_fbx_materials(request.path, scene);
+  context.materials = materials;
   return has_graph ? take_scene(scene, placements, context, whole)
                    : take_whole(scene, placements, context, request.path.stem().string(), whole);
 }
@@ -121,7 +134,7 @@ Status import_once(const Request& request, const StandIn* stand_in, ImportedFile
   const fs::path& path = request.path;
   if (Status status = check_ply_header(path); !status.ok()) return status;
   ImportReport report;
-  auto scene = read_scene(path, stand_in, report.files_read);
+  auto scene = read_scene(path, stand_in, FaceOrder::kOfFile, report.files_read);
   if (!scene.ok()) return scene.error();
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
   static const StandIn kNone;

@@ -246,12 +246,17 @@ std::uint64_t count_faces(const aiScene& scene, std::span<const MeshInstance> in
 
 template <class T>
 Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
-               Flattener<T>& flattener, std::vector<MaterialRun>& materials) {
+               const SourceContext& context, Flattener<T>& flattener,
+               std::vector<MaterialRun>& materials) {
   for (const MeshInstance& instance : instances) {
     aiMesh*& mesh = scene.mMeshes[instance.mesh];
     const std::uint32_t first_face = flattener.next_face_id();
     if (Status status = flattener.add(*mesh, instance.transform); !status.ok()) return status;
-    if (flattener.next_face_id() > first_face) {
+    if (!context.materials.empty()) {
+      for (const MaterialRun& run : context.materials[instance.mesh]) {
+        materials.push_back({first_face + run.first_face, run.material});
+      }
+    } else if (flattener.next_face_id() > first_face) {
       materials.push_back({first_face, mesh->mMaterialIndex});
     }
     if (--uses[instance.mesh] > 0) continue;
@@ -291,10 +296,10 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
   Status status;
   if (positions.precision == Precision::kF32) {
     Flattener<float> flattener(context, positions.f32, out);
-    status = flatten(scene, instances, uses, flattener, materials);
+    status = flatten(scene, instances, uses, context, flattener, materials);
   } else {
     Flattener<double> flattener(context, positions.f64, out);
-    status = flatten(scene, instances, uses, flattener, materials);
+    status = flatten(scene, instances, uses, context, flattener, materials);
   }
   if (!status.ok()) return status;
   return check_split_count(out.mesh.faces.size(), context.file);

@@ -11,6 +11,7 @@
 
 #include <boxtree/cooker/import/exact_positions.h>
 #include <boxtree/cooker/import/face_intake.h>
+#include <boxtree/cooker/import/fbx_materials.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/node_graph.h>
 #include <boxtree/format/scene_record.h>
@@ -36,6 +37,8 @@ struct SourceContext {
   std::string file;  // what errors call it
   const KnownFaults& known;
   const ExactPositions& exact;  // holds positions that assimp knows by number alone
+  /// Of each mesh of aiScene::mMeshes; empty where each has one material, and assimp knows it.
+  std::span<const MeshMaterials> materials = {};
 };
 
 /// A mesh of aiScene::mMeshes, and where it goes.
@@ -52,8 +55,8 @@ void free_attributes(aiScene& scene);
 
 /// Puts `instances`, one after the other, into `out.mesh` and counts them in `out.report`, as
 /// import.h says; none may be left. Frees each mesh of the scene as soon as `uses` says that nobody
-/// wants it any more, so that the two never coexist whole. `materials` gets a run for each instance
-/// with faces, whose material is a number of aiScene::mMaterials.
+/// wants it any more, so that the two never coexist whole. `materials` gets the runs of each
+/// instance with faces; a material is a number of aiScene::mMaterials or kNoMaterial.
 Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                          const SourceContext& context, Imported& out,
                          std::vector<MaterialRun>& materials);

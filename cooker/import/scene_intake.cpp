@@ -209,7 +209,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   const std::size_t skipped_before = imported.report.skipped.size();
   const SourceContext context{context_.options,
                               fmt::format("{}: mesh of '{}'", context_.file, placement.name),
-                              context_.known, context_.exact};
+                              context_.known, context_.exact, context_.materials};
   std::vector<MeshInstance> parts;
   for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
   std::vector<MaterialRun> runs;

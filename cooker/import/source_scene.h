@@ -52,8 +52,7 @@ struct SourceScene {
 /// Materials are the names of those in use; of several with one name the first stands for all. One
 /// without a name is called "material N", its number here. Faces without a material have one that
 /// assimp makes up for them, without a name or with AI_DEFAULT_MATERIAL_NAME; a scene with nothing
-/// else has no materials. FBX files have none either: to know the materials of a mesh with several,
-/// assimp would sort its faces by them.
+/// else has no materials. Nodes that share a mesh of an FBX file have the materials of the first.
 ///
 /// ImportReport counts as for import_mesh; meshes of the file that several nodes hold are counted
 /// once, those that turned out to be equal each time.

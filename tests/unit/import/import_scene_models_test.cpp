@@ -87,8 +87,18 @@ TEST(ImportSceneModelsTest, MilkTruck) {
   expect_sizes("glTF/CesiumMilkTruck/CesiumMilkTruck.gltf", {3, 2, 2856, 3624});
 }
 
+// Of the three small cubes two are green and one is red.
 TEST(ImportSceneModelsTest, MirroredFbxCubes) {
-  expect_sizes("FBX/cubes_with_mirroring_and_pivot.fbx", {4, 2, 396, 420});
+  expect_sizes("FBX/cubes_with_mirroring_and_pivot.fbx", {4, 3, 408, 420});
+}
+
+TEST(ImportSceneModelsTest, MaterialsOfFbx) {
+  const fs::path path = fs::path(ASSIMP_MODELS) / "FBX/spider.fbx";
+  if (!fs::exists(path)) GTEST_SKIP() << path << " is not there (package assimp-testmodels)";
+  const Result<SourceScene> spider = import_scene(path);
+  ASSERT_TRUE(spider.ok()) << spider.error().message();
+  EXPECT_EQ(spider->materials,
+            (std::vector<std::string>{"BeinTex", "Skin", "Augentex", "HLeibTex"}));
 }
 
 // Each file: import_scene has what import_mesh has, or says no with the same words.

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Materials of FBX files: faces in the order of the file, whatever assimp does to tell materials.
+#include <array>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/fbx_materials.h>
+#include <boxtree/cooker/import/source_scene.h>
+
+#include "placed_triangles.h"
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using Runs = std::vector<std::array<std::uint32_t, 2>>;
+
+Runs runs_of(const std::vector<MaterialRun>& materials) {
+  Runs runs;
+  for (const MaterialRun& run : materials) runs.push_back({run.first_face, run.material});
+  return runs;
+}
+
+// A ladder of eight vertices, placed twice. `corners`: polygons, each ended by -1 - its last
+// vertex; `materials`: of each, by number among stone and glass.
+std::string fbx(const std::string& corners, std::size_t corner_count, const std::string& materials,
+                std::size_t face_count) {
+  return fmt::format(R"(; FBX 7.4.0 project file
+FBXHeaderExtension:  {{
+	FBXHeaderVersion: 1003
+	FBXVersion: 7400
+}}
+GlobalSettings:  {{
+	Version: 1000
+}}
+Objects:  {{
+	Geometry: 10, "Geometry::ladder", "Mesh" {{
+		Vertices: *24 {{
+			a: 0,0,0,1,0,0,2,0,0,3,0,0,0,1,0,1,1,0,2,1,0,3,1,0
+		}}
+		PolygonVertexIndex: *{} {{
+			a: {}
+		}}
+		GeometryVersion: 124
+		LayerElementMaterial: 0 {{
+			Version: 101
+			Name: ""
+			MappingInformationType: "ByPolygon"
+			ReferenceInformationType: "IndexToDirect"
+			Materials: *{} {{
+				a: {}
+			}}
+		}}
+		Layer: 0 {{
+			Version: 100
+			LayerElement:  {{
+				Type: "LayerElementMaterial"
+				TypedIndex: 0
+			}}
+		}}
+	}}
+	Model: 20, "Model::left", "Mesh" {{
+		Version: 232
+	}}
+	Model: 21, "Model::right", "Mesh" {{
+		Version: 232
+		Properties70:  {{
+			P: "Lcl Translation", "Lcl Translation", "", "A",0,0,5
+		}}
+	}}
+	Material: 30, "Material::stone", "" {{
+		Version: 102
+		ShadingModel: "phong"
+	}}
+	Material: 31, "Material::glass", "" {{
+		Version: 102
+		ShadingModel: "phong"
+	}}
+}}
+Connections:  {{
+	C: "OO",20,0
+	C: "OO",21,0
+	C: "OO",10,20
+	C: "OO",10,21
+	C: "OO",30,20
+	C: "OO",31,20
+	C: "OO",30,21
+	C: "OO",31,21
+}}
+)",
+                     corner_count, corners, face_count, materials);
+}
+
+class FbxMaterials : public ImportTest {
+ protected:
+  SourceScene scene(const std::string& text) const {
+    const std::filesystem::path path = write("ladder.fbx", text);
+    Result<SourceScene> result = import_scene(path);
+    EXPECT_TRUE(result.ok()) << result.error().message();
+    if (!result.ok()) return {};
+    const Result<Imported> flat = import_mesh(path);
+    EXPECT_TRUE(flat.ok()) << flat.error().message();
+    if (flat.ok()) {
+      EXPECT_EQ(placed_triangles(*result), placed_triangles(flat->mesh));
+    }
+    return std::move(result).value();
+  }
+};
+
+TEST_F(FbxMaterials, FacesThatTakeTurnsStayInTheirOrder) {
+  const SourceScene got = scene(fbx("0,1,5,-5,1,2,-7,1,6,-6,2,3,7,-7,3,7,-3", 17, "0,1,0,1,1", 5));
+  ASSERT_EQ(got.meshes.size(), 1u);
+  EXPECT_EQ(got.instances.size(), 2u);
+  EXPECT_EQ(got.materials, (std::vector<std::string>{"stone", "glass"}));
+  EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}, {1, 1}, {2, 0}, {3, 1}}));
+  // The quad is first, as in the file.
+  EXPECT_NE(got.meshes[0].mesh.faces[0].corner[3], kNoCorner);
+}
+
+TEST_F(FbxMaterials, OnlyFacesOfThreeCornersCount) {
+  const SourceScene got = scene(fbx("0,1,-6,1,-3,5,6,-3,2,3,-8", 11, "1,0,1,0", 4));
+  ASSERT_EQ(got.meshes.size(), 1u);
+  EXPECT_EQ(got.meshes[0].source_faces, 3u);
+  EXPECT_EQ(got.materials, (std::vector<std::string>{"glass", "stone"}));
+  EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}, {2, 1}}));
+}
+
+TEST_F(FbxMaterials, OneMaterialIsOneRun) {
+  const SourceScene got = scene(fbx("0,1,-6,1,2,-7", 6, "1,1", 2));
+  ASSERT_EQ(got.meshes.size(), 1u);
+  EXPECT_EQ(got.materials, std::vector<std::string>{"glass"});
+  EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}}));
+}
+
+// Two faces of the same corners: whichever is taken for which, all are found.
+TEST_F(FbxMaterials, EqualFacesOfTwoMaterials) {
+  const SourceScene got = scene(fbx("0,1,-6,0,1,-6,1,2,-7", 9, "1,0,0", 3));
+  ASSERT_EQ(got.meshes.size(), 1u);
+  EXPECT_EQ(got.materials, (std::vector<std::string>{"glass", "stone"}));
+  EXPECT_EQ(runs_of(got.meshes[0].materials), (Runs{{0, 0}, {1, 1}}));
+}
+
+TEST_F(FbxMaterials, FacesOfAnotherReadingAreNotGuessed) {
+  const auto triangles = [](std::vector<float> heights, unsigned material) {
+    auto mesh = std::make_unique<aiMesh>();
+    mesh->mMaterialIndex = material;
+    mesh->mNumFaces = static_cast<unsigned>(heights.size());
+    mesh->mFaces = new aiFace[mesh->mNumFaces];
+    mesh->mNumVertices = 3 * mesh->mNumFaces;
+    mesh->mVertices = new aiVector3D[mesh->mNumVertices];
+    for (unsigned f = 0; f < mesh->mNumFaces; ++f) {
+      mesh->mFaces[f].mNumIndices = 3;
+      mesh->mFaces[f].mIndices = new unsigned[3]{3 * f, 3 * f + 1, 3 * f + 2};
+      for (unsigned c = 0; c < 3; ++c) {
+        mesh->mVertices[3 * f + c] = {static_cast<float>(c), heights[f], 0};
+      }
+    }
+    return mesh;
+  };
+  const auto scene_of = [](std::vector<std::unique_ptr<aiMesh>> meshes) {
+    auto scene = std::make_unique<aiScene>();
+    scene->mNumMeshes = static_cast<unsigned>(meshes.size());
+    scene->mMeshes = new aiMesh*[scene->mNumMeshes];
+    for (unsigned i = 0; i < scene->mNumMeshes; ++i) scene->mMeshes[i] = meshes[i].release();
+    return scene;
+  };
+  const auto match = [&](std::vector<std::vector<float>> in_order,
+                         std::vector<std::vector<float>> sorted) {
+    std::vector<std::unique_ptr<aiMesh>> of_file, by_material;
+    for (auto& heights : in_order) of_file.push_back(triangles(heights, 9));
+    unsigned material = 0;
+    for (auto& heights : sorted) by_material.push_back(triangles(heights, material++));
+    const auto first = scene_of(std::move(of_file));
+    const auto second = scene_of(std::move(by_material));
+    std::vector<Runs> runs;
+    for (const MeshMaterials& mesh : match_materials(*first, *second))
+      runs.push_back(runs_of(mesh));
+    return runs;
+  };
+  const Runs unknown = {{0, kNoMaterial}};
+  EXPECT_EQ(match({{1, 2, 3}, {4}}, {{1, 3}, {2}, {4}}),
+            (std::vector<Runs>{{{0, 0}, {1, 1}, {2, 0}}, {{0, 2}}}));
+  // Other faces, or other numbers of them; and all that comes after those.
+  EXPECT_EQ(match({{1, 2, 3}, {4}}, {{1, 5}, {2}, {4}}), (std::vector<Runs>{unknown, {{0, 2}}}));
+  EXPECT_EQ(match({{1, 2, 3}, {4}}, {{1, 2}, {3, 4}}), (std::vector<Runs>{unknown, unknown}));
+  EXPECT_EQ(match({{1, 2}, {4}}, {{1, 2}}), (std::vector<Runs>{{{0, 0}}, unknown}));
+  // Faces 1, 1, 2 of materials 1, 0, 0 could be told, but not by looking at one face at a time.
+  EXPECT_EQ(match({{1, 2, 1}}, {{1}, {1, 2}}), (std::vector<Runs>{unknown}));
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
