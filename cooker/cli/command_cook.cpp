@@ -37,6 +37,7 @@ struct Arguments {
   bool scene = false;
   bool flatten = false;
   bool why = false;
+  bool candidates = false;
   bool exact = false;
   bool external = false;
   bool no_face_ids = false;
@@ -126,7 +127,7 @@ Json report_json(const Arguments& arguments, const CookedFile& cooked, double se
 
 void print_report(const Arguments& arguments, const CookedFile& cooked, double seconds) {
   if (const auto* scene = std::get_if<SceneReport>(&cooked)) {
-    print_scene(*scene);
+    print_scene(*scene, arguments.candidates);
     if (arguments.why) print_why(*scene);
   } else {
     print_trees(trees_of(cooked));
@@ -219,6 +220,8 @@ void add_cook_command(CLI::App& app, int& status) {
       ->excludes(scene);
   command.add_flag("--why", arguments->why,
                    "Of a scene: print each part, its bytes, and what decided that it is there");
+  command.add_flag("--candidates", arguments->candidates,
+                   "Of a scene: print all that was tried for each tree, not only what was chosen");
   CLI::Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")
                            ->check(CLI::IsMember(codecs))
                            ->capture_default_str();

@@ -107,6 +107,35 @@ void print_import(const ImportReport& import) {
   }
 }
 
+void print_grid(const CookedTree& cooked) {
+  if (cooked.tree.geometry.geometry != GeometryId::kGrid) return;
+  fmt::print(
+      "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
+      "area and are kept\n",
+      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error, cooked.collapsed);
+}
+
+// What was chosen for each tree, a line each.
+void print_choices(const CookReport& report) {
+  std::size_t width = 4;
+  for (const CookedTree& cooked : report.trees) width = std::max(width, cooked.tree.name.size());
+  fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>5}  {:>9}\n", "tree", width,
+             "triangles", "codec", "geometry", "tree B/tri", "with geom.", "times", "error");
+  for (const CookedTree& cooked : report.trees) {
+    const std::vector<Candidate>& candidates = cooked.contest.candidates;
+    const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const Candidate& candidate = candidates[i];
+      if (!candidate.rejected.empty()) continue;
+      fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f}  {:>9.2g}\n",
+                 cooked.tree.name, width, cooked.tree.triangle_count, codec_name(candidate.codec),
+                 geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
+                 per_triangle(candidate.bytes(), cooked.tree), slower[i],
+                 candidate.max_vertex_error);
+    }
+  }
+}
+
 // The parts of one tree that were left out, for tools that look at trees alone.
 void add_left_out(const SceneReport& report, Json& trees) {
   for (const WhyLine& line : report.why) {
@@ -191,19 +220,18 @@ void print_trees(const CookReport& report) {
     const CookedTree& cooked = report.trees[i];
     fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
     print_contest(cooked);
-    if (cooked.tree.geometry.geometry == GeometryId::kGrid) {
-      fmt::print(
-          "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
-          "area and are kept\n",
-          cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
-          cooked.collapsed);
-    }
+    print_grid(cooked);
   }
   for (const ImportReport& import : report.imports) print_import(import);
 }
 
-void print_scene(const SceneReport& report) {
-  print_trees(report.cook);
+void print_scene(const SceneReport& report, bool candidates) {
+  if (candidates) {
+    print_trees(report.cook);
+  } else {
+    print_choices(report.cook);
+    for (const ImportReport& import : report.cook.imports) print_import(import);
+  }
   fmt::print("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
              report.instances, report.moving, report.cook.trees.size(), report.placed_triangles,
              report.file_bytes);

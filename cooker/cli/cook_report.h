@@ -18,7 +18,8 @@ namespace boxtree::cooker {
 
 /// The candidates of each tree and what import found.
 void print_trees(const CookReport& report);
-void print_scene(const SceneReport& report);
+/// Each tree on a line, or with the table of its `candidates`; and what the scene has.
+void print_scene(const SceneReport& report, bool candidates);
 /// Each part, its bytes, and who decided.
 void print_why(const SceneReport& report);
 

@@ -27,6 +27,11 @@ grep -q '^scene: 53 instances (0 moving), 9648 triangles placed' out
 expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --jobs 1 --why
 grep -q 'what a reader opens the file by' out
 cmp level.bxt again.bxt
+# Each tree on a line, or with all its candidates.
+same "$(grep -c '^  barrel ' out)" 1
+same "$(grep -c 'not tried' out)" 0
+expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --candidates
+same "$(grep -c 'not tried, geometry exact' out)" 8
 
 # Answers in the world, with instance and material; those of the flattened tree are the same.
 expect 0 "$boxtree" query level.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --json
