@@ -57,8 +57,14 @@ struct InstancesInBox : Instances {
 struct InstancesNearPoint : Instances {
   const PointFilter& point;
   const double& best;
+  float limit;  // of keys, by `best`
 
-  [[nodiscard]] float bound() const { return PointFilter::above(best); }
+  [[nodiscard]] float bound() const { return limit; }
+  bool leaf(std::uint32_t number) {
+    const bool go_on = visit(number);
+    limit = PointFilter::above(best);
+    return go_on;
+  }
   HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
     key = nearest_squared(point, boxes);
     return bits_of(hn::Le(key, hn::Set(Floats(), bound())));
@@ -68,8 +74,14 @@ struct InstancesNearPoint : Instances {
 struct InstancesOnRay : Instances {
   const RayBoxFilter& ray;
   const double& s_max;
+  float limit;  // of keys, by `s_max`
 
-  [[nodiscard]] float bound() const { return ray.bound(s_max); }
+  [[nodiscard]] float bound() const { return limit; }
+  bool leaf(std::uint32_t number) {
+    const bool go_on = visit(number);
+    limit = ray.bound(s_max);
+    return go_on;
+  }
   HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
     const Floats d;
     FloatVector leave = hn::Set(d, bound());
@@ -102,7 +114,7 @@ Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit
 Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
   const PointFilter filter(reach_of(top), point);
-  InstancesNearPoint query{{visit}, filter, bound};
+  InstancesNearPoint query{{visit}, filter, bound, PointFilter::above(bound)};
   return walk(top, query);
 }
 
@@ -111,7 +123,7 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const d
   const RayBoxFilter filter(ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
                             RayBoxFilter::rounding(reach_of(top)) +
                                 RayBoxFilter::given_away(ray.origin, ray.reach.maxCoeff()));
-  InstancesOnRay query{{visit}, filter, bound};
+  InstancesOnRay query{{visit}, filter, bound, filter.bound(bound)};
   return walk(top, query);
 }
 #endif
