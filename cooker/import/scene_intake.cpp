@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Each list of meshes that nodes have is flattened once, in its own space; what is equal then is
 // merged by content.
-#define XXH_INLINE_ALL
-#include <cstring>
+#include <algorithm>
 #include <map>
 #include <optional>
 #include <span>
@@ -14,7 +13,6 @@
 #include <assimp/material.h>
 #include <assimp/scene.h>
 #include <fmt/format.h>
-#include <xxhash.h>
 
 #include <boxtree/cooker/import/scene_intake.h>
 #include <boxtree/runtime/primitive/vector3.h>
@@ -80,36 +78,12 @@ class MaterialIntake {
   std::map<std::string, std::uint32_t> by_name_;
 };
 
-// Everything that makes two meshes equal, as bytes. Of positions the bits count: -0 is not +0.
-template <class Visit>
-void visit_content(const SceneMesh& mesh, const Visit& visit) {
-  const auto array = [&visit](const auto& values) { visit(std::as_bytes(std::span(values))); };
-  array(mesh.mesh.positions.f32);
-  array(mesh.mesh.positions.f64);
-  array(mesh.mesh.faces);
-  array(mesh.mesh.face_ids);
-  array(mesh.materials);
-}
-
-std::uint64_t hash_of(const SceneMesh& mesh) {
-  std::uint64_t hash = mesh.source_faces;
-  visit_content(mesh, [&hash](std::span<const std::byte> bytes) {
-    hash = XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
-  });
-  return hash;
-}
-
 bool is_equal(const SceneMesh& a, const SceneMesh& b) {
-  std::vector<std::span<const std::byte>> of_a;
-  visit_content(a, [&of_a](std::span<const std::byte> bytes) { of_a.push_back(bytes); });
-  bool equal = a.source_faces == b.source_faces;
-  std::size_t next = 0;
-  visit_content(b, [&](std::span<const std::byte> bytes) {
-    const std::span<const std::byte> other = of_a[next++];
-    equal = equal && bytes.size() == other.size() &&
-            (bytes.empty() || std::memcmp(bytes.data(), other.data(), bytes.size()) == 0);
-  });
-  return equal;
+  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
+    return x.first_face == y.first_face && x.material == y.material;
+  };
+  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
+                                            b.materials.begin(), b.materials.end(), is_same_run);
 }
 
 Pose pose_of(const Transform& transform) {
@@ -231,7 +205,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
 
 // The number of `mesh`, or of one with the same content.
 std::uint32_t SceneIntake::merge(SceneMesh&& mesh) {
-  const std::uint64_t hash = hash_of(mesh);
+  const std::uint64_t hash = hash_of_shape(mesh);
   const auto [first, last] = by_hash_.equal_range(hash);
   for (auto candidate = first; candidate != last; ++candidate) {
     if (is_equal(out_.meshes[candidate->second], mesh)) return candidate->second;

@@ -24,6 +24,11 @@ struct SceneMesh {
   std::vector<MaterialRun> materials;
 };
 
+/// Whether two meshes are equal in all but name and materials: positions bit for bit (-0 is not
+/// +0), faces and their numbers. Those that are have the same hash.
+[[nodiscard]] bool has_same_shape(const SceneMesh& a, const SceneMesh& b);
+[[nodiscard]] std::uint64_t hash_of_shape(const SceneMesh& mesh);
+
 /// A placed mesh.
 struct SceneInstance {
   std::string name;        // of its node, as assimp has it; may be empty, need not be unique

@@ -211,6 +211,10 @@ class SceneCook {
       trees_.push_back(tree_of(t));
       parts_.tree_materials.push_back(materials_of(t, trees_.back()));
     }
+    for (std::size_t m = 0; m < plan_.meshes.size(); ++m) {
+      const auto& first = plan_.meshes[m].same_as;
+      if (first) tree_of_mesh[m] = tree_of_mesh[*first];
+    }
     for (std::size_t i = 0; i < plan_.instances.size(); ++i) {
       const PlannedInstance& planned = plan_.instances[i];
       if (!planned.kept) continue;

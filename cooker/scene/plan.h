@@ -65,6 +65,9 @@ struct PlannedInstance {
 /// Where several objects use a mesh, it has what the most demanding of them needs.
 struct PlannedMesh {
   bool kept = true;
+  /// Not kept, because this mesh is the same but for materials that nobody wants: its instances are
+  /// of that one.
+  std::optional<std::uint32_t> same_as;
   bool face_ids = true;
   bool materials = true;
   bool names = true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <unordered_map>
 
 #include <fmt/format.h>
 
@@ -63,6 +64,8 @@ class MeshPlanner {
   Status find_statements();
   void find_uses();
   void add_use(std::uint32_t mesh, std::uint32_t object, double scale);
+  void share_shapes();
+  [[nodiscard]] bool can_be_shared(std::uint32_t mesh) const;
   void drop(std::uint32_t mesh);
   void decide_parts(std::uint32_t mesh);
   void decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*asked, bool& kept);
@@ -145,10 +148,48 @@ void MeshPlanner::find_uses() {
   }
 }
 
+// Not where the profile says something of that very mesh.
+bool MeshPlanner::can_be_shared(std::uint32_t mesh) const {
+  const std::vector<Use>& uses = uses_[mesh];
+  const auto wants_materials = [&](const Use& use) { return object_of(use).needs.materials.value; };
+  return said_of_[mesh] == nullptr && !uses.empty() &&
+         std::none_of(uses.begin(), uses.end(), wants_materials);
+}
+
+// Meshes that differ in materials alone, which nobody wants, are the first of them: all that use
+// them use that one.
+void MeshPlanner::share_shapes() {
+  std::unordered_multimap<std::uint64_t, std::uint32_t> firsts;  // by shape
+  for (std::uint32_t mesh = 0; mesh < scene_.meshes.size(); ++mesh) {
+    if (!can_be_shared(mesh)) continue;
+    const SceneMesh& source = scene_.meshes[mesh];
+    const std::uint64_t hash = hash_of_shape(source);
+    const auto [begin, end] = firsts.equal_range(hash);
+    const auto first = std::find_if(begin, end, [&](const auto& candidate) {
+      const SceneMesh& other = scene_.meshes[candidate.second];
+      const bool differ_in_materials = !source.materials.empty() || !other.materials.empty();
+      return differ_in_materials && has_same_shape(source, other);
+    });
+    if (first == end) {
+      firsts.emplace(hash, mesh);
+      continue;
+    }
+    plan_.meshes[mesh].same_as = first->second;
+    for (const Use& use : uses_[mesh]) add_use(first->second, use.object, use.largest_scale);
+  }
+}
+
 void MeshPlanner::drop(std::uint32_t mesh) {
   PlannedMesh& planned = plan_.meshes[mesh];
   planned.kept = planned.face_ids = planned.materials = planned.names = false;
   planned.queries = 0;
+  if (planned.same_as) {
+    decide(mesh, Aspect::kMesh, false,
+           fmt::format("equals mesh {} but for materials that nobody asks for",
+                       scene_.meshes[*planned.same_as].mesh.name),
+           object_of(uses_[mesh].front()).needs.materials.line);
+    return;
+  }
   std::uint32_t line = 0;
   for (std::size_t i = 0; i < scene_.instances.size() && line == 0; ++i) {
     if (scene_.instances[i].mesh != mesh) continue;
@@ -322,8 +363,9 @@ Status MeshPlanner::run() {
   find_uses();
   plan_.material_names = false;
   plan_.meshes.resize(scene_.meshes.size());
+  share_shapes();
   for (std::uint32_t mesh = 0; mesh < scene_.meshes.size(); ++mesh) {
-    if (uses_[mesh].empty()) {
+    if (uses_[mesh].empty() || plan_.meshes[mesh].same_as) {
       drop(mesh);
       continue;
     }

@@ -244,6 +244,23 @@ motion = "moving"
 }
 
 // Materials without face ids are told face by face.
+// A green and a red cube of one shape: one tree where nobody asks for materials.
+TEST(CookScene, ShapesWithoutTheirMaterialsAreStoredOnce) {
+  const fs::path cubes = "/usr/share/assimp/models/FBX/cubes_with_mirroring_and_pivot.fbx";
+  if (!fs::exists(cubes)) GTEST_SKIP() << "package assimp-testmodels is not installed";
+  test::TempFolder folder;
+  const fs::path text = folder.write("scene.toml", "[scene]\nmaterials = false\nexact = true\n");
+  const CookedFileOf whole(cubes, exact_options());
+  const CookedFileOf plain(cubes, CookOptions(), require(read_profile(text)));
+  EXPECT_EQ(whole.scene.trees().size(), 3u);
+  EXPECT_EQ(plain.scene.trees().size(), 2u);
+  EXPECT_TRUE(verify_file(plain.file).empty());
+  EXPECT_EQ(kept_bytes(plain.report), plain.file.bytes().size());
+  std::size_t hits = 0;
+  expect_brute_force(cubes, plain.scene, 100, hits);
+  EXPECT_GT(hits, 20u);
+}
+
 TEST(CookScene, MaterialsSurviveWithoutFaceIds) {
   test::TempFolder folder;
   const fs::path text = folder.write("scene.toml", "[scene]\nface_ids = false\nexact = true\n");

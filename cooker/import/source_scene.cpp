@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+// What makes two meshes of a scene equal.
+#define XXH_INLINE_ALL
+#include <array>
+#include <cstring>
+#include <span>
+
+#include <xxhash.h>
+
+#include <boxtree/cooker/import/source_scene.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Shape = std::array<std::span<const std::byte>, 4>;
+
+Shape shape_of(const SceneMesh& mesh) {
+  return {std::as_bytes(std::span(mesh.mesh.positions.f32)),
+          std::as_bytes(std::span(mesh.mesh.positions.f64)),
+          std::as_bytes(std::span(mesh.mesh.faces)), std::as_bytes(std::span(mesh.mesh.face_ids))};
+}
+
+}  // namespace
+
+bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
+  if (a.source_faces != b.source_faces) return false;
+  const Shape of_a = shape_of(a), of_b = shape_of(b);
+  for (std::size_t i = 0; i < of_a.size(); ++i) {
+    if (of_a[i].size() != of_b[i].size()) return false;
+    if (!of_a[i].empty() && std::memcmp(of_a[i].data(), of_b[i].data(), of_a[i].size()) != 0) {
+      return false;
+    }
+  }
+  return true;
+}
+
+std::uint64_t hash_of_shape(const SceneMesh& mesh) {
+  std::uint64_t hash = mesh.source_faces;
+  for (const std::span<const std::byte> bytes : shape_of(mesh)) {
+    hash = XXH3_64bits_withSeed(bytes.data(), bytes.size(), hash);
+  }
+  return hash;
+}
+
+}  // namespace boxtree::cooker
