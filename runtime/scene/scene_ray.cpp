@@ -11,8 +11,9 @@ namespace boxtree {
 namespace {
 
 // In the scene's frame, with the parameter s = t * 2^parameter_exponent (see RayQuery). Boxes of
-// instances are widened by Placement::error(); what is left is the error of the ray's own origin on
-// its way to object space and back, of which the slab's margin gets its share by a larger reach.
+// instances are widened by PlacementBounds::error(); what is left is the error of the ray's own
+// origin on its way to object space and back, of which the slab's margin gets its share by a larger
+// reach.
 struct SceneRayQuery {
   SceneRayQuery(const Scene& scene, const Ray& world, bool stop_at_first, LayerMask layers) noexcept
       : admission{scene, kRayQueries, layers},

@@ -19,10 +19,11 @@ struct Admission {
   }
 };
 
-/// What a query of a scene has: query.visit(instance, const Scene::Placed&) -> bool: whether to go
-/// on; query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about;
-/// query.admission; query.error, which is set when an instance is corrupt; and what the templates
-/// of query/traversal.h ask of boxes, in the scene's frame.
+// What a query of a scene has, below:
+// query.visit(instance, const Scene::Placed&) -> bool: whether to go on.
+// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about.
+// query.admission; and query.error, which is set when an instance is corrupt.
+// What the templates of query/traversal.h ask of boxes, in the scene's frame.
 
 /// The query of query/traversal.h over moving instances.
 template <class Query>

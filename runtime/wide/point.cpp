@@ -25,6 +25,7 @@ Errc walk_point(const Tree& tree, PointQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 #else
+// The query of NearestWalk over the faces of one tree.
 template <class Node>
 class PointFaces {
  public:
