@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Both readings walk the file alike: the meshes that one mesh was split into stand in a row, each
 // with its faces in the order of the file. So the faces of a mesh are a shuffle of theirs.
-#include <cstring>
+#include <array>
+#include <bit>
+#include <cstdint>
 #include <span>
 #include <utility>
 
@@ -13,13 +15,18 @@
 namespace boxtree::cooker {
 namespace {
 
+std::array<std::uint32_t, 3> bits_of(const aiVector3D& v) {
+  return {std::bit_cast<std::uint32_t>(v.x), std::bit_cast<std::uint32_t>(v.y),
+          std::bit_cast<std::uint32_t>(v.z)};
+}
+
 // Whether two faces have the same corners, bit for bit.
 bool is_equal(const aiMesh& a, const aiFace& face_of_a, const aiMesh& b, const aiFace& face_of_b) {
   if (face_of_a.mNumIndices != face_of_b.mNumIndices) return false;
   for (unsigned corner = 0; corner < face_of_a.mNumIndices; ++corner) {
     const unsigned i = face_of_a.mIndices[corner], j = face_of_b.mIndices[corner];
     if (i >= a.mNumVertices || j >= b.mNumVertices) return false;
-    if (std::memcmp(&a.mVertices[i], &b.mVertices[j], sizeof(aiVector3D)) != 0) return false;
+    if (bits_of(a.mVertices[i]) != bits_of(b.mVertices[j])) return false;
   }
   return true;
 }
