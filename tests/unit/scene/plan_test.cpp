@@ -1,38 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Plans of small scenes: what is kept, what is dropped, and the line that says so.
-#include <algorithm>
-#include <tests/unit/scene/profile_files.h>
+#include <tests/unit/scene/plan_fixture.h>
 
 #include <Eigen/Geometry>
 
-#include <boxtree/cooker/scene/plan.h>
-
 namespace boxtree::cooker {
 namespace {
-
-SceneMesh mesh_of(const std::string& name, std::size_t faces = 4) {
-  SceneMesh mesh;
-  mesh.mesh.name = name;
-  mesh.mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 0, 1, 0};
-  mesh.mesh.faces.assign(faces, Face{{0, 1, 2, kNoCorner}});
-  return mesh;
-}
-
-SceneInstance placed(const std::string& name, std::uint32_t mesh, double scale = 1) {
-  SceneInstance instance;
-  instance.name = name;
-  instance.mesh = mesh;
-  instance.pose.linear() *= scale;
-  return instance;
-}
-
-SourceScene scene_of(std::vector<SceneMesh> meshes, std::vector<SceneInstance> instances) {
-  SourceScene scene;
-  scene.meshes = std::move(meshes);
-  scene.instances = std::move(instances);
-  for (std::uint32_t i = 0; i < scene.instances.size(); ++i) scene.instances[i].id = i;
-  return scene;
-}
 
 // Ground and two trees, a hero, and a mesh that nobody places.
 SourceScene forest() {
@@ -43,41 +16,6 @@ SourceScene forest() {
   scene.meshes[1].materials = {{0, 0}};
   return scene;
 }
-
-class PlanTest : public ProfileTest {
- protected:
-  ScenePlan plan(const SourceScene& scene, std::string_view text) const {
-    Result<ScenePlan> plan = plan_scene(scene, load(text));
-    EXPECT_TRUE(plan.ok()) << plan.error().message();
-    return plan.ok() ? std::move(plan).value() : ScenePlan();
-  }
-  static const Decision& decision(const ScenePlan& plan, Aspect aspect, OwnerKind kind,
-                                  std::uint32_t owner) {
-    static const Decision kNone = {.reason = "no such decision", .line = 0xffffffffu};
-    const Decision* found = nullptr;
-    for (const Decision& one : plan.decisions) {
-      if (one.aspect != aspect || one.owner_kind != kind || one.owner != owner) continue;
-      EXPECT_EQ(found, nullptr) << "two decisions: " << one.reason;
-      found = &one;
-    }
-    EXPECT_NE(found, nullptr) << aspect_name(aspect) << " of " << owner;
-    return found != nullptr ? *found : kNone;
-  }
-  static bool has_decision(const ScenePlan& plan, Aspect aspect, OwnerKind kind,
-                           std::uint32_t owner) {
-    return std::any_of(plan.decisions.begin(), plan.decisions.end(), [&](const Decision& one) {
-      return one.aspect == aspect && one.owner_kind == kind && one.owner == owner;
-    });
-  }
-  static void expect_decision(const ScenePlan& plan, Aspect aspect, OwnerKind kind,
-                              std::uint32_t owner, bool kept, std::uint32_t line,
-                              const std::string& reason) {
-    const Decision& found = decision(plan, aspect, kind, owner);
-    EXPECT_EQ(found.kept, kept) << found.reason;
-    EXPECT_EQ(found.line, line) << found.reason;
-    EXPECT_EQ(found.reason, reason);
-  }
-};
 
 constexpr QueryKinds kRayAndBox = kRayQueries | kBoxQueries;
 
@@ -318,60 +256,6 @@ materials = true
   EXPECT_FALSE(has_decision(planned, Aspect::kMaterials, OwnerKind::kMesh, 0)) << "it has none";
   expect_decision(planned, Aspect::kNames, OwnerKind::kFile, 0, false, 4,
                   "no object asks for them");
-}
-
-// Three crates of one shape, in red, blue and without a material, and a box that is no crate.
-SourceScene crates() {
-  SourceScene scene =
-      scene_of({mesh_of("red"), mesh_of("blue"), mesh_of("box", 5), mesh_of("bare")},
-               {placed("Red", 0), placed("Blue", 1, 3), placed("Box", 2), placed("Bare", 3)});
-  scene.materials = {"red", "blue"};
-  scene.meshes[0].materials = {{0, 0}};
-  scene.meshes[1].materials = {{0, 1}};
-  scene.meshes[2].materials = {{0, 0}};
-  return scene;
-}
-
-TEST_F(PlanTest, MeshesThatDifferInUnwantedMaterialsAreOne) {
-  const ScenePlan planned = plan(crates(), R"([scene]
-materials = false
-tolerance = 0.3
-)");
-  EXPECT_EQ(planned.meshes[1].same_as, 0u);
-  EXPECT_EQ(planned.meshes[3].same_as, 0u);
-  EXPECT_FALSE(planned.meshes[0].same_as || planned.meshes[2].same_as) << "the box has a face more";
-  EXPECT_TRUE(planned.meshes[0].kept && planned.meshes[2].kept);
-  EXPECT_FALSE(planned.meshes[1].kept || planned.meshes[3].kept);
-  expect_decision(planned, Aspect::kMesh, OwnerKind::kMesh, 1, false, 2,
-                  "equals mesh red but for materials that nobody asks for");
-  // Precise enough for the largest crate, whatever its colour was.
-  EXPECT_EQ(planned.meshes[0].largest_scale, 3);
-  ASSERT_TRUE(planned.meshes[0].tolerance.has_value());
-  EXPECT_NEAR(*planned.meshes[0].tolerance, 0.1, 1e-12);
-}
-
-TEST_F(PlanTest, MeshesOfWhichSomebodyWantsMaterialsStayApart) {
-  ScenePlan planned = plan(crates(), R"([scene]
-materials = false
-[[object]]
-name = "blue"
-match = ["Blue"]
-materials = true
-)");
-  EXPECT_FALSE(planned.meshes[1].same_as);
-  EXPECT_TRUE(planned.meshes[1].kept && planned.meshes[1].materials);
-  EXPECT_EQ(planned.meshes[3].same_as, 0u);
-  planned = plan(crates(), "");
-  for (const PlannedMesh& mesh : planned.meshes) EXPECT_TRUE(mesh.kept && !mesh.same_as);
-  // What is said of a mesh is said of that one.
-  planned = plan(crates(), R"([scene]
-materials = false
-[[mesh]]
-name = "blue"
-external = true
-)");
-  EXPECT_TRUE(planned.meshes[1].kept && planned.meshes[1].external);
-  EXPECT_FALSE(planned.meshes[0].external);
 }
 
 TEST_F(PlanTest, NamesOfSomeObjects) {
