@@ -54,13 +54,7 @@ namespace boxtree {
 
 /// Largest magnitude of any box coordinate of a tree, on each axis.
 [[nodiscard]] inline Eigen::Vector3d reach_of(const Tree& tree) noexcept {
-  const TreeRecord& record = tree.record();
-  Eigen::Vector3d reach;
-  for (std::size_t k = 0; k < 3; ++k) {
-    reach[static_cast<Eigen::Index>(k)] =
-        std::max(std::abs(record.root_low[k]), std::abs(record.root_high[k]));
-  }
-  return reach;
+  return reach_of(Box<double>{tree.record().root_low, tree.record().root_high});
 }
 
 /// Squared distance from a point to a closed box; monotone in the box, zero inside.

@@ -63,11 +63,7 @@ double Placement::condition() const noexcept {
 }
 
 double Placement::magnitude(const Box<double>& root) const noexcept {
-  Eigen::Vector3d reach;
-  for (std::size_t k = 0; k < 3; ++k) {
-    reach[static_cast<Eigen::Index>(k)] = std::max(std::abs(root.low[k]), std::abs(root.high[k]));
-  }
-  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), reach) +
+  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), reach_of(root)) +
                                 product(magnitudes(linear()), frame_origin_.cwiseAbs()) +
                                 translation_.cwiseAbs();
   return std::max({terms[0], terms[1], terms[2]});

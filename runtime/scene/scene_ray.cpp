@@ -27,21 +27,19 @@ struct SceneRayQuery {
   [[nodiscard]] TopLevelRay make_in_frame(const Scene& scene) const noexcept {
     const Eigen::Vector3d origin = scene.frame().to_tree(ray.origin);
     const Eigen::Vector3d direction = RayQuery::scaled(ray.direction, -exponent);
-    const Eigen::Vector3d widened = reach(scene, ray);
-    return {origin, direction, widened, RaySlab(origin, direction, widened),
+    const double widened = reach(scene, ray);
+    return {origin, direction, widened,
+            RaySlab(origin, direction, Eigen::Vector3d::Constant(widened)),
             RayQuery::scaled(ray.t_min, parameter_exponent)};
   }
 
-  static Eigen::Vector3d reach(const Scene& scene, const Ray& world) noexcept {
+  static double reach(const Scene& scene, const Ray& world) noexcept {
     double largest = reach_of(scene.top_level());
     if (!scene.moving_tree().empty()) {
-      const Box<double>& box = scene.moving_tree().root_box();
-      for (std::size_t k = 0; k < 3; ++k) {
-        largest = std::max({largest, std::abs(box.low[k]), std::abs(box.high[k])});
-      }
+      largest = std::max(largest, reach_of(scene.moving_tree().root_box()).maxCoeff());
     }
     const double origin = world.origin.cwiseAbs().maxCoeff() * scene.frame().inverse_scale;
-    return Eigen::Vector3d::Constant(largest + 16 * scene.condition() * (origin + largest));
+    return largest + 16 * scene.condition() * (origin + largest);
   }
 
   [[nodiscard]] bool is_done() const noexcept {

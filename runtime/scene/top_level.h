@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The tree over the static instances of a scene, read from the mapped bytes: nodes of wide8 whose
-// leaf n is instance n. Walked by the templates of query/traversal.h like any tree.
+// leaf n is instance n. Has what the templates of query/traversal.h ask of a tree.
 #pragma once
-
-#include <algorithm>
-#include <cmath>
 
 #include <boxtree/format/codec_wide.h>
 #include <boxtree/format/scene_record.h>
@@ -31,11 +28,7 @@ struct TopLevel {
 
 /// Largest magnitude of any box coordinate.
 [[nodiscard]] inline double reach_of(const TopLevel& top) noexcept {
-  double reach = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    reach = std::max({reach, std::abs(top.scene.root_low[k]), std::abs(top.scene.root_high[k])});
-  }
-  return reach;
+  return reach_of(Box<double>{top.scene.root_low, top.scene.root_high}).maxCoeff();
 }
 
 /// The root box; writers store f32 values.

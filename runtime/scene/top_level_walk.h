@@ -20,7 +20,7 @@ using InstanceVisitor = FunctionRef<bool(std::uint32_t)>;
 struct TopLevelRay {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
-  Eigen::Vector3d reach;  // that `slab` was made with
+  double reach;  // on every axis, that `slab` was made with
   RaySlab slab;
   double s_min;
 };

@@ -2,10 +2,13 @@
 // Object space and tree space: a shift and an exact power-of-two scale (see TreeRecord).
 #pragma once
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include <Eigen/Core>
 
+#include <boxtree/format/box.h>
 #include <boxtree/format/tree_record.h>
 
 namespace boxtree {
@@ -41,6 +44,15 @@ inline constexpr double kReach = 0x1p200;
 
 [[nodiscard]] inline bool is_within_reach(const Eigen::Vector3d& point) noexcept {
   return (point.cwiseAbs().array() <= kReach).all();  // false for NaN
+}
+
+/// Largest magnitude of a coordinate of a box, on each axis.
+[[nodiscard]] inline Eigen::Vector3d reach_of(const Box<double>& box) noexcept {
+  Eigen::Vector3d reach;
+  for (std::size_t k = 0; k < 3; ++k) {
+    reach[static_cast<Eigen::Index>(k)] = std::max(std::abs(box.low[k]), std::abs(box.high[k]));
+  }
+  return reach;
 }
 
 }  // namespace boxtree

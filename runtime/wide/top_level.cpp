@@ -120,9 +120,9 @@ Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double&
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
               InstanceVisitor visit) {
-  const RayBoxFilter filter(ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
-                            RayBoxFilter::rounding(reach_of(top)) +
-                                RayBoxFilter::given_away(ray.origin, ray.reach.maxCoeff()));
+  const RayBoxFilter filter(
+      ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
+      RayBoxFilter::rounding(reach_of(top)) + RayBoxFilter::given_away(ray.origin, ray.reach));
   InstancesOnRay query{{visit}, filter, bound, filter.bound(bound)};
   return walk(top, query);
 }
@@ -163,7 +163,7 @@ Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
   // Where a map that is hard to undo makes the query give away more, its margin alone is what
   // decides.
   const bool is_near = ray.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach &&
-                       RayBoxFilter::given_away(ray.origin, ray.reach.maxCoeff()) <= reach;
+                       RayBoxFilter::given_away(ray.origin, ray.reach) <= reach;
   if (!top.has_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;

@@ -167,10 +167,10 @@ TEST_P(TopLevelWalk, RaysVisitAllThatTheyMeet) {
       direction = std::ldexp(1.0, -direction_exponent(direction)) * direction;
       const double largest = reach_of(level.top());
       const double origin = from.cwiseAbs().maxCoeff();
-      const Vector3d reach =
-          Vector3d::Constant(largest + 16 * level.condition() * (origin + largest));
+      const double reach = largest + 16 * level.condition() * (origin + largest);
       const double s_min = i % 3 == 0 ? direction.norm() * largest * std::abs(level.unit()) : 0;
-      const TopLevelRay ray{from, direction, reach, RaySlab(from, direction, reach), s_min};
+      const TopLevelRay ray{from, direction, reach,
+                            RaySlab(from, direction, Vector3d::Constant(reach)), s_min};
       const double bound = i % 2 == 0 ? kInfinity : s_min + 2 * largest * std::abs(level.unit());
       tally.add(level.top(), level.all([&](const Box<double>& b) {
         const double key = ray.slab.key(b, s_min);
