@@ -106,20 +106,17 @@ double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vecto
   const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
   const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude(root) +
                          std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
-  return std::sqrt((back[0] * back[0] + back[1] * back[1]) + back[2] * back[2]) +
-         128 * kUnitRoundoff * largest + std::numeric_limits<double>::min();
+  return std::sqrt(squared_length(back)) + 128 * kUnitRoundoff * largest +
+         std::numeric_limits<double>::min();
 }
 
 // The squares of both are eigenvalues of L^T L, which Gershgorin's circles hold. Where axes are far
 // from orthogonal the circles reach zero: then 1 / |L^-1|, the Frobenius norm, is a lower bound,
 // once what the computed inverse lacks is made up for: |L^-1| <= |X| / (1 - |I - L X|).
 Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
-  const auto dot = [&linear](Eigen::Index i, Eigen::Index j) {
-    return (linear(0, i) * linear(0, j) + linear(1, i) * linear(1, j)) +
-           linear(2, i) * linear(2, j);
-  };
-  const double xx = dot(0, 0), yy = dot(1, 1), zz = dot(2, 2);
-  const double xy = std::abs(dot(0, 1)), yz = std::abs(dot(1, 2)), zx = std::abs(dot(2, 0));
+  const Eigen::Vector3d x = linear.col(0), y = linear.col(1), z = linear.col(2);
+  const double xx = squared_length(x), yy = squared_length(y), zz = squared_length(z);
+  const double xy = std::abs(dot(x, y)), yz = std::abs(dot(y, z)), zx = std::abs(dot(z, x));
   // Entries of the product are off by 3u of what they sum up, which no diagonal sum is less than.
   const double off = 16 * kUnitRoundoff * ((xx + yy) + zz);
   const double smallest = std::min({xx - (xy + zx), yy - (xy + yz), zz - (zx + yz)}) - off;
