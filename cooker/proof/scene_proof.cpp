@@ -74,16 +74,11 @@ class SceneWalk {
     return content;
   }
 
-  static std::optional<PlacementBounds> bounds_of(const Scene::Placed& placed) {
-    return placed.placement.bounds(root_box<double>(*placed.tree));
-  }
-
   Box<double> visit_leaf(std::uint32_t instance, const Box<float>& box) {
     if (reached_[instance]) add(Errc::kFaceRepeated, name(instance) + "is two leaves");
     reached_[instance] = true;
-    Errc error = Errc::kOk;
-    const std::optional<Scene::Placed> placed = scene_.place(instance, error);
-    const auto bounds = placed ? bounds_of(*placed) : std::nullopt;
+    const std::optional<Scene::Placed> placed = scene_.place(instance);
+    const auto bounds = placed ? placed->bounds() : std::nullopt;
     if (!bounds) return empty_box<double>();  // check_instance says why
     const Box<double> content = scene_.to_frame(bounds->world);
     check_box(name(instance) + "its leaf", content, box);
@@ -108,9 +103,8 @@ class SceneWalk {
       add(Errc::kRecordInvalid, name(instance) + "flags " + std::to_string(record.flags));
     }
     check_text(name(instance) + "its name", record.name_offset, record.name_bytes);
-    Errc error = Errc::kOk;
-    const std::optional<Scene::Placed> placed = scene_.place(instance, error);
-    const auto bounds = placed ? bounds_of(*placed) : std::nullopt;
+    const std::optional<Scene::Placed> placed = scene_.place(instance);
+    const auto bounds = placed ? placed->bounds() : std::nullopt;
     if (!bounds) {
       add(Errc::kRecordInvalid, name(instance) + "its tree, layer or pose");
     } else if (is_static && bounds->condition > scene_.record().condition) {

@@ -58,12 +58,12 @@ Result<InstanceInfo> Scene::info(std::uint32_t number) const {
     return Error{Errc::kInstanceIndex,
                  "instance " + std::to_string(number) + " of " + std::to_string(instance_count())};
   }
-  const InstanceRecord record = instance(number);
-  if (record.tree >= trees_.size() || record.layer >= layer_count()) {
+  const std::optional<InstanceRecord> record = record_of(number);
+  if (!record) {
     return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + ": its record"};
   }
-  return InstanceInfo{text(record.name_offset, record.name_bytes), record.tree, record.id,
-                      record.layer, find_moving(number) != nullptr};
+  return InstanceInfo{text(record->name_offset, record->name_bytes), record->tree, record->id,
+                      record->layer, find_moving(number) != nullptr};
 }
 
 Result<std::uint32_t> Scene::find_instance(std::string_view name) const {
@@ -117,26 +117,33 @@ std::string_view Scene::material_name(std::uint32_t number) const noexcept {
   return text(record.name_offset, record.name_bytes);
 }
 
-std::uint32_t Scene::layer_of(std::uint32_t number) const noexcept {
-  return instance(number).layer;
+std::optional<PlacementBounds> Scene::Placed::bounds() const noexcept {
+  return placement.bounds(root_box<double>(*tree));
 }
 
-std::optional<Scene::Placed> Scene::place(std::uint32_t number, Errc& error) const noexcept {
+std::optional<InstanceRecord> Scene::record_of(std::uint32_t number) const noexcept {
   const InstanceRecord record = instance(number);
-  if (record.tree < trees_.size() && record.layer < layer_count()) {
-    const Tree& tree = trees_[record.tree];
-    const Pose pose = stored_pose(number);
-    if (const std::optional<Placement> placement = Placement::make(tree, pose)) {
-      return Placed{&tree, pose, *placement, record.id, record.layer};
-    }
-  }
-  error = Errc::kRecordInvalid;
-  return std::nullopt;
+  if (record.tree >= trees_.size() || record.layer >= layer_count()) return std::nullopt;
+  return record;
 }
 
-std::optional<Scene::Placed> Scene::place_now(std::uint32_t number, Errc& error) const noexcept {
+std::optional<Scene::Placed> Scene::place(std::uint32_t number) const noexcept {
+  const std::optional<InstanceRecord> record = record_of(number);
+  return record ? place(number, *record) : std::nullopt;
+}
+
+std::optional<Scene::Placed> Scene::place(std::uint32_t number,
+                                          const InstanceRecord& record) const noexcept {
+  const Tree& tree = trees_[record.tree];
+  const Pose pose = stored_pose(number);
+  const std::optional<Placement> placement = Placement::make(tree, pose);
+  if (!placement) return std::nullopt;
+  return Placed{&tree, pose, *placement, record.id, record.layer};
+}
+
+std::optional<Scene::Placed> Scene::place_now(std::uint32_t number) const noexcept {
   const Moving* moving = find_moving(number);
-  return moving != nullptr ? moving->placed : place(number, error);
+  return moving != nullptr ? moving->placed : place(number);
 }
 
 bool Scene::is_detached(std::uint32_t number) const noexcept {

@@ -101,13 +101,19 @@ class Scene {
     Placement placement;  // by that pose
     std::uint32_t id;
     std::uint32_t layer;
+
+    /// Nothing when they are beyond reach.
+    [[nodiscard]] std::optional<PlacementBounds> bounds() const noexcept;
   };
-  /// The layer of an instance; layer_count() or more where its bytes are corrupt.
-  [[nodiscard]] std::uint32_t layer_of(std::uint32_t number) const noexcept;
-  /// An instance where the file has it. Nothing, and `error`, where its bytes are corrupt.
-  [[nodiscard]] std::optional<Placed> place(std::uint32_t number, Errc& error) const noexcept;
+  /// What the file says of an instance. Nothing where its tree or layer is not there.
+  [[nodiscard]] std::optional<InstanceRecord> record_of(std::uint32_t number) const noexcept;
+  /// An instance where the file has it. Nothing where its bytes are corrupt. Precondition of the
+  /// second: `record` is record_of(number).
+  [[nodiscard]] std::optional<Placed> place(std::uint32_t number) const noexcept;
+  [[nodiscard]] std::optional<Placed> place(std::uint32_t number,
+                                            const InstanceRecord& record) const noexcept;
   /// ... and where it is now, if it moves.
-  [[nodiscard]] std::optional<Placed> place_now(std::uint32_t number, Errc& error) const noexcept;
+  [[nodiscard]] std::optional<Placed> place_now(std::uint32_t number) const noexcept;
   [[nodiscard]] const SceneRecord& record() const noexcept { return top_.scene; }
   [[nodiscard]] const TopLevel& top_level() const noexcept { return top_; }
   [[nodiscard]] const MovingTree& moving_tree() const noexcept { return moving_tree_; }

@@ -6,7 +6,6 @@
 #include <boxtree/runtime/file/section.h>
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/scene/scene.h>
-#include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
 
@@ -157,13 +156,13 @@ Status Scene::bind_moving(const SceneOptions& options) {
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
   for (const std::uint32_t number : numbers) {
-    Errc error = Errc::kOk;
-    std::optional<Placed> placed = place(number, error);
-    if (!placed) return Error{error, "instance " + std::to_string(number) + ": its record"};
-    const auto bounds = placed->placement.bounds(root_box<double>(*placed->tree));
-    if (!bounds) {
-      return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + ": its pose"};
-    }
+    const auto corrupt = [number](const char* what) {
+      return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + what};
+    };
+    const std::optional<Placed> placed = place(number);
+    if (!placed) return corrupt(": its record");
+    const auto bounds = placed->bounds();
+    if (!bounds) return corrupt(": its pose");
     moving_.push_back({number, *placed, *bounds});
     condition_ = std::max(condition_, bounds->condition);
   }

@@ -106,11 +106,10 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
   const DefaultFloatState state;
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
-  Errc corrupt = Errc::kOk;
-  const std::optional<Scene::Placed> placed = scene.place_now(instance, corrupt);
-  if (!placed) return corrupt;
+  const std::optional<Scene::Placed> placed = scene.place_now(instance);
+  if (!placed) return Errc::kRecordInvalid;
   if (!asks_for_contacts(scene, placed->layer)) return Visit::kComplete;
-  const auto bounds = placed->placement.bounds(root_box<double>(*placed->tree));
+  const auto bounds = placed->bounds();
   if (!bounds) return Errc::kRecordInvalid;
   BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor);
   return outcome_of(walk_overlap(scene, body), body);

@@ -53,10 +53,10 @@ template <class Query>
 Errc walk_static(const Scene& scene, Query& query) {
   return query.walk(scene.top_level(), [&](std::uint32_t instance) {
     if (scene.is_detached(instance)) return true;
-    const std::uint32_t layer = scene.layer_of(instance);
-    const bool is_corrupt = layer >= scene.layer_count();  // place() says so
-    if (!is_corrupt && !query.admission.admits(layer)) return true;
-    const std::optional<Scene::Placed> placed = scene.place(instance, query.error);
+    const std::optional<InstanceRecord> record = scene.record_of(instance);
+    if (record && !query.admission.admits(record->layer)) return true;
+    const auto placed = record ? scene.place(instance, *record) : std::nullopt;
+    if (!placed) query.error = Errc::kRecordInvalid;
     return placed && query.visit(instance, *placed);
   });
 }

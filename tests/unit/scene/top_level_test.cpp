@@ -33,10 +33,8 @@ class Level {
         scene_(test::require(Scene::bind(cooked_.file))),
         random_(seed) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      Errc error = Errc::kOk;
-      const auto placed = scene_.place(i, error);
-      boxes_.push_back(scene_.to_frame(
-          placed.value().placement.bounds(root_box<double>(*placed->tree)).value().world));
+      const auto placed = scene_.place(i);
+      boxes_.push_back(scene_.to_frame(placed.value().bounds().value().world));
     }
   }
 
