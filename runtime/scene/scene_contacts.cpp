@@ -29,7 +29,7 @@ struct BodyInScene {
     return boxes_overlap(box, in_frame);
   }
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, in_frame, instances);
+    return walk_top_level(top, instances, in_frame);
   }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {

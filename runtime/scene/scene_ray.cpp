@@ -51,7 +51,7 @@ struct SceneRayQuery {
     return in_frame.slab.key(box, in_frame.s_min);
   }
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, in_frame, s_max, instances);
+    return walk_top_level(top, instances, in_frame, s_max);
   }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {

@@ -56,7 +56,7 @@ struct WorldBox {
     return boxes_overlap(box, in_frame);
   }
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, in_frame, instances);
+    return walk_top_level(top, instances, in_frame);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
     const PlacedBoxQuery query{placed.placement.to_world(), world};
@@ -89,7 +89,7 @@ struct WorldSphere {
     return squared_distance(center_in_frame, box) <= squared_radius_in_frame;
   }
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, center_in_frame, squared_radius_in_frame, instances);
+    return walk_top_level(top, instances, center_in_frame, squared_radius_in_frame);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
     const Placement& placement = placed.placement;
@@ -125,7 +125,7 @@ struct PointInScene {
     return squared_distance(point_in_frame, box);
   }
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, point_in_frame, best_in_frame, instances);
+    return walk_top_level(top, instances, point_in_frame, best_in_frame);
   }
   void set_bound() noexcept {
     best_in_frame = frame_bound(admission.scene, std::sqrt(best), scene_margin);

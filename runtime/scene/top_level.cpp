@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Walks of the top level of a scene, one child at a time.
-#include <boxtree/configuration.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/scene/top_level_walk.h>
@@ -47,16 +46,6 @@ struct InstancesOnRay : Instances {
   }
 };
 
-// Only where there are vectors is there a walk by them to link.
-template <bool kByVectors, class... Asked>
-Errc walk(const TopLevel& top, InstanceVisitor visit, const Asked&... asked) {
-  if constexpr (kByVectors) {
-    return walk_wide(top, asked..., visit);
-  } else {
-    return walk_top_level_plainly(top, asked..., visit);
-  }
-}
-
 }  // namespace
 
 Errc walk_top_level_plainly(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
@@ -74,20 +63,6 @@ Errc walk_top_level_plainly(const TopLevel& top, const TopLevelRay& ray, const d
                             InstanceVisitor visit) {
   InstancesOnRay query{{top, visit}, ray, bound};
   return traverse_nearest(top, top.codec, query);
-}
-
-Errc walk_top_level(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  return walk<kWalksByVectors>(top, visit, box);
-}
-
-Errc walk_top_level(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                    InstanceVisitor visit) {
-  return walk<kWalksByVectors>(top, visit, point, bound);
-}
-
-Errc walk_top_level(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                    InstanceVisitor visit) {
-  return walk<kWalksByVectors>(top, visit, ray, bound);
 }
 
 }  // namespace boxtree

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 
+#include <boxtree/configuration.h>
 #include <boxtree/format/error.h>
 #include <boxtree/runtime/query/ray_slab.h>
 #include <boxtree/runtime/query/types.h>
@@ -25,29 +26,32 @@ struct TopLevelRay {
   double s_min;
 };
 
-/// Each visits all instances whose boxes meet what is asked for, and maybe some that only nearly
-/// do. From near to far for points and rays: `bound`, a squared distance or a parameter, is read
-/// again after each visit, which may lower it; instances beyond it are left out, those at it are
-/// not. Boxes, points and rays are of the scene's frame.
-/// Errors: kNodeCorrupt, kDepthExceeded for corrupt nodes.
-Errc walk_top_level(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
-Errc walk_top_level(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                    InstanceVisitor visit);
-Errc walk_top_level(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                    InstanceVisitor visit);
-
-/// The same without vectors.
+/// The walks one child at a time; see walk_top_level.
 Errc walk_top_level_plainly(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
 Errc walk_top_level_plainly(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                             InstanceVisitor visit);
 Errc walk_top_level_plainly(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                             InstanceVisitor visit);
 
-/// The same by vectors, where that is possible.
+/// The same by vectors, where there are any.
 Errc walk_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
 Errc walk_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                InstanceVisitor visit);
 Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                InstanceVisitor visit);
+
+/// Visits all instances whose boxes meet what is asked for, and maybe some that only nearly do.
+/// `asked`, in the scene's frame: a box; or a point or a ray, and a bound, a squared distance or a
+/// parameter: then from near to far. The bound is read again after each visit, which may lower it;
+/// instances beyond it are left out, those at it are not.
+/// Errors: kNodeCorrupt, kDepthExceeded for corrupt nodes.
+template <class... Asked>
+Errc walk_top_level(const TopLevel& top, InstanceVisitor visit, const Asked&... asked) {
+  if constexpr (kWalksByVectors) {
+    return walk_wide(top, asked..., visit);
+  } else {
+    return walk_top_level_plainly(top, asked..., visit);
+  }
+}
 
 }  // namespace boxtree

@@ -35,56 +35,36 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, con
   return walk_top_level_plainly(top, ray, bound, visit);
 }
 #else
-// Queries of NearestWalk.
-struct Instances {
-  InstanceVisitor visit;
+// What is asked about, against boxes: the query of NearestWalk below says what `meet` answers.
+// `limit_of(bound)` is a float that no key is above unless it is above the bound.
+struct AskedBox {
+  BoxBounds bounds;
 
-  void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
-  bool leaf(std::uint32_t number) const { return visit(number); }
-};
-
-// All keys are alike: in no promised order.
-struct InstancesInBox : Instances {
-  BoxBounds asked;
-
-  [[nodiscard]] float bound() const { return 0; }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+  // All keys are alike: in no promised order.
+  [[nodiscard]] static float limit_of(double /*bound*/) { return 0; }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float /*limit*/, FloatVector& key) const {
     key = hn::Zero(Floats());
-    return asked.judge(boxes).touched;
+    return bounds.judge(boxes).touched;
   }
 };
 
-struct InstancesNearPoint : Instances {
-  const PointFilter& point;
-  const double& best;
-  float limit;  // of keys, by `best`
+struct AskedPoint {
+  PointFilter point;
 
-  [[nodiscard]] float bound() const { return limit; }
-  bool leaf(std::uint32_t number) {
-    const bool go_on = visit(number);
-    limit = PointFilter::above(best);
-    return go_on;
-  }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+  [[nodiscard]] static float limit_of(double bound) { return PointFilter::above(bound); }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
     key = nearest_squared(point, boxes);
-    return bits_of(hn::Le(key, hn::Set(Floats(), bound())));
+    return bits_of(hn::Le(key, hn::Set(Floats(), limit)));
   }
 };
 
-struct InstancesOnRay : Instances {
-  const RayBoxFilter& ray;
-  const double& s_max;
-  float limit;  // of keys, by `s_max`
+struct AskedRay {
+  RayBoxFilter ray;
 
-  [[nodiscard]] float bound() const { return limit; }
-  bool leaf(std::uint32_t number) {
-    const bool go_on = visit(number);
-    limit = ray.bound(s_max);
-    return go_on;
-  }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+  [[nodiscard]] float limit_of(double bound) const { return ray.bound(bound); }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
     const Floats d;
-    FloatVector leave = hn::Set(d, bound());
+    FloatVector leave = hn::Set(d, limit);
     key = hn::Zero(d);
     for (std::size_t k = 0; k < 3; ++k) {
       const bool from_high = ray.near_high[k] != 0;
@@ -100,22 +80,46 @@ struct InstancesOnRay : Instances {
   }
 };
 
-template <class Query>
-Errc walk(const TopLevel& top, Query& query) {
-  return NearestWalk<Wide8Node, Query>(top.codec, query).run(root_box<float>(top));
+// The query of NearestWalk whose leaves are instances.
+template <class Asked>
+class Instances {
+ public:
+  Instances(const Asked& asked, const double& bound, InstanceVisitor visit)
+      : asked_(asked), best_(bound), limit_(asked.limit_of(bound)), visit_(visit) {}
+
+  [[nodiscard]] float bound() const { return limit_; }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+    return asked_.meet(boxes, limit_, key);
+  }
+  void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
+  bool leaf(std::uint32_t number) {
+    const bool go_on = visit_(number);
+    limit_ = asked_.limit_of(best_);
+    return go_on;
+  }
+
+ private:
+  const Asked& asked_;
+  const double& best_;  // a visit may lower it
+  float limit_;         // of keys
+  InstanceVisitor visit_;
+};
+
+template <class Asked>
+Errc walk(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit) {
+  Instances<Asked> instances(asked, bound, visit);
+  return NearestWalk<Wide8Node, Instances<Asked>>(top.codec, instances).run(root_box<float>(top));
 }
 
 Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  InstancesInBox query{{visit}, {}};
-  for (std::size_t k = 0; k < 3; ++k) query.asked.set(k, box.low[k], box.high[k], 0);
-  return walk(top, query);
+  AskedBox asked;
+  for (std::size_t k = 0; k < 3; ++k) asked.bounds.set(k, box.low[k], box.high[k], 0);
+  return walk(top, asked, 0, visit);
 }
 
 Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  const PointFilter filter(reach_of(top), point);
-  InstancesNearPoint query{{visit}, filter, bound, PointFilter::above(bound)};
-  return walk(top, query);
+  return walk(top, AskedPoint{PointFilter(reach_of(top), point)}, bound, visit);
 }
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
@@ -123,8 +127,7 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const d
   const RayBoxFilter filter(
       ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
       RayBoxFilter::rounding(reach_of(top)) + RayBoxFilter::given_away(ray.origin, ray.reach));
-  InstancesOnRay query{{visit}, filter, bound, filter.bound(bound)};
-  return walk(top, query);
+  return walk(top, AskedRay{filter}, bound, visit);
 }
 #endif
 

@@ -105,7 +105,7 @@ struct Tally {
     const Numbers plainly = visited(
         [&](InstanceVisitor visit) { return walk_top_level_plainly(top, asked..., visit); });
     const Numbers fast =
-        visited([&](InstanceVisitor visit) { return walk_top_level(top, asked..., visit); });
+        visited([&](InstanceVisitor visit) { return walk_top_level(top, visit, asked...); });
     ASSERT_TRUE(holds(plainly, expected));
     ASSERT_TRUE(holds(fast, expected));
     ASSERT_TRUE(holds(fast, plainly));
@@ -203,12 +203,12 @@ TEST_P(TopLevelWalk, FollowsABoundThatShrinks) {
     plain += visits;
     bound = kInfinity;
     visits = 0;
-    ASSERT_EQ(walk_top_level(level.top(), at, bound, visit), Errc::kOk);
+    ASSERT_EQ(walk_top_level(level.top(), visit, at, bound), Errc::kOk);
     EXPECT_EQ(bound, nearest);
     walked += visits;
     std::size_t once = 0;
     const auto stop = [&](std::uint32_t /*instance*/) { return ++once == 0; };
-    ASSERT_EQ(walk_top_level(level.top(), at, bound, stop), Errc::kOk);
+    ASSERT_EQ(walk_top_level(level.top(), stop, at, bound), Errc::kOk);
     EXPECT_EQ(once, 1u);
   }
   EXPECT_LE(walked, plain + plain / 20);
