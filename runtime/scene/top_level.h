@@ -5,7 +5,7 @@
 
 #include <boxtree/format/codec_wide.h>
 #include <boxtree/format/scene_record.h>
-#include <boxtree/runtime/tree/frame.h>
+#include <boxtree/runtime/tree/float_range.h>
 
 namespace boxtree {
 
@@ -18,6 +18,10 @@ struct TopLevel {
 
   [[nodiscard]] bool empty() const noexcept { return scene.root == RootKind::kEmpty; }
   [[nodiscard]] bool has_nodes() const noexcept { return scene.root == RootKind::kSubtree; }
+  /// Whether it has nodes that filters in single precision may be used for.
+  [[nodiscard]] bool has_float_nodes() const noexcept {
+    return has_nodes() && is_in_float_range({scene.root_low, scene.root_high});
+  }
   [[nodiscard]] const SceneRecord& record() const noexcept { return scene; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {0, 0}; }
   /// The instance that a leaf is.

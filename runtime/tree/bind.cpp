@@ -4,6 +4,7 @@
 #include <string>
 
 #include <boxtree/runtime/file/section.h>
+#include <boxtree/runtime/tree/float_range.h>
 #include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree {
@@ -45,6 +46,7 @@ Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
   Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
   if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
   codec_ = *codec;
+  has_float_nodes_ = is_in_float_range({record_.root_low, record_.root_high});
   return {};
 }
 

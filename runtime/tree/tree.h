@@ -75,6 +75,8 @@ class Tree {
   [[nodiscard]] bool empty() const noexcept { return record_.root == RootKind::kEmpty; }
   /// Whether the root is a node: not so for trees without faces, or of one leaf.
   [[nodiscard]] bool has_nodes() const noexcept { return record_.root == RootKind::kSubtree; }
+  /// Whether it has nodes that filters in single precision may be used for; see float_range.h.
+  [[nodiscard]] bool has_float_nodes() const noexcept { return has_float_nodes_; }
   [[nodiscard]] bool has_face_ids() const noexcept;
 
   /// The root with its stored box. Precondition: !empty().
@@ -117,6 +119,7 @@ class Tree {
   AnyCodec codec_;
   const std::byte* face_ids_ = nullptr;
   LeafReader leaves_;
+  bool has_float_nodes_ = false;
 };
 
 }  // namespace boxtree

@@ -62,7 +62,7 @@ HWY_EXPORT(walk_box);
 }  // namespace
 
 Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk) {
-  if (tree.has_nodes()) {
+  if (tree.has_float_nodes()) {
     return HWY_DYNAMIC_DISPATCH(walk_box)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

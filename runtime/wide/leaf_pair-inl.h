@@ -72,11 +72,13 @@ struct PreparedLeaf {
   }
 };
 
-/// Whether three points all lie above or all below a plane, beyond doubt, in each lane. Let u =
+/// Whether three points all lie provably above or all below a plane, in each lane. Let u =
 /// 2^-24, c = `plane_error` and e = `point_error` of corners, L = `length` of the plane's triangle,
 /// W the largest component of the vectors from its corner to the points. A component of the normal,
 /// at most 2 L^2, is off by 16 (c + u L) L and one of these vectors by c + e + u W, so a height by
-/// 64 (c + u L) L W + 8 L^2 (c + e + 4 u W), roundings of the sum included.
+/// 64 (c + u L) L W + 8 L^2 (c + e + 4 u W), roundings of the sum included. All coordinates are at
+/// most kFloatReach, so nothing overflows; underflow takes 2^-149 from a component of the normal,
+/// which the vector multiplies by less than 2^42, and less from all else.
 HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector length,
                                          float plane_error, const Vector3 (&w)[3],
                                          float point_error) {
@@ -87,7 +89,9 @@ HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector leng
   const FloatVector blur = hn::MulAdd(hn::Set(d, 64 * kUnit), length, hn::Set(d, 64 * plane_error));
   const FloatVector spread =
       hn::MulAdd(hn::Set(d, 32 * kUnit), away, hn::Set(d, 8 * (plane_error + point_error)));
-  const FloatVector doubt = hn::Mul(length, hn::MulAdd(blur, away, hn::Mul(length, spread)));
+  constexpr float kUnderflow = 0x1p-100f;
+  const FloatVector doubt = hn::MulAdd(length, hn::MulAdd(blur, away, hn::Mul(length, spread)),
+                                       hn::Set(d, kUnderflow));
   return hn::Or(hn::Gt(hn::Min(h0, hn::Min(h1, h2)), doubt),
                 hn::Lt(hn::Max(h0, hn::Max(h1, h2)), hn::Neg(doubt)));
 }

@@ -21,7 +21,7 @@ namespace {
 
 #if HWY_TARGET == HWY_SCALAR
 Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
-                        PairVisitor visitor) {
+                        const PairFilter& /*filter*/, PairVisitor visitor) {
   return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
 }
 #else
@@ -101,9 +101,10 @@ template <class Node>
 class WidePairWalk {
  public:
   WidePairWalk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
-               const WideCodec<Node>& second_codec, const RelativePose& pose, PairVisitor visitor)
+               const WideCodec<Node>& second_codec, const RelativePose& pose,
+               const PairFilter& filter, PairVisitor visitor)
       : codec_{&first_codec, &second_codec},
-        filter_(first, second, pose),
+        filter_(filter),
         map_{&filter_.to_second, &filter_.to_first},
         leaves_(first, second, pose, filter_, visitor),
         unmet_(most_pairs(first.record(), second.record())) {}
@@ -229,8 +230,7 @@ class WidePairWalk {
       outside = hn::Max(outside, hn::Sub(hn::Abs(image_center), image_half));
     }
     hn::Store(hn::Max(hn::Zero(d), hn::Add(outside, hn::Set(d, 2 * other.extent()))), d, key);
-    // What overflowed is no number, and keeps nothing apart.
-    return bits_of(hn::Not(hn::Gt(outside, hn::Zero(d))));
+    return bits_of(hn::Le(outside, hn::Zero(d)));
   }
 
   static NodeRef leaf_of(std::uint32_t first, const WideCodec<Node>& codec) {
@@ -243,7 +243,7 @@ class WidePairWalk {
   }
 
   const WideCodec<Node>* codec_[2];
-  const PairFilter filter_;
+  const PairFilter& filter_;
   const FloatMap* map_[2];  // from each tree's space to the other's
   LeafPairs leaves_;
   std::uint64_t unmet_;
@@ -257,14 +257,14 @@ class WidePairWalk {
 template <class Node>
 Result<Visit> walk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
                    const WideCodec<Node>& second_codec, const RelativePose& pose,
-                   PairVisitor visitor) {
-  return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, visitor)
+                   const PairFilter& filter, PairVisitor visitor) {
+  return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, filter, visitor)
       .run(root_box<float>(first), root_box<float>(second));
 }
 Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
-                        PairVisitor visitor) {
+                        const PairFilter& filter, PairVisitor visitor) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
-    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, visitor);
+    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, filter, visitor);
   });
 }
 #endif
@@ -283,8 +283,11 @@ HWY_EXPORT(walk_pair);
 
 Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
                               PairVisitor visitor) {
-  if (first.has_nodes() && second.has_nodes()) {
-    return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, visitor);
+  if (first.has_float_nodes() && second.has_float_nodes()) {
+    const PairFilter filter(first, second, pose);
+    if (filter.is_in_range()) {
+      return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, filter, visitor);
+    }
   }
   return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
 }

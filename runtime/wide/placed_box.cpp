@@ -27,11 +27,13 @@ Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
 #else
 // The boxes and corners of a placed tree as hulls in the world, seen from the middle of the box
 // that is asked about, widened by what float loses: of the rows of the map, its products and sums,
-// and of triangles that were rounded; less than 16 roundings of the largest sum.
+// and of triangles that were rounded; less than 16 roundings of the largest sum. World coordinates
+// themselves are rounded to double, where they are, not seen from the box: less than 8 roundings.
 class PlacedBoxFilter {
  public:
   PlacedBoxFilter(const Tree& tree, const PlacedBoxQuery& query) {
     constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
+    constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
     const Eigen::Vector3d reach = reach_of(tree);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
@@ -43,7 +45,8 @@ class PlacedBoxFilter {
         linear_[k][j] = static_cast<float>(factor);
         terms += std::abs(factor) * reach[static_cast<Eigen::Index>(j)];
       }
-      const double error = 16 * kUnit * terms + double{std::numeric_limits<float>::min()};
+      const double placed = std::abs(query.to_world.translation[row]) + terms;
+      const double error = 16 * kUnit * terms + 8 * kUnitDouble * placed + kFloatUnderflow;
       offset_[k] = static_cast<float>(offset);
       bounds_.set(k, query.box.low[k] - middle, query.box.high[k] - middle, error);
     }
@@ -102,22 +105,22 @@ namespace {
 
 HWY_EXPORT(walk_placed_box);
 
-// Whether no sum of the filter leaves the numbers that float counts with ease.
-bool is_for_vectors(const Tree& tree, const PlacedBoxQuery& query) {
-  constexpr double kLargest = 0x1p60;
-  double largest = reach_of(tree).maxCoeff();
+// Whether no product or sum of the filter overflows: coordinates are at most kFloatReach.
+bool is_in_range(const Tree& tree, const PlacedBoxQuery& query) {
+  constexpr double kLargest = 0x1p80;
+  double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     largest = std::max({largest, std::abs(query.box.low[k]), std::abs(query.box.high[k]),
                         std::abs(query.to_world.translation[static_cast<Eigen::Index>(k)])});
   }
   const double factor = query.to_world.linear.cwiseAbs().maxCoeff();
-  return tree.has_nodes() && largest <= kLargest && factor <= kLargest;
+  return tree.has_float_nodes() && largest <= kLargest && factor <= kLargest;
 }
 
 }  // namespace
 
 Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk) {
-  if (is_for_vectors(tree, walk.shape)) {
+  if (is_in_range(tree, walk.shape)) {
     return HWY_DYNAMIC_DISPATCH(walk_placed_box)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

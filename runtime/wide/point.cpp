@@ -125,7 +125,7 @@ HWY_EXPORT(walk_point);
 }  // namespace
 
 Errc walk_wide(const Tree& tree, PointQuery& query) {
-  if (tree.has_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), query.point)) {
+  if (tree.has_float_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), query.point)) {
     return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
   }
   return traverse_nearest(tree, ErasedCodec{&tree}, query);

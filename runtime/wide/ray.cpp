@@ -212,7 +212,7 @@ HWY_EXPORT(walk_ray);
 }  // namespace
 
 Errc walk_wide(const Tree& tree, RayQuery& query) {
-  if (tree.has_nodes() && RayFilter::is_near(query))
+  if (tree.has_float_nodes() && RayFilter::is_near(query))
     return HWY_DYNAMIC_DISPATCH(walk_ray)(tree, query);
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }

@@ -146,14 +146,14 @@ HWY_EXPORT(walk_ray);
 }  // namespace
 
 Errc walk_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  if (!top.has_nodes()) return walk_top_level_plainly(top, box, visit);
+  if (!top.has_float_nodes()) return walk_top_level_plainly(top, box, visit);
   if (!boxes_overlap(root_box<float>(top), box)) return Errc::kOk;
   return HWY_DYNAMIC_DISPATCH(walk_box)(top, box, visit);
 }
 
 Errc walk_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                InstanceVisitor visit) {
-  if (!top.has_nodes() || !PointFilter::is_near(reach_of(top), point)) {
+  if (!top.has_float_nodes() || !PointFilter::is_near(reach_of(top), point)) {
     return walk_top_level_plainly(top, point, bound, visit);
   }
   if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
@@ -167,7 +167,7 @@ Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
   // decides.
   const bool is_near = ray.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach &&
                        RayBoxFilter::given_away(ray.origin, ray.reach) <= reach;
-  if (!top.has_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
+  if (!top.has_float_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;
   return HWY_DYNAMIC_DISPATCH(walk_ray)(top, ray, enter, bound, visit);
