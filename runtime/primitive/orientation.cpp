@@ -1,16 +1,63 @@
 // SPDX-License-Identifier: MIT
 // The exact half of the orientation predicates: expansion arithmetic of fixed size on the stack.
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include <boxtree/runtime/primitive/expansion.h>
 #include <boxtree/runtime/primitive/orientation.h>
+#include <boxtree/runtime/primitive/wide_integer.h>
 
 namespace boxtree {
 namespace {
 
-template <class Vector>
-double largest_magnitude(const Vector& v) {
-  return v.cwiseAbs().maxCoeff();
+// The largest magnitude of some coordinates, and the least but for zero.
+struct Magnitudes {
+  template <class Vector>
+  void include(const Vector& v) noexcept {
+    for (Eigen::Index k = 0; k < v.size(); ++k) {
+      const double x = std::abs(v[k]);
+      largest = std::max(largest, x);
+      if (x > 0) least = std::min(least, x);
+    }
+  }
+
+  // Whether errors of products of three, scaled by safe_scale, are doubles: scaled coordinates are
+  // then multiples of 2^-350, and their products of 2^-1050.
+  [[nodiscard]] bool are_for_expansions() const noexcept {
+    constexpr double kRatio = 0x1p-497;  // 2^-550 times the 53 bits of a double
+    return least >= kRatio * largest;
+  }
+
+  double largest = 0;
+  double least = std::numeric_limits<double>::infinity();
+};
+
+// Signs where exponents are farther apart than that.
+int orient3d_wide(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
+                  const Eigen::Vector3d& d) noexcept {
+  std::array<std::array<WideDifference, 3>, 3> v;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    v[0][k] = wide_difference(a[axis], d[axis]);
+    v[1][k] = wide_difference(b[axis], d[axis]);
+    v[2][k] = wide_difference(c[axis], d[axis]);
+  }
+  const auto term = [&v](std::size_t i) {
+    const auto& p = v[(i + 1) % 3];
+    const auto& q = v[(i + 2) % 3];
+    return (p[0] * q[1] - q[0] * p[1]) * v[i][2];
+  };
+  return ((term(0) + term(1)) + term(2)).sign();
+}
+
+int orient2d_wide(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
+                  const Eigen::Vector2d& c) noexcept {
+  return (wide_difference(a[0], c[0]) * wide_difference(b[1], c[1]) -
+          wide_difference(a[1], c[1]) * wide_difference(b[0], c[0]))
+      .sign();
 }
 
 // x1 y2 - x2 y1
@@ -38,8 +85,10 @@ struct ExactMinor {
 int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                    const Eigen::Vector3d& d) noexcept {
   if (a == d || b == d || c == d || a == b || b == c || c == a) return 0;  // neighbours in a mesh
-  const double scale = safe_scale(std::max(
-      {largest_magnitude(a), largest_magnitude(b), largest_magnitude(c), largest_magnitude(d)}));
+  Magnitudes magnitudes;
+  for (const Eigen::Vector3d* v : {&a, &b, &c, &d}) magnitudes.include(*v);
+  if (!magnitudes.are_for_expansions()) return orient3d_wide(a, b, c, d);
+  const double scale = safe_scale(magnitudes.largest);
   const auto difference = [scale, &d](const Eigen::Vector3d& v, Eigen::Index axis) {
     return exact_difference(scale * v[axis], scale * d[axis]);
   };
@@ -66,8 +115,10 @@ int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
 
 int orient2d_exact(const Eigen::Vector2d& a, const Eigen::Vector2d& b,
                    const Eigen::Vector2d& c) noexcept {
-  const double scale =
-      safe_scale(std::max({largest_magnitude(a), largest_magnitude(b), largest_magnitude(c)}));
+  Magnitudes magnitudes;
+  for (const Eigen::Vector2d* v : {&a, &b, &c}) magnitudes.include(*v);
+  if (!magnitudes.are_for_expansions()) return orient2d_wide(a, b, c);
+  const double scale = safe_scale(magnitudes.largest);
   const auto difference = [scale, &c](const Eigen::Vector2d& v, Eigen::Index axis) {
     return exact_difference(scale * v[axis], scale * c[axis]);
   };

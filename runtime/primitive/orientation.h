@@ -35,7 +35,7 @@ inline constexpr double kOrientUnderflow = 0x1p-860;
 
 /// Sign (-1, 0, +1) of the volume of the tetrahedron a, b, c, d: positive when d lies below the
 /// plane through a, b, c seen counter-clockwise from above.
-/// Exact for all coordinates up to 2^200 that are multiples of 2^-550 times the largest of them.
+/// Exact for all coordinates up to 2^200.
 [[nodiscard]] inline int orient3d(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
                                   const Eigen::Vector3d& c, const Eigen::Vector3d& d) noexcept {
   const double ax = a[0] - d[0], ay = a[1] - d[1], az = a[2] - d[2];

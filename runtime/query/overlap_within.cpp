@@ -79,32 +79,6 @@ Result<Visit> walk(const Tree& first, const Tree& second, Watch& watch, PairVisi
       .run();
 }
 
-// Whether a triangle and a box share a point, exactly: a corner is inside, or the triangle meets
-// one of the twelve that the sides are made of.
-bool touches_exactly(const Triangle& triangle, const Eigen::Vector3d& low,
-                     const Eigen::Vector3d& high) noexcept {
-  if (!triangle_intersects_box(triangle, low, high)) return false;  // never by mistake
-  for (const Eigen::Vector3d& c : triangle.corner) {
-    if ((c.array() >= low.array()).all() && (c.array() <= high.array()).all()) return true;
-  }
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const Eigen::Index u = (axis + 1) % 3;
-    const Eigen::Index v = (axis + 2) % 3;
-    for (const Eigen::Vector3d& from : {low, high}) {
-      std::array<Eigen::Vector3d, 4> side{from, from, from, from};
-      side[0][u] = side[3][u] = low[u];
-      side[1][u] = side[2][u] = high[u];
-      side[0][v] = side[1][v] = low[v];
-      side[2][v] = side[3][v] = high[v];
-      if (triangles_intersect(triangle, {{side[0], side[1], side[2]}}) ||
-          triangles_intersect(triangle, {{side[0], side[2], side[3]}})) {
-        return true;
-      }
-    }
-  }
-  return false;
-}
-
 // A box among the nodes of one tree, in tree space.
 struct BoxSearch {
   const Tree& tree;
@@ -149,7 +123,7 @@ struct BoxSearch {
       const Triangle triangle = batch.triangle(i);
       const Box<double> bounds = bounds_of(triangle);
       if (!box.overlaps(bounds)) continue;
-      if (!touches_exactly(triangle, box.low, box.high)) {
+      if (!triangle_intersects_box(triangle, box.low, box.high)) {
         const Eigen::Vector3d& c = triangle.corner[0];
         const std::array<double, 3> corner{c[0], c[1], c[2]};
         if (!(farthest(Box<double>{corner, corner}) < distance)) continue;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <tests/unit/primitive/exact_simplex.h>
 #include <tests/unit/primitive/triangle_cases.h>
 
@@ -10,6 +11,7 @@
 
 #include <boxtree/runtime/primitive/expansion.h>
 #include <boxtree/runtime/primitive/orientation.h>
+#include <boxtree/runtime/primitive/wide_integer.h>
 
 namespace boxtree {
 namespace {
@@ -119,6 +121,56 @@ TEST(Expansion, SumsAndProductsAreExact) {
     const auto factored = exact_difference(x, -y) * exact_difference(x, y);
     ASSERT_EQ((factored - square).sign(), 0);
     ASSERT_EQ((factored - square + exact_product(1, 1)).sign(), 1);
+  }
+}
+
+// Each axis scaled by a power of its own: no sign changes, but products of three underflow where
+// expansions could not hold them.
+TEST(Orient3d, AxesMayDifferByAnyPower) {
+  test::TriangleCases cases(0x3a9, 64);
+  std::array<int, 3> seen{};
+  for (int i = 0; i < kCases; ++i) {
+    const Triangle t = cases.triangle(1 << 12);
+    const Eigen::Vector3d d = near_plane(cases, t);
+    const auto& c = t.corner;
+    const int expected =
+        test::determinant_sign(difference(c[0], d), difference(c[1], d), difference(c[2], d));
+    ++seen[static_cast<std::size_t>(expected + 1)];
+    const auto power = [&] {
+      return std::ldexp(1.0, static_cast<int>(cases.integer(-1074, i % 2 == 0 ? 180 : -1000)));
+    };
+    const Eigen::Vector3d scale(power(), power(), power());
+    const auto scaled = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
+      return v.cwiseProduct(scale);
+    };
+    ASSERT_EQ(orient3d(scaled(c[0]), scaled(c[1]), scaled(c[2]), scaled(d)), expected) << i;
+    const auto flat = [&](const Eigen::Vector3d& v) -> Eigen::Vector2d { return v.head<2>(); };
+    const int turn = orient2d(flat(c[0]), flat(c[1]), flat(c[2]));
+    ASSERT_EQ(orient2d(flat(scaled(c[0])), flat(scaled(c[1])), flat(scaled(c[2]))), turn) << i;
+  }
+  for (const int count : seen) EXPECT_GT(count, kCases / 10);
+}
+
+TEST(WideInteger, DifferencesAndProductsAreExact) {
+  const double least = std::numeric_limits<double>::denorm_min();
+  const double large = 0x1p200;
+  EXPECT_EQ(wide_integer(0.0).sign(), 0);
+  EXPECT_EQ(wide_integer(least).sign(), 1);
+  EXPECT_EQ(wide_integer(-least).sign(), -1);
+  EXPECT_EQ((wide_difference(large, least) - wide_integer(large)).sign(), -1);
+  EXPECT_EQ((wide_difference(large, least) - wide_integer(large) + wide_integer(least)).sign(), 0);
+  // (2^200 + 2^-1074)(2^200 - 2^-1074) = 2^400 - 2^-2148.
+  const auto sum = wide_integer(large) + wide_integer(least);
+  const auto product = sum * wide_difference(large, least);
+  const auto square = wide_integer(large) * wide_integer(large);
+  EXPECT_EQ((product - square + wide_integer(least) * wide_integer(least)).sign(), 0);
+  EXPECT_EQ((product - square).sign(), -1);
+  // Every place of the mantissa: two neighbours differ by one unit.
+  for (int e = -1074; e <= 199; ++e) {
+    const double x = std::ldexp(1.0, e);
+    const double next = std::nextafter(x, large * 2);
+    EXPECT_EQ((wide_difference(next, x) - wide_integer(next - x)).sign(), 0) << e;
+    EXPECT_EQ((wide_integer(x) + wide_integer(x) - wide_integer(2 * x)).sign(), 0) << e;
   }
 }
 
