@@ -18,7 +18,11 @@
 
 namespace boxtree {
 
-/// A point of the world and the best that was found there, for the exact test of placed triangles.
+/// Squares of lengths below this are subnormal: bounds are wider by so much.
+inline constexpr double kLengthUnderflow = 0x1p-500;
+
+/// A point of the space in which triangles are placed (the world, or the units of a scene) and the
+/// best that was found there, for the exact test.
 struct PlacedPoint {
   AffineMap to_world;     // from tree space
   Eigen::Vector3d point;  // world
@@ -29,7 +33,7 @@ struct PlacedPoint {
   /// No point of tree space whose squared distance is larger can be as near as `best`.
   [[nodiscard]] double bound_in_tree() const noexcept {
     constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
-    const double reach = (std::sqrt(best) + error) / least_stretch;
+    const double reach = (std::sqrt(best) + error) / least_stretch + kLengthUnderflow;
     return least_stretch > 0 ? reach * reach * (1 + 16 * kUnit)
                              : std::numeric_limits<double>::infinity();
   }
@@ -81,7 +85,8 @@ struct PointQuery {
     if (approximation != nullptr) note_lower(triangle, closest, std::min(distance, best));
     const FaceRef face = face_ref(tree, face_order);
     if (distance > best) return;
-    if (found && distance == best && !comes_before(face, found->face)) return;
+    if (found && distance == best && !comes_before(face, half, found->face, found->triangle))
+      return;
     best = approximation == nullptr ? distance : enough(distance);
     found = ClosestPoint{closest, distance, face, half};
   }
@@ -94,7 +99,10 @@ struct PointQuery {
     const double distance = squared_length(closest - placed->point);
     if (distance > placed->best) return;
     const FaceRef face = face_ref(tree, face_order);
-    if (found && distance == placed->best && !comes_before(face, found->face)) return;
+    if (found && distance == placed->best &&
+        !comes_before(face, half, found->face, found->triangle)) {
+      return;
+    }
     placed->best = distance;
     best = placed->bound_in_tree();
     found = ClosestPoint{closest, distance, face, half};

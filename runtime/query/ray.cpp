@@ -36,7 +36,7 @@ Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool st
       with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (query.hit) query.hit->t = RayQuery::scaled(query.hit->t, -query.parameter_exponent);
+  if (query.hit) query.hit->t = parameter_of(ray, query.hit->t, query.parameter_exponent);
   return query.hit;
 }
 

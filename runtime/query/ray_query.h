@@ -69,7 +69,7 @@ struct RayQuery {
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
     const FaceRef face = face_ref(tree, face_order);
-    if (hit && t == hit->t && !comes_before(face, hit->face)) return;
+    if (hit && t == hit->t && !comes_before(face, half, hit->face, hit->triangle)) return;
     hit = RayHit{t, face, half, found->u, found->v};
     t_max = t;
   }
@@ -87,6 +87,12 @@ struct RayQuery {
   Errc error = Errc::kOk;
   TriangleBatch batch;
 };
+
+/// A parameter of the query in those of the ray. Kept within the ray's own interval, as conversion
+/// may underflow: for a subnormal direction, say.
+[[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {
+  return std::clamp(RayQuery::scaled(scaled, -exponent), ray.t_min, ray.t_max);
+}
 
 /// The power of two that brings the largest component of a direction into [1/2, 1).
 [[nodiscard]] int direction_exponent(const Eigen::Vector3d& direction) noexcept;

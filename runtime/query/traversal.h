@@ -41,9 +41,12 @@ namespace boxtree {
   return {tree.face_id(order), order};
 }
 
-/// Whether `a` wins a tie against `b`: by source number, so that every codec and builder agrees.
-[[nodiscard]] inline bool comes_before(const FaceRef& a, const FaceRef& b) noexcept {
-  return a.id != b.id ? a.id < b.id : a.order < b.order;
+/// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
+/// that every codec and builder agrees.
+[[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,
+                                       std::uint32_t b_half) noexcept {
+  if (a.id != b.id) return a.id < b.id;
+  return a.order != b.order ? a.order < b.order : a_half < b_half;
 }
 
 /// 1 for the second triangle of a quad, else 0.
