@@ -46,7 +46,7 @@ class SceneEncoder {
   // Leaves of the top level first, then what moves.
   Status order_instances() {
     std::vector<std::uint32_t> resting;
-    std::vector<Box<double>> boxes;
+    std::vector<Box<double>> boxes, moving_boxes;
     for (std::uint32_t i = 0; i < parts_.instances.size(); ++i) {
       const PlacedTree& instance = parts_.instances[i];
       const EncodedTree& tree = trees_[instance.tree];
@@ -62,6 +62,7 @@ class SceneEncoder {
       }
       if (instance.moves) {
         order_.push_back(i);
+        moving_boxes.push_back(bounds->world);
       } else {
         resting.push_back(i);
         boxes.push_back(bounds->world);
@@ -71,7 +72,7 @@ class SceneEncoder {
     std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
       return parts_.instances[a].id < parts_.instances[b].id;
     });
-    top_ = build_top_level(boxes);
+    top_ = build_top_level(boxes, moving_boxes);
     std::vector<std::uint32_t> leaves;
     leaves.reserve(parts_.instances.size());
     for (const std::uint32_t leaf : top_.order) leaves.push_back(resting[leaf]);

@@ -143,6 +143,8 @@ class TopLevelBuilder {
 
 // A middle and a power of two that bring the boxes to where those of all trees are.
 Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
+  exponent = 0;
+  if (boxes.empty()) return {};
   Box<double> bounds = empty_box<double>();
   for (const Box<double>& box : boxes) expand(bounds, box);
   Eigen::Vector3d middle;
@@ -151,7 +153,6 @@ Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
     middle[static_cast<Eigen::Index>(k)] = bounds.low[k] / 2 + bounds.high[k] / 2;
     largest = std::max(largest, bounds.high[k] / 2 - bounds.low[k] / 2);
   }
-  exponent = 0;
   if (largest > 0) {
     static_cast<void>(std::frexp(largest, &exponent));  // largest < 2^exponent; half an extent
     exponent = std::clamp(exponent + 1 - kExtentExponent, -kMaxScaleExponent, kMaxScaleExponent);
@@ -161,15 +162,17 @@ Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
 
 }  // namespace
 
-EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes) {
+EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes,
+                                std::span<const Box<double>> moving_boxes) {
   EncodedTopLevel top;
+  const Frame frame =
+      choose_frame(world_boxes.empty() ? moving_boxes : world_boxes, top.scale_exponent);
+  top.origin = {frame.origin[0], frame.origin[1], frame.origin[2]};
   if (world_boxes.empty()) {
     top.nodes.codec = CodecId::kWide8;
     top.nodes.root = RootKind::kEmpty;
     return top;
   }
-  const Frame frame = choose_frame(world_boxes, top.scale_exponent);
-  top.origin = {frame.origin[0], frame.origin[1], frame.origin[2]};
   std::vector<FaceBox> instances;
   instances.reserve(world_boxes.size());
   for (const Box<double>& world : world_boxes) {

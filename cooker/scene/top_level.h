@@ -21,7 +21,9 @@ struct EncodedTopLevel {
 
 /// Deterministic. `world_boxes`: of the instances, as PlacementBounds::world gives them. An
 /// instance is a leaf of its own: what a leaf costs a query is a whole tree, so boxes are as tight
-/// as they can be. Precondition: at most kMaxInstances boxes, finite.
-[[nodiscard]] EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes);
+/// as they can be. `moving_boxes`: of those that move; they are in no leaf, but set the frame where
+/// nothing is static. Precondition: at most kMaxInstances boxes, finite.
+[[nodiscard]] EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes,
+                                              std::span<const Box<double>> moving_boxes);
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,9 @@
 // what the cooker chooses would differ by it in their last bits.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Core>
 
 namespace boxtree {
@@ -43,8 +46,10 @@ namespace boxtree {
   return out;
 }
 
-/// Cofactors over the determinant. Not finite where the matrix is not invertible.
-[[nodiscard]] inline Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& m) noexcept {
+/// Cofactors over the determinant, which is returned, too. An entry is meaningless where a product
+/// of three entries of the matrix overflows or underflows.
+[[nodiscard]] inline double invert_by_cofactors(const Eigen::Matrix3d& m,
+                                                Eigen::Matrix3d& inverse) noexcept {
   Eigen::Matrix3d cofactor;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
@@ -55,11 +60,50 @@ namespace boxtree {
   }
   const double determinant =
       (m(0, 0) * cofactor(0, 0) + m(0, 1) * cofactor(0, 1)) + m(0, 2) * cofactor(0, 2);
-  Eigen::Matrix3d inverse;
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) inverse(i, j) = cofactor(j, i) / determinant;
   }
+  return determinant;
+}
+
+/// The power of two by which the largest magnitude falls into [1, 2); 1 for zeros, and for what is
+/// not finite.
+template <class Vector>
+[[nodiscard]] double scale_to_one(const Vector& v) noexcept {
+  const double largest = std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
+  return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, -std::ilogb(largest)) : 1;
+}
+
+/// The inverse of a matrix whose rows and columns are brought to the size of 1 first: powers of
+/// two, so that the result is that of inverse_of() but for overflow and underflow on the way.
+[[nodiscard]] inline Eigen::Matrix3d balanced_inverse_of(const Eigen::Matrix3d& m) noexcept {
+  Eigen::Matrix3d balanced = m;
+  Eigen::Vector3d row, column;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    row[i] = scale_to_one(balanced.row(i));
+    balanced.row(i) *= row[i];
+  }
+  for (Eigen::Index j = 0; j < 3; ++j) {
+    column[j] = scale_to_one(balanced.col(j));
+    balanced.col(j) *= column[j];
+  }
+  Eigen::Matrix3d inverse;
+  static_cast<void>(invert_by_cofactors(balanced, inverse));
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    for (Eigen::Index j = 0; j < 3; ++j) inverse(i, j) = (inverse(i, j) * column[i]) * row[j];
+  }
   return inverse;
+}
+
+/// Not finite where the matrix is not invertible.
+[[nodiscard]] inline Eigen::Matrix3d inverse_of(const Eigen::Matrix3d& m) noexcept {
+  Eigen::Matrix3d inverse;
+  const double determinant = std::abs(invert_by_cofactors(m, inverse));
+  // Then no cofactor has overflowed, and what underflow took from them is below 2^-600.
+  constexpr double kLeast = 0x1p-400, kLargest = 0x1p400;
+  if (kLeast < determinant && determinant < kLargest) [[likely]]
+    return inverse;
+  return balanced_inverse_of(m);
 }
 
 }  // namespace boxtree

@@ -1,10 +1,44 @@
 // SPDX-License-Identifier: MIT
 // Composition of two poses and two frames into one affine map and its inverse, with an error bound.
+#include <algorithm>
+#include <cmath>
+
 #include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
+namespace {
+
+// The largest magnitude of an entry.
+double largest(const Eigen::Matrix3d& m) noexcept {
+  return m.cwiseAbs().maxCoeff();
+}
+
+// m * 2^exponent, for exponents beyond those of a double, too.
+Eigen::Matrix3d scaled(const Eigen::Matrix3d& m, int exponent) noexcept {
+  const int half = exponent / 2;
+  return (m * std::ldexp(1.0, half)) * std::ldexp(1.0, exponent - half);
+}
+
+// a b 2^exponent. Matrices so large or small that products of entries could overflow or lose bits
+// are brought to the size of 1 first, which changes no other bit.
+Eigen::Matrix3d composed(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b,
+                         int exponent) noexcept {
+  const double size_a = largest(a), size_b = largest(b);
+  const auto is_moderate = [](double size) { return 0x1p-300 < size && size < 0x1p300; };
+  if (is_moderate(size_a) && is_moderate(size_b) && std::abs(exponent) < 1000) [[likely]] {
+    return matrix_product(a, b) * std::ldexp(1.0, exponent);
+  }
+  if (!std::isfinite(size_a) || !std::isfinite(size_b) || size_a == 0 || size_b == 0) {
+    return Eigen::Matrix3d::Zero();  // not invertible
+  }
+  const int exponent_a = std::ilogb(size_a), exponent_b = std::ilogb(size_b);
+  return scaled(matrix_product(scaled(a, -exponent_a), scaled(b, -exponent_b)),
+                exponent_a + exponent_b + exponent);
+}
+
+}  // namespace
 
 std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& first_pose,
                                                const Tree& second,
@@ -16,8 +50,8 @@ std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& fi
   const Eigen::Matrix3d first_inverse = inverse_of(first_linear);
 
   RelativePose relative;
-  relative.to_first_.linear =
-      matrix_product(first_inverse, second_linear) * (s.scale * f.inverse_scale);
+  relative.to_first_.linear = composed(
+      first_inverse, second_linear, second.record().scale_exponent - first.record().scale_exponent);
   // Differences first: two bodies far out in the world, or baked far from their origins, lose
   // nothing to the large common part.
   const Eigen::Vector3d between =

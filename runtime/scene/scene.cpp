@@ -41,7 +41,7 @@ Status Scene::update(std::uint32_t instance, const Pose& pose) {
   const Moving* found = find_moving(instance);
   if (found == nullptr) return Errc::kInstanceStatic;
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
-  const std::optional<Placement> placement = Placement::make(*moving.placed.tree, pose);
+  const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;
   const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
   if (!bounds) return Errc::kInvalidPose;
@@ -136,7 +136,7 @@ std::optional<Scene::Placed> Scene::place(std::uint32_t number,
                                           const InstanceRecord& record) const noexcept {
   const Tree& tree = trees_[record.tree];
   const Pose pose = stored_pose(number);
-  const std::optional<Placement> placement = Placement::make(tree, pose);
+  const std::optional<Placement> placement = place_in_units(tree, pose);
   if (!placement) return std::nullopt;
   return Placed{&tree, pose, *placement, record.id, record.layer};
 }
@@ -154,9 +154,16 @@ LayerRecord Scene::layer(std::uint32_t number) const noexcept {
   return load<LayerRecord>(layers_, number);
 }
 
-Box<double> Scene::to_frame(const Box<double>& world) const noexcept {
-  const Eigen::Vector3d low = frame_.to_tree({world.low[0], world.low[1], world.low[2]});
-  const Eigen::Vector3d high = frame_.to_tree({world.high[0], world.high[1], world.high[2]});
+std::optional<Placement> Scene::place_in_units(const Tree& tree, const Pose& pose) const noexcept {
+  Pose scaled = pose;
+  scaled.affine() *= frame_.inverse_scale;
+  return Placement::make(tree, scaled);
+}
+
+Box<double> Scene::to_frame(const Box<double>& units) const noexcept {
+  const Eigen::Vector3d low = to_frame(Eigen::Vector3d(units.low[0], units.low[1], units.low[2]));
+  const Eigen::Vector3d high =
+      to_frame(Eigen::Vector3d(units.high[0], units.high[1], units.high[2]));
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 

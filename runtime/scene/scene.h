@@ -94,11 +94,13 @@ class Scene {
   /// Builds the tree over moving instances anew, for after many of them have gone far. Allocates.
   void rebuild();
 
-  // What the queries read.
+  // What the queries read. They compare in units of the scene: world coordinates times the power of
+  // two of frame(), so that squares of distances neither overflow nor underflow, however large or
+  // small the world is.
   struct Placed {
     const Tree* tree;
-    Pose pose;
-    Placement placement;  // by that pose
+    Pose pose;            // to the world
+    Placement placement;  // to units of the scene
     std::uint32_t id;
     std::uint32_t layer;
 
@@ -129,9 +131,27 @@ class Scene {
   [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
   /// At least PlacementBounds::condition of every instance.
   [[nodiscard]] double condition() const noexcept { return condition_; }
-  /// A box of the world in the space of both trees. Rounded to nearest, which is monotone: boxes
-  /// that share a point still do.
-  [[nodiscard]] Box<double> to_frame(const Box<double>& world) const noexcept;
+  /// World coordinates in units of the scene, and back.
+  [[nodiscard]] Eigen::Vector3d to_units(const Eigen::Vector3d& world) const noexcept {
+    return world * frame_.inverse_scale;
+  }
+  [[nodiscard]] double to_units(double length) const noexcept {
+    return length * frame_.inverse_scale;
+  }
+  [[nodiscard]] Eigen::Vector3d to_world(const Eigen::Vector3d& units) const noexcept {
+    return units * frame_.scale;
+  }
+  [[nodiscard]] double to_world(double length) const noexcept { return length * frame_.scale; }
+  /// A tree placed by a pose, in units of the scene. Nothing when it is not finite, cannot be
+  /// undone or leads beyond reach.
+  [[nodiscard]] std::optional<Placement> place_in_units(const Tree& tree,
+                                                        const Pose& pose) const noexcept;
+  /// A point or box of these units in the space of both trees. Rounded to nearest, which is
+  /// monotone: boxes that share a point still do.
+  [[nodiscard]] Eigen::Vector3d to_frame(const Eigen::Vector3d& units) const noexcept {
+    return units - to_units(frame_.origin);
+  }
+  [[nodiscard]] Box<double> to_frame(const Box<double>& units) const noexcept;
 
  private:
   Scene() = default;

@@ -119,7 +119,7 @@ Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& po
                             ScenePairVisitor visitor, LayerMask layers) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  const std::optional<Placement> placement = Placement::make(tree, pose);
+  const std::optional<Placement> placement = scene.place_in_units(tree, pose);
   if (!placement) return Errc::kInvalidPose;
   if (tree.empty()) return Visit::kComplete;
   const auto bounds = placement->bounds(root_box<double>(tree));

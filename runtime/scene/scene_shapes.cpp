@@ -47,8 +47,8 @@ Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor
   return outcome_of(walk_overlap(scene, query), query);
 }
 
-struct WorldBox {
-  Box<double> world;
+struct BoxInUnits {
+  Box<double> units;
   Box<double> in_frame;
 
   template <class S>
@@ -59,27 +59,38 @@ struct WorldBox {
     return walk_top_level(top, instances, in_frame);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
-    const PlacedBoxQuery query{placed.placement.to_world(), world};
+    const PlacedBoxQuery query{placed.placement.to_world(), units};
     return visit_faces_compactly(*placed.tree, query, faces);
   }
 };
 
 // The distance of an instance's box, in the scene's frame, is that of its content but for the
-// rounding of the point there and of distances in the world, 64 roundings of the point's own
-// magnitude; what the instance contributes is in its box.
+// rounding of the point there and of distances, 64 roundings of the point's own magnitude; what the
+// instance contributes is in its box.
 double scene_error(const Scene& scene, const Eigen::Vector3d& point) noexcept {
-  const double magnitude = point.cwiseAbs().maxCoeff() + scene.frame().origin.cwiseAbs().maxCoeff();
-  return 64 * kUnitRoundoff * magnitude + std::numeric_limits<double>::min();
+  const double magnitude =
+      point.cwiseAbs().maxCoeff() + scene.to_units(scene.frame().origin).cwiseAbs().maxCoeff();
+  return 64 * kUnitRoundoff * magnitude + kLengthUnderflow;
 }
 
-// A squared distance in the scene's frame that holds all within `distance` of the world.
-double frame_bound(const Scene& scene, double distance, double error) noexcept {
-  const double in_frame = (distance + error) * scene.frame().inverse_scale;
-  return in_frame * in_frame * (1 + 16 * kUnitRoundoff);
+// A squared distance in the scene's frame that holds all within `distance`.
+double frame_bound(double distance, double error) noexcept {
+  return (distance + error) * (distance + error) * (1 + 16 * kUnitRoundoff);
 }
 
-struct WorldSphere {
-  Eigen::Vector3d center;  // world
+// A point of the scene's units in the space of a tree, or 0 from so far away that its boxes say
+// nothing: then all its triangles are compared.
+struct PointInTree {
+  PointInTree(const Placement& placement, const Eigen::Vector3d& point) noexcept
+      : at(placement.to_tree(point)), is_near(is_within_reach(at)) {
+    if (!is_near) at.setZero();
+  }
+  Eigen::Vector3d at;
+  bool is_near;
+};
+
+struct SphereInUnits {
+  Eigen::Vector3d center;
   double radius;
   Eigen::Vector3d center_in_frame;
   double squared_radius_in_frame;
@@ -94,14 +105,18 @@ struct WorldSphere {
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
     const Placement& placement = placed.placement;
     const PlacedSphere exact{placement.to_world(), center, radius * radius};
-    const Eigen::Vector3d in_tree = placement.to_tree(center);
-    if (!is_within_reach(in_tree)) return Errc::kInvalidQuery;
-    const Stretch stretch = stretch_of(placement.to_world().linear);
-    const double error = placement.distance_error(in_tree, center, root_box<double>(*placed.tree));
-    const double most =
-        stretch.least > 0 ? std::min((radius + error) / stretch.least, 4 * kReach) : 4 * kReach;
-    const double certain = std::max(0.0, radius - error) / stretch.most;
-    const SphereQuery query{in_tree, most * most * (1 + 16 * kUnitRoundoff), &exact,
+    const PointInTree in_tree(placement, center);
+    double most = 4 * kReach;
+    double certain = 0;
+    if (in_tree.is_near) {
+      const Stretch stretch = stretch_of(placement.to_world().linear);
+      const double error =
+          placement.distance_error(in_tree.at, center, root_box<double>(*placed.tree));
+      if (stretch.least > 0)
+        most = std::min((radius + error) / stretch.least + kLengthUnderflow, most);
+      certain = std::max(0.0, radius - error) / stretch.most;
+    }
+    const SphereQuery query{in_tree.at, most * most * (1 + 16 * kUnitRoundoff), &exact,
                             certain * certain * (1 - 16 * kUnitRoundoff)};
     return visit_sphere(*placed.tree, query, faces);
   }
@@ -109,10 +124,10 @@ struct WorldSphere {
 
 struct PointInScene {
   Admission admission;
-  Eigen::Vector3d point;  // world
+  Eigen::Vector3d point;
   Eigen::Vector3d point_in_frame;
   double scene_margin;
-  double best;           // squared, world
+  double best;           // squared
   double best_in_frame;  // squared: what is farther cannot be as near
   std::optional<SceneClosestPoint> found;
   std::uint32_t found_id = 0;
@@ -127,21 +142,17 @@ struct PointInScene {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, point_in_frame, best_in_frame);
   }
-  void set_bound() noexcept {
-    best_in_frame = frame_bound(admission.scene, std::sqrt(best), scene_margin);
-  }
+  void set_bound() noexcept { best_in_frame = frame_bound(std::sqrt(best), scene_margin); }
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
     const Placement& placement = placed.placement;
     const Tree& tree = *placed.tree;
-    const Eigen::Vector3d in_tree = placement.to_tree(point);
-    if (!is_within_reach(in_tree)) {
-      error = Errc::kInvalidQuery;
-      return false;
+    const PointInTree in_tree(placement, point);
+    PlacedPoint exact{placement.to_world(), point, best, 0, 0};
+    if (in_tree.is_near) {
+      exact.least_stretch = stretch_of(placement.to_world().linear).least;
+      exact.error = placement.distance_error(in_tree.at, point, root_box<double>(tree));
     }
-    PlacedPoint exact{placement.to_world(), point, best,
-                      stretch_of(placement.to_world().linear).least,
-                      placement.distance_error(in_tree, point, root_box<double>(tree))};
-    PointQuery query{tree, in_tree, exact.bound_in_tree(), {}, Errc::kOk, {}};
+    PointQuery query{tree, in_tree.at, exact.bound_in_tree(), {}, Errc::kOk, {}};
     query.placed = &exact;
     error = find_nearest(tree, query);
     if (error != Errc::kOk) return false;
@@ -162,15 +173,10 @@ Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
   const DefaultFloatState state;
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !is_within_reach(box.min()) || !is_within_reach(box.max())) {
-    return Errc::kInvalidQuery;
-  }
-  WorldBox shape{};
-  for (std::size_t k = 0; k < 3; ++k) {
-    shape.world.low[k] = box.min()[static_cast<Eigen::Index>(k)];
-    shape.world.high[k] = box.max()[static_cast<Eigen::Index>(k)];
-  }
-  shape.in_frame = scene.to_frame(shape.world);
+  const Eigen::Vector3d low = scene.to_units(box.min()), high = scene.to_units(box.max());
+  if (!ordered || !is_within_reach(low) || !is_within_reach(high)) return Errc::kInvalidQuery;
+  BoxInUnits shape{{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}, {}};
+  shape.in_frame = scene.to_frame(shape.units);
   return ask_scene(scene, shape, visitor, layers);
 }
 
@@ -178,9 +184,11 @@ Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, 
                              SceneFaceVisitor visitor, LayerMask layers) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  if (!(radius >= 0) || !(radius <= kReach) || !is_within_reach(center)) return Errc::kInvalidQuery;
-  const WorldSphere shape{center, radius, scene.frame().to_tree(center),
-                          frame_bound(scene, radius, scene_error(scene, center))};
+  const Eigen::Vector3d at = scene.to_units(center);
+  const double length = scene.to_units(radius);
+  if (!(length >= 0) || !(length <= kReach) || !is_within_reach(at)) return Errc::kInvalidQuery;
+  const SphereInUnits shape{at, length, scene.to_frame(at),
+                            frame_bound(length, scene_error(scene, at))};
   return ask_scene(scene, shape, visitor, layers);
 }
 
@@ -189,19 +197,25 @@ Result<std::optional<SceneClosestPoint>> closest_point(const Scene& scene,
                                                        double max_distance, LayerMask layers) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
-  if (!is_within_reach(point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
+  const Eigen::Vector3d at = scene.to_units(point);
+  const double most = scene.to_units(max_distance);
+  if (!is_within_reach(at) || !(most >= 0)) return Errc::kInvalidQuery;
   PointInScene query{{scene, kPointQueries, layers},
-                     point,
-                     scene.frame().to_tree(point),
-                     scene_error(scene, point),
-                     max_distance * max_distance,
+                     at,
+                     scene.to_frame(at),
+                     scene_error(scene, at),
+                     most * most,
                      0,
                      {}};
   query.set_bound();
   const Errc walked = walk_nearest(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (query.found) query.found->closest.distance = std::sqrt(query.found->closest.distance);
+  if (query.found) {
+    ClosestPoint& closest = query.found->closest;
+    closest.point = scene.to_world(closest.point);
+    closest.distance = scene.to_world(std::sqrt(closest.distance));
+  }
   return query.found;
 }
 
