@@ -60,7 +60,7 @@ struct BuildTree {
 
 /// Where tree space begins.
 enum class Origin : std::uint8_t {
-  kByPrecision,  // at zero for f32 positions, in the middle for f64 ones
+  kByPrecision,  // see choose_frame()
   kZero,
 };
 

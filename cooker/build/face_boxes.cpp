@@ -76,6 +76,16 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
     halved = 0;
   }
   if (size == 0) return;
+  // A coordinate that all f32 positions share, and that is far larger than what they differ by, is
+  // moved to zero: exactly, and tree space stays within what readers count with. Where positions
+  // differ, a coordinate is at most 2^24 times the difference.
+  if (positions.precision == Precision::kF32 && origin == Origin::kByPrecision && halved == 1) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double low = bounds.low[static_cast<Eigen::Index>(k)];
+      const bool is_flat = low == bounds.high[static_cast<Eigen::Index>(k)];
+      if (is_flat && std::abs(low) > 0x1p25 * size) tree.origin[k] = low;
+    }
+  }
   tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,
                                    kMaxScaleExponent);
 }

@@ -115,6 +115,22 @@ void tiny_models(Run& run) {
   }
 }
 
+// All of a surface in one plane, at a coordinate that is larger than its extent by any power of
+// two.
+void flat_and_far(Run& run) {
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    for (const int exponent : {20, 24, 26, 41, 60, 64, 85, 100, 126}) {
+      for (const int size : {0, -100}) {
+        Eigen::Vector3d offset = Eigen::Vector3d::Zero();
+        offset[axis] = std::ldexp(1.0, exponent);
+        const SourceMesh mesh = plus(times(flat_square(5, axis), std::ldexp(1.0, size)), offset);
+        check_every_face_is_found(run, mesh);
+        check_every_face_is_found(run, in_double(mesh));
+      }
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<Case> range_cases() {
@@ -127,6 +143,8 @@ std::vector<Case> range_cases() {
        traversal_rounding},
       {"R14", "TinyTriangles", "triangles of 1e-3 and 1e-6 are found one by one", "faces lost", 0,
        tiny_triangles},
+      {"E14", "FlatAndFar", "faces in one plane, up to 2^226 extents from the origin", "faces lost",
+       0, flat_and_far},
       {"R20", "TinyModels", "968 faces at scales 1e-6, 1e-12, 1e-20", "faces lost", 0, tiny_models},
   };
 }
