@@ -19,6 +19,7 @@ namespace boxtree::oracle {
 namespace {
 
 constexpr int kDifferenceFound = 7;         // as the command line of the cooker has it
+constexpr std::size_t kManyKinds = 24;      // of meshes: more are not listed
 constexpr std::uint64_t kEnoughWrong = 20;  // without --keep-going
 
 struct Options {
@@ -64,8 +65,12 @@ void print(const Family& family, const Outcome& outcome, const Options& options)
       family.name, t.answers(), t.wrong(), t.refused_count(), t.worst(), outcome.seconds,
       family.what);
   for (const auto& [category, found] : t.categories()) {
-    fmt::print("  {} {}, for example (--seed {} --family {} --only {}): {}\n", found.wrong,
-               category, options.seed, family.name, found.example_case, found.example);
+    std::string kinds;
+    for (const auto& [kind, count] : found.by_kind) {
+      if (found.by_kind.size() <= kManyKinds) kinds += fmt::format(", {} {}", count, kind);
+    }
+    fmt::print("  {} {}{}; for example (--seed {} --family {} --only {}):\n    {}\n", found.wrong,
+               category, kinds, options.seed, family.name, found.example_case, found.example);
   }
   std::fflush(stdout);
 }
@@ -75,6 +80,7 @@ nlohmann::ordered_json json_of(const Family& family, const Outcome& outcome) {
   for (const auto& [category, found] : outcome.tally.categories()) {
     categories.push_back({{"category", category},
                           {"wrong", found.wrong},
+                          {"by_kind", found.by_kind},
                           {"case", found.example_case},
                           {"example", found.example}});
   }

@@ -89,8 +89,8 @@ void mixed_sizes(Draw& d, std::uint32_t n, bool f64, Sketch& s) {
   }
 }
 
-void tiny_beside_huge(Draw& d, std::uint32_t n, bool, Sketch& s) {
-  const int huge = d.between(20, 100), tiny = d.between(-110, 0);
+void tiny_beside_huge(Draw& d, std::uint32_t n, bool f64, Sketch& s) {
+  const int huge = d.between(20, f64 ? 1000 : 126), tiny = d.between(f64 ? -900 : -140, 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     s.faces.push_back(scaled(soup_face(d), std::ldexp(1.0, d.one_in(2) ? huge : tiny)));
   }

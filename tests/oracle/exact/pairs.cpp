@@ -148,7 +148,8 @@ void run_pairs(Draw& draw, Tally& tally, std::uint64_t number) {
   const MeshWish wish{true, true, 32};
   const auto a = make_subject(draw_mesh(draw, wish), grid);
   const auto b = make_subject(draw_mesh(draw, wish), grid);
-  tally.begin_case(number, a->mesh.faces.size() + b->mesh.faces.size());
+  tally.begin_case(number, a->mesh.faces.size() + b->mesh.faces.size(),
+                   a->mesh.name + " with " + b->mesh.name);
   const std::size_t groups = std::min(a->groups.size(), b->groups.size());
   for (std::size_t g = 0; g < groups; ++g) {
     for (int i = 0; i < kPoses; ++i) {

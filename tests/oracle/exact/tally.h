@@ -19,12 +19,14 @@ class Tally {
     std::string example;  // of the smallest case
     std::uint64_t example_case = 0;
     std::uint64_t example_size = 0;
+    std::map<std::string, std::uint64_t> by_kind;  // of mesh
   };
 
   /// Where the answers that follow come from. `size`: the smaller, the better an example.
-  void begin_case(std::uint64_t number, std::uint64_t size) {
+  void begin_case(std::uint64_t number, std::uint64_t size, const std::string& kind) {
     case_ = number;
     size_ = size;
+    kind_ = kind;
   }
 
   /// One answer of one codec and store: right so far.
@@ -39,6 +41,7 @@ class Tally {
     if (!is_wrong_) ++wrong_;
     is_wrong_ = true;
     Category& found = categories_[category];
+    ++found.by_kind[kind_];
     if (found.wrong++ == 0 || size_ < found.example_size) {
       found.example = describe();
       found.example_case = case_;
@@ -59,6 +62,7 @@ class Tally {
  private:
   std::uint64_t case_ = 0;
   std::uint64_t size_ = 0;
+  std::string kind_;
   std::uint64_t answers_ = 0;
   std::uint64_t wrong_ = 0;
   std::uint64_t refused_ = 0;
