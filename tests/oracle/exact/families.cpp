@@ -10,6 +10,9 @@ const std::vector<Family>& all_families() {
       {"boxes", "overlap_box, overlap_box_within: exact", run_boxes},
       {"points", "closest_point: within 16 ulp, bounds that hold", run_points},
       {"spheres", "overlap_sphere: exact but for 16 ulp", run_spheres},
+      {"rays", "closest_hit, any_hit: within 2^-46 of the farthest corner", run_rays},
+      {"distances", "distance, overlap_within: bounds that hold, exact verdicts", run_distances},
+      {"scenes", "all queries of a scene under updates, against all placed triangles", run_scenes},
   };
   return families;
 }

@@ -53,6 +53,7 @@ std::unique_ptr<Cooked> cook(const SourceMesh& mesh, CodecId codec, GeometryId g
 }
 
 void finish(Group& group) {
+  group.space = group.trees.front()->tree.frame();
   group.triangles = decoded_triangles_of(group.trees.front()->tree);
   for (const Decoded& t : group.triangles) group.largest = std::max(group.largest, t.largest);
 }

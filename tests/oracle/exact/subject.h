@@ -37,7 +37,8 @@ struct Group {
   std::vector<std::unique_ptr<Cooked>> trees;
   std::vector<Decoded> triangles;  // by face and half
   double largest = 0;              // coordinate of any
-  [[nodiscard]] const Frame& frame() const { return trees.front()->tree.frame(); }
+  Frame space;                     // of the triangles
+  [[nodiscard]] const Frame& frame() const { return space; }
 };
 
 /// A mesh and its groups: positions bit for bit (in the file, or external), and on a grid.
