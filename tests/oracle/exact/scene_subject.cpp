@@ -32,7 +32,20 @@ Pose draw_pose(Draw& d, const SceneSubject& subject, std::uint32_t tree) {
   pose.linear() = draw_linear(d) * (scale * (0.5 + d.part()));
   for (Eigen::Index k = 0; k < 3; ++k) pose.translation()[k] = d.unit() * size * 2;
   if (d.one_in(10)) pose.translation() *= d.power(0, 30);
+  if (d.one_in(20)) pose.translation().setZero();
   return pose;
+}
+
+// Ordinary ones; any; and those at which determinants of poses are about to leave the doubles.
+double draw_world_size(Draw& d, double mesh) {
+  switch (d.below(4)) {
+    case 0:
+      return d.power(-900, 180);
+    case 1:
+      return mesh * (d.one_in(4) ? d.power(330, 345) : d.power(-362, -335));
+    default:
+      return d.power(-10, 10);
+  }
 }
 
 SceneVariant make_variant(const SceneSubject& subject, const cooker::SceneParts& parts,
@@ -72,7 +85,7 @@ std::unique_ptr<SceneSubject> draw_scene(Draw& d) {
   for (std::uint32_t i = 0; i < trees; ++i) {
     subject->meshes.push_back(draw_mesh(d, {false, d.one_in(4), 10}));
   }
-  subject->world_size = d.one_in(2) ? d.power(-10, 10) : d.power(-900, 180);
+  subject->world_size = draw_world_size(d, largest_of(subject->meshes[0]));
   cooker::SceneParts parts;
   parts.layers.push_back({"all"});
   const std::uint32_t instances = 2 + d.below(12);

@@ -446,9 +446,8 @@ void run_scenes(Draw& draw, Tally& tally, std::uint64_t number) {
     tally.refused();
     return;
   }
-  tally.begin_case(
-      number, subject->poses.size(),
-      fmt::format("world size 1e{:.0f}", 50 * std::round(std::log10(subject->world_size) / 50)));
+  const int decades = 50 * static_cast<int>(std::log10(subject->world_size) / 50);
+  tally.begin_case(number, subject->poses.size(), fmt::format("world size 1e{}", decades));
   for (int round = 0; round < kRounds; ++round) {
     const State s{*subject, world_of(*subject), tally};
     for (int i = 0; i < 12; ++i) check_ray(s, draw);
