@@ -30,9 +30,17 @@ struct Setting {
   std::map<std::uint32_t, Gap> gaps;  // of faces that were reported and do not touch
 };
 
+// Far beyond any mesh, where doubles do not overflow.
+Point clamped(Point p) {
+  for (double& x : p) x = std::clamp(x, -0x1p300, 0x1p300);
+  return p;
+}
+
 Setting make_setting(const Subject& subject, const Group& group, const Eigen::AlignedBox3d& box) {
   const Frame& frame = group.frame();
-  Setting s{subject, group, box, {to_tree(frame, box.min()), to_tree(frame, box.max())}, {}, {}};
+  Setting s{subject, group,
+            box,     {clamped(to_tree(frame, box.min())), clamped(to_tree(frame, box.max()))},
+            {},      {}};
   for (const Decoded& t : group.triangles) {
     if (!s.truth.empty() && s.truth.back() == t.face) continue;
     if (boxes_touch(t.bounds, s.at) && triangle_touches_box(t.at, s.at)) s.truth.push_back(t.face);
