@@ -151,6 +151,12 @@ bool is_same(const std::optional<ClosestPoint>& a, const std::optional<ClosestPo
          a->triangle == b->triangle;
 }
 
+std::string words_of(const std::optional<ClosestPoint>& answer) {
+  if (!answer) return "nothing";
+  return fmt::format("face {} triangle {} point {} distance {:a}", answer->face.id,
+                     answer->triangle, text(point_of(answer->point)), answer->distance);
+}
+
 std::optional<std::uint32_t> face_of(const std::optional<ClosestPoint>& answer) {
   return answer ? std::optional(answer->face.id) : std::nullopt;
 }
@@ -231,7 +237,8 @@ void check_all(const Setting& s, bool with_bounds, Tally& tally) {
       first = *answer;
     } else if (!is_same(*answer, first)) {
       tally.wrong("other bits than plain-f32", [&] {
-        return describe(s, cooked, {"", "other bits"}, face_of(*answer));
+        return describe(s, cooked, {"", words_of(*answer) + ", plain-f32: " + words_of(first)},
+                        face_of(*answer));
       });
     }
     tally.error(worst);
