@@ -44,12 +44,23 @@ std::uint64_t number_of(const std::string& name) {
   return number;
 }
 
+void run_case(const Family& family, Draw& draw, Tally& tally, std::uint64_t number) {
+  try {
+    family.run_case(draw, tally, number);
+  } catch (const CookFailed& failed) {
+    tally.begin_case(number, failed.mesh.faces.size(), failed.mesh.name);
+    tally.answer();
+    tally.wrong("cannot be cooked",
+                [&] { return failed.message + "\n    " + text(failed.mesh, {}); });
+  }
+}
+
 Outcome run(const Family& family, const Options& options, std::uint64_t answers) {
   Outcome outcome;
   const auto begin = std::chrono::steady_clock::now();
   for (std::uint64_t n = options.only.value_or(0);; ++n) {
     Draw draw(seed_of(options.seed, number_of(family.name), n));
-    family.run_case(draw, outcome.tally, n);
+    run_case(family, draw, outcome.tally, n);
     ++outcome.cases;
     if (options.only || outcome.tally.answers() >= answers) break;
     if (!options.keep_going && outcome.tally.wrong() >= kEnoughWrong) break;
@@ -108,9 +119,10 @@ std::vector<Family> chosen(const Options& options) {
 int run(const Options& options) {
   const std::vector<Family> families = chosen(options);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  std::uint64_t wrong = 0;
+  std::uint64_t wrong = 0, shares = 0;
+  for (const Family& family : families) shares += family.share;
   for (const Family& family : families) {
-    const Outcome outcome = run(family, options, options.answers / families.size());
+    const Outcome outcome = run(family, options, options.answers * family.share / shares);
     print(family, outcome, options);
     rows.push_back(json_of(family, outcome));
     wrong += outcome.tally.wrong();

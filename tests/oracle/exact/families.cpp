@@ -6,13 +6,14 @@ namespace boxtree::oracle {
 
 const std::vector<Family>& all_families() {
   static const std::vector<Family> families = {
-      {"pairs", "overlap_pairs, first_contact: exact", run_pairs},
-      {"boxes", "overlap_box, overlap_box_within: exact", run_boxes},
-      {"points", "closest_point: within 16 ulp, bounds that hold", run_points},
-      {"spheres", "overlap_sphere: exact but for 16 ulp", run_spheres},
-      {"rays", "closest_hit, any_hit: within 2^-46 of the farthest corner", run_rays},
-      {"distances", "distance, overlap_within: bounds that hold, exact verdicts", run_distances},
-      {"scenes", "all queries of a scene under updates, against all placed triangles", run_scenes},
+      {"pairs", "overlap_pairs, first_contact: exact", 2, run_pairs},
+      {"boxes", "overlap_box, overlap_box_within: exact", 1, run_boxes},
+      {"points", "closest_point: within 16 ulp, bounds that hold", 4, run_points},
+      {"spheres", "overlap_sphere: exact but for 16 ulp", 2, run_spheres},
+      {"rays", "closest_hit, any_hit: within 2^-46 of the farthest corner", 1, run_rays},
+      {"distances", "distance, overlap_within: bounds that hold, exact verdicts", 1, run_distances},
+      {"scenes", "all queries of a scene under updates, against all placed triangles", 2,
+       run_scenes},
   };
   return families;
 }

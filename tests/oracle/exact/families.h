@@ -12,6 +12,7 @@ namespace boxtree::oracle {
 struct Family {
   const char* name;
   const char* what;  // is compared with what
+  unsigned share;    // of the answers
   /// Draws meshes and queries, and compares all answers.
   void (*run_case)(Draw& draw, Tally& tally, std::uint64_t number);
 };

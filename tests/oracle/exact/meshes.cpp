@@ -90,7 +90,11 @@ void mixed_sizes(Draw& d, std::uint32_t n, bool f64, Sketch& s) {
 }
 
 void tiny_beside_huge(Draw& d, std::uint32_t n, bool f64, Sketch& s) {
-  const int huge = d.between(20, f64 ? 1000 : 126), tiny = d.between(f64 ? -900 : -140, 0);
+  // Half of the time as far apart as the precision lets them be.
+  const bool apart = d.one_in(2);
+  const int top = f64 ? 1000 : 126, bottom = f64 ? -900 : -140;
+  const int huge = d.between(apart ? top - 20 : 20, top);
+  const int tiny = d.between(bottom, apart ? bottom + 40 : 0);
   for (std::uint32_t i = 0; i < n; ++i) {
     s.faces.push_back(scaled(soup_face(d), std::ldexp(1.0, d.one_in(2) ? huge : tiny)));
   }

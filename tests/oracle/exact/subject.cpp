@@ -41,7 +41,11 @@ std::unique_ptr<Cooked> cook(const SourceMesh& mesh, CodecId codec, GeometryId g
   if (!encoded && geometry == GeometryId::kGrid && encoded.code() == Errc::kMeshUnsupported) {
     return nullptr;
   }
-  if (!encoded) throw std::runtime_error(mesh.name + ": " + encoded.error().message());
+  if (!encoded) {
+    throw CookFailed{mesh, std::string(codec_name(codec)) + " " +
+                               std::string(geometry_name(geometry)) + ": " +
+                               encoded.error().message()};
+  }
   std::vector<std::byte> bytes = cooker::serialize(std::span(&*encoded, 1));
   File file = test::require(File::open(Bytes(bytes)));
   BindOptions bind;

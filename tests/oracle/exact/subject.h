@@ -47,7 +47,13 @@ struct Subject {
   std::vector<Group> groups;
 };
 
-/// Cooks in every codec; `grid` adds the group on a grid. Throws where a cook fails, but for a grid
+/// A mesh that cannot be cooked.
+struct CookFailed {
+  cooker::SourceMesh mesh;
+  std::string message;
+};
+
+/// Cooks in every codec; `grid` adds the group on a grid. Throws CookFailed, but for a grid
 /// that cannot be as fine as was wished, which is left out.
 [[nodiscard]] std::unique_ptr<Subject> make_subject(cooker::SourceMesh mesh, bool grid);
 
