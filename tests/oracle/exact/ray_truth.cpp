@@ -37,7 +37,8 @@ ExactRay::ExactRay(const Point& from, const Point& along)
   }
 }
 
-RayTruth truth_of(const ExactRay& ray, const Face& triangle, double tolerance, double more) {
+RayTruth truth_of(const ExactRay& ray, const Face& triangle, double tolerance, double more,
+                  int exponent) {
   std::array<ExactPoint, 3> s;
   double farthest = 0;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -72,21 +73,22 @@ RayTruth truth_of(const ExactRay& ray, const Face& triangle, double tolerance, d
   truth.may_be_hit = !(Quotient{square_off, 1.0} < squared_distance(ExactPoint{}, seen));
 
   std::array<double, 3> t{};
-  for (std::size_t c = 0; c < 3; ++c) t[c] = ratio(s[c][2], dz);
+  for (std::size_t c = 0; c < 3; ++c) t[c] = ratio(s[c][2].times_power_of_two(exponent), dz);
   truth.t_low = std::min({t[0], t[1], t[2]});
   truth.t_high = std::max({t[0], t[1], t[2]});
   truth.t = std::numeric_limits<double>::quiet_NaN();
   double weight_error = 1;
   if (whole.sign() != 0) {
     const Dyadic depth = part[0] * s[0][2] + part[1] * s[1][2] + part[2] * s[2][2];
-    truth.t = std::clamp(ratio(depth, whole * Dyadic(dz)), truth.t_low, truth.t_high);
+    truth.t = std::clamp(ratio(depth.times_power_of_two(exponent), whole * Dyadic(dz)), truth.t_low,
+                         truth.t_high);
     // The tolerance over the smallest height of the sheared triangle.
     const mpf_class error(off.to_mpf() * sqrt(longest.to_mpf()) / abs(whole.to_mpf()), 320);
     weight_error = std::min(1.0, error.get_d());
   }
   const double largest_t = std::max(std::abs(truth.t_low), std::abs(truth.t_high));
-  truth.t_tolerance = ratio(allowed, std::abs(dz)) + (truth.t_high - truth.t_low) * weight_error +
-                      0x1p-50 * largest_t;
+  truth.t_tolerance = ratio(allowed.times_power_of_two(exponent), std::abs(dz)) +
+                      (truth.t_high - truth.t_low) * weight_error + 0x1p-50 * largest_t;
   return truth;
 }
 

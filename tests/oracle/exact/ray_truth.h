@@ -28,6 +28,6 @@ struct RayTruth {
 /// `more`: of the same, absolute. What it does to t is derived from the triangle's height and span
 /// along the ray.
 [[nodiscard]] RayTruth truth_of(const ExactRay& ray, const Face& triangle, double tolerance,
-                                double more);
+                                double more, int exponent);
 
 }  // namespace boxtree::oracle

@@ -23,7 +23,7 @@ struct Setting {
   const Subject& subject;
   const Group& group;
   Ray ray;                      // object space
-  std::vector<RayTruth> truth;  // of each triangle, t in tree space
+  std::vector<RayTruth> truth;  // of each triangle
 };
 
 std::string describe(const Setting& s, const Cooked& cooked, const std::string& what,
@@ -42,12 +42,10 @@ using Complaints = std::vector<Complaint>;
 
 // Whether a triangle is hit by all means, and at most at which t.
 std::optional<double> latest_sure(const Setting& s, const RayTruth& truth) {
-  const double scale = s.group.frame().scale;
   if (!truth.is_surely_hit) return std::nullopt;
-  const double t = truth.t * scale;
+  const double t = truth.t;
   // Two of the smallest doubles: t itself may be less than one.
-  const double tolerance =
-      truth.t_tolerance * scale + 2 * std::numeric_limits<double>::denorm_min();
+  const double tolerance = truth.t_tolerance + 2 * std::numeric_limits<double>::denorm_min();
   if (!std::isfinite(t) || !std::isfinite(tolerance)) return std::nullopt;
   if (!(t - tolerance >= s.ray.t_min) || !(t + tolerance <= s.ray.t_max)) return std::nullopt;
   return t + tolerance;
@@ -65,10 +63,9 @@ void examine_hit(const Setting& s, const RayHit& hit, Complaints& complaints) {
   if (!(hit.t >= s.ray.t_min) || !(hit.t <= s.ray.t_max)) {
     complaints.push_back({"t out of range", fmt::format("t {:a}", hit.t), faces});
   }
-  const double scale = s.group.frame().scale;
-  const double tolerance = truth.t_tolerance * scale;
-  const double low = (std::isnan(truth.t) ? truth.t_low : truth.t) * scale - tolerance;
-  const double high = (std::isnan(truth.t) ? truth.t_high : truth.t) * scale + tolerance;
+  const double tolerance = truth.t_tolerance + 2 * std::numeric_limits<double>::denorm_min();
+  const double low = (std::isnan(truth.t) ? truth.t_low : truth.t) - tolerance;
+  const double high = (std::isnan(truth.t) ? truth.t_high : truth.t) + tolerance;
   if (std::isfinite(low) && std::isfinite(high) && (hit.t < low || hit.t > high)) {
     complaints.push_back(
         {"wrong t", fmt::format("t {:.17g}, exact {:.17g} to {:.17g}", hit.t, low, high), faces});
@@ -83,10 +80,10 @@ void examine_missed(const Setting& s, const std::optional<RayHit>& closest,
   for (std::size_t i = 0; i < s.truth.size(); ++i) {
     const auto latest = latest_sure(s, s.truth[i]);
     if (!latest || (closest && closest->t <= *latest)) continue;
-    complaints.push_back({closest ? "a nearer hit missed" : "missed",
-                          fmt::format("face {} is hit at {:.17g}", s.group.triangles[i].face,
-                                      s.truth[i].t * s.group.frame().scale),
-                          {s.group.triangles[i].face}});
+    complaints.push_back(
+        {closest ? "a nearer hit missed" : "missed",
+         fmt::format("face {} is hit at {:.17g}", s.group.triangles[i].face, s.truth[i].t),
+         {s.group.triangles[i].face}});
     return;
   }
 }
@@ -118,7 +115,7 @@ void check_all(Setting& s, Tally& tally) {
   if (!is_beyond) {
     const ExactRay ray(origin, point_of(s.ray.direction));
     for (const Decoded& t : s.group.triangles)
-      s.truth.push_back(truth_of(ray, t.at, kTolerance, 0));
+      s.truth.push_back(truth_of(ray, t.at, kTolerance, 0, exponent_of(s.group.frame())));
   }
   std::optional<RayHit> first;
   for (std::size_t i = 0; i < s.group.trees.size(); ++i) {

@@ -303,7 +303,7 @@ void check_ray(const State& s, Draw& draw) {
     }
     const RayError& error = errors.at(id);
     if (std::isfinite(error.absolute) && std::isfinite(error.relative)) {
-      r.truth.push_back(truth_of(exact, t.at, error.relative, error.absolute));
+      r.truth.push_back(truth_of(exact, t.at, error.relative, error.absolute, 0));
     } else {
       r.truth.push_back({false, true, std::numeric_limits<double>::quiet_NaN(),
                          -std::numeric_limits<double>::infinity(),
