@@ -140,7 +140,7 @@ bool is_some_face_nearer(const Setting& s, double distance) {
   return false;
 }
 
-// The verdict of overlap_box_within: exact but where it may be undecided.
+// The classification of overlap_box_within: exact but where it may be undecided.
 void check_within(const Setting& s, const Cooked& cooked, double distance, Tally& tally) {
   const auto answer = overlap_box_within(cooked.tree, s.box, distance);
   tally.answer();

@@ -11,7 +11,8 @@ const std::vector<Family>& all_families() {
       {"points", "closest_point: within 16 ulp, bounds that hold", 4, run_points},
       {"spheres", "overlap_sphere: exact but for 16 ulp", 2, run_spheres},
       {"rays", "closest_hit, any_hit: within 2^-46 of the farthest corner", 1, run_rays},
-      {"distances", "distance, overlap_within: bounds that hold, exact verdicts", 1, run_distances},
+      {"distances", "distance, overlap_within: bounds that hold, exact classification", 1,
+       run_distances},
       {"scenes", "all queries of a scene under updates, against all placed triangles", 2,
        run_scenes},
   };
