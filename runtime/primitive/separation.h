@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include <boxtree/runtime/primitive/vector3.h>
+
 namespace boxtree {
 
 // Two convex sets are at least as far apart as their projections on any direction v, over |v|, and
@@ -46,21 +48,54 @@ template <std::size_t N, std::size_t M>
   return std::max(0.0, gap / length * kSeparationQuotient - kSeparationUnderflow);
 }
 
+/// What is left of a vector when its components along one or two others are taken off. Twice: what
+/// rounding leaves the first time, relative to the vector, is gone after the second.
+[[nodiscard]] inline Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& vector,
+                                                   const Eigen::Vector3d& a,
+                                                   const Eigen::Vector3d& b) noexcept {
+  const auto without = [](const Eigen::Vector3d& v, const Eigen::Vector3d& along) {
+    const double square = squared_length(along);
+    return square > 0 ? Eigen::Vector3d(v - (dot(v, along) / square) * along) : v;
+  };
+  const Eigen::Vector3d height = without(without(b, a), a);
+  Eigen::Vector3d left = vector;
+  for (int time = 0; time < 2; ++time) left = without(without(left, a), height);
+  return left;
+}
+
+/// The same bound as separation_along, for the direction that stands on a triangle and is nearest
+/// to `direction`. From its edges, which are known better than the way from a point inside to a
+/// corner.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] double separation_on_face(const Eigen::Vector3d& direction,
+                                        const std::array<Eigen::Vector3d, 3>& face,
+                                        const std::array<Eigen::Vector3d, N>& first,
+                                        const std::array<Eigen::Vector3d, M>& second,
+                                        double reach) noexcept {
+  const std::array<Eigen::Vector3d, 3> edge{face[1] - face[0], face[2] - face[1],
+                                            face[0] - face[2]};
+  std::size_t longest = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (squared_length(edge[i]) > squared_length(edge[longest])) longest = i;
+  }
+  return separation_along(orthogonal_to(direction, edge[longest], edge[(longest + 1) % 3]), first,
+                          second, reach);
+}
+
 /// A lower bound of the distance between the hulls of two sets of points, given a point of each
 /// that are nearly the closest. The line between them is the direction; but if they are close to
 /// each other, rounding tilts it, and a corner at the end of a long arm reaches across. The
 /// direction is then made orthogonal to that arm, and if need be to a second one: the edges or the
-/// face that it is to stand on. A bound of `enough` is not improved.
+/// face that it is to stand on; and at last to the face of each set that is a triangle. A bound of
+/// `enough` is not improved.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
                                      const Eigen::Vector3d& on_second,
                                      const std::array<Eigen::Vector3d, N>& first,
                                      const std::array<Eigen::Vector3d, M>& second, double reach,
                                      double enough) noexcept {
-  const auto dot = [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
-  };
-  Eigen::Vector3d direction = on_second - on_first;
+  const Eigen::Vector3d between = on_second - on_first;
+  Eigen::Vector3d direction = between;
   double lower = separation_along(direction, first, second, reach);
   std::array<Eigen::Vector3d, 2> arms;
   for (std::size_t n = 0; n < arms.size() && lower < enough; ++n) {
@@ -80,6 +115,16 @@ template <std::size_t N, std::size_t M>
       direction -= (dot(direction, arms[i]) / dot(arms[i], arms[i])) * arms[i];
     }
     lower = std::max(lower, separation_along(direction, first, second, reach));
+  }
+  if constexpr (N == 3) {
+    if (lower < enough) {
+      lower = std::max(lower, separation_on_face(between, first, first, second, reach));
+    }
+  }
+  if constexpr (M == 3) {
+    if (lower < enough) {
+      lower = std::max(lower, separation_on_face(between, second, first, second, reach));
+    }
   }
   return lower;
 }

@@ -173,8 +173,12 @@ Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
   const DefaultFloatState state;
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  const Eigen::Vector3d low = scene.to_units(box.min()), high = scene.to_units(box.max());
-  if (!ordered || !is_within_reach(low) || !is_within_reach(high)) return Errc::kInvalidQuery;
+  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
+  // No instance reaches farther.
+  const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
+    return scene.to_units(corner).cwiseMax(-kReach).cwiseMin(kReach);
+  };
+  const Eigen::Vector3d low = clamped(box.min()), high = clamped(box.max());
   BoxInUnits shape{{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}, {}};
   shape.in_frame = scene.to_frame(shape.units);
   return ask_scene(scene, shape, visitor, layers);
