@@ -4,18 +4,35 @@
 #include <cstddef>
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/primitive/separation.h>
 #include <boxtree/runtime/query/nearest_triangles.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
+namespace {
+
+// What rounding leaves between the bounds of two triangles is some 2^-46 of their largest
+// coordinate (triangle_distance.h) and as little for bringing them into the world. What can improve
+// the answer by no more than this need not be looked at: the bounds stay within the 2^-44 that is
+// promised.
+constexpr double kRounding = 0x1p-45;
+
+// It is looked at nevertheless until so many triangles have been compared in vain, more than what
+// meets in two vertices: then faces lie in parallel planes or on each other, and all are as near.
+constexpr std::uint64_t kPatience = 1024;
+
+}  // namespace
 
 void NearestTriangles::set_enough() noexcept {
-  const double enough = approximation_.enough(pair_.upper);
+  // At least half of what was found, so that a contact, whose keys are 0, is always looked for.
+  const double rounding = in_vain_ < kPatience ? 0 : rounding_;
+  const double best = std::max(pair_.upper - rounding, pair_.upper / 2);
+  const double enough = std::min(approximation_.enough(pair_.upper), best);
   // The neighbour above: what is exactly at the maximal distance counts.
   const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
                                      std::numeric_limits<double>::infinity());
   enough_ = std::min(enough * enough, most);
-  best_ = std::min(pair_.upper * pair_.upper, most);
+  best_ = std::min(best * best, most);
 }
 
 // Those whose bounds are as far as the best are left alone. Not those that are near enough to it:
@@ -70,15 +87,21 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
     p_world.corner[c] = metric_.to_world(to_p);
     q_world.corner[c] = metric_.to_world(to_q);
   }
-  TriangleDistance found = triangle_distance(p_world, q_world);
   // Both triangles may lie off by the error of their corners.
   const double error = 2 * metric_.image_error() * reach;
+  const double size = std::max(reach_of(p_world.corner), reach_of(q_world.corner));
+  if (has_any() && is_apart(p_world, q_world, size, error)) return;
+  TriangleDistance found = triangle_distance(p_world, q_world);
   found.lower = std::max(0.0, found.lower - error);
   found.upper += error;
   if (!(found.lower > 0) && triangles_intersect(p, q)) found.lower = found.upper = 0;
   pair_.lower = std::min(pair_.lower, found.lower);
+  if (++in_vain_ == kPatience) set_enough();
   if (!(found.upper < pair_.upper)) return;
+  if (found.upper < pair_.upper - rounding_) in_vain_ = 0;
   pair_.upper = found.upper;
+  rounding_ = kRounding * size;
+  between_ = found.second - found.first;
   pair_.faces = {face_ref(first_, leaves_.first.face[i]),
                  face_ref(second_, leaves_.second.face[j])};
   pair_.origin = origin;
@@ -87,6 +110,19 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   set_enough();
   face(found.second - found.first);
   set_ends();
+}
+
+// Whether two triangles are as far as the best along the line between the nearest points so far.
+// Of faces in parallel planes many are, and this costs far less than their distance does. Unlike
+// the ends of boxes and leaves these are seen from one of the corners, so that no more is lost to
+// rounding than the distance itself loses.
+bool NearestTriangles::is_apart(const Triangle& p, const Triangle& q, double size,
+                                double error) noexcept {
+  const double lower = separation_along(between_, p.corner, q.corner, size) - error;
+  const double key = lower * lower;
+  if (!(lower > 0) || key < best_) return false;
+  leave(key);
+  return true;
 }
 
 }  // namespace boxtree

@@ -52,8 +52,8 @@ class NearestTriangles {
   /// Between the nearest points so far; first, what face() was told.
   [[nodiscard]] const Direction& direction() const noexcept { return direction_; }
 
-  /// Squared: what is as far as this need not be looked at; it is near enough to the best, or too
-  /// far.
+  /// Squared: what is as far as this need not be looked at; it is near enough to the best, be it by
+  /// the error allowed or by what rounding leaves anyway, or too far.
   [[nodiscard]] double enough() const noexcept { return enough_; }
   /// Takes note of what is left alone, by the lower bound of its squared distance.
   void leave(double key) noexcept { left_ = std::min(left_, key); }
@@ -67,6 +67,8 @@ class NearestTriangles {
 
  private:
   void compare(const Triangle& p, std::uint32_t i, const Triangle& q, std::uint32_t j) noexcept;
+  [[nodiscard]] bool is_apart(const Triangle& p, const Triangle& q, double size,
+                              double error) noexcept;
   void set_enough() noexcept;
   void set_ends() noexcept;
 
@@ -79,6 +81,9 @@ class NearestTriangles {
   double best_ = 0;  // what enough_ would be were no error allowed
   double left_ = std::numeric_limits<double>::infinity();
   NearestPair pair_;
+  double rounding_ = 0;                                // of the best distance
+  std::uint64_t in_vain_ = 0;                          // triangles compared since it was found
+  Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // its points, in the metric's units
   Direction direction_;
   LeafReading leaves_;
   std::array<double, kMaxLeafTriangles> first_end_;
