@@ -5,6 +5,7 @@
 
 #include <boxtree/runtime/primitive/predicates.h>
 #include <boxtree/runtime/primitive/separation.h>
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/nearest_triangles.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -20,6 +21,25 @@ constexpr double kRounding = 0x1p-45;
 // It is looked at nevertheless until so many triangles have been compared in vain, more than what
 // meets in two vertices: then faces lie in parallel planes or on each other, and all are as near.
 constexpr std::uint64_t kPatience = 1024;
+
+// The direction that tells two triangles apart best: between two points of them, or along a normal.
+// Where a face lies along the other triangle all three are the same but for rounding, which tilts
+// the line between two points the more the nearer they are.
+Eigen::Vector3d separating_direction(const Eigen::Vector3d& between, const Triangle& p,
+                                     const Triangle& q, double size) noexcept {
+  Eigen::Vector3d best = between;
+  double most = separation_along(best, p.corner, q.corner, size);
+  for (const Triangle* face : {&p, &q}) {
+    Eigen::Vector3d normal =
+        cross(face->corner[1] - face->corner[0], face->corner[2] - face->corner[0]);
+    if (dot(normal, between) < 0) normal = -normal;
+    const double apart = separation_along(normal, p.corner, q.corner, size);
+    if (!(apart > most)) continue;
+    most = apart;
+    best = normal;
+  }
+  return best;
+}
 
 }  // namespace
 
@@ -42,6 +62,10 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
   if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
   const GapWeights& gaps = metric_.in_first();
   set_ends();
+  if (const double key = direction_.squared_distance(first_most_, second_least_); !(key < best_)) {
+    leave(key);
+    return Errc::kOk;
+  }
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     const double to_leaf = gaps.squared_distance(leaves_.first_bounds[i], leaves_.all_moved_bounds);
     if (!(to_leaf < best_)) {
@@ -67,9 +91,11 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
 void NearestTriangles::set_ends() noexcept {
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     first_end_[i] = direction_.end_of_first(leaves_.first.triangle(i));
+    first_most_ = i == 0 ? first_end_[i] : std::max(first_most_, first_end_[i]);
   }
   for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
     second_end_[j] = direction_.end_of_moved(leaves_.moved[j]);
+    second_least_ = j == 0 ? second_end_[j] : std::min(second_least_, second_end_[j]);
   }
 }
 
@@ -101,14 +127,14 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
   if (found.upper < pair_.upper - rounding_) in_vain_ = 0;
   pair_.upper = found.upper;
   rounding_ = kRounding * size;
-  between_ = found.second - found.first;
+  between_ = separating_direction(found.second - found.first, p_world, q_world, size);
   pair_.faces = {face_ref(first_, leaves_.first.face[i]),
                  face_ref(second_, leaves_.second.face[j])};
   pair_.origin = origin;
   pair_.first = found.first;
   pair_.second = found.second;
   set_enough();
-  face(found.second - found.first);
+  face(between_);
   set_ends();
 }
 
@@ -120,7 +146,11 @@ bool NearestTriangles::is_apart(const Triangle& p, const Triangle& q, double siz
                                 double error) noexcept {
   const double lower = separation_along(between_, p.corner, q.corner, size) - error;
   const double key = lower * lower;
-  if (!(lower > 0) || key < best_) return false;
+  if (!(lower > 0)) return false;
+  // A comparison would leave as much of their own size open.
+  const double rounding = in_vain_ < kPatience ? 0 : kRounding * size;
+  const double best = std::max(pair_.upper - rounding, pair_.upper / 2);
+  if (key < best_ && lower < best) return false;
   leave(key);
   return true;
 }

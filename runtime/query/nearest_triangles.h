@@ -83,11 +83,13 @@ class NearestTriangles {
   NearestPair pair_;
   double rounding_ = 0;                                // of the best distance
   std::uint64_t in_vain_ = 0;                          // triangles compared since it was found
-  Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // its points, in the metric's units
+  Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // tells its triangles apart, in the world
   Direction direction_;
   LeafReading leaves_;
   std::array<double, kMaxLeafTriangles> first_end_;
   std::array<double, kMaxLeafTriangles> second_end_;
+  double first_most_ = 0;    // of the first leaf's ends
+  double second_least_ = 0;  // of the second's
 };
 
 }  // namespace boxtree
