@@ -135,13 +135,13 @@ struct WideCodec {
 
   const std::byte* nodes = nullptr;
   std::uint32_t node_count = 0;
-  std::uint32_t face_count = 0;
+  std::uint32_t face_count = 0;  // of those in leaves
 
   /// Reads nodes of `record` out of its section. Error: kSectionSize.
   static Result<WideCodec> bind(const TreeRecord& record, Bytes section) {
     const std::uint64_t expected = std::uint64_t{record.node_count} * sizeof(Node);
     if (section.size() != expected) return section_size_error(section.size(), expected);
-    return WideCodec{section.data(), record.node_count, record.face_count};
+    return WideCodec{section.data(), record.node_count, faces_in_leaves(record)};
   }
 
   [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {0, 0}; }

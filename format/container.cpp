@@ -143,6 +143,8 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "face_materials";
     case SectionKind::kLeftOut:
       return "left_out";
+    case SectionKind::kDuplicates:
+      return "duplicates";
   }
   return "unknown";
 }

@@ -63,6 +63,7 @@ enum class SectionKind : std::uint32_t {
   kMaterialRuns = 16,   // owner: a tree; MaterialRun[]
   kFaceMaterials = 17,  // owner: a tree; material of each face in tree order, u8 or u16
   kLeftOut = 18,        // LeftOutRecord[]
+  kDuplicates = 19,     // owner: a tree; the face of which each duplicate is a copy
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

@@ -50,6 +50,8 @@ constexpr std::array kTable = {
     ErrcInfo{Errc::kFaceUnreachable, "face_unreachable", "no leaf holds this face", 3},
     ErrcInfo{Errc::kFaceRepeated, "face_repeated", "more than one leaf holds this face", 3},
     ErrcInfo{Errc::kVertexNotFinite, "vertex_not_finite", "a stored vertex is NaN or infinite", 3},
+    ErrcInfo{Errc::kDuplicateDiffers, "duplicate_differs",
+             "a face listed as a copy of another one is not the same", 3},
     ErrcInfo{Errc::kInvalidQuery, "invalid_query", "NaN, infinite or empty query", 1},
     ErrcInfo{Errc::kInvalidPose, "invalid_pose", "pose is not finite or not invertible", 1},
     ErrcInfo{Errc::kPartLeftOut, "part_left_out", "the query needs a part that was left out", 5},

@@ -44,6 +44,7 @@ enum class Errc : std::uint16_t {
   kFaceUnreachable = 39,
   kFaceRepeated = 40,
   kVertexNotFinite = 41,
+  kDuplicateDiffers = 42,
 
   // 50..59: binding and asking.
   kInvalidQuery = 50,

@@ -17,9 +17,10 @@ constexpr int kMaxGridShift = 64;
 bool counts_fit(const TreeRecord& record) {
   const std::uint64_t faces = record.face_count;
   const std::uint32_t deepest = is_wide(record.codec) ? kMaxWideDepth : kMaxDepth;
-  return faces <= kMaxFaces && record.vertex_count <= kMaxVertices &&
-         record.node_count <= kMaxNodes && record.depth <= deepest &&
-         record.triangle_count >= faces && record.triangle_count <= 2 * faces;
+  return faces <= kMaxFaces && record.duplicate_count <= faces &&
+         record.vertex_count <= kMaxVertices && record.node_count <= kMaxNodes &&
+         record.depth <= deepest && record.triangle_count >= faces &&
+         record.triangle_count <= 2 * faces;
 }
 
 bool root_fits(const TreeRecord& record) {
@@ -44,6 +45,15 @@ bool frame_fits(const TreeRecord& record) {
   return std::abs(record.scale_exponent) <= kMaxScaleExponent;
 }
 
+// Copies need an original, and leaves that name faces by their numbers in the source cannot have
+// them behind all others.
+bool duplicates_fit(const TreeRecord& record) {
+  const std::uint8_t bytes = record.duplicate_bytes;
+  if (record.duplicate_count == 0) return bytes == 0;
+  return (bytes == 1 || bytes == 2 || bytes == 4) && faces_in_leaves(record) > 0 &&
+         (record.flags & kTreeFacesInSourceOrder) == 0;
+}
+
 bool geometry_fits(const TreeRecord& record) {
   const bool width_known = record.face_id_bytes == 0 || record.face_id_bytes == 1 ||
                            record.face_id_bytes == 2 || record.face_id_bytes == 4;
@@ -66,8 +76,7 @@ bool geometry_fits(const TreeRecord& record) {
 
 bool reserve_is_zero(const TreeRecord& record) {
   const bool has_grid = record.geometry == GeometryId::kGrid;
-  return record.reserved0 == 0 && (record.flags & ~kTreeKnownFlags) == 0 &&
-         (has_grid || record.grid_exponent == 0) && record.reserved1 == 0 &&
+  return (record.flags & ~kTreeKnownFlags) == 0 && (has_grid || record.grid_exponent == 0) &&
          std::all_of(record.reserved2.begin(), record.reserved2.end(),
                      [](std::uint64_t word) { return word == 0; });
 }
@@ -90,6 +99,7 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   if (!frame_fits(record))
     return invalid("origin, scale or root box is not finite, ordered and within limits");
   if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
+  if (!duplicates_fit(record)) return invalid("duplicates contradict the other counts");
   if (!reserve_is_zero(record)) return invalid("reserved bits are set");
   return {};
 }

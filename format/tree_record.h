@@ -40,7 +40,7 @@ struct TreeRecord {
   std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is exact
   std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
   std::uint8_t face_id_bytes;     // 1, 2 or 4; 0 without a face_ids section
-  std::uint8_t reserved0;
+  std::uint8_t duplicate_bytes;   // 1, 2 or 4; 0 without a duplicates section
   std::int32_t scale_exponent;
   std::uint32_t name_offset;  // into the names section
   std::uint32_t name_bytes;
@@ -49,13 +49,20 @@ struct TreeRecord {
   std::array<double, 3> root_high;  // tree space
   std::uint64_t geometry_hash;      // XXH3-64 of the faces' corner positions; docs/FORMAT.md
   std::int32_t grid_exponent;       // geometry grid: its step is 2^grid_exponent; otherwise 0
-  std::uint32_t reserved1;
+  std::uint32_t duplicate_count;    // faces that stand in no leaf, behind all others
   std::array<std::uint64_t, 7> reserved2;
 };
 static_assert(sizeof(TreeRecord) == 192 && std::is_trivially_copyable_v<TreeRecord>);
 static_assert(offsetof(TreeRecord, origin) == 48 && offsetof(TreeRecord, root_high) == 96);
 static_assert(offsetof(TreeRecord, geometry_hash) == 120);
 static_assert(offsetof(TreeRecord, grid_exponent) == 128);
+static_assert(offsetof(TreeRecord, duplicate_bytes) == 35);
+static_assert(offsetof(TreeRecord, duplicate_count) == 132);
+
+/// Faces that leaves hold: the first so many in tree order. The others are copies of these.
+[[nodiscard]] constexpr std::uint32_t faces_in_leaves(const TreeRecord& record) noexcept {
+  return record.face_count - record.duplicate_count;
+}
 
 /// What the cooker proved about the tree after it had written it; `boxtree verify` proves it again.
 struct CertificateRecord {
@@ -63,7 +70,7 @@ struct CertificateRecord {
   std::uint32_t depth;         // equals TreeRecord::depth
   std::uint32_t node_count;    // nodes reached from the root
   std::uint32_t leaf_count;    // leaves reached
-  std::uint32_t face_count;    // faces reached, each exactly once
+  std::uint32_t face_count;    // faces reached, each exactly once; duplicates by their originals
   std::uint32_t shrink_count;  // nodes with one child
   std::uint32_t degenerate_count;  // triangles without area, kept
   std::array<std::uint64_t, 4> reserved;

@@ -64,11 +64,12 @@ class Recursion {
 
 }  // namespace
 
-BuildTree build_tree(const SourceMesh& mesh, Builder builder, Origin origin) {
+BuildTree build_tree(const SourceMesh& mesh, Builder builder, Origin origin,
+                     const Duplicates& duplicates) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;
-  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
+  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame(), duplicates);
   tree.nodes.resize(2 * faces.size() - 1);
   const SplitRule rule = builder == Builder::kSah ? split_sah : split_paper;
   Recursion(faces, tree.nodes, rule).build(0, faces.size(), 0, kMaxSplitDepth);

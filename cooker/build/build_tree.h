@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include <boxtree/cooker/build/duplicates.h>
 #include <boxtree/cooker/import/source_mesh.h>
 #include <boxtree/format/box.h>
 #include <boxtree/format/limits.h>
@@ -70,15 +71,18 @@ enum class Builder : std::uint8_t {
 };
 
 /// Builds the tree of a mesh. Deterministic: the result depends on the mesh and the builder alone,
-/// not on threads, order of execution or standard library. Every face becomes exactly one leaf.
+/// not on threads, order of execution or standard library. Every face becomes exactly one leaf, but
+/// for duplicates: of those, only their originals.
 /// Runs on the threads of the enclosing oneTBB arena.
 /// Precondition: finite positions, corners in range (what import promises).
 [[nodiscard]] BuildTree build_tree(const SourceMesh& mesh, Builder builder,
-                                   Origin origin = Origin::kByPrecision);
+                                   Origin origin = Origin::kByPrecision,
+                                   const Duplicates& duplicates = {});
 
 /// The same with leaves of kLeafFaces faces, all full but the last one from left to right, by the
 /// surface-area heuristic over divisions that allow it.
 [[nodiscard]] BuildTree build_full_leaves(const SourceMesh& mesh,
-                                          Origin origin = Origin::kByPrecision);
+                                          Origin origin = Origin::kByPrecision,
+                                          const Duplicates& duplicates = {});
 
 }  // namespace boxtree::cooker

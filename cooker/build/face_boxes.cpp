@@ -101,7 +101,8 @@ Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t 
           {bounds.high[0], bounds.high[1], bounds.high[2]}};
 }
 
-std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame) {
+std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame,
+                                const Duplicates& duplicates) {
   std::vector<FaceBox> faces(mesh.faces.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096),
                     [&](const tbb::blocked_range<std::size_t>& range) {
@@ -109,6 +110,9 @@ std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame) {
                         faces[i] = {face_box(mesh, frame, i), static_cast<std::uint32_t>(i)};
                       }
                     });
+  if (duplicates.count > 0) {
+    std::erase_if(faces, [&](const FaceBox& f) { return !duplicates.is_original(f.face); });
+  }
   return faces;
 }
 

@@ -14,7 +14,8 @@ namespace boxtree::cooker {
 /// With Origin::kZero f64 ones are not shifted either: steps of a grid are counted from zero.
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree);
 
-/// The boxes of all faces in tree space, in the order of the mesh.
-[[nodiscard]] std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame);
+/// The boxes of all faces but duplicates in tree space, in the order of the mesh.
+[[nodiscard]] std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame,
+                                              const Duplicates& duplicates);
 
 }  // namespace boxtree::cooker

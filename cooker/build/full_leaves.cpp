@@ -103,11 +103,11 @@ class Recursion {
 
 }  // namespace
 
-BuildTree build_full_leaves(const SourceMesh& mesh, Origin origin) {
+BuildTree build_full_leaves(const SourceMesh& mesh, Origin origin, const Duplicates& duplicates) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;
-  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame());
+  std::vector<FaceBox> faces = face_boxes(mesh, tree.frame(), duplicates);
   tree.nodes.resize(2 * leaves_of(faces.size()) - 1);
   Recursion(faces, tree.nodes).build({0, faces.size(), 0, 1, kMaxSplitDepth});
   tree.order.reserve(faces.size());

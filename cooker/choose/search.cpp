@@ -67,6 +67,7 @@ struct Source {
   const SourceMesh& mesh;                        // as imported
   const std::optional<QuantisedMesh> quantised;  // or nothing
   EncodedTree known;                             // what every tree of it says, but for its bytes
+  Duplicates duplicates;                         // of what is built
 
   Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid);
 
@@ -85,14 +86,30 @@ Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
   known.degenerate_count = count_degenerate(built(), unbuilt.frame());
   known.geometry_hash = hash_of(mesh);
   known.positions_f64 = mesh.positions.precision == Precision::kF64;
+  duplicates = find_duplicates(built());
 }
 
+// The geometry of faces in `order`, duplicates behind them.
 EncodedGeometry encode_geometry(const Source& source, const SearchOptions& options,
                                 std::vector<std::uint32_t> order, LeafOrder leaf_order) {
-  if (source.quantised) {
-    return encode_grid_geometry(*source.quantised, std::move(order), leaf_order, options.face_ids);
+  const bool has_duplicates = source.duplicates.count > 0;
+  if (source.quantised && has_duplicates && leaf_order == LeafOrder::kFree) {
+    // Where the clusters put the originals decides where their duplicates stand.
+    static_cast<void>(encode_grid_geometry(*source.quantised, order, leaf_order, false));
+    leaf_order = LeafOrder::kFixed;
   }
-  return encode_exact_geometry(source.mesh, order, options.face_ids);
+  const std::vector<std::uint32_t> originals =
+      append_duplicates(source.built(), source.duplicates, order);
+  EncodedGeometry out;
+  if (options.geometry == GeometryId::kExternal) {
+    out = encode_external_geometry(source.mesh, order);
+  } else if (source.quantised) {
+    out = encode_grid_geometry(*source.quantised, order, leaf_order, options.face_ids);
+  } else {
+    out = encode_exact_geometry(source.mesh, order, options.face_ids);
+  }
+  encode_duplicates(originals, out);
+  return out;
 }
 
 // Codecs that share a build tree and its order of faces, so that only nodes differ. The build tree
@@ -105,14 +122,18 @@ struct Family {
 // Codecs with one face a leaf.
 Family binary_family(const Source& source, const SearchOptions& options,
                      const std::vector<CodecId>& codecs) {
-  const BuildTree build = build_tree(source.built(), options.builder, source.origin());
-  const bool external = options.geometry == GeometryId::kExternal;
+  const BuildTree build =
+      build_tree(source.built(), options.builder, source.origin(), source.duplicates);
   Family family{source.known, {}};
-  family.tree.faces_in_source_order = external;
+  // Duplicates stand behind all others, which is not the order of the source.
+  const bool in_source_order =
+      options.geometry == GeometryId::kExternal && source.duplicates.count == 0;
+  family.tree.faces_in_source_order = in_source_order;
   family.tree.geometry =
-      external ? encode_external_geometry(source.mesh, {})
-               : encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed);
-  const FaceOrder order = external ? FaceOrder::kSource : FaceOrder::kTree;
+      in_source_order
+          ? encode_external_geometry(source.mesh, {})
+          : encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed);
+  const FaceOrder order = in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
   std::array<EncodedNodes, 3> plain;  // by PlainCut
   const auto walk_for = [&](std::size_t i) {
     const auto cut = static_cast<PlainCut>(i);
@@ -135,13 +156,13 @@ Family binary_family(const Source& source, const SearchOptions& options,
 // Codecs with full leaves, whose layout orders the faces.
 Family wide_family(const Source& source, const SearchOptions& options) {
   Family family{source.known, {}};
-  WideLayout layout = lay_out_wide(build_full_leaves(source.built(), source.origin()));
+  WideLayout layout =
+      lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates));
   const bool external = options.geometry == GeometryId::kExternal;
   // Leaves name the application's faces through face ids, which no tree without faces has.
   family.tree.faces_in_source_order = external && layout.face_order.empty();
   family.tree.geometry =
-      external ? encode_external_geometry(source.mesh, layout.face_order)
-               : encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
+      encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
   layout.face_order = {};
   family.nodes_of = [layout = std::move(layout)](CodecId codec) {
     return encode_wide(layout, codec);
@@ -154,7 +175,7 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
                           const Workload& questions, std::span<const CodecCost> costs) {
   Candidate candidate{tree.nodes.codec,
                       tree.geometry.geometry,
-                      tree.nodes.bytes.size(),
+                      tree.nodes.bytes.size() + tree.geometry.duplicates.size(),
                       tree.geometry.vertices.size() + tree.geometry.corners.size(),
                       tree.geometry.max_vertex_error,
                       {},

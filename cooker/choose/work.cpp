@@ -120,9 +120,11 @@ Workload choice_questions(const Eigen::AlignedBox3d& bounds) {
   return questions;
 }
 
-Result<WorkOfKinds> count_work(const Tree& tree, const Workload& questions) {
+Result<WorkOfKinds> count_work(const Tree& asked, const Workload& questions) {
   WorkOfKinds work{};
-  if (tree.empty()) return work;
+  if (asked.empty()) return work;
+  // Copies cost no step, and of n faces in one place there are n * n pairs.
+  const Tree tree = asked.without_duplicates();
   const auto enter = [&](QueryKind kind, const auto& of_kind) -> Status {
     const Result<Work> mean = mean_work(tree, of_kind);
     if (!mean) return mean.error();

@@ -27,8 +27,9 @@ struct TreeBytes {
 
 TreeBytes bytes_of(const File& file, std::uint32_t index) {
   const auto size = [&](SectionKind kind) { return file.section(kind, index).size(); };
-  return {size(SectionKind::kNodes), size(SectionKind::kVertices) + size(SectionKind::kCorners),
-          size(SectionKind::kFaceIds), size(SectionKind::kCertificate) + sizeof(TreeRecord)};
+  return {size(SectionKind::kNodes) + size(SectionKind::kDuplicates),
+          size(SectionKind::kVertices) + size(SectionKind::kCorners), size(SectionKind::kFaceIds),
+          size(SectionKind::kCertificate) + sizeof(TreeRecord)};
 }
 
 double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
@@ -45,6 +46,7 @@ Json tree_json(const File& file, std::uint32_t index) {
                {"geometry", geometry_name(record.geometry)},
                {"triangles", record.triangle_count},
                {"faces", record.face_count},
+               {"duplicates", record.duplicate_count},
                {"vertices", record.vertex_count},
                {"nodes", record.node_count},
                {"depth", record.depth}};
@@ -97,6 +99,10 @@ void print_file(const Json& json) {
                tree["name"].get<std::string>(), tree["triangles"].get<std::uint32_t>(),
                tree["codec"].get<std::string>(), tree["geometry"].get<std::string>(),
                tree["nodes"].get<std::uint32_t>(), tree["depth"].get<std::uint32_t>());
+    if (const auto copies = tree["duplicates"].get<std::uint32_t>(); copies > 0) {
+      fmt::print("  {} of {} faces are copies of others\n", copies,
+                 tree["faces"].get<std::uint32_t>());
+    }
     fmt::print("  bytes per triangle: tree {:.2f}, with geometry {:.2f}, face ids {:.2f}\n",
                tree["bytes_per_triangle"]["tree"].get<double>(),
                tree["bytes_per_triangle"]["total"].get<double>(),

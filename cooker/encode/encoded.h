@@ -53,16 +53,20 @@ enum class FieldWidths : std::uint8_t {
   kEstimated,  // from the number of faces alone, as a builder in one pass must
 };
 
-/// Vertices, corners and ids in the form of their sections. Empty for geometry left external.
+/// Vertices, corners, ids and duplicates in the form of their sections. The first two are empty for
+/// geometry left external.
 struct EncodedGeometry {
   GeometryId geometry = GeometryId::kExact;
   std::vector<std::byte> vertices;
   std::vector<std::byte> corners;
   std::vector<std::byte> face_ids;
+  std::vector<std::byte> duplicates;
   std::uint32_t vertex_count = 0;
   std::uint8_t corner_bytes = 0;
   std::uint8_t corners_per_face = 0;
   std::uint8_t face_id_bytes = 0;
+  std::uint8_t duplicate_bytes = 0;
+  std::uint32_t duplicate_count = 0;
   int grid_exponent = 0;        // geometry grid: of its step in object space
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
@@ -79,14 +83,17 @@ struct EncodedGeometry {
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
 
 /// Faces in `order`, but for their places within groups of kLeafFaces, as clusters on a grid (see
-/// format/grid.h).
+/// format/grid.h). On return `order` is that of the clusters.
 [[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
-                                                   std::vector<std::uint32_t> order,
+                                                   std::vector<std::uint32_t>& order,
                                                    LeafOrder leaf_order, bool face_ids);
 
 /// Nothing but, unless `order` is empty, the face ids through which a reader finds the
 /// application's faces.
 [[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
                                                        std::span<const std::uint32_t> order);
+
+/// The places of the originals of all duplicates, ascending, as their section.
+void encode_duplicates(std::span<const std::uint32_t> originals, EncodedGeometry& out);
 
 }  // namespace boxtree::cooker

@@ -19,6 +19,8 @@ TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
   record.corner_bytes = tree.geometry.corner_bytes;
   record.corners_per_face = tree.geometry.corners_per_face;
   record.face_id_bytes = tree.geometry.face_id_bytes;
+  record.duplicate_bytes = tree.geometry.duplicate_bytes;
+  record.duplicate_count = tree.geometry.duplicate_count;
   record.scale_exponent = tree.scale_exponent;
   record.name_offset = name_offset;
   record.name_bytes = static_cast<std::uint32_t>(tree.name.size());
@@ -43,9 +45,10 @@ CertificateRecord certificate_of(const EncodedTree& tree) {
 }
 
 TreeParts parts_of(const EncodedTree& tree) {
-  return {record_of(tree, 0),    tree.name,
-          tree.nodes.bytes,      tree.geometry.vertices,
-          tree.geometry.corners, tree.geometry.face_ids};
+  return {record_of(tree, 0),      tree.name,
+          tree.nodes.bytes,        tree.geometry.vertices,
+          tree.geometry.corners,   tree.geometry.face_ids,
+          tree.geometry.duplicates};
 }
 
 }  // namespace boxtree::cooker

@@ -49,6 +49,16 @@ void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> orde
   }
 }
 
+void encode_duplicates(std::span<const std::uint32_t> originals, EncodedGeometry& out) {
+  if (originals.empty()) return;
+  out.duplicate_count = static_cast<std::uint32_t>(originals.size());
+  out.duplicate_bytes = number_bytes(originals.back());
+  out.duplicates.reserve(originals.size() * out.duplicate_bytes);
+  for (const std::uint32_t face : originals) {
+    append_number(out.duplicates, face, out.duplicate_bytes);
+  }
+}
+
 std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
   std::vector<std::uint32_t> order;
   order.reserve((tree.nodes.size() + 1) / 2);

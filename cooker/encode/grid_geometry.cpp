@@ -302,7 +302,7 @@ Block encode_block(const SourceMesh& mesh, std::span<std::uint32_t> order, bool 
 }  // namespace
 
 EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
-                                     std::vector<std::uint32_t> order, LeafOrder leaf_order,
+                                     std::vector<std::uint32_t>& order, LeafOrder leaf_order,
                                      bool face_ids) {
   const SourceMesh& mesh = quantised.mesh;
   const bool may_have_quads = std::any_of(mesh.faces.begin(), mesh.faces.end(),

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <string>
 #include <utility>
@@ -44,6 +45,7 @@ class Walk {
   void run() {
     if (!tree_.empty()) {
       walk(tree_.root(), 0);
+      visit_duplicates();
       report_unreached();
     }
     const TreeRecord& record = tree_.record();
@@ -143,6 +145,14 @@ class Walk {
     for (const Error& finding : part.findings) add(finding.code, finding.detail);
   }
 
+  // Who meets a face first does not matter to anyone but the report of a corrupt tree.
+  bool reach(std::uint32_t face, const char* twice) {
+    const bool met = reached_[face].exchange(1, std::memory_order_relaxed) != 0;
+    if (met) add(Errc::kFaceRepeated, "face " + std::to_string(face) + " " + twice);
+    if (!met) ++proof_.certificate.face_count;
+    return !met;
+  }
+
   Box<double> visit_leaf(const Node& leaf) {
     ++proof_.certificate.leaf_count;
     Box<double> content = empty_box<double>();
@@ -152,10 +162,7 @@ class Walk {
       return content;
     }
     for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
-      // Who meets a face first does not matter to anyone but the report of a corrupt tree.
-      const bool met = reached_[f].exchange(1, std::memory_order_relaxed) != 0;
-      if (met) add(Errc::kFaceRepeated, "face " + std::to_string(f) + " is in two leaves");
-      if (!met) ++proof_.certificate.face_count;
+      reach(f, "is in two leaves");
     }
     if (!with_geometry_) return content;
     TriangleBatch batch;
@@ -171,6 +178,55 @@ class Walk {
     ++triangles_;
     if (is_degenerate(triangle)) ++proof_.certificate.degenerate_count;
     expand(content, bounds_of(triangle));
+  }
+
+  // Queries report a duplicate where they report its original, and ties are decided for the
+  // original: so it must be in a leaf, be the same to the bit, and have the smaller id. Originals
+  // ascend, as they are searched for.
+  void visit_duplicates() {
+    const std::uint32_t in_leaves = faces_in_leaves(tree_.record());
+    std::uint32_t before = 0;
+    for (std::uint32_t copy = in_leaves; copy < tree_.record().face_count; ++copy) {
+      const std::uint32_t original = tree_.original_of(copy);
+      const bool is_original = original < in_leaves && original >= before &&
+                               reached_[original].load(std::memory_order_relaxed) != 0;
+      if (!is_original) {
+        add(Errc::kFaceOutOfRange, "face " + std::to_string(copy) + " is a copy of face " +
+                                       std::to_string(original) +
+                                       ", which is in no leaf or out of order");
+        continue;
+      }
+      before = original;
+      if (!reach(copy, "is in a leaf and a copy of another one")) continue;
+      if (!has_same_triangles(original, copy) ||
+          (tree_.has_face_ids() && tree_.face_id(original) > tree_.face_id(copy))) {
+        add(Errc::kDuplicateDiffers, "face " + std::to_string(copy) +
+                                         " is listed as a copy of face " +
+                                         std::to_string(original));
+      }
+    }
+  }
+
+  bool has_same_triangles(std::uint32_t original, std::uint32_t copy) {
+    if (!with_geometry_) return true;
+    TriangleBatch a, b;
+    if (tree_.leaves().read(original, 1, a) != Errc::kOk ||
+        tree_.leaves().read(copy, 1, b) != Errc::kOk || a.count != b.count) {
+      return false;
+    }
+    Box<double> content = empty_box<double>();
+    for (std::uint32_t i = 0; i < a.count; ++i) {
+      visit_triangle(b.triangle(i), content);
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          const auto bits = [&](const TriangleBatch& batch) {
+            return std::bit_cast<std::uint64_t>(batch.coordinate[corner][k][i]);
+          };
+          if (bits(a) != bits(b)) return false;
+        }
+      }
+    }
+    return true;
   }
 
   void report_unreached() {

@@ -130,6 +130,9 @@ class Account {
       case SectionKind::kFaceIds:
         aspect = Aspect::kFaceIds;
         return {};
+      case SectionKind::kDuplicates:
+        return fmt::format("{} faces are copies of others, which stand in leaves for them",
+                           cooked_.trees[entry.owner].geometry.duplicate_count);
       case SectionKind::kCertificate:
         return "what was proven of the tree";
       case SectionKind::kNames:

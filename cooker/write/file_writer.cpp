@@ -46,6 +46,7 @@ class Layout {
       add(SectionKind::kVertices, i, tree.geometry.vertices);
       add(SectionKind::kCorners, i, tree.geometry.corners);
       add(SectionKind::kFaceIds, i, tree.geometry.face_ids);
+      add(SectionKind::kDuplicates, i, tree.geometry.duplicates);
       if (scene == nullptr || i >= scene->material_runs.size()) continue;
       add(SectionKind::kMaterialRuns, i, scene->material_runs[i]);
       add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);

@@ -33,7 +33,7 @@ struct FaceWalk {
       const Triangle triangle = batch.triangle(i);
       if (!shape.overlaps(bounds_of(triangle)) || !shape.touches(triangle)) continue;
       reported = batch.face[i];
-      stopped = !visitor(face_ref(tree, reported));
+      stopped = !report_face(tree, reported, visitor);
     }
     return !stopped;
   }

@@ -34,8 +34,8 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
         continue;
       if (triangles_intersect(triangle, leaves_.moved[j])) {
         found |= std::uint64_t{1} << j;
-        stopped_ = !visitor_(
-            {face_ref(first_, leaves_.first.face[i]), face_ref(second_, leaves_.second.face[j])});
+        stopped_ =
+            !report_pair(first_, leaves_.first.face[i], second_, leaves_.second.face[j], visitor_);
       } else if (watch != nullptr) {
         stopped_ = (*watch)(triangle, leaves_.moved[j]);
       }

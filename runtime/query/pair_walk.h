@@ -40,7 +40,9 @@ struct PairSide {
 /// once. A walk of corrupt bytes that would meet more ends with kNodeCorrupt.
 [[nodiscard]] inline std::uint64_t most_pairs(const TreeRecord& first,
                                               const TreeRecord& second) noexcept {
-  const auto size = [](const TreeRecord& r) { return std::uint64_t{r.node_count} + r.face_count; };
+  const auto size = [](const TreeRecord& r) {
+    return std::uint64_t{r.node_count} + faces_in_leaves(r);
+  };
   const std::uint64_t a = size(first);
   const std::uint64_t b = size(second);
   return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;

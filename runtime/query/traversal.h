@@ -41,6 +41,30 @@ namespace boxtree {
   return {tree.face_id(order), order};
 }
 
+/// Tells a visitor of faces of a face and of all that are copies of it; whether to go on.
+template <class Visitor>
+[[nodiscard]] bool report_face(const Tree& tree, std::uint32_t face, Visitor& visitor) {
+  if (!visitor(face_ref(tree, face))) return false;
+  if (!tree.has_duplicates()) return true;
+  const FaceRange copies = tree.duplicates_of(face);
+  for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
+    if (!visitor(face_ref(tree, copy))) return false;
+  }
+  return true;
+}
+
+/// The same for a pair of faces and a visitor of pairs: each copy of the one with each of the
+/// other.
+template <class Visitor>
+[[nodiscard]] bool report_pair(const Tree& first_tree, std::uint32_t first, const Tree& second_tree,
+                               std::uint32_t second, Visitor& visitor) {
+  const auto with_first = [&](const FaceRef& a) {
+    const auto with_second = [&](const FaceRef& b) { return visitor({a, b}); };
+    return report_face(second_tree, second, with_second);
+  };
+  return report_face(first_tree, first, with_first);
+}
+
 /// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
 /// that every codec and builder agrees.
 [[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,

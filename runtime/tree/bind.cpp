@@ -17,7 +17,7 @@ Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions
   return bind(
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
        file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
-       file.section(SectionKind::kFaceIds, index)},
+       file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index)},
       index, options);
 }
 
@@ -36,6 +36,7 @@ Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindO
     return status.error();
   }
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
+  if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
   return tree;
 }
 
@@ -116,6 +117,14 @@ Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return Error{Errc::kPartLeftOut, place + "face ids were left out when it was cooked"};
   }
+  return {};
+}
+
+Status Tree::bind_duplicates(const TreeParts& parts, const std::string& place) {
+  const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
+                                       record_.duplicate_count, record_.duplicate_bytes);
+  if (!originals) return originals.error();
+  if (record_.duplicate_count != 0) duplicates_ = *originals;
   return {};
 }
 

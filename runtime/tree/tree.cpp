@@ -14,7 +14,7 @@ bool Tree::has_face_ids() const noexcept {
 }
 
 NodeRef Tree::root_ref() const noexcept {
-  if (record_.root == RootKind::kLeaf) return {0, record_.face_count};
+  if (record_.root == RootKind::kLeaf) return {0, faces_in_leaves(record_)};
   return std::visit([this](const auto& codec) { return codec.root(record_); }, codec_);
 }
 
@@ -45,6 +45,29 @@ std::uint32_t Tree::face_id(std::uint32_t face) const noexcept {
   if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
   if (face_ids_ == nullptr) return kNoFaceId;
   return load_number(face_ids_, record_.face_id_bytes, face);
+}
+
+FaceRange Tree::duplicates_of(std::uint32_t face) const noexcept {
+  const std::uint32_t originals = faces_in_leaves(record_);
+  if (duplicates_ == nullptr) return {originals, originals};
+  // The first whose original is not below `limit`.
+  const auto from = [this](std::uint32_t limit) {
+    std::uint32_t low = 0;
+    std::uint32_t high = record_.duplicate_count;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      const bool below = load_number(duplicates_, record_.duplicate_bytes, middle) < limit;
+      (below ? low : high) = below ? middle + 1 : middle;
+    }
+    return low;
+  };
+  return {originals + from(face), originals + from(face + 1)};
+}
+
+std::uint32_t Tree::original_of(std::uint32_t face) const noexcept {
+  const std::uint32_t originals = faces_in_leaves(record_);
+  if (duplicates_ == nullptr || face < originals) return face;
+  return load_number(duplicates_, record_.duplicate_bytes, face - originals);
 }
 
 Eigen::AlignedBox3d Tree::to_object(const Box<double>& box) const noexcept {

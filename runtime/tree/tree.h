@@ -39,6 +39,13 @@ struct TreeParts {
   Bytes vertices;
   Bytes corners;
   Bytes face_ids;
+  Bytes duplicates;
+};
+
+/// Faces in a row, in a tree's own order: first to last - 1.
+struct FaceRange {
+  std::uint32_t first;
+  std::uint32_t last;
 };
 
 /// A leaf or a subtree together with its decoded box, as a traversal carries it.
@@ -94,6 +101,24 @@ class Tree {
   /// Precondition: face < record().face_count.
   [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
 
+  /// Whether some faces stand in no leaf because they are copies of others.
+  [[nodiscard]] bool has_duplicates() const noexcept { return duplicates_ != nullptr; }
+  /// The copies of a face that is in a leaf: the same triangles, to the bit, and larger ids.
+  /// Visitors of the queries are told of them; traversals that read leaves themselves meet the
+  /// original alone.
+  [[nodiscard]] FaceRange duplicates_of(std::uint32_t face) const noexcept;
+  /// The face of which a face is a copy; itself, if it is none or copies are not known. What
+  /// corrupt bytes state may be any number. Precondition: face < record().face_count.
+  [[nodiscard]] std::uint32_t original_of(std::uint32_t face) const noexcept;
+
+  /// The same tree, of whose faces visitors hear of originals alone: where copies say nothing new,
+  /// as in contacts that push bodies apart.
+  [[nodiscard]] Tree without_duplicates() const noexcept {
+    Tree tree = *this;
+    tree.duplicates_ = nullptr;
+    return tree;
+  }
+
   /// A box of tree space in object space, rounded outward: it holds every position of object space
   /// that Frame::to_tree brings into `box`.
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
@@ -112,12 +137,14 @@ class Tree {
   Status bind_external_geometry(const std::string& place, const BindOptions& options);
   Status bind_face_ids(const TreeParts& parts, const std::string& place,
                        const BindOptions& options);
+  Status bind_duplicates(const TreeParts& parts, const std::string& place);
 
   TreeRecord record_{};
   Frame frame_;
   std::string_view name_;
   AnyCodec codec_;
   const std::byte* face_ids_ = nullptr;
+  const std::byte* duplicates_ = nullptr;  // the original of each, ascending
   LeafReader leaves_;
   bool has_float_nodes_ = false;
 };

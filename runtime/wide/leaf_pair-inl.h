@@ -269,7 +269,7 @@ class LeafPairs {
     }
     if (!touch) return true;
     found |= pair;
-    stopped_ = !visitor_({face_ref(first_tree_, first_face), face_ref(second_tree_, second_face)});
+    stopped_ = !report_pair(first_tree_, first_face, second_tree_, second_face, visitor_);
     return !stopped_;
   }
 

@@ -106,7 +106,7 @@ class OverlapWalk {
   }
 
   bool report(std::uint32_t face) {
-    walk_.stopped = !walk_.visitor(face_ref(tree_, face));
+    walk_.stopped = !report_face(tree_, face, walk_.visitor);
     return !walk_.stopped;
   }
 

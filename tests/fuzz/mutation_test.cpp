@@ -14,14 +14,16 @@ namespace {
 struct Encoding {
   CodecId codec;
   GeometryId geometry;
+  bool duplicates = false;  // some faces twice
 };
 
 std::vector<std::byte> small_file(const Encoding& encoding) {
   cooker::CookOptions options;
   options.geometry = encoding.geometry;
   options.grid.bits = 12;
-  const Result<cooker::EncodedTree> cooked =
-      cooker::cook_as(test::city(2, 1), encoding.codec, options);
+  cooker::SourceMesh mesh = test::city(2, 1);
+  if (encoding.duplicates) mesh.faces.insert(mesh.faces.end(), 2, mesh.faces[1]);
+  const Result<cooker::EncodedTree> cooked = cooker::cook_as(mesh, encoding.codec, options);
   return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
 
@@ -88,12 +90,15 @@ std::vector<Encoding> encodings() {
   for (const CodecId codec : test::all_codecs()) all.push_back({codec, GeometryId::kExact});
   all.push_back({CodecId::kPlainF16, GeometryId::kGrid});
   all.push_back({CodecId::kWide8, GeometryId::kGrid});
+  all.push_back({CodecId::kWide8, GeometryId::kExact, true});
+  all.push_back({CodecId::kPlainF32, GeometryId::kGrid, true});
   return all;
 }
 
 std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
   const std::string codec = test::test_name({encoding.param.codec, encoding.index});
-  return codec + "_" + std::string(geometry_name(encoding.param.geometry));
+  return codec + "_" + std::string(geometry_name(encoding.param.geometry)) +
+         (encoding.param.duplicates ? "_duplicates" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, Mutation, testing::ValuesIn(encodings()), encoding_name);

@@ -13,7 +13,7 @@ import sys
 import xxhash
 
 NO_OWNER = 0xFFFFFFFF
-NODES, VERTICES, CORNERS, FACE_IDS, CERTIFICATE, NAMES = 2, 3, 4, 5, 6, 7
+NODES, VERTICES, CORNERS, FACE_IDS, CERTIFICATE, NAMES, DUPLICATES = 2, 3, 4, 5, 6, 7, 19
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 
 
@@ -193,7 +193,7 @@ class Wide:
         self.size = 64 if self.is_wide8 else 32
         self.nodes = nodes
         self.count = tree.node_count
-        self.faces = tree.face_count
+        self.faces = tree.leaf_faces
         expect(len(nodes) == self.size * tree.node_count, "size of section nodes")
 
     def root(self):
@@ -358,12 +358,17 @@ class Tree:
     def __init__(self, file, index, record):
         (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,
          self.vertex_count, self.node_count, self.root_kind, self.depth, self.corner_bytes,
-         self.corners_per_face, self.face_id_bytes, zero8, self.exponent, name_offset, name_bytes,
-         *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQi4x7Q", record)
+         self.corners_per_face, self.face_id_bytes, self.duplicate_bytes, self.exponent, name_offset,
+         name_bytes, *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQiI7Q", record)
         self.origin, self.low, self.high = rest[0:3], tuple(rest[3:6]), tuple(rest[6:9])
         self.grid_exponent = rest[10]
-        expect(zero8 == 0 and not any(rest[11:]) and not any(record[132:136]) and self.flags < 4,
-               "zeros of a record")
+        self.duplicate_count = rest[11]
+        self.leaf_faces = self.face_count - self.duplicate_count
+        expect(not any(rest[12:]) and self.flags < 4, "zeros of a record")
+        expect(self.duplicate_bytes in ((1, 2, 4) if self.duplicate_count else (0,)),
+               "width of duplicates")
+        expect(self.duplicate_count == 0 or self.leaf_faces > 0 and not self.flags & 1,
+               "duplicates of faces in tree order")
         expect(self.codec in CODECS and self.geometry in (1, 2, 3), "codec and geometry")
         expect(self.geometry == 3 or self.grid_exponent == 0, "a step without a grid")
         self.name = file.section(NAMES)[name_offset:name_offset + name_bytes].decode()
@@ -371,6 +376,7 @@ class Tree:
         self.vertices = file.section(VERTICES, index)
         self.corners = file.section(CORNERS, index)
         self.ids = file.section(FACE_IDS, index)
+        self.duplicates = file.section(DUPLICATES, index)
         self.certificate = file.section(CERTIFICATE, index)
         self.scalar = "d" if self.flags & 2 else "f"
         if self.geometry == 2:
@@ -380,6 +386,8 @@ class Tree:
                    * self.corner_bytes, "size of section corners")
         self.grid = Grid(self) if self.geometry == 3 else None
         expect(len(self.ids) == self.face_count * self.face_id_bytes, "size of section face_ids")
+        expect(len(self.duplicates) == self.duplicate_count * self.duplicate_bytes,
+               "size of section duplicates")
 
     def triangles(self, face):
         """Triangles of a face in tree space."""
@@ -417,7 +425,7 @@ class Tree:
             expect(self.face_count == 0, "an empty tree has no faces")
             return found
         if self.root_kind == LEAF:
-            self.leaf(found, (0, self.face_count), [(self.low, self.high)])
+            self.leaf(found, (0, self.leaf_faces), [(self.low, self.high)])
             return found
         codec = CODECS[self.codec][1](self, self.nodes)
         stack = [(codec.root(), [(self.low, self.high)])]
@@ -439,7 +447,7 @@ class Tree:
     def leaf(self, found, faces, path):
         found["leaves"] += 1
         for face in range(faces[0], faces[0] + faces[1]):
-            expect(face < self.face_count and face not in found["faces"], "each face in one leaf")
+            expect(face < self.leaf_faces and face not in found["faces"], "each face in one leaf")
             found["faces"][face] = self.face_id(face)
             if self.geometry == 1:
                 continue
@@ -450,8 +458,28 @@ class Tree:
                         expect(all(low[k] <= point[k] <= high[k] for k in range(3)),
                                f"face {face} inside every box above it")
 
+    def copies(self, found):
+        """Duplicates, by the faces that stand for them in leaves."""
+        before = 0
+        for i in range(self.duplicate_count):
+            at = i * self.duplicate_bytes
+            original = int.from_bytes(self.duplicates[at:at + self.duplicate_bytes], "little")
+            expect(before <= original < self.leaf_faces, "originals ascend and are in leaves")
+            before = original
+            face = self.leaf_faces + i
+            found["faces"][face] = self.face_id(face)
+            if self.face_id(face) is not None:
+                expect(self.face_id(original) <= self.face_id(face), "originals have smaller ids")
+            if self.geometry == 1:
+                continue
+            triangles = self.triangles(face)
+            found["triangles"] += len(triangles)
+            # repr tells -0 from 0
+            expect(repr(triangles) == repr(self.triangles(original)), "a duplicate is the same")
+
     def check(self):
         found = self.walk()
+        self.copies(found)
         expect(len(found["faces"]) == self.face_count, "every face is reached")
         expect(found["nodes"] == self.node_count and found["depth"] == self.depth, "counts")
         error, depth, nodes, leaves, faces, shrink, _degenerate, *zeros = struct.unpack(
@@ -460,7 +488,7 @@ class Tree:
                (found["depth"], found["nodes"], found["leaves"], self.face_count, found["shrink"])
                and error >= 0 and not any(zeros), "certificate")
         return {"name": self.name, "codec": CODECS[self.codec][0], "faces": self.face_count,
-                "triangles": self.triangle_count, "nodes": self.node_count, "depth": self.depth,
+                "duplicates": self.duplicate_count, "triangles": self.triangle_count, "nodes": self.node_count, "depth": self.depth,
                 "face_ids": [found["faces"][face] for face in sorted(found["faces"])]}
 
 

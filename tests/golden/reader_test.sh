@@ -21,7 +21,7 @@ for codec in ${codecs//blob-*/}; do # blobs come last
       "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --codec "$codec" "$geometry" -q
       read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $codec, $geometry"
       "$boxtree" info "$work/mesh.bxt" --json >"$work/ours"
-      keys='[.trees[] | {name,codec,faces,triangles,nodes,depth}]'
+      keys='[.trees[] | {name,codec,faces,duplicates,triangles,nodes,depth}]'
       [ "$(jq -cS "$keys" "$work/theirs")" = "$(jq -cS "$keys" "$work/ours")" ] ||
         fail "$mesh, $codec, $geometry: the two readers differ"
     done

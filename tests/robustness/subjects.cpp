@@ -16,6 +16,7 @@ class Walk {
 
   WalkFigures run() {
     if (!tree_.empty()) visit(tree_.root());
+    visit_duplicates();
     figures_.missed = static_cast<std::uint64_t>(std::count(met_.begin(), met_.end(), false));
     return figures_;
   }
@@ -49,6 +50,18 @@ class Walk {
       met_[batch.face[i]] = true;
       const Triangle triangle = batch.triangle(i);
       for (const Box<double>& box : path_) figures_.escapes += is_inside(triangle, box) ? 0u : 1u;
+    }
+  }
+
+  // Copies stand in no leaf; they are met where their originals are.
+  void visit_duplicates() {
+    for (std::uint32_t face = 0; face < tree_.record().face_count; ++face) {
+      if (!met_[face] || tree_.original_of(face) != face) continue;
+      const FaceRange copies = tree_.duplicates_of(face);
+      for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
+        figures_.repeated += met_[copy] ? 1u : 0u;
+        met_[copy] = true;
+      }
     }
   }
 

@@ -74,6 +74,12 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
     EXPECT_EQ(tree.expand(node, children), Errc::kOk);
     for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
   }
+  for (std::uint32_t face = faces_in_leaves(tree.record()); face < tree.record().face_count;
+       ++face) {
+    TriangleBatch batch;
+    EXPECT_EQ(tree.leaves().read(face, 1, batch), Errc::kOk);
+    for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
+  }
   return triangles;
 }
 

@@ -44,6 +44,7 @@ constexpr Row kPinned[] = {
     {39, "face_unreachable", 3},
     {40, "face_repeated", 3},
     {41, "vertex_not_finite", 3},
+    {42, "duplicate_differs", 3},
     {50, "invalid_query", 1},
     {51, "invalid_pose", 1},
     {52, "part_left_out", 5},

@@ -54,6 +54,11 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     Faces faces;
     walk(cooked.tree, cooked.tree.root(), 0, faces);
+    for (std::uint32_t i = faces_in_leaves(cooked.tree.record()); i < mesh.faces.size(); ++i) {
+      const std::uint32_t original = cooked.tree.face_id(cooked.tree.original_of(i));
+      ASSERT_TRUE(faces.contains(original));
+      faces[cooked.tree.face_id(i)] = faces[original];
+    }
     ASSERT_EQ(faces.size(), mesh.faces.size());
     for (const auto& [id, triangles] : faces) {
       const cooker::Face& source = mesh.faces[id];

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: MIT
+// Groups of faces by a hash table of their corner positions.
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <span>
+#include <tuple>
+
+#include <boxtree/cooker/build/duplicates.h>
+#include <boxtree/runtime/file/checksum.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// The bits of a face's corners, in a row.
+class FaceBits {
+ public:
+  explicit FaceBits(const SourceMesh& mesh)
+      : mesh_(mesh),
+        is_f32_(mesh.positions.precision == Precision::kF32),
+        stride_(3 * (is_f32_ ? sizeof(float) : sizeof(double))) {}
+
+  [[nodiscard]] std::uint64_t hash(std::size_t face) const {
+    std::array<std::byte, 4 * 3 * sizeof(double)> bits;
+    const std::size_t count = corners(face);
+    for (std::size_t i = 0; i < count; ++i) {
+      std::memcpy(bits.data() + i * stride_, corner(face, i), stride_);
+    }
+    return checksum(std::span(bits).first(count * stride_));
+  }
+
+  [[nodiscard]] bool are_same(std::size_t a, std::size_t b) const {
+    const std::size_t count = corners(a);
+    if (count != corners(b)) return false;
+    for (std::size_t i = 0; i < count; ++i) {
+      if (mesh_.faces[a].corner[i] == mesh_.faces[b].corner[i]) continue;
+      if (std::memcmp(corner(a, i), corner(b, i), stride_) != 0) return false;
+    }
+    return true;
+  }
+
+ private:
+  [[nodiscard]] std::size_t corners(std::size_t face) const {
+    return mesh_.faces[face].is_quad() ? 4 : 3;
+  }
+  [[nodiscard]] const void* corner(std::size_t face, std::size_t i) const {
+    const std::size_t first = std::size_t{3} * mesh_.faces[face].corner[i];
+    if (is_f32_) return mesh_.positions.f32.data() + first;
+    return mesh_.positions.f64.data() + first;
+  }
+
+  const SourceMesh& mesh_;
+  bool is_f32_;
+  std::size_t stride_;
+};
+
+// For each face the first one that is the same.
+std::vector<std::uint32_t> first_of_group(const SourceMesh& mesh) {
+  constexpr std::uint32_t kFree = 0xffffffffu;
+  const FaceBits bits(mesh);
+  const std::size_t faces = mesh.faces.size();
+  std::vector<std::uint32_t> first(faces);
+  // Half empty at least, so that searches end.
+  std::vector<std::uint32_t> slots(std::bit_ceil(2 * faces + 1), kFree);
+  for (std::size_t face = 0; face < faces; ++face) {
+    std::size_t slot = bits.hash(face) & (slots.size() - 1);
+    while (slots[slot] != kFree && !bits.are_same(slots[slot], face)) {
+      slot = (slot + 1) & (slots.size() - 1);
+    }
+    if (slots[slot] == kFree) slots[slot] = static_cast<std::uint32_t>(face);
+    first[face] = slots[slot];
+  }
+  return first;
+}
+
+}  // namespace
+
+Duplicates find_duplicates(const SourceMesh& mesh) {
+  Duplicates found;
+  found.original = first_of_group(mesh);
+  for (std::size_t i = 0; i < found.original.size(); ++i) found.count += found.original[i] != i;
+  if (found.count == 0) return {};
+  std::vector<std::uint32_t> best(found.original);  // of the group of a first face
+  for (std::uint32_t i = 0; i < found.original.size(); ++i) {
+    std::uint32_t& of_group = best[found.original[i]];
+    if (mesh.face_id(i) < mesh.face_id(of_group)) of_group = i;
+  }
+  for (std::uint32_t& original : found.original) original = best[original];
+  return found;
+}
+
+std::vector<std::uint32_t> append_duplicates(const SourceMesh& mesh, const Duplicates& duplicates,
+                                             std::vector<std::uint32_t>& order) {
+  std::vector<std::uint32_t> places;
+  if (duplicates.count == 0) return places;
+  std::vector<std::uint32_t> place(mesh.faces.size());  // of an original
+  for (std::size_t i = 0; i < order.size(); ++i) place[order[i]] = static_cast<std::uint32_t>(i);
+  const auto originals = static_cast<std::ptrdiff_t>(order.size());
+  for (std::uint32_t i = 0; i < mesh.faces.size(); ++i) {
+    if (!duplicates.is_original(i)) order.push_back(i);
+  }
+  const auto place_of = [&](std::uint32_t face) { return place[duplicates.original[face]]; };
+  std::sort(order.begin() + originals, order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    return std::tuple(place_of(a), mesh.face_id(a), a) <
+           std::tuple(place_of(b), mesh.face_id(b), b);
+  });
+  places.reserve(duplicates.count);
+  for (auto face = order.begin() + originals; face != order.end(); ++face) {
+    places.push_back(place_of(*face));
+  }
+  return places;
+}
+
+}  // namespace boxtree::cooker
