@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -29,7 +30,9 @@ struct SlabInterval {
 /// along the main axis, so its errors on one axis grow with the extent on another. `margin` = 8u
 /// (|origin| + largest |plane|), both over all axes, covers the sum. It moves each plane outward by
 /// moving the origin, which costs nothing per box and keeps the test monotone: subtraction and
-/// multiplication by a constant are.
+/// multiplication by a constant are. The largest plane counts as the next power of two: codecs
+/// round their root boxes differently, and a hit that is held to the bounds of its triangle must
+/// not depend on that.
 class RaySlab {
  public:
   /// `reach`: largest magnitude of any box coordinate, on each axis.
@@ -39,7 +42,8 @@ class RaySlab {
     // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
     constexpr double kHuge = 0x1p1000;
     constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-    const double margin = 8 * kUnitRoundoff * (origin.cwiseAbs().maxCoeff() + reach.maxCoeff());
+    const double margin =
+        8 * kUnitRoundoff * (origin.cwiseAbs().maxCoeff() + power_above(reach.maxCoeff()));
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       const double d = direction[axis];
@@ -72,6 +76,13 @@ class RaySlab {
     const SlabInterval interval = intersect(box);
     const bool passes = interval.enter <= interval.leave && interval.leave >= from;
     return passes ? interval.enter : std::numeric_limits<double>::infinity();
+  }
+
+  /// The least power of two that is not below x; some such for subnormal numbers. Precondition: x
+  /// is finite and not negative.
+  [[nodiscard]] static double power_above(double x) noexcept {
+    constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
+    return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
   }
 
   /// 1 where the line comes from the high side of an axis, else 0.

@@ -46,7 +46,7 @@ struct RayBoxFilter {
   /// What the query's own tests give away, see RaySlab: eight times what its margin is.
   [[nodiscard]] static double given_away(const Eigen::Vector3d& origin, double reach) noexcept {
     constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
-    return 64 * kUnitDouble * (origin.cwiseAbs().maxCoeff() + reach);
+    return 128 * kUnitDouble * (origin.cwiseAbs().maxCoeff() + reach);
   }
 
   /// The largest parameter of the filter that a hit not beyond `t` can have.
