@@ -36,8 +36,10 @@ std::array<double, 2> cosine_sine(double turns) {
   }
 }
 
+// In units in which no square overflows or underflows; powers of two change no other bit.
 double length_of(const Eigen::Vector3d& vector) {
-  return std::sqrt(squared_length(vector));
+  const double scale = scale_to_one(vector);
+  return std::sqrt(squared_length(vector * scale)) / scale;
 }
 
 // SplitMix64 (Steele, Lea, Flood, "Fast splittable pseudorandom number generators", 2014).
