@@ -63,31 +63,51 @@ template <std::size_t N, std::size_t M>
   return left;
 }
 
-/// The same bound as separation_along, for the direction that stands on a triangle and is nearest
-/// to `direction`. From its edges, which are known better than the way from a point inside to a
-/// corner.
-template <std::size_t N, std::size_t M>
-[[nodiscard]] double separation_on_face(const Eigen::Vector3d& direction,
-                                        const std::array<Eigen::Vector3d, 3>& face,
-                                        const std::array<Eigen::Vector3d, N>& first,
-                                        const std::array<Eigen::Vector3d, M>& second,
-                                        double reach) noexcept {
-  const std::array<Eigen::Vector3d, 3> edge{face[1] - face[0], face[2] - face[1],
-                                            face[0] - face[2]};
-  std::size_t longest = 0;
-  for (std::size_t i = 1; i < 3; ++i) {
-    if (squared_length(edge[i]) > squared_length(edge[longest])) longest = i;
+/// The edges of a set of points: those of a triangle, or none.
+template <std::size_t N>
+[[nodiscard]] std::array<Eigen::Vector3d, N == 3 ? 3 : 0> edges_of(
+    const std::array<Eigen::Vector3d, N>& points) noexcept {
+  if constexpr (N == 3) {
+    return {points[1] - points[0], points[2] - points[1], points[0] - points[2]};
+  } else {
+    return {};
   }
-  return separation_along(orthogonal_to(direction, edge[longest], edge[(longest + 1) % 3]), first,
-                          second, reach);
+}
+
+/// The best of the bounds of separation_along for directions near `direction` that stand on a face,
+/// on an edge, or on an edge of each set. From the edges, which are known better than the way from
+/// a point inside to a corner: it is what needles need.
+template <std::size_t N, std::size_t M>
+[[nodiscard]] double separation_on_features(const Eigen::Vector3d& direction,
+                                            const std::array<Eigen::Vector3d, N>& first,
+                                            const std::array<Eigen::Vector3d, M>& second,
+                                            double reach) noexcept {
+  double lower = 0;
+  const auto consider = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+    lower = std::max(lower, separation_along(orthogonal_to(direction, a, b), first, second, reach));
+  };
+  const auto consider_one = [&](const auto& edges) {
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+      consider(edges[i], Eigen::Vector3d::Zero());
+      consider(edges[i], edges[(i + 1) % 3]);
+    }
+  };
+  const auto first_edges = edges_of(first);
+  const auto second_edges = edges_of(second);
+  consider_one(first_edges);
+  consider_one(second_edges);
+  for (const Eigen::Vector3d& a : first_edges) {
+    for (const Eigen::Vector3d& b : second_edges) consider(a, b);
+  }
+  return lower;
 }
 
 /// A lower bound of the distance between the hulls of two sets of points, given a point of each
 /// that are nearly the closest. The line between them is the direction; but if they are close to
 /// each other, rounding tilts it, and a corner at the end of a long arm reaches across. The
 /// direction is then made orthogonal to that arm, and if need be to a second one: the edges or the
-/// face that it is to stand on; and at last to the face of each set that is a triangle. A bound of
-/// `enough` is not improved.
+/// face that it is to stand on; and at last to each edge and face of sets that are triangles. A
+/// bound of `enough` is not improved.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
                                      const Eigen::Vector3d& on_second,
@@ -116,17 +136,8 @@ template <std::size_t N, std::size_t M>
     }
     lower = std::max(lower, separation_along(direction, first, second, reach));
   }
-  if constexpr (N == 3) {
-    if (lower < enough) {
-      lower = std::max(lower, separation_on_face(between, first, first, second, reach));
-    }
-  }
-  if constexpr (M == 3) {
-    if (lower < enough) {
-      lower = std::max(lower, separation_on_face(between, second, first, second, reach));
-    }
-  }
-  return lower;
+  if (!(lower < enough)) return lower;
+  return std::max(lower, separation_on_features(between, first, second, reach));
 }
 
 /// The largest magnitude of any coordinate of these points.
