@@ -30,7 +30,7 @@ struct Setting {
     // An answer in object space may end where doubles end.
     const double least =
         std::ldexp(std::numeric_limits<double>::denorm_min(), -exponent_of(group.frame()));
-    return std::max(ulp_of(std::max(t.largest, largest(at))), least);
+    return std::max({ulp_of(std::max(t.largest, largest(at))), least, kResolution});
   }
   [[nodiscard]] Dyadic in_tree(double length) const {
     return Dyadic(length).times_power_of_two(-exponent_of(group.frame()));

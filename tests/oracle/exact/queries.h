@@ -11,6 +11,8 @@ namespace boxtree::oracle {
 
 /// The largest error of distances, in units in the last place of the largest coordinate involved.
 inline constexpr double kUlps = 16;
+/// The least unit, in tree space: sixteen are the 2^-500 to which distances are resolved.
+inline constexpr double kResolution = 0x1p-504;
 
 /// A position of object space: on a corner, an edge, a face, off it by an ulp or more, far away, or
 /// of any exponents.

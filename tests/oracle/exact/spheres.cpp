@@ -31,7 +31,7 @@ struct Truth {
 double unit_of(const Setting& s, const Decoded& t) {
   const double least =
       std::ldexp(std::numeric_limits<double>::denorm_min(), -exponent_of(s.group.frame()));
-  return std::max(ulp_of(std::max(t.largest, largest(s.at))), least);
+  return std::max({ulp_of(std::max(t.largest, largest(s.at))), least, kResolution});
 }
 
 void add_once(Faces& faces, std::uint32_t face) {
