@@ -125,11 +125,11 @@ class PairRange : public testing::Test {
                       const Pose& pose_b, const std::string& what) {
     SCOPED_TRACE(what);
     std::size_t contacts = 0;
-    for (const auto [codec_a, codec_b] : {std::pair{CodecId::kWide8, CodecId::kWide8},
-                                          {CodecId::kWide4, CodecId::kWide4},
-                                          {CodecId::kWide8, CodecId::kWide4},
-                                          {CodecId::kPlainF32, CodecId::kPlainF32},
-                                          {CodecId::kPackedF16, CodecId::kWide8}}) {
+    for (const auto& [codec_a, codec_b] : {std::pair{CodecId::kWide8, CodecId::kWide8},
+                                           {CodecId::kWide4, CodecId::kWide4},
+                                           {CodecId::kWide8, CodecId::kWide4},
+                                           {CodecId::kPlainF32, CodecId::kPlainF32},
+                                           {CodecId::kPackedF16, CodecId::kWide8}}) {
       SCOPED_TRACE(std::string(codec_name(codec_a)) + " " + std::string(codec_name(codec_b)));
       const CookedTree first = test::cook_tree(a, codec_a), second = test::cook_tree(b, codec_b);
       const Placed one{first.tree, pose_a}, other{second.tree, pose_b};
@@ -167,7 +167,9 @@ TEST_F(PairRange, ScaleOfThePoseUndoesThatOfTheMesh) {
     pose.linear() *= std::ldexp(1.0, e);
     const std::size_t now =
         compare(first, Pose::Identity(), second, pose, "scale 2^" + std::to_string(e));
-    if (contacts != 0) EXPECT_EQ(now, contacts) << e;
+    if (contacts != 0) {
+      EXPECT_EQ(now, contacts) << e;
+    }
     contacts = now;
     EXPECT_GT(contacts, 0u);
   }
@@ -189,7 +191,9 @@ TEST_F(PairRange, OnlyTheRelationOfThePosesCounts) {
     one.affine() *= std::ldexp(1.0, e);
     other.affine() *= std::ldexp(1.0, e);
     const std::size_t now = compare(first, one, second, other, "both 2^" + std::to_string(e));
-    if (contacts != 0) EXPECT_EQ(now, contacts) << e;
+    if (contacts != 0) {
+      EXPECT_EQ(now, contacts) << e;
+    }
     contacts = now;
     EXPECT_GT(contacts, 0u);
   }

@@ -64,19 +64,22 @@ class SceneRange : public testing::TestWithParam<CodecId> {
       all.rays.emplace_back(hit ? hit->hit.t / scale : -1, hit ? hit->instance : 0,
                             hit ? hit->hit.face.id : 0);
       const Eigen::Vector3d middle = point(5), half = point(1).cwiseAbs();
-      require(
-          overlap_box(scene, Eigen::AlignedBox3d(middle - half, middle + half), list(all.boxes)));
-      require(overlap_sphere(scene, middle, half[0], list(all.spheres)));
+      EXPECT_EQ(require(overlap_box(scene, Eigen::AlignedBox3d(middle - half, middle + half),
+                                    list(all.boxes))),
+                Visit::kComplete);
+      EXPECT_EQ(require(overlap_sphere(scene, middle, half[0], list(all.spheres))),
+                Visit::kComplete);
       const auto closest = require(closest_point(scene, point(6))).value();
       const Eigen::Vector3d at = closest.closest.point / scale;
       all.points.emplace_back(at[0], at[1], at[2], closest.closest.distance / scale,
                               closest.instance);
     }
-    require(contacts(scene, [&](const ScenePair& pair) {
+    const auto visit = contacts(scene, [&](const ScenePair& pair) {
       all.contacts.emplace_back(pair.first.instance, pair.first.face.id, pair.second.instance,
                                 pair.second.face.id);
       return true;
-    }));
+    });
+    EXPECT_EQ(require(visit), Visit::kComplete);
     std::sort(all.contacts.begin(), all.contacts.end());
     return all;
   }
@@ -133,10 +136,11 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
       // A sphere that just reaches there, or just does not.
       const auto touches = [&](double radius) {
         bool any = false;
-        require(overlap_sphere(scene, at, radius, [&](const SceneFace& face) {
+        const auto visit = overlap_sphere(scene, at, radius, [&](const SceneFace& face) {
           any = any || (face.instance == found.instance && face.face.id == found.closest.face.id);
           return true;
-        }));
+        });
+        EXPECT_EQ(require(visit), Visit::kComplete);
         return any;
       };
       ASSERT_TRUE(touches(found.closest.distance + off));
