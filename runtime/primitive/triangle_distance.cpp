@@ -179,9 +179,16 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
     return std::sqrt(search.squared) * kUpperQuotient +
            (kPointError * search.reach + kUpperUnderflow);
   };
-  const double lower = separation_near(search.first, search.second, search.p, search.q,
-                                       search.reach, upper() - 2 * kPointError * search.reach);
-  if (!(lower > 0)) search.try_contacts();
+  // Where the bounds are that close, rounding is all that is between them.
+  const auto enough = [&] { return upper() - 2 * kPointError * search.reach; };
+  const auto separation = [&] {
+    return separation_near(search.first, search.second, search.p, search.q, search.reach, enough());
+  };
+  double lower = separation();
+  if (!(lower >= enough())) {
+    search.try_contacts();
+    lower = std::max(lower, separation());
+  }
   return {lower, upper(), search.first, search.second};
 }
 

@@ -78,9 +78,11 @@ template <std::size_t M, std::size_t N>
 inline constexpr std::size_t kDifferenceWords = 40;
 using WideDifference = WideInteger<kDifferenceWords>;
 
-/// x in units of 2^-1074. Precondition: |x| <= 2^200.
+/// x in units of 2^-1074. Numbers beyond 2^200, which only corrupt bytes lead to, count as that.
 [[nodiscard]] inline WideDifference wide_integer(double x) noexcept {
   constexpr int kLeastExponent = -1074;
+  constexpr double kLargest = 0x1p200;
+  if (!(std::abs(x) <= kLargest)) x = std::copysign(kLargest, x);
   int exponent = 0;
   const double mantissa = std::frexp(std::abs(x), &exponent);  // below 1
   // Of a subnormal number fewer bits are left than of others.
