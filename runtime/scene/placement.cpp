@@ -37,16 +37,19 @@ double condition_of(const Eigen::Matrix3d& m, const Eigen::Matrix3d& inverse) no
 
 }  // namespace
 
+// The scale is a power of two: no rounding. Where the frame has no origin of its own the sum is the
+// pose's translation, unrounded.
+AffineMap Placement::map_to_world(const Frame& frame, const Pose& pose) noexcept {
+  return {pose.linear() * frame.scale, product(pose.linear(), frame.origin) + pose.translation()};
+}
+
 std::optional<Placement> Placement::make(const Frame& frame, const Pose& pose) noexcept {
-  const Eigen::Matrix3d linear = pose.linear();
   Placement placed;
-  placed.inverse_ = inverse_of(linear);
+  placed.to_world_ = map_to_world(frame, pose);
+  placed.inverse_ = inverse_of(pose.linear());
   placed.translation_ = pose.translation();
   placed.frame_origin_ = frame.origin;
   placed.frame_inverse_scale_ = frame.inverse_scale;
-  placed.to_world_.linear = linear * frame.scale;  // a power of two: no rounding
-  // Where the frame has no origin of its own the sum is the pose's translation, unrounded.
-  placed.to_world_.translation = product(linear, frame.origin) + pose.translation();
   if (!is_finite(placed.to_world_.linear) || !is_finite(placed.inverse_) ||
       !is_within_reach(placed.to_world_.translation)) {
     return std::nullopt;

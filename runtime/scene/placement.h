@@ -46,6 +46,8 @@ class Placement {
   }
 
   [[nodiscard]] const AffineMap& to_world() const noexcept { return to_world_; }
+  /// That map alone, whatever its numbers.
+  [[nodiscard]] static AffineMap map_to_world(const Frame& frame, const Pose& pose) noexcept;
   /// The ray in object space; parameters stay.
   [[nodiscard]] Ray to_object(const Ray& world) const noexcept;
   /// A point of the world in tree space.

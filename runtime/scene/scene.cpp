@@ -44,7 +44,7 @@ Status Scene::update(std::uint32_t instance, const Pose& pose) {
   const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;
   const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
-  if (!bounds) return Errc::kInvalidPose;
+  if (!bounds || !(to_world(bounds->magnitude) <= kReach)) return Errc::kInvalidPose;
   moving.placed.pose = pose;
   moving.placed.placement = *placement;
   moving.bounds = *bounds;
@@ -157,7 +157,7 @@ LayerRecord Scene::layer(std::uint32_t number) const noexcept {
 std::optional<Placement> Scene::place_in_units(const Tree& tree, const Pose& pose) const noexcept {
   Pose scaled = pose;
   scaled.affine() *= frame_.inverse_scale;
-  return Placement::make(tree, scaled);
+  return is_within_reach(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
 }
 
 Box<double> Scene::to_frame(const Box<double>& units) const noexcept {

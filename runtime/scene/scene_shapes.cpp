@@ -47,8 +47,10 @@ Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor
   return outcome_of(walk_overlap(scene, query), query);
 }
 
-struct BoxInUnits {
-  Box<double> units;
+// Boxes are compared in the world itself: only signs count, and units could take the last bits of
+// very small numbers.
+struct WorldBox {
+  Box<double> world;
   Box<double> in_frame;
 
   template <class S>
@@ -59,7 +61,7 @@ struct BoxInUnits {
     return walk_top_level(top, instances, in_frame);
   }
   [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
-    const PlacedBoxQuery query{placed.placement.to_world(), units};
+    const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
     return visit_faces_compactly(*placed.tree, query, faces);
   }
 };
@@ -175,12 +177,14 @@ Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
   // No instance reaches farther.
-  const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
-    return scene.to_units(corner).cwiseMax(-kReach).cwiseMin(kReach);
+  const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    const Eigen::Vector3d a = low.cwiseMax(-kReach).cwiseMin(kReach);
+    const Eigen::Vector3d b = high.cwiseMax(-kReach).cwiseMin(kReach);
+    return Box<double>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   };
-  const Eigen::Vector3d low = clamped(box.min()), high = clamped(box.max());
-  BoxInUnits shape{{{low[0], low[1], low[2]}, {high[0], high[1], high[2]}}, {}};
-  shape.in_frame = scene.to_frame(shape.units);
+  const WorldBox shape{
+      clamped(box.min(), box.max()),
+      scene.to_frame(clamped(scene.to_units(box.min()), scene.to_units(box.max())))};
   return ask_scene(scene, shape, visitor, layers);
 }
 
