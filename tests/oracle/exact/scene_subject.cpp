@@ -66,13 +66,17 @@ SceneVariant make_variant(const SceneSubject& subject, const cooker::SceneParts&
   return variant;
 }
 
-// The corner as the mesh has it, in the world.
-Point placed_corner(const Pose& pose, const Eigen::Vector3d& p) {
+// A corner in the world: seen from the origin of its tree, which is moved there first.
+Point placed_corner(const Pose& pose, const Eigen::Vector3d& corner,
+                    const Eigen::Vector3d& origin) {
+  const Eigen::Vector3d p = corner - origin;
   Point world;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto i = static_cast<Eigen::Index>(k);
-    world[k] = ((pose.translation()[i] + pose.linear()(i, 0) * p[0]) + pose.linear()(i, 1) * p[1]) +
-               pose.linear()(i, 2) * p[2];
+    const auto m = [&](Eigen::Index column) { return pose.linear()(i, column); };
+    const double moved =
+        ((m(0) * origin[0] + m(1) * origin[1]) + m(2) * origin[2]) + pose.translation()[i];
+    world[k] = ((moved + m(0) * p[0]) + m(1) * p[1]) + m(2) * p[2];
   }
   return world;
 }
@@ -146,14 +150,16 @@ std::uint32_t update_some(Draw& d, SceneSubject& subject, int count) {
 World world_of(const SceneSubject& subject) {
   World world;
   for (std::uint32_t id = 0; id < subject.poses.size(); ++id) {
-    const cooker::SourceMesh& mesh = subject.meshes[subject.tree_of_id[id]];
+    const std::uint32_t tree = subject.tree_of_id[id];
+    const cooker::SourceMesh& mesh = subject.meshes[tree];
+    const Eigen::Vector3d origin = subject.variants[0].scene.trees()[tree].frame().origin;
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
       const cooker::Face& face = mesh.faces[f];
       for (std::uint32_t half = 0; half < (face.is_quad() ? 2u : 1u); ++half) {
         Face t;
         for (std::size_t c = 0; c < 3; ++c) {
           const std::size_t corner = half == 1 && c > 0 ? c + 1 : c;
-          t[c] = placed_corner(subject.poses[id], mesh.positions[face.corner[corner]]);
+          t[c] = placed_corner(subject.poses[id], mesh.positions[face.corner[corner]], origin);
         }
         const auto index = static_cast<std::uint32_t>(world.placed.size());
         world.placed.push_back({id, f, half});
