@@ -13,6 +13,9 @@ PEER_PACKAGES="libembree-dev libbullet-dev libfcl-dev libode-dev"
 # Other compilers, standard libraries and machines, for tests/same_bytes/compare_builds.sh.
 COMPARE_PACKAGES="clang libc++-dev libc++abi-dev g++-aarch64-linux-gnu qemu-user-static"
 
+# Reads C++ for tests/mutants.
+MUTANT_PACKAGES="python3-clang-14"
+
 # install_missing PACKAGE...: asks the package manager only for what is not there.
 install_missing() {
   local missing=() package
