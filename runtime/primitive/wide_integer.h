@@ -91,12 +91,11 @@ using WideDifference = WideInteger<kDifferenceWords>;
   if (bits <= 0) return result;  // zero
   const auto whole = static_cast<std::uint64_t>(std::ldexp(mantissa, bits));
   const auto shift = static_cast<std::size_t>(exponent - bits - kLeastExponent);
-  const std::uint64_t part[2] = {whole & 0xffffffffu, whole >> 32};
-  for (std::size_t i = 0; i < 2; ++i) {
-    const std::uint64_t shifted = part[i] << (shift % 32);
-    const std::size_t at = shift / 32 + i;
-    result.word[at] |= static_cast<std::uint32_t>(shifted);
-    if (at + 1 < kDifferenceWords) result.word[at + 1] |= static_cast<std::uint32_t>(shifted >> 32);
+  const std::uint64_t low = (whole & 0xffffffffu) << (shift % 32);
+  const std::uint64_t high = (whole >> 32) << (shift % 32);
+  const std::array<std::uint64_t, 3> part{low, (low >> 32) | high, high >> 32};
+  for (std::size_t i = 0; i < 3 && shift / 32 + i < kDifferenceWords; ++i) {
+    result.word[shift / 32 + i] = static_cast<std::uint32_t>(part[i]);
   }
   return x < 0 ? -result : result;
 }
