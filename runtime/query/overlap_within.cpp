@@ -57,7 +57,8 @@ struct Watcher {
   // By a corner of each: they have been found near, by their bounds.
   [[nodiscard]] bool stops(const Triangle& first, const Triangle& second) const noexcept {
     const Eigen::Vector3d between = second.corner[0] - first.corner[0];
-    const double error = watch->metric.image_error() * between.cwiseAbs().maxCoeff();
+    const double error =
+        watch->metric.image_error() * between.cwiseAbs().maxCoeff() + kLengthUnderflow;
     if (!(watch->metric.to_world(between).norm() * kMore + error < watch->distance)) return false;
     watch->why = Overlap::kUndecided;
     return true;
@@ -98,7 +99,7 @@ struct BoxSearch {
           std::max({0.0, box.low[axis] - node.low[k], node.high[k] - box.high[axis]});
       sum += outside * outside;
     }
-    return std::sqrt(sum) * kMore;
+    return std::sqrt(sum) * kMore + kLengthUnderflow;
   }
 
   // Whether the search is over before this node or leaf is looked at.

@@ -14,12 +14,10 @@
 #include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/point.h>
 #include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/scaled_length.h>
 #include <boxtree/runtime/query/traversal.h>
 
 namespace boxtree {
-
-/// Squares of lengths below this are subnormal: bounds are wider by so much.
-inline constexpr double kLengthUnderflow = 0x1p-500;
 
 /// A point of the space in which triangles are placed (the world, or the units of a scene) and the
 /// best that was found there, for the exact test.

@@ -7,6 +7,9 @@
 
 namespace boxtree {
 
+/// Squares of lengths below this are subnormal: bounds are wider by so much.
+inline constexpr double kLengthUnderflow = 0x1p-500;
+
 /// At most 2^exponent * length, at which it is infinite only if the length is.
 [[nodiscard]] inline double scaled_below(double length, int exponent) noexcept {
   const double result = std::ldexp(length, exponent);

@@ -24,6 +24,7 @@
 
 #include <boxtree/runtime/primitive/triangle.h>
 #include <boxtree/runtime/query/relative_pose.h>
+#include <boxtree/runtime/query/scaled_length.h>
 
 namespace boxtree {
 
@@ -128,7 +129,7 @@ class WorldMetric {
           std::max(double{a.high[k]} - double{b.low[k]}, double{b.high[k]} - double{a.low[k]});
       sum += (reach * column_[k]) * (reach * column_[k]);
     }
-    return stretch_ * std::sqrt(sum);
+    return stretch_ * std::sqrt(sum) + kLengthUnderflow;
   }
 
   /// Image of a difference of points of the first tree's space.
