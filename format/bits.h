@@ -60,11 +60,4 @@ inline void write_bits(std::byte* bytes, std::uint64_t position, std::uint32_t w
   }
 }
 
-/// Makes a field zero again; for writers.
-inline void clear_bits(std::byte* bytes, std::uint64_t position, std::uint32_t width) noexcept {
-  for (std::uint64_t at = position; at < position + width; ++at) {
-    bytes[at / 8] &= ~(std::byte{1} << (at % 8));
-  }
-}
-
 }  // namespace boxtree
