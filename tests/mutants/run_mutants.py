@@ -14,8 +14,8 @@ import os
 import subprocess
 import sys
 
-# Fast ones first: most faults die early. Seconds are bounds, ten times what each takes.
-PROGRAMS = [
+# Those that take seconds: most faults die there. The seconds are bounds, ten times what each takes.
+QUICK = [
     ("tests/unit/primitive/orientation_test", 60),
     ("tests/unit/primitive/triangle_triangle_test", 60),
     ("tests/unit/primitive/triangle_box_test", 60),
@@ -31,14 +31,17 @@ PROGRAMS = [
     ("tests/unit/scene/scene_test", 120),
     ("tests/unit/query/pair_range_test", 120),
     ("tests/unit/query/overlap_within_test", 120),
-    ("tests/unit/query/queries_test", 240),
-    ("tests/unit/query/point_test", 240),
-    ("tests/unit/query/distance_test", 240),
-    ("tests/unit/encode/encode_test", 240),
     ("tests/oracle/exact/boxtree_exact", 240),
-    ("tests/unit/wide/wide_walks_test", 600),
-    ("tests/robustness/robustness_test", 600),
+    ("tests/unit/encode/encode_test", 240),
+    ("tests/unit/query/point_test", 240),
+    ("tests/unit/query/queries_test", 240),
+]
+# For what those leave alive.
+SLOW = [
     ("tests/fuzz/mutation_test", 600),
+    ("tests/unit/query/distance_test", 600),
+    ("tests/robustness/robustness_test", 600),
+    ("tests/unit/wide/wide_walks_test", 600),
 ]
 
 
@@ -48,10 +51,10 @@ def arguments_of(program):
     return ["--gtest_brief=1", "--gtest_fail_fast"]
 
 
-def first_to_notice(build, number):
+def first_to_notice(programs, build, number):
     """The program that notices a fault, and how; nothing if none does."""
     environment = dict(os.environ, BOXTREE_MUTANT=str(number))
-    for program, seconds in PROGRAMS:
+    for program, seconds in programs:
         path = os.path.join(build, program)
         if not os.path.exists(path):
             continue
@@ -65,6 +68,13 @@ def first_to_notice(build, number):
     return None
 
 
+def is_left(entry, after):
+    """Whether a fault is still to be run by the quick programs, or after them by all."""
+    if entry is None:
+        return True
+    return entry["noticed_by"] is None and entry["tried"] == "quick" and after == "all"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("list")
@@ -73,20 +83,23 @@ def main():
     parser.add_argument("--jobs", type=int, default=2)
     options = parser.parse_args()
     mutants = json.load(open(options.list))["mutants"]
-    known = {}
+    known = {}  # the last line of a fault counts
     if os.path.exists(options.log):
         known = {entry["number"]: entry for entry in map(json.loads, open(options.log))}
-    found = first_to_notice(options.build, 0)
-    if found is not None:
-        sys.exit(f"{found[0]} fails without any fault: {found[1]}")
-    rest = [m for m in mutants if m["number"] not in known]
+    if not known:
+        found = first_to_notice(QUICK + SLOW, options.build, 0)
+        if found is not None:
+            sys.exit(f"{found[0]} fails without any fault: {found[1]}")
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool, open(options.log, "a") as log:
-        running = {pool.submit(first_to_notice, options.build, m["number"]): m for m in rest}
-        for future in concurrent.futures.as_completed(running):
-            mutant, noticed = running[future], future.result()
-            entry = dict(mutant, noticed_by=noticed[0] if noticed else None, how=noticed[1] if noticed else None)
-            known[mutant["number"]] = entry
-            print(json.dumps(entry), file=log, flush=True)
+        for programs, after in ((QUICK, "quick"), (SLOW, "all")):
+            rest = [m for m in mutants if is_left(known.get(m["number"]), after)]
+            running = {pool.submit(first_to_notice, programs, options.build, m["number"]): m for m in rest}
+            for future in concurrent.futures.as_completed(running):
+                mutant, noticed = running[future], future.result()
+                entry = dict(mutant, noticed_by=noticed[0] if noticed else None,
+                             how=noticed[1] if noticed else None, tried=after)
+                known[mutant["number"]] = entry
+                print(json.dumps(entry), file=log, flush=True)
     survivors = [entry for entry in known.values() if entry["noticed_by"] is None]
     for entry in sorted(survivors, key=lambda e: (e["file"], e["line"])):
         print(f"{entry['file']}:{entry['line']}: {entry['kind']}: {entry['original']}  ->  {entry['mutated']}")
