@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Separating axes of a triangle and a box (Akenine-Moller, "Fast 3D Triangle-Box Overlap Testing",
-// 2001): rounded ones reject nearly all that is apart, exact signs decide the rest.
+// 2001): rounded ones decide nearly all, exact signs the rest.
 //
 // Why rounding rejects no contact. An axis is a vector of doubles and proves a separation whatever
 // it is, so the error in computing an edge or a normal can only make an axis less sharp. What must
@@ -15,6 +15,18 @@
 // With g = 1 + 8 u: (1 - u)^5 g > 1 + 2 u and (1 - u)^5 8 u > 5 u, so the radius exceeds that of
 // the box by more than the error of the projections. Underflow takes at most 2^-1074 from each of
 // the products; a last addition covers them.
+//
+// Why rounding invents no contact. Let a* be the exact axis, M = max_k (h_k + max |v_k|), d the
+// largest difference between the two sides of the box from c, which lie within h_k - d of it at
+// least. The edges of corners given are within u of a*, a component. Then
+//   - a* . (x - c) differs from fl(a . v) by at most 7 u |a|_1 M,
+//   - the radius computed exceeds that of the box along a* by at most |a|_1 (34 u M + (1 + u) d)
+//     and kUnderflow,
+// 64 u M + 2 d for each unit of |a|_1 exceeds both. Let L be the longest component of two edges: a
+// component of their product is at most 2 L L, and off by at most 10 u L L; what that adds to both
+// is at most 60 u L L M: 8 L L for |a|_1 is more than all of it, if L is no less than 2^-300, so
+// that nothing underflows. Up to M = 2^300 nothing overflows. What overlaps along all axes of the
+// theorem meets; a degenerate triangle has fewer of them.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -32,6 +44,10 @@ constexpr double kEpsilon = std::numeric_limits<double>::epsilon();  // 2 u
 constexpr double kGrow = 1 + 4 * kEpsilon;
 constexpr double kProjectionError = 4 * kEpsilon;
 constexpr double kUnderflow = 0x1p-1068;
+constexpr double kTwoSums = 4 * kUnderflow;  // what is lost in the radius and in a projection
+constexpr double kOverlapError = 32 * kEpsilon;
+constexpr double kLargestSure = 0x1p300;
+constexpr double kShortestSure = 0x1p-300;
 
 // The box is exact here: no arithmetic, only comparisons.
 bool bounds_apart(const Triangle& t, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
@@ -43,63 +59,94 @@ bool bounds_apart(const Triangle& t, const Eigen::Vector3d& low, const Eigen::Ve
   return apart;
 }
 
-bool interval_apart(double p0, double p1, double p2, double radius) {
-  return std::min(std::min(p0, p1), p2) > radius || std::max(std::max(p0, p1), p2) < -radius;
-}
-
 // The triangle seen from the center of the box, and the half extents H_k of the derivation above.
-struct CenteredPair {
-  std::array<Eigen::Vector3d, 3> corner;
-  Eigen::Vector3d half;
+class RoundedAxes {
+ public:
+  RoundedAxes(const Triangle& triangle, const Eigen::Vector3d& low,
+              const Eigen::Vector3d& high) noexcept
+      : given_(triangle.corner) {
+    double size = 0, asymmetry = 0;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const double middle = 0.5 * (low[k] + high[k]);
+      double farthest = 0;
+      for (std::size_t i = 0; i < 3; ++i) {
+        corner_[i][k] = given_[i][k] - middle;
+        farthest = std::max(farthest, std::abs(corner_[i][k]));
+      }
+      const double above = high[k] - middle, below = middle - low[k];
+      const double reach = std::max(above, below);
+      half_[k] = kGrow * reach + kProjectionError * farthest;
+      size = std::max(size, reach + farthest);
+      asymmetry = std::max(asymmetry, std::abs(above - below));
+    }
+    slack_ = kOverlapError * size + 2 * asymmetry;
+    is_sure_ = size <= kLargestSure;
+  }
+
+  // Whether an axis proves that they are apart.
+  [[nodiscard]] bool separate() noexcept {
+    // Edges of the corners given, not of the centered ones: one rounding less.
+    const Eigen::Vector3d e0 = given_[1] - given_[0];
+    const Eigen::Vector3d e1 = given_[2] - given_[1];
+    if (normal_separates(e0, e1)) return true;
+    const Eigen::Vector3d e2 = given_[0] - given_[2];
+    return edge_separates(e0) || edge_separates(e1) || edge_separates(e2);
+  }
+
+  // Whether all axes that separate() found nothing on prove, rounding included, that the two
+  // overlap along them.
+  [[nodiscard]] bool are_sure() const noexcept { return is_sure_; }
+
+ private:
+  [[nodiscard]] bool interval_separates(double p0, double p1, double p2, double radius,
+                                        double doubt) noexcept {
+    const double least = std::min(std::min(p0, p1), p2), most = std::max(std::max(p0, p1), p2);
+    const double sure = radius - doubt;
+    is_sure_ &= least <= sure && most >= -sure;
+    return least > radius || most < -radius;
+  }
 
   // The axis unit(I) x edge: its component along I is zero, so two terms are left.
   template <Eigen::Index I>
-  [[nodiscard]] bool edge_axis_separates(const Eigen::Vector3d& edge) const noexcept {
+  [[nodiscard]] bool edge_axis_separates(const Eigen::Vector3d& edge) noexcept {
     constexpr Eigen::Index kJ = (I + 1) % 3;
     constexpr Eigen::Index kK = (I + 2) % 3;
     const double aj = -edge[kK];
     const double ak = edge[kJ];
-    const double radius = (std::abs(aj) * half[kJ] + std::abs(ak) * half[kK]) + kUnderflow;
-    return interval_apart(aj * corner[0][kJ] + ak * corner[0][kK],
-                          aj * corner[1][kJ] + ak * corner[1][kK],
-                          aj * corner[2][kJ] + ak * corner[2][kK], radius);
+    const double size_j = std::abs(aj), size_k = std::abs(ak);
+    const double radius = (size_j * half_[kJ] + size_k * half_[kK]) + kUnderflow;
+    return interval_separates(
+        aj * corner_[0][kJ] + ak * corner_[0][kK], aj * corner_[1][kJ] + ak * corner_[1][kK],
+        aj * corner_[2][kJ] + ak * corner_[2][kK], radius, (size_j + size_k) * slack_ + kTwoSums);
   }
 
-  [[nodiscard]] bool edge_separates(const Eigen::Vector3d& edge) const noexcept {
+  [[nodiscard]] bool edge_separates(const Eigen::Vector3d& edge) noexcept {
     return edge_axis_separates<0>(edge) || edge_axis_separates<1>(edge) ||
            edge_axis_separates<2>(edge);
   }
 
   // All three corners are projected: the computed normal is not quite orthogonal to the triangle.
-  [[nodiscard]] bool axis_separates(const Eigen::Vector3d& axis) const noexcept {
+  [[nodiscard]] bool normal_separates(const Eigen::Vector3d& e0,
+                                      const Eigen::Vector3d& e1) noexcept {
+    const Eigen::Vector3d axis = cross(e0, e1);
     const auto project = [&axis](const Eigen::Vector3d& v) {
       return (axis[0] * v[0] + axis[1] * v[1]) + axis[2] * v[2];
     };
-    const double radius = project_magnitudes(axis) + kUnderflow;
-    return interval_apart(project(corner[0]), project(corner[1]), project(corner[2]), radius);
+    const double radius = ((std::abs(axis[0]) * half_[0] + std::abs(axis[1]) * half_[1]) +
+                           std::abs(axis[2]) * half_[2]) +
+                          kUnderflow;
+    const double longest = std::max(e0.cwiseAbs().maxCoeff(), e1.cwiseAbs().maxCoeff());
+    is_sure_ &= longest >= kShortestSure;
+    return interval_separates(project(corner_[0]), project(corner_[1]), project(corner_[2]), radius,
+                              8 * (longest * longest) * slack_);
   }
 
- private:
-  [[nodiscard]] double project_magnitudes(const Eigen::Vector3d& axis) const noexcept {
-    return (std::abs(axis[0]) * half[0] + std::abs(axis[1]) * half[1]) +
-           std::abs(axis[2]) * half[2];
-  }
+  const std::array<Eigen::Vector3d, 3>& given_;
+  std::array<Eigen::Vector3d, 3> corner_;
+  Eigen::Vector3d half_;
+  double slack_;
+  bool is_sure_;
 };
-
-CenteredPair center(const Triangle& t, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-  CenteredPair pair;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double middle = 0.5 * (low[k] + high[k]);
-    double farthest = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-      pair.corner[i][k] = t.corner[i][k] - middle;
-      farthest = std::max(farthest, std::abs(pair.corner[i][k]));
-    }
-    const double reach = std::max(high[k] - middle, middle - low[k]);
-    pair.half[k] = kGrow * reach + kProjectionError * farthest;
-  }
-  return pair;
-}
 
 // The same axes by exact signs. What is apart and not along an axis of the box is apart along the
 // triangle's normal, or along the product of one of its edges with an axis of the box, on the
@@ -177,25 +224,15 @@ bool has_corner_inside(const Triangle& t, const Eigen::Vector3d& low, const Eige
   return false;
 }
 
-bool is_rejected_by_rounded_axes(const Triangle& triangle, const Eigen::Vector3d& low,
-                                 const Eigen::Vector3d& high) {
-  const CenteredPair pair = center(triangle, low, high);
-  // Edges of the corners given, not of the centered ones: one rounding less.
-  const Eigen::Vector3d e0 = triangle.corner[1] - triangle.corner[0];
-  const Eigen::Vector3d e1 = triangle.corner[2] - triangle.corner[1];
-  if (pair.axis_separates(cross(e0, e1))) return true;
-  const Eigen::Vector3d e2 = triangle.corner[0] - triangle.corner[2];
-  return pair.edge_separates(e0) || pair.edge_separates(e1) || pair.edge_separates(e2);
-}
-
 }  // namespace
 
 bool triangle_intersects_box(const Triangle& triangle, const Eigen::Vector3d& low,
                              const Eigen::Vector3d& high) noexcept {
   if (bounds_apart(triangle, low, high)) return false;
   if (has_corner_inside(triangle, low, high)) return true;
-  return !is_rejected_by_rounded_axes(triangle, low, high) &&
-         !ExactAxes(triangle, low, high).separate();
+  RoundedAxes rounded(triangle, low, high);
+  if (rounded.separate()) return false;
+  return rounded.are_sure() || !ExactAxes(triangle, low, high).separate();
 }
 
 }  // namespace boxtree
