@@ -41,16 +41,22 @@ namespace boxtree {
   return {tree.face_id(order), order};
 }
 
-/// Tells a visitor of faces of a face and of all that are copies of it; whether to go on.
+/// Tells a visitor of faces of all that are copies of a face; whether to go on.
 template <class Visitor>
-[[nodiscard]] bool report_face(const Tree& tree, std::uint32_t face, Visitor& visitor) {
-  if (!visitor(face_ref(tree, face))) return false;
-  if (!tree.has_duplicates()) return true;
+[[nodiscard]] bool report_copies(const Tree& tree, std::uint32_t face, Visitor& visitor) {
   const FaceRange copies = tree.duplicates_of(face);
   for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
     if (!visitor(face_ref(tree, copy))) return false;
   }
   return true;
+}
+
+/// Tells a visitor of faces of a face and of all that are copies of it; whether to go on.
+template <class Visitor>
+[[nodiscard]] [[gnu::always_inline]] inline bool report_face(const Tree& tree, std::uint32_t face,
+                                                             Visitor& visitor) {
+  if (!visitor(face_ref(tree, face))) return false;
+  return !tree.has_duplicates() || report_copies(tree, face, visitor);
 }
 
 /// The same for a pair of faces and a visitor of pairs: each copy of the one with each of the
