@@ -34,10 +34,6 @@ constexpr double kUpperUnderflow = 0x1p-500;
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-Corners edges_of(const Corners& c) {
-  return {c[1] - c[0], c[2] - c[1], c[0] - c[2]};
-}
-
 // Where on a segment; an end is returned as it is.
 Eigen::Vector3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& edge,
                       const Eigen::Vector3d& to, double s) {
@@ -128,8 +124,10 @@ struct Search {
     }
   }
 
-  // Two triangles that touch, or nearly so: corners in the other one, edges through it.
-  void try_contacts() noexcept {
+  // Two triangles that touch, or nearly so: corners in the other one, edges through it. Whether
+  // any of them is nearer than what was found before.
+  bool try_contacts() noexcept {
+    const double before = squared;
     for (const Eigen::Vector3d& c : q) consider(closest_point_on_triangle(c, {p}), c);
     for (const Eigen::Vector3d& c : p) consider(c, closest_point_on_triangle(c, {q}));
     const auto pierce = [&](const Corners& face, const Corners& face_edge, const Corners& corner,
@@ -153,6 +151,7 @@ struct Search {
     };
     pierce(p, p_edge, q, true);
     pierce(q, q_edge, p, false);
+    return squared < before;
   }
 
   const Corners& p;
@@ -185,10 +184,7 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
     return separation_near(search.first, search.second, search.p, search.q, search.reach, enough());
   };
   double lower = separation();
-  if (!(lower >= enough())) {
-    search.try_contacts();
-    lower = std::max(lower, separation());
-  }
+  if (!(lower >= enough()) && search.try_contacts()) lower = std::max(lower, separation());
   return {lower, upper(), search.first, search.second};
 }
 

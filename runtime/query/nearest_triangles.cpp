@@ -43,10 +43,14 @@ Eigen::Vector3d separating_direction(const Eigen::Vector3d& between, const Trian
 
 }  // namespace
 
+// At least half of what was found, so that a contact, whose keys are 0, is always looked for.
+double NearestTriangles::best_to_improve(double rounding) const noexcept {
+  if (in_vain_ < kPatience) return pair_.upper;
+  return std::max(pair_.upper - rounding, pair_.upper / 2);
+}
+
 void NearestTriangles::set_enough() noexcept {
-  // At least half of what was found, so that a contact, whose keys are 0, is always looked for.
-  const double rounding = in_vain_ < kPatience ? 0 : rounding_;
-  const double best = std::max(pair_.upper - rounding, pair_.upper / 2);
+  const double best = best_to_improve(rounding_);
   const double enough = std::min(approximation_.enough(pair_.upper), best);
   // The neighbour above: what is exactly at the maximal distance counts.
   const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
@@ -148,9 +152,7 @@ bool NearestTriangles::is_apart(const Triangle& p, const Triangle& q, double siz
   const double key = lower * lower;
   if (!(lower > 0)) return false;
   // A comparison would leave as much of their own size open.
-  const double rounding = in_vain_ < kPatience ? 0 : kRounding * size;
-  const double best = std::max(pair_.upper - rounding, pair_.upper / 2);
-  if (key < best_ && lower < best) return false;
+  if (key < best_ && lower < best_to_improve(kRounding * size)) return false;
   leave(key);
   return true;
 }

@@ -69,6 +69,8 @@ class NearestTriangles {
   void compare(const Triangle& p, std::uint32_t i, const Triangle& q, std::uint32_t j) noexcept;
   [[nodiscard]] bool is_apart(const Triangle& p, const Triangle& q, double size,
                               double error) noexcept;
+  // The distance from which a pair cannot improve the answer by more than `rounding`.
+  [[nodiscard]] double best_to_improve(double rounding) const noexcept;
   void set_enough() noexcept;
   void set_ends() noexcept;
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include <boxtree/runtime/primitive/vector3.h>
+#include <boxtree/runtime/query/scaled_length.h>
 #include <boxtree/runtime/scene/placement.h>
 
 namespace boxtree {
@@ -109,8 +110,7 @@ double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vecto
   const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
   const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude(root) +
                          std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
-  constexpr double kSquareUnderflow = 0x1p-500;  // squares of shorter lengths are subnormal
-  return std::sqrt(squared_length(back)) + 128 * kUnitRoundoff * largest + kSquareUnderflow;
+  return std::sqrt(squared_length(back)) + 128 * kUnitRoundoff * largest + kLengthUnderflow;
 }
 
 // The squares of both are eigenvalues of L^T L, which Gershgorin's circles hold. Where axes are far
