@@ -151,6 +151,31 @@ TEST(Container, UnknownOptionalSectionsAndNewerMinorsAreRead) {
   EXPECT_TRUE(Tree::bind(*file).ok());
 }
 
+// As many zero bytes as there may be between two sections, and 64 more.
+TEST(Container, GapsHaveABound) {
+  const FileBytes original = valid_file();
+  const auto header = load<FileHeader>(original.data());
+  const auto entry = [&original](std::size_t i) {
+    return load<SectionEntry>(original.data() + sizeof(FileHeader) + i * sizeof(SectionEntry));
+  };
+  std::size_t behind = 1;  // the first section whose predecessor ends where it may begin itself
+  while (behind < header.section_count && entry(behind - 1).size % kSectionAlignment != 0) ++behind;
+  ASSERT_LT(behind, header.section_count);
+  for (const std::uint64_t gap : {kMaxSectionGap, kMaxSectionGap + kSectionAlignment}) {
+    FileBytes bytes = original;
+    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(entry(behind).offset), gap,
+                 std::byte{0});
+    for (std::size_t i = behind; i < header.section_count; ++i) {
+      edit_section(bytes, i, [gap](SectionEntry& s) { s.offset += gap; });
+    }
+    edit_header(bytes, [gap](FileHeader& h) { h.file_bytes += gap; });
+    test::repair_checksums(bytes);
+    EXPECT_EQ(File::open(Bytes(bytes)).code(),
+              gap == kMaxSectionGap ? Errc::kOk : Errc::kSectionOverlap)
+        << gap;
+  }
+}
+
 TEST(Container, PaddingMustBeZero) {
   FileBytes bytes = valid_file();
   const Result<File> file = File::open(Bytes(bytes));

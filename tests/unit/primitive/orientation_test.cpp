@@ -88,6 +88,34 @@ TEST(Orient3d, KeepsTheTailsOfDifferences) {
   }
 }
 
+// Each of the nine differences in its turn is the only one that a double does not hold, and the
+// unit that it loses is the whole determinant.
+TEST(Orient3d, KeepsTheTailOfEachDifference) {
+  // Rows are a - d, b - d, c - d; at row 1 and column 0 stands 2^60 less what is lost. Its minor is
+  // 1, and the rest of the determinant -2^60.
+  const double big = 0x1p60, half = 0x1p30;
+  const std::array<std::array<double, 3>, 3> corner{{{half, 0, 1}, {0, 0, half}, {0, 1, 0}}};
+  for (std::size_t turn = 0; turn < 3; ++turn) {
+    for (std::size_t shift = 0; shift < 3; ++shift) {
+      for (const double lost : {0.0, 1.0, 2.0}) {
+        std::array<Eigen::Vector3d, 3> p;
+        for (std::size_t row = 0; row < 3; ++row) {
+          for (std::size_t axis = 0; axis < 3; ++axis) {
+            const bool is_big = row == 1 && axis == 0;
+            const double value = is_big ? big : corner[row][axis] + (axis == 0 ? lost : 0);
+            p[(row + turn) % 3][static_cast<Eigen::Index>((axis + shift) % 3)] = value;
+          }
+        }
+        Eigen::Vector3d d = Eigen::Vector3d::Zero();
+        d[static_cast<Eigen::Index>(shift)] = lost;
+        const int expected = lost > 0 ? -1 : 0;
+        EXPECT_EQ(orient3d(p[0], p[1], p[2], d), expected) << turn << ' ' << shift << ' ' << lost;
+        EXPECT_EQ(orient3d(p[1], p[0], p[2], d), -expected) << turn << ' ' << shift << ' ' << lost;
+      }
+    }
+  }
+}
+
 TEST(Orient2d, AgreesWithIntegersNextToTheLine) {
   for (const int bits : {8, 24, 50}) {
     test::TriangleCases cases(0x2d, 64);
