@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <utility>
+
+#include <Eigen/LU>
 
 #include "tests/oracle/exact/poses.h"
 #include "tests/support/require.h"
@@ -81,6 +84,56 @@ Point placed_corner(const Pose& pose, const Eigen::Vector3d& corner,
   return world;
 }
 
+// By how much the largest coordinates may differ from the static instances, and what they may be
+// (docs/GUARANTEES.md), each less a factor for what bounds of instances lose to rounding.
+constexpr double kMostExtents = 0x1p184;
+constexpr double kLargestCoordinate = 0x1p199;
+
+// Corners of the bounds of a tree's mesh, in the world.
+std::array<Eigen::Vector3d, 8> placed_bounds(const cooker::SourceMesh& mesh, const Pose& pose) {
+  Eigen::AlignedBox3d bounds;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto p = mesh.positions[static_cast<std::uint32_t>(v)];
+    bounds.extend(Eigen::Vector3d(p[0], p[1], p[2]));
+  }
+  std::array<Eigen::Vector3d, 8> corners;
+  for (int i = 0; i < 8; ++i) {
+    corners[static_cast<std::size_t>(i)] =
+        pose * bounds.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i));
+  }
+  return corners;
+}
+
+// The extent of the static instances, or of all where none is static.
+double static_extent(const SceneSubject& subject) {
+  const bool has_static =
+      std::find(subject.moves.begin(), subject.moves.end(), false) != subject.moves.end();
+  Eigen::AlignedBox3d bounds;
+  for (std::size_t id = 0; id < subject.poses.size(); ++id) {
+    if (has_static && subject.moves[id]) continue;
+    for (const auto& corner :
+         placed_bounds(subject.meshes[subject.tree_of_id[id]], subject.poses[id])) {
+      bounds.extend(corner);
+    }
+  }
+  return bounds.sizes().maxCoeff();
+}
+
+// Whether a pose is well within what the guarantees allow, so that nobody may refuse it. Maps that
+// are nearly singular may be refused.
+bool is_surely_allowed(const SceneSubject& subject, std::uint32_t tree, const Pose& pose,
+                       double extent) {
+  const double size = pose.linear().cwiseAbs().maxCoeff();
+  if (!(size > 0x1p-880 && size < 0x1p880)) return false;
+  const Eigen::Matrix3d moderate = pose.linear() * std::ldexp(1.0, -std::ilogb(size));
+  if (!(std::abs(moderate.determinant()) > 0x1p-40)) return false;
+  double largest = 0;
+  for (const auto& corner : placed_bounds(subject.meshes[tree], pose)) {
+    largest = std::max(largest, corner.cwiseAbs().maxCoeff());
+  }
+  return largest <= kLargestCoordinate && largest <= kMostExtents * extent;
+}
+
 }  // namespace
 
 std::unique_ptr<SceneSubject> draw_scene(Draw& d) {
@@ -113,6 +166,13 @@ std::unique_ptr<SceneSubject> draw_scene(Draw& d) {
     }
   } catch (const std::runtime_error&) {
     if (!subject->variants.empty()) throw;  // not refused by all
+    const double extent = static_extent(*subject);
+    bool are_allowed = true;
+    for (std::size_t id = 0; id < subject->poses.size(); ++id) {
+      are_allowed &=
+          is_surely_allowed(*subject, subject->tree_of_id[id], subject->poses[id], extent);
+    }
+    if (are_allowed) throw;
     return nullptr;
   }
   for (const Tree& tree : subject->variants[0].scene.trees()) {
@@ -126,6 +186,7 @@ std::unique_ptr<SceneSubject> draw_scene(Draw& d) {
 
 std::uint32_t update_some(Draw& d, SceneSubject& subject, int count) {
   std::uint32_t refused = 0;
+  const double extent = static_extent(subject);
   for (int i = 0; i < count; ++i) {
     const std::uint32_t id = d.below(static_cast<std::uint32_t>(subject.poses.size()));
     if (!subject.moves[id]) continue;
@@ -137,6 +198,9 @@ std::uint32_t update_some(Draw& d, SceneSubject& subject, int count) {
       if (variant.scene.update(variant.number_of_id[id], pose).ok() != first) {
         throw std::runtime_error("an update that some codecs refuse");
       }
+    }
+    if (!first && is_surely_allowed(subject, subject.tree_of_id[id], pose, extent)) {
+      throw std::runtime_error("an update that the guarantees allow is refused");
     }
     refused += first ? 0 : 1;
     if (first) subject.poses[id] = pose;

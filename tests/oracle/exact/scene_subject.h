@@ -40,11 +40,11 @@ struct SceneSubject {
   double world_size = 1;
 };
 
-/// Nothing where the poses drawn cannot be cooked.
+/// Nothing where the poses drawn cannot be cooked. Throws where the guarantees say that they can.
 [[nodiscard]] std::unique_ptr<SceneSubject> draw_scene(Draw& draw);
 
 /// Gives moving instances other poses, in every variant; returns how many were refused, by all.
-/// Throws where one variant refuses what another takes.
+/// Throws where one variant refuses what another takes, or what the guarantees allow.
 [[nodiscard]] std::uint32_t update_some(Draw& draw, SceneSubject& subject, int count);
 
 /// All triangles where they are now: a group in the world, whose faces are indices into `placed`.
