@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include <boxtree/runtime/primitive/vector3.h>
 #include <boxtree/runtime/query/erased_codec.h>
 #include <boxtree/runtime/query/float_state.h>
 #include <boxtree/runtime/query/frontier.h>
@@ -106,6 +107,16 @@ class BestFirst {
   Frontier<Entry, kQueue, kStackSize<ErasedCodec>> frontier_;
 };
 
+// At least the length of a vector, be its square a double or not.
+double length_above(const Eigen::Vector3d& v) noexcept {
+  constexpr double kMore = 1 + 2 * std::numeric_limits<double>::epsilon();
+  constexpr int kExponent = 600;
+  const double square = squared_length(v);
+  if (square > 0x1p-900) return std::sqrt(square) * kMore;
+  return scaled_above(std::sqrt(squared_length(std::ldexp(1.0, kExponent) * v)) * kMore,
+                      -kExponent);
+}
+
 }  // namespace
 
 Errc find_nearest(const Tree& tree, PointQuery& query) {
@@ -169,9 +180,12 @@ Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& 
       scaled_below(std::max(0.0, std::min(untested, query.tested_lower) - place), exponent);
   result.nodes_expanded = query.nodes_expanded;
   if (!query.found) return result;
-  // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp).
+  // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp),
+  // and the point itself by half the least double where its way to tree space underflows.
   const double off = 13 * kEpsilon * reach_of(tree).maxCoeff() + place;
-  const double upper = std::sqrt(query.found->distance) * (1 + 2 * kEpsilon) + off;
+  const double lost =
+      frame.to_object(tree_point) == point ? 0 : std::numeric_limits<double>::denorm_min();
+  const double upper = length_above(query.found->point - tree_point) + off + lost;
   result.upper = scaled_above(upper, exponent);
   result.witness = query.found;
   result.witness->point = frame.to_object(query.found->point);

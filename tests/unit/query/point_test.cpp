@@ -209,6 +209,22 @@ TEST_P(ApproximatePoints, RefuseWhatHasNoMeaning) {
   EXPECT_EQ(closest_point(cooked.tree, {NAN, 0, 0}, PointOptions()).code(), Errc::kInvalidQuery);
 }
 
+// A mesh that is one place, and points beside it: the square of the way there is no double.
+TEST_P(ApproximatePoints, UpperBoundHoldsWhereSquaresUnderflow) {
+  SourceMesh mesh;
+  mesh.positions.f32.assign(3 * 3, 0.0F);
+  mesh.faces.push_back({{0, 1, 2, cooker::kNoCorner}});
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  for (const int exponent : {-1074, -1050, -600, -538}) {
+    const double height = std::ldexp(1.0, exponent);
+    const auto found = closest_point(cooked.tree, {0, 0, height}, PointOptions());
+    ASSERT_TRUE(found.ok());
+    EXPECT_LE(found->lower, height) << exponent;
+    EXPECT_GE(found->upper, height) << exponent;
+  }
+  EXPECT_EQ(closest_point(cooked.tree, {0, 0, 0}, PointOptions())->upper, 0);
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, ApproximatePoints, testing::ValuesIn(test::all_encodings()),
                          test::encoding_name);
 
