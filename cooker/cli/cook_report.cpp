@@ -54,7 +54,8 @@ Json import_json(const ImportReport& report) {
                {"quads_split", report.quads_split},
                {"ngons_split", report.ngons_split},
                {"vertices_welded", report.vertices_welded},
-               {"degenerate_faces", report.degenerate_faces}};
+               {"degenerate_faces", report.degenerate_faces},
+               {"open_end", report.has_open_end}};
   json["skipped"] = Json::array();
   for (const SkippedFace& face : report.skipped) {
     json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
@@ -101,6 +102,10 @@ void print_import(const ImportReport& import) {
   }
   if (import.degenerate_faces > 0) {
     fmt::print("  kept {} faces without area\n", import.degenerate_faces);
+  }
+  if (import.has_open_end) {
+    fmt::print(
+        "  the last line of the source has no end: a file that was cut short looks the same\n");
   }
   for (const SkippedFace& face : import.skipped) {
     fmt::print("  skipped face {}: {}\n", face.face_id, face.reason);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // import_mesh, import_scene: our own reader, or one assimp import without post-processing, checked
 // before and after.
+#include <algorithm>
 #include <cstdint>
 #include <exception>
 #include <memory>
@@ -26,6 +27,7 @@
 #include <boxtree/cooker/import/scene_intake.h>
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/source_scene.h>
+#include <boxtree/cooker/import/text_checks.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
@@ -157,9 +159,18 @@ Status import_text(const Request& request, const std::string& name, const Read& 
   StandIn seen{name, {}, {}, ExactPositions(request.options.precision)};
   Result<std::string> text = read_text(file.value(), seen.known, seen.exact);
   if (!text.ok()) return in_file(path, text.error());
+  const bool is_open = has_open_end(*file);
   file.value() = std::string();  // not to stand beside what assimp makes of it
   seen.text = std::move(text).value();
-  return import_once(request, &seen, out);
+  if (Status status = import_once(request, &seen, out); !status.ok()) return status;
+  report_of(out).has_open_end = is_open;
+  return {};
+}
+
+// Old Macintosh files end lines by a carriage return alone, which readers of PLY do not know.
+std::string with_line_feeds(std::string text) {
+  if (text.find('\n') == std::string::npos) std::replace(text.begin(), text.end(), '\r', '\n');
+  return text;
 }
 
 // A file whose vertices cannot be found is read as any other.
@@ -167,11 +178,29 @@ Status import_ply(const Request& request, ImportedFile& out) {
   const fs::path& path = request.path;
   Result<std::string> file = read_source_file(path);
   if (!file.ok()) return file.error();
-  StandIn numbered{
-      path.string(), std::move(file).value(), {}, ExactPositions(request.options.precision)};
+  StandIn numbered{path.string(),
+                   with_line_feeds(std::move(file).value()),
+                   {},
+                   ExactPositions(request.options.precision)};
+  if (Status status = check_ply_text(numbered.text); !status.ok()) {
+    return in_file(path, status.error());
+  }
+  const bool is_open = has_open_end(numbered.text);
   const bool is_numbered = number_ply_vertices(numbered.text, numbered.exact);
-  if (is_numbered) return import_once(request, &numbered, out);
-  numbered.text = std::string();
+  if (!is_numbered) numbered.text = std::string();
+  if (Status status = import_once(request, is_numbered ? &numbered : nullptr, out); !status.ok()) {
+    return status;
+  }
+  report_of(out).has_open_end = is_open;
+  return {};
+}
+
+Status import_stl(const Request& request, ImportedFile& out) {
+  const Result<std::string> file = read_source_file(request.path);
+  if (!file.ok()) return file.error();
+  if (Status status = check_stl_text(*file); !status.ok()) {
+    return in_file(request.path, status.error());
+  }
   return import_once(request, nullptr, out);
 }
 
@@ -184,6 +213,7 @@ Status import_any(const Request& request, ImportedFile& out) {
     return import_text(request, path.string() + ".obj", obj_from_off, out);
   }
   if (has_extension(path, "ply")) return import_ply(request, out);
+  if (has_extension(path, "stl")) return import_stl(request, out);
   return import_once(request, nullptr, out);
 }
 

@@ -43,12 +43,13 @@ struct ImportReport {
   std::size_t lines_skipped = 0;
   std::size_t empty_skipped = 0;  // faces without any corner
   std::size_t quads_kept = 0;
-  std::size_t quads_split = 0;                    // not planar or not convex
-  std::size_t ngons_split = 0;                    // five corners or more
-  std::size_t vertices_unused = 0;                // belong to no face that was taken over; removed
-  std::size_t vertices_welded = 0;                // bit-equal duplicates removed
-  std::size_t degenerate_faces = 0;               // zero area; kept
-  std::vector<SkippedFace> skipped;               // only with ImportOptions::skip_bad
+  std::size_t quads_split = 0;       // not planar or not convex
+  std::size_t ngons_split = 0;       // five corners or more
+  std::size_t vertices_unused = 0;   // belong to no face that was taken over; removed
+  std::size_t vertices_welded = 0;   // bit-equal duplicates removed
+  std::size_t degenerate_faces = 0;  // zero area; kept
+  bool has_open_end = false;         // OBJ, OFF, PLY: the last line has no end; cut short, perhaps
+  std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   std::vector<std::filesystem::path> files_read;  // the file itself and every file it refers to
   std::uint64_t content_hash = 0;  // XXH3 over the bytes of files_read, in order of first read
 };
@@ -76,10 +77,11 @@ struct Imported {
 /// Positions of OBJ, OFF and PLY files go past assimp: decimals are rounded once, to the nearest
 /// f32 or f64. What assimp decides: those of other formats have the digits of f32, and decimals
 /// among them can be a unit in the last place off the nearest. Where a reader of assimp repairs
-/// silently, we look first ourselves: OBJ, OFF, PLY and glTF. A glTF file with vertex numbers out
-/// of range is refused even with skip_bad, and named by its mesh: assimp has dropped the faces and
-/// their numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex
-/// number out of range.
+/// silently, we look first ourselves: OBJ, OFF, PLY, text STL and glTF. A file that was cut short
+/// is refused where its format states counts or an end; OBJ states none, and a last line without an
+/// end is reported. A glTF file with vertex numbers out of range is refused even with skip_bad, and
+/// named by its mesh: assimp has dropped the faces and their numbers with them. Its other readers
+/// (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace boxtree::cooker

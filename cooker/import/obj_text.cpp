@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A line scanner for OBJ, as lenient as assimp's, that looks at `v` and `f` (and `p`, `l`) alone.
+// A line scanner for OBJ that looks at `v` and `f` (and `p`, `l`) alone. Indentation, comments and
+// a byte order mark do not reach assimp, which passes over a line that begins with any of them.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -18,7 +19,7 @@ namespace {
 
 // One statement, with the lines that a backslash joins to it.
 struct Statement {
-  std::string_view text;  // without the line end; may hold joined line ends
+  std::string_view text;  // from its keyword on, without comment and line end; may hold joined ones
   std::size_t line;       // of its beginning, from 1
 };
 
@@ -26,43 +27,78 @@ bool is_line_end(char c) {
   return c == '\n' || c == '\r' || c == '\f' || c == '\0';
 }
 
-// Where a statement may end, by the code of the character: files are long.
-constexpr auto kMayEnd = [] {
-  std::array<bool, 256> may_end{};
-  for (const char c : {'\n', '\r', '\f', '\0', '\\'}) {
-    may_end[static_cast<unsigned char>(c)] = true;
-  }
-  return may_end;
-}();
+bool is_blank(char c) {
+  return c == ' ' || c == '\t';
+}
 
-// Takes the next statement off `rest`; empty lines are statements too.
+// Where something may end, by the code of the character: files are long.
+constexpr std::array<bool, 256> set_of(std::string_view characters) {
+  std::array<bool, 256> set{};
+  for (const char c : characters) set[static_cast<unsigned char>(c)] = true;
+  return set;
+}
+constexpr auto kLineEnds = set_of(std::string_view("\n\r\f\0", 4));
+constexpr auto kLineEndsOrJoins = set_of(std::string_view("\n\r\f\0\\", 5));
+constexpr auto kElementEnds = set_of(std::string_view("\n\r\f\0\\#", 6));
+
+std::size_t find_of(const std::array<bool, 256>& set, std::string_view text, std::size_t from) {
+  while (from < text.size() && !set[static_cast<unsigned char>(text[from])]) ++from;
+  return from;
+}
+
+// Statements of numbers: there a hash begins a comment, while names may hold one.
+bool is_element(std::string_view text) {
+  constexpr std::string_view kKeywords = "vflp";
+  return text.size() > 1 && kKeywords.find(text[0]) != std::string_view::npos &&
+         (is_blank(text[1]) || text[1] == '\\');
+}
+
+// Takes the next statement off `rest`; empty lines and comments are empty statements. A comment
+// ends with its line: paths end in backslashes, too.
 Statement take_statement(std::string_view& rest, std::size_t& line) {
-  const Statement start{rest, line};
+  while (!rest.empty() && is_blank(rest[0])) rest.remove_prefix(1);
+  const std::string_view from = rest;
+  const std::size_t first_line = line;
+  const bool has_comments = is_element(rest);
+  const auto& ends = has_comments ? kElementEnds : kLineEndsOrJoins;
   std::size_t end = 0;
-  for (;; ++end) {
-    while (end < rest.size() && !kMayEnd[static_cast<unsigned char>(rest[end])]) ++end;
-    if (end == rest.size() || rest[end] != '\\') break;
-    if (end + 1 == rest.size() || !is_line_end(rest[end + 1])) continue;
-    end = std::min(rest.find('\n', end), rest.size() - 1);
-    ++line;
+  std::size_t length = rest.starts_with('#') ? 0 : std::string_view::npos;
+  while (length == std::string_view::npos) {
+    end = find_of(ends, rest, end);
+    if (end == rest.size() || rest[end] != '\\') {
+      length = end;
+    } else if (end + 1 < rest.size() && is_line_end(rest[end + 1])) {
+      end += rest.substr(end + 1).starts_with("\r\n") ? 3u : 2u;
+      ++line;
+    } else {
+      ++end;
+    }
   }
-  const std::size_t length = end;
+  end = find_of(kLineEnds, rest, end);
   if (rest.substr(end).starts_with("\r\n")) ++end;
   if (end < rest.size()) ++end;
   ++line;
   rest.remove_prefix(end);
-  return {start.text.substr(0, length), start.line};
+  return {from.substr(0, length), first_line};
+}
+
+std::string_view keyword_of(std::string_view text) {
+  return text.substr(0, text.find_first_of(" \t"));
+}
+
+// A keyword of the format, or of one that adds to it; not bytes that an editor does not show, and
+// not a vertex or a face in capitals, which would be passed over as unknown.
+bool is_known(std::string_view keyword) {
+  return keyword != "V" && keyword != "F" &&
+         std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; });
 }
 
 bool is_vertex(const Statement& statement) {
-  return statement.text.size() > 1 && statement.text[0] == 'v' &&
-         (statement.text[1] == ' ' || statement.text[1] == '\t');
+  return is_element(statement.text) && statement.text[0] == 'v';
 }
 
-// Leaves the numbers of a vertex in `tokens`: neither its keyword nor a comment.
-void split_numbers(const Statement& vertex, Tokens& tokens) {
-  split_tokens(vertex.text.substr(0, vertex.text.find('#')), tokens);
-  tokens.erase(tokens.begin());
+Error failure(const Statement& statement, const std::string& why) {
+  return Error{Errc::kImportFailed, fmt::format("line {}: {}", statement.line, why)};
 }
 
 class ObjReader {
@@ -91,22 +127,30 @@ class ObjReader {
 };
 
 Result<std::string> ObjReader::run() {
-  text_.reserve(source_.size() + 1);
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (source_.starts_with(kByteOrderMark)) source_.remove_prefix(kByteOrderMark.size());
+  if (source_.ends_with('\x1a')) source_.remove_suffix(1);  // how DOS ended a text
+  // Assimp wants 16 bytes of any file, even of one that holds comments alone.
+  constexpr std::string_view kStart = "# statements of an OBJ file\n";
+  text_.reserve(kStart.size() + source_.size() + 1);
+  text_ = kStart;
   std::string_view rest = source_;
   std::size_t line = 1;
   while (!rest.empty()) {
-    const std::string_view before = rest;
     const Statement statement = take_statement(rest, line);
-    const char kind = statement.text.empty() ? '\0' : statement.text[0];
     if (is_vertex(statement)) {
       if (Status status = add_vertex(statement); !status.ok()) return status.error();
       continue;
     }
-    if ((kind == 'f' || kind == 'l' || kind == 'p') && rewrite_element(statement)) continue;
-    text_ += before.substr(0, before.size() - rest.size());
+    if (is_element(statement.text) && rewrite_element(statement)) continue;
+    if (!is_known(keyword_of(statement.text))) {
+      return failure(statement, fmt::format("no statement of OBJ begins with {:?}",
+                                            keyword_of(statement.text)));
+    }
+    text_ += statement.text;
+    text_ += '\n';
   }
   // At the end, where they shift no number and are behind every relative one.
-  if (!text_.empty() && text_.back() != '\n') text_ += '\n';
   for (const std::size_t fault : face_faults_) text_ += marker_line(fault);
   return std::move(text_);
 }
@@ -122,10 +166,8 @@ std::size_t ObjReader::vertices() {
 }
 
 Status ObjReader::add_vertex(const Statement& statement) {
-  split_numbers(statement, tokens_);
-  const auto failure = [&statement](const std::string& why) {
-    return Error{Errc::kImportFailed, fmt::format("line {}: {}", statement.line, why)};
-  };
+  split_tokens(statement.text, tokens_);
+  tokens_.erase(tokens_.begin());
   // A fourth number alone is a weight; more are a colour.
   const std::size_t used = tokens_.size() == 4 ? 4 : std::min<std::size_t>(tokens_.size(), 3);
   VertexWords words = kOrigin;
@@ -134,8 +176,8 @@ Status ObjReader::add_vertex(const Statement& statement) {
   // Words behind the position are looked at so that nothing else than numbers passes for a vertex.
   const std::string_view no_number =
       find_no_number(std::span(tokens_).subspan(position ? used : 0));
-  if (!no_number.empty()) return failure(fmt::format("'{}' is no number", no_number));
-  if (used < 3) return failure(fmt::format("a vertex of {} numbers", used));
+  if (!no_number.empty()) return failure(statement, fmt::format("'{}' is no number", no_number));
+  if (used < 3) return failure(statement, fmt::format("a vertex of {} numbers", used));
   ++vertices_so_far_;
   if (position->allFinite()) {
     append_vertex_line(exact_.add(*position), text_);
@@ -160,7 +202,6 @@ bool ObjReader::rewrite_element(const Statement& statement) {
   text_ += tokens_[0];
   for (std::size_t i = 1; i < tokens_.size(); ++i) {
     const std::string_view token = tokens_[i];
-    if (token[0] == '#') break;  // assimp would read the comment as a corner
     text_ += ' ';
     if (names_vertex(corner_number(token))) {
       const bool has_zero = token.find("/0") != std::string_view::npos;
@@ -184,8 +225,9 @@ bool ObjReader::rewrite_element(const Statement& statement) {
 long long ObjReader::corner_number(std::string_view token) {
   long long number = 0;
   const std::size_t sign = token[0] == '+' ? 1 : 0;
-  std::from_chars(token.data() + sign, token.data() + token.size(), number);
-  return number;
+  const char* const last = token.data() + token.size();
+  const char* const end = std::from_chars(token.data() + sign, last, number).ptr;
+  return end == last || *end == '/' ? number : 0;
 }
 
 bool ObjReader::names_vertex(long long number) {

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: MIT
+// Spellings of text formats behind which readers lose statements, and texts that were cut short.
+#include <string>
+
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+class TextFormatTest : public ImportTest {
+ protected:
+  // One triangle with these corners.
+  void expect_triangle(const std::string& name, std::string_view text,
+                       const std::array<Eigen::Vector3d, 3>& corners) const {
+    const Imported got = load(name, text);
+    ASSERT_EQ(got.mesh.faces.size(), 1u) << text;
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(got.mesh.positions[got.mesh.faces[0].corner[i]], corners[i]) << text;
+    }
+  }
+  const std::array<Eigen::Vector3d, 3> corners_{Eigen::Vector3d(0, 0, 0), {1, 0, 0}, {0, 1, 0}};
+};
+
+TEST_F(TextFormatTest, AByteOrderMarkHidesNoVertex) {
+  expect_triangle("a.obj", "\xef\xbb\xbfv 9 9 9\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                  {Eigen::Vector3d(9, 9, 9), {0, 0, 0}, {1, 0, 0}});
+  const Error inside = fail("b.obj", "v 0 0 0\nv 1 0 0\n\xef\xbb\xbfv 0 1 0\nf 1 2 1\n");
+  EXPECT_EQ(inside.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(inside.detail, "line 3: no statement of OBJ begins with"));
+}
+
+TEST_F(TextFormatTest, IndentationHidesNoStatement) {
+  for (const std::string blank : {" ", "\t", "  \t "}) {
+    expect_triangle("a.obj", "v 0 0 0\n" + blank + "v 1 0 0\nv 0 1 0\n" + blank + "f 1 2 3\n",
+                    corners_);
+  }
+  const Imported two = load("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n f 1 3 2\n");
+  EXPECT_EQ(two.mesh.faces.size(), 2u);
+}
+
+TEST_F(TextFormatTest, LineEndsOfAllSystems) {
+  for (const std::string end : {"\n", "\r\n", "\r"}) {
+    std::string text;
+    for (const char* line : {"v 0 0 0", "# a comment", "", "v 1 0 0", "v 0 1 0", "f 1 2 3"}) {
+      text += line + end;
+    }
+    expect_triangle("a.obj", text, corners_);
+    expect_triangle("b.obj", text + '\x1a', corners_);
+  }
+}
+
+TEST_F(TextFormatTest, CommentsEndWithTheirLine) {
+  expect_triangle("a.obj", "# C:\\models\\\nv 0 0 0\nv 1 0 0 # here\\\nv 0 1 0#3\nf 1 2 3 # 4\\\n",
+                  corners_);
+  expect_triangle("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\n#\\\nf 1 2 3#4\n#", corners_);
+}
+
+TEST_F(TextFormatTest, BackslashesJoinLines) {
+  for (const std::string end : {"\n", "\r\n"}) {
+    expect_triangle("a.obj",
+                    "v 0 \\" + end + "0 0" + end + "v 1 0 0" + end + "v\\" + end + "0 1\\" + end +
+                        " 0" + end + "f 1 \\" + end + "2\\" + end + " 3" + end,
+                    corners_);
+  }
+}
+
+TEST_F(TextFormatTest, WhatLooksLikeAStatementIsOneOrRefused) {
+  const std::string vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  EXPECT_TRUE(has(fail("a.obj", "V 0 0 0\n" + vertices + "f 1 2 3\n").detail, "line 1:"));
+  EXPECT_TRUE(has(fail("b.obj", vertices + "f 1 2 3\nF 1 3 2\n").detail, "line 5:"));
+  EXPECT_TRUE(has(fail("c.obj", vertices + "f 1 2 3\n\vf 1 3 2\n").detail, "line 5:"));
+  EXPECT_EQ(fail("d.obj", vertices + "f 1 2 3x\n").code, Errc::kMeshIndexOutOfRange);
+  EXPECT_EQ(fail("e.obj", vertices + "f 1 2 3.5\n").code, Errc::kMeshIndexOutOfRange);
+}
+
+const std::string kPly =
+    "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+    "property float z\nelement face 3\nproperty list uchar int vertex_indices\nend_header\n"
+    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n4 0 2 3 1\n";
+
+TEST_F(TextFormatTest, PlyHasEveryElementThatItStates) {
+  const std::string body = kPly.substr(0, kPly.find("3 0 1 3"));
+  const Error one = fail("a.ply", body);
+  EXPECT_EQ(one.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(one.detail, "the file ends after 1 of 3 'face'"));
+  const Error corner = fail("b.ply", body + "3 0 1 3\n4 0 2\n");
+  EXPECT_TRUE(has(corner.detail, "a list of '4' numbers, but the line has 3 words"));
+  EXPECT_TRUE(has(fail("c.ply", body + "3 0 1 3\n4 0 2 3\n").detail, "'face' 2 has 4 words"));
+  EXPECT_TRUE(has(fail("d.ply", body + "3 0 1 3\n4 0 2 3 1 3 0 1 2\n").detail,
+                  "'face' 2 has 9 words; its properties take 5"));
+  EXPECT_TRUE(has(fail("e.ply", body + "3 0 1 3\nx 0 2 3\n").detail, "a list of 'x' numbers"));
+  std::string carriage_returns = kPly;
+  std::replace(carriage_returns.begin(), carriage_returns.end(), '\n', '\r');
+  EXPECT_EQ(load("f.ply", carriage_returns).mesh.faces.size(),
+            load("g.ply", kPly).mesh.faces.size());
+}
+
+const std::string kStl =
+    "solid a facet\n facet normal 0 0 1\n  outer loop\n   vertex 0 0 0\n   vertex 1 0 0\n"
+    "   vertex 0 1 0\n  endloop\n endfacet\n facet normal 0 0 1 outer loop vertex 1 0 0\n"
+    "vertex 1 1 0 vertex 0 1 0 endloop endfacet\nendsolid a facet\n";
+
+TEST_F(TextFormatTest, StlClosesEveryFacetAndSolid) {
+  EXPECT_EQ(load("a.stl", kStl).mesh.faces.size(), 2u);
+  EXPECT_EQ(load("b.stl", kStl + kStl).mesh.faces.size(), 4u);
+  const Error open = fail("c.stl", kStl.substr(0, kStl.find("endsolid")));
+  EXPECT_EQ(open.code, Errc::kImportFailed);
+  EXPECT_TRUE(has(open.detail, "the file ends without 'endsolid'"));
+  EXPECT_TRUE(has(fail("d.stl", kStl.substr(0, kStl.find("vertex 0 1 0"))).detail,
+                  "the file ends within a facet"));
+  std::string two = kStl;
+  two.erase(two.find("   vertex 1 0 0\n"), 16);
+  EXPECT_TRUE(has(fail("e.stl", two).detail, "a facet of 2 corners"));
+  std::string word = kStl;
+  word.replace(word.find("vertex 1 1 0"), 12, "vertex 1 l 0");
+  EXPECT_TRUE(has(fail("f.stl", word).detail, "'l' is no number"));
+}
+
+// Of each format a file of several faces, cut after every byte: refused, whole nevertheless, or
+// said to end openly. An OBJ file states no counts: cut between lines it is another whole file.
+TEST_F(TextFormatTest, EveryTruncationIsRefusedOrTold) {
+  struct Sample {
+    const char* name;
+    std::string text;
+    bool has_counts;
+  };
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\nf 1 3 4 2\n";
+  const std::string off = "OFF\n4 3 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 1 2\n3 0 1 3\n4 0 2 3 1\n";
+  for (const Sample& sample : {Sample{"a.obj", obj, false}, Sample{"a.off", off, true},
+                               Sample{"a.ply", kPly, true}, Sample{"a.stl", kStl, true}}) {
+    const std::size_t faces = load(sample.name, sample.text).mesh.faces.size();
+    std::size_t told = 0, refused = 0;
+    for (std::size_t size = 1; size < sample.text.size(); ++size) {
+      const std::string cut = sample.text.substr(0, size);
+      const Result<Imported> got = import_mesh(write(sample.name, cut));
+      if (!got.ok()) {
+        ++refused;
+        continue;
+      }
+      told += got->report.has_open_end ? 1u : 0u;
+      const bool is_whole = got->mesh.faces.size() == faces;
+      const bool is_between_lines = !sample.has_counts && cut.back() == '\n';
+      EXPECT_TRUE(got->report.has_open_end || is_whole || is_between_lines)
+          << sample.name << " cut after " << size << " bytes";
+    }
+    EXPECT_GT(refused, sample.text.size() / 2) << sample.name;
+    EXPECT_FALSE(load(sample.name, sample.text).report.has_open_end);
+    EXPECT_EQ(told > 0, std::string_view(sample.name) != "a.stl") << sample.name;
+  }
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
