@@ -21,18 +21,21 @@ struct Magnitudes {
       const double x = std::abs(v[k]);
       largest = std::max(largest, x);
       if (x > 0) least = std::min(least, x);
+      are_finite &= std::isfinite(x);
     }
   }
 
   // Whether errors of products of three, scaled by safe_scale, are doubles: scaled coordinates are
-  // then multiples of 2^-350, and their products of 2^-1050.
+  // then multiples of 2^-350, and their products of 2^-1050. Expansions have no room for what is no
+  // number; wide integers make a number of it.
   [[nodiscard]] bool are_for_expansions() const noexcept {
     constexpr double kRatio = 0x1p-497;  // 2^-550 times the 53 bits of a double
-    return least >= kRatio * largest;
+    return are_finite && least >= kRatio * largest;
   }
 
   double largest = 0;
   double least = std::numeric_limits<double>::infinity();
+  bool are_finite = true;
 };
 
 // Signs where exponents are farther apart than that.

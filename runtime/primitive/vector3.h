@@ -66,12 +66,14 @@ namespace boxtree {
   return determinant;
 }
 
-/// The power of two by which the largest magnitude falls into [1, 2); 1 for zeros, and for what is
-/// not finite.
+/// The power of two by which the largest magnitude falls into [1, 2), or 2^1023, if less would be
+/// too little; 1 for zeros, and for what is not finite.
 template <class Vector>
 [[nodiscard]] double scale_to_one(const Vector& v) noexcept {
   const double largest = std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
-  return largest > 0 && std::isfinite(largest) ? std::ldexp(1.0, -std::ilogb(largest)) : 1;
+  constexpr int kLargestExponent = std::numeric_limits<double>::max_exponent - 1;
+  if (!(largest > 0) || !std::isfinite(largest)) return 1;
+  return std::ldexp(1.0, std::min(-std::ilogb(largest), kLargestExponent));
 }
 
 /// The inverse of a matrix whose rows and columns are brought to the size of 1 first: powers of

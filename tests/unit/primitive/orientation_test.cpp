@@ -179,6 +179,17 @@ TEST(Orient3d, AxesMayDifferByAnyPower) {
   for (const int count : seen) EXPECT_GT(count, kCases / 10);
 }
 
+// Nothing is promised of the sign; but no walk over corrupt bytes may leave its arrays.
+TEST(Orient3d, WhatIsNoNumberHasSomeSign) {
+  for (const double x :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+        -std::numeric_limits<double>::infinity()}) {
+    const Eigen::Vector3d a(x, x, x), b(1, 2, 0x1p-60), c(x, 0x1p60, 3), d(0x1p-60, x, 1);
+    EXPECT_LE(std::abs(orient3d_exact(a, b, c, d)), 1);
+    EXPECT_LE(std::abs(orient2d_exact({x, 1}, {0x1p-60, x}, {x, 0x1p60})), 1);
+  }
+}
+
 TEST(WideInteger, DifferencesAndProductsAreExact) {
   const double least = std::numeric_limits<double>::denorm_min();
   const double large = 0x1p200;
