@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <random>
+#include <set>
 
 #include <gtest/gtest.h>
 
@@ -80,6 +82,47 @@ TEST_P(GridStore, HoldsTheSourceRoundedToTheGrid) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, GridStore, testing::ValuesIn(test::all_codecs()), test::test_name);
+
+// Faces between random vertices of a lattice: of few vertices, leaves are strips that name most of
+// them again; of many, each reference takes the most bits there are, as soon as a cluster has named
+// hundreds.
+SourceMesh between_vertices(std::uint32_t vertices, double share_of_quads, unsigned seed) {
+  std::mt19937 random(seed);
+  std::uniform_int_distribution<std::uint32_t> any(0, vertices - 1);
+  std::bernoulli_distribution is_quad(share_of_quads);
+  SourceMesh mesh;
+  for (std::uint32_t i = 0; i < vertices; ++i) {
+    for (const std::uint32_t x : {i % 8, i / 8 % 8, i / 64}) {
+      mesh.positions.f32.push_back(static_cast<float>(x));
+    }
+  }
+  while (mesh.faces.size() < 150) {
+    cooker::Face face{{any(random), any(random), any(random), cooker::kNoCorner}};
+    if (is_quad(random)) face.corner[3] = any(random);
+    const std::set<std::uint32_t> different(face.corner.begin(), face.corner.end());
+    if (different.size() == 4) mesh.faces.push_back(face);
+  }
+  return mesh;
+}
+
+TEST(Grid, LeavesComeBackHoweverManyBitsTheirFacesTake) {
+  for (const std::uint32_t vertices : {5u, 31u, 500u}) {
+    for (const double share_of_quads : {0.0, 0.5, 1.0}) {
+      SCOPED_TRACE(std::to_string(vertices) + " vertices, " + std::to_string(share_of_quads));
+      const SourceMesh mesh = between_vertices(vertices, share_of_quads, vertices);
+      const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8, on_grid(8));
+      const auto faces = decoded_faces(cooked.tree);
+      ASSERT_EQ(faces.size(), mesh.faces.size());
+      for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
+        const std::vector<Eigen::Vector3d>& corners = faces.at(f);
+        ASSERT_EQ(corners.size(), mesh.faces[f].is_quad() ? 4u : 3u);
+        for (std::size_t c = 0; c < corners.size(); ++c) {
+          ASSERT_EQ(corners[c], mesh.positions[mesh.faces[f].corner[c]]) << f;
+        }
+      }
+    }
+  }
+}
 
 // Steps of 3, 4 and 12 along the axes are 13 in all. Their squares are neither too large nor too
 // small for double, though those of the lengths are.

@@ -2,6 +2,7 @@
 // Blobs come back bit for bit; bombs, truncated and damaged streams are refused.
 #include <algorithm>
 #include <cstring>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -49,6 +50,20 @@ TEST_P(Blobs, KeepTheirMemoryLimit) {
   EXPECT_EQ(open_blob(blob_, file_.size() - 1).code(), Errc::kBlobLimit);
   edit([](BlobHeader& header) { header.file_bytes = std::uint64_t{1} << 60; });
   EXPECT_EQ(open_blob(blob_).code(), Errc::kBlobLimit);
+}
+
+// The limit is for the file inside and what the decompressor needs besides, to the byte.
+TEST(LzmaBlobs, TheDecoderCountsAgainstTheMemoryLimit) {
+  const std::vector<std::byte> file = test::cook_bytes(test::torus(24, 16), CodecId::kPlainF32);
+  const std::vector<std::byte> blob = *make_blob(file, BlobMethod::kLzma);
+  const Result<File> refused = open_blob(blob, file.size());
+  ASSERT_EQ(refused.code(), Errc::kBlobLimit);
+  const std::string& detail = refused.error().detail;
+  const std::string before = "the lzma decoder needs ";
+  ASSERT_TRUE(detail.starts_with(before)) << detail;
+  const std::uint64_t needed = std::stoull(detail.substr(before.size()));
+  EXPECT_TRUE(open_blob(blob, file.size() + needed).ok());
+  EXPECT_EQ(open_blob(blob, file.size() + needed - 1).code(), Errc::kBlobLimit);
 }
 
 // A bomb states a small size and holds a large one.

@@ -164,6 +164,7 @@ class Distances : public testing::TestWithParam<test::Encoding> {
 
 TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
   int apart = 0;
+  std::uint64_t exact_nodes = 0, nodes_within = 0;
   for_each_case(10, [&](const SourceMesh& a, const Tree& first, const Pose& first_pose,
                         const SourceMesh& b, const Tree& second, const Pose& second_pose) {
     const Truth truth = brute_force(first, first_pose, second, second_pose);
@@ -181,6 +182,7 @@ TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
       nodes = found->nodes_expanded;
       if (error == 0) {
         ASSERT_EQ(found->upper == 0, truth.distance == 0);
+        exact_nodes += nodes;
       }
       if (GetParam().geometry == GeometryId::kExact) {
         check_witness(*found, a, first_pose, b, second_pose, size + 50);
@@ -192,9 +194,11 @@ TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
       const auto found = distance(first, first_pose, second, second_pose, {0, error});
       check_bounds(*found, truth);
       ASSERT_LE(found->upper, found->lower + error + 1e-12 * size);
+      if (error == 0.1) nodes_within += found->nodes_expanded;
     }
   });
   EXPECT_GT(apart, 50);
+  EXPECT_LT(nodes_within, exact_nodes);
 }
 
 TEST_P(Distances, BudgetsEndTheSearchWithTrueBounds) {
@@ -223,6 +227,42 @@ TEST_P(Distances, BudgetsEndTheSearchWithTrueBounds) {
         distance(first, first_pose, second, second_pose, {0, 0, 1e300, 0})->witness.has_value());
   });
   EXPECT_GT(spent, 50);
+}
+
+// One of the children is below the triangle and all others are far from it: wherever the budget
+// ends, what is left holds the nearest.
+TEST_P(Distances, BudgetsLeaveTheNearestChildAmongWhatIsLeft) {
+  constexpr std::uint32_t kRow = 256;
+  constexpr double kStep = 64, kHeight = 2;
+  const auto place = [](SourceMesh& mesh, std::uint32_t number, float height) {
+    const float x = static_cast<float>(kStep * number);
+    for (const float c : {x, 0.0F, height, x + 1, 0.0F, height, x, 1.0F, height}) {
+      mesh.positions.f32.push_back(c);
+    }
+    const auto corner = static_cast<std::uint32_t>(mesh.positions.size() - 3);
+    mesh.faces.push_back({{corner, corner + 1, corner + 2, cooker::kNoCorner}});
+  };
+  SourceMesh row;
+  for (std::uint32_t i = 0; i < kRow; ++i) place(row, i, 0);
+  const test::CookedTree second = cook(row);
+  for (const std::uint32_t above : {0u, 100u, kRow - 1}) {
+    SourceMesh one;
+    place(one, above, static_cast<float>(kHeight));
+    const test::CookedTree first = cook(one);
+    const Truth truth = brute_force(first.tree, Pose::Identity(), second.tree, Pose::Identity());
+    int spent = 0;
+    for (std::uint64_t budget = 0; budget < 16; ++budget) {
+      SCOPED_TRACE(budget);
+      DistanceOptions options;
+      options.node_budget = budget;
+      const auto found =
+          distance(first.tree, Pose::Identity(), second.tree, Pose::Identity(), options);
+      ASSERT_TRUE(found.ok());
+      check_bounds(*found, truth);
+      spent += found->is_near_enough ? 0 : 1;
+    }
+    EXPECT_GT(spent, 1);
+  }
 }
 
 TEST_P(Distances, NothingBeyondTheMaximalDistance) {
@@ -292,6 +332,38 @@ TEST(Distance, KnownCases) {
     EXPECT_NEAR(found->upper / scale, 2, 1e-12);
     EXPECT_LE(found->lower, 2 * scale);
     EXPECT_GE(found->upper, 2 * scale);
+  }
+}
+
+// Powers of two of poses and meshes that all but cancel: the poses' product alone is no double.
+TEST(Distance, PosesMayUndoTheScalesOfMeshes) {
+  const auto square = [](double size) {
+    SourceMesh mesh;
+    mesh.positions.precision = cooker::Precision::kF64;
+    mesh.positions.f64 = {-size, -size, 0, size, -size, 0, size, size, 0, -size, size, 0};
+    mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{0, 2, 3, cooker::kNoCorner}}};
+    return test::cook_tree(mesh, CodecId::kWide8);
+  };
+  const test::CookedTree large = square(0x1p490), small = square(0x1p-500);
+  Pose shrunk = Pose::Identity();  // the large square's half side is 2^-110
+  shrunk.linear() *= 0x1p-600;
+  for (const double height : {0.0, 0x1p-70, 0x1p-100}) {
+    SCOPED_TRACE(height);
+    Pose grown = Pose::Identity();  // the small square's is 2^-70
+    grown.linear() *= 0x1p430;
+    grown.translation().z() = height;
+    const auto found = distance(large.tree, shrunk, small.tree, grown);
+    const auto swapped = distance(small.tree, grown, large.tree, shrunk);
+    ASSERT_TRUE(found.ok());
+    ASSERT_TRUE(swapped.ok());
+    for (const Distance& d : {*found, *swapped}) {
+      EXPECT_LE(d.lower, height);
+      EXPECT_GE(d.upper, height);
+      EXPECT_LE(d.upper - d.lower, 1e-12 * 0x1p-70);
+    }
+    const auto contact = first_contact(large.tree, shrunk, small.tree, grown);
+    ASSERT_TRUE(contact.ok());
+    EXPECT_EQ(contact->has_value(), height == 0);
   }
 }
 

@@ -3,6 +3,7 @@
 // distance(), which have brute force of their own; boxes against the exact predicate, the box being
 // a mesh of twelve triangles.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -102,6 +103,33 @@ TEST_P(OverlapWithin, PairsAreCertainOrClose) {
   EXPECT_GT(spent, 20);
   EXPECT_LT(nodes[3], nodes[0]);
   EXPECT_EQ(nodes[5], 0u);
+}
+
+// Two triangles on either side of the origin, whose boxes share little more than that.
+TEST_P(OverlapWithin, FarCornersCountOnEitherSideOfTheOrigin) {
+  const auto triangle = [](std::size_t axis, float far, float near) {
+    std::array<float, 9> corner{};
+    const std::size_t x = axis, y = (axis + 1) % 3;
+    corner[x] = corner[y] = corner[3 + x] = corner[6 + y] = far;
+    corner[3 + y] = corner[6 + x] = near;
+    SourceMesh mesh;
+    mesh.positions.f32.assign(corner.begin(), corner.end());
+    mesh.faces.push_back({{0, 1, 2, cooker::kNoCorner}});
+    return test::cook_tree(mesh, GetParam());
+  };
+  const Pose here = Pose::Identity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    // Long sides lie in the planes x + y = -9 and x + y = 9: more than 12 apart.
+    const test::CookedTree low = triangle(axis, -10, 1), high = triangle(axis, 10, -1);
+    const auto overlap = [&](const test::CookedTree& first, const test::CookedTree& second,
+                             double distance) {
+      return overlap_within(first.tree, here, second.tree, here, distance)->overlap;
+    };
+    EXPECT_EQ(overlap(low, high, 12), Overlap::kFree) << axis;
+    EXPECT_EQ(overlap(high, low, 12), Overlap::kFree) << axis;
+    EXPECT_EQ(overlap(low, high, 40), Overlap::kUndecided) << axis;
+    EXPECT_EQ(overlap(high, low, 40), Overlap::kUndecided) << axis;
+  }
 }
 
 // Twelve triangles of a box, as an object of its own.

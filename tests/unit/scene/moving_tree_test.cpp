@@ -47,10 +47,13 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
     for (int round = 0; round < 200; ++round) {
       All query{tree, boxes, {}, random_box(random)};
       std::set<std::uint32_t> expected;
+      Box<double> whole = boxes[0];
       for (std::uint32_t i = 0; i < count; ++i) {
         EXPECT_EQ(tree.box(i), boxes[i]);
+        expand(whole, boxes[i]);
         if (query.overlaps(boxes[i])) expected.insert(i);
       }
+      EXPECT_EQ(tree.root_box(), whole) << count;
       ASSERT_EQ(traverse_overlap(tree, tree.codec(), query), Errc::kOk);
       // A tree of one leaf answers with it whatever its box is: the root box was tested.
       EXPECT_EQ(query.found, expected) << count;
@@ -58,6 +61,31 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
       boxes[moved] = random_box(random);
       tree.refit(moved, boxes[moved]);
     }
+  }
+}
+
+// Two swarms far apart. Boxes are far larger than that on the other axes, each other pair of them:
+// places count, not sizes.
+TEST(MovingTree, NeighboursInTheTreeAreNeighboursInSpace) {
+  std::mt19937_64 random(5);
+  for (const std::size_t axis : {0u, 1u, 2u}) {
+    std::vector<Box<double>> boxes;
+    for (std::size_t i = 0; i < 32; ++i) {
+      boxes.push_back(random_box(random));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double away = k == axis ? (i % 2 == 0 ? -1000 : 1000) : 0;
+        const double size = k != axis && i / 2 % 2 == 0 ? 10000 : 0;
+        boxes.back().low[k] += away - size;
+        boxes.back().high[k] += away + size;
+      }
+    }
+    MovingTree tree;
+    tree.build(boxes);
+    ChildSet<2, double> children;
+    ASSERT_TRUE(tree.codec().expand(tree.root_ref(), tree.root_box(), children));
+    ASSERT_EQ(children.count, 2u);
+    const double apart = 1000 - 20;
+    EXPECT_TRUE(children.box(0).high[axis] < -apart && children.box(1).low[axis] > apart) << axis;
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Binding scenes: what the file says, what was left out, what cannot move; and damaged bytes.
 #include <set>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +17,7 @@
 namespace boxtree {
 namespace {
 
+using cooker::LeftOutPart;
 using test::CookedScene;
 using test::require;
 
@@ -23,6 +27,11 @@ cooker::SceneParts named_parts() {
   parts.tree_materials.resize(2);
   parts.tree_materials[0].runs = {{0, 1}, {10, 0}};
   return parts;
+}
+
+// Three named instances at rest, of two trees.
+cooker::SceneParts random_parts() {
+  return test::random_parts(3, 2, 0, 1, 1);
 }
 
 CookedScene cook(const cooker::SceneParts& parts) {
@@ -96,6 +105,110 @@ TEST(SceneBind, NamesTheLineThatLeftAPartOut) {
   options.require_materials = true;
   EXPECT_EQ(Scene::bind(cooked.file, options).error().detail,
             "the scene: materials were left out when it was cooked");
+}
+
+// With no more than one kind in the file, queries of the others are refused, each of them.
+TEST(SceneBind, QueriesOfKindsThatWereLeftOutAreRefused) {
+  const CookedScene whole = cook(random_parts());
+  const Tree tree = require(Tree::bind(whole.file));
+  for (const QueryKinds kept : {kRayQueries, kBoxQueries, kPointQueries, kPairQueries}) {
+    SCOPED_TRACE(int{kept});
+    cooker::SceneParts parts = random_parts();
+    parts.queries = kept;
+    const CookedScene cooked = cook(parts);
+    const Scene scene = require(Scene::bind(cooked.file));
+    const auto expected = [kept](QueryKinds kind) {
+      return kind == kept ? Errc::kOk : Errc::kPartLeftOut;
+    };
+    for (const QueryKinds kind : {kRayQueries, kBoxQueries, kPointQueries, kPairQueries}) {
+      SceneOptions options;
+      options.queries = kind;
+      EXPECT_EQ(Scene::bind(cooked.file, options).code(), expected(kind)) << int{kind};
+    }
+    const auto all = [](const auto&) { return true; };
+    const Ray ray{{-9, 0.1, 0.2}, {1, 0.01, 0.02}};
+    const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1));
+    EXPECT_EQ(closest_hit(scene, ray).code(), expected(kRayQueries));
+    EXPECT_EQ(any_hit(scene, ray).code(), expected(kRayQueries));
+    EXPECT_EQ(overlap_box(scene, box, all).code(), expected(kBoxQueries));
+    EXPECT_EQ(overlap_sphere(scene, {0, 0, 0}, 1, all).code(), expected(kBoxQueries));
+    EXPECT_EQ(closest_point(scene, {0, 0, 0}).code(), expected(kPointQueries));
+    EXPECT_EQ(contacts(scene, all).code(), expected(kPairQueries));
+    EXPECT_EQ(contacts_of(scene, 0, all).code(), expected(kPairQueries));
+    EXPECT_EQ(overlap_pairs(scene, tree, Pose::Identity(), all).code(), expected(kPairQueries));
+  }
+}
+
+// Of several lines that left materials out, that of the whole scene is named rather than that of a
+// tree; but one of a tree rather than none, and never that of another part.
+TEST(SceneBind, NamesTheLineThatFitsBest) {
+  const LeftOutPart of_tree{Part::kMaterials, 1, 7, "line 7"};
+  const LeftOutPart of_scene{Part::kMaterials, kNoOwner, 8, "line 8"};
+  const LeftOutPart of_names{Part::kNames, kNoOwner, 9, "line 9"};
+  const auto refusal = [](std::vector<LeftOutPart> left_out) {
+    cooker::SceneParts parts = random_parts();
+    parts.left_out = std::move(left_out);
+    const CookedScene cooked = cook(parts);
+    SceneOptions options;
+    options.require_materials = true;
+    return Scene::bind(cooked.file, options).error().detail;
+  };
+  const std::string materials = "the scene: materials were left out ";
+  EXPECT_EQ(refusal({of_names, of_tree}), materials + "by line 7");
+  EXPECT_EQ(refusal({of_tree, of_scene}), materials + "by line 8");
+  EXPECT_EQ(refusal({of_scene, of_tree}), materials + "by line 8");
+  EXPECT_EQ(refusal({of_names}), materials + "when it was cooked");
+}
+
+// The reason for a tree is that of this tree, else that of the scene, else that of any tree.
+TEST(SceneBind, NamesTheLineThatLeftFaceIdsOfATreeOut) {
+  const LeftOutPart of_tree{Part::kFaceIds, 1, 7, "line 7"};
+  const LeftOutPart of_scene{Part::kFaceIds, kNoOwner, 8, "line 8"};
+  const LeftOutPart of_other{Part::kFaceIds, 0, 9, "line 9"};
+  cooker::CookOptions without_ids;
+  without_ids.codec = CodecId::kWide8;
+  without_ids.face_ids = false;
+  cooker::CookOptions with_ids = without_ids;
+  with_ids.face_ids = true;
+  const std::vector<cooker::EncodedTree> trees = {
+      require(cooker::cook_mesh(test::sphere(6, 8), with_ids)).tree,
+      require(cooker::cook_mesh(test::torus(6, 8), without_ids)).tree};
+  const auto refusal = [&trees](std::vector<LeftOutPart> left_out) {
+    cooker::SceneParts parts = random_parts();
+    parts.left_out = std::move(left_out);
+    const std::vector<std::byte> bytes = require(cooker::serialize({trees, {}, &parts}));
+    const File file = require(File::open(bytes));
+    SceneOptions options;
+    options.require_face_ids = true;
+    return Scene::bind(file, options).error().detail;
+  };
+  const std::string ids = "tree 1: face ids were left out by ";
+  EXPECT_EQ(refusal({of_other, of_scene, of_tree}), ids + "line 7");
+  EXPECT_EQ(refusal({of_tree, of_scene, of_other}), ids + "line 7");
+  EXPECT_EQ(refusal({of_other, of_scene}), ids + "line 8");
+  EXPECT_EQ(refusal({of_scene, of_other}), ids + "line 8");
+  EXPECT_EQ(refusal({of_other}), ids + "line 9");
+}
+
+// One name is enough; a scene of nobody has all the names that there are.
+TEST(SceneBind, NamesAreMissedWhereNoInstanceHasOne) {
+  SceneOptions options;
+  options.require_names = true;
+  cooker::SceneParts parts = random_parts();
+  for (cooker::PlacedTree& placed : parts.instances) placed.name.clear();
+  const CookedScene unnamed = cook(parts);
+  EXPECT_TRUE(Scene::bind(unnamed.file).ok());
+  const Result<Scene> refused = Scene::bind(unnamed.file, options);
+  EXPECT_EQ(refused.code(), Errc::kPartLeftOut);
+  EXPECT_EQ(refused.error().detail, "the scene: names were left out when it was cooked");
+  for (std::size_t named = 0; named < parts.instances.size(); ++named) {
+    cooker::SceneParts one = parts;
+    one.instances[named].name = "door";
+    EXPECT_TRUE(Scene::bind(cook(one).file, options).ok()) << named;
+  }
+  parts.instances.clear();
+  const CookedScene nobody = cook(parts);
+  EXPECT_TRUE(Scene::bind(nobody.file, options).ok());
 }
 
 TEST(SceneBind, OnlyWhatMovesIsMoved) {

@@ -106,7 +106,9 @@ TEST_P(Corrupt, EveryQuerySaysSo) {
   }
   if (corruption.expected == Errc::kNodeCorrupt) {
     NodeChildren children;
+    children.count = 5;
     EXPECT_EQ(broken->expand(broken->root(), children), Errc::kNodeCorrupt);
+    EXPECT_EQ(children.count, 0u);
   }
 }
 

@@ -13,6 +13,11 @@ namespace {
 
 using cooker::SourceMesh;
 
+TEST(Frames, ReachIsTheLargestMagnitudeOnEachAxis) {
+  const Box<double> box{{-3, 1, -5}, {2, 4, -1}};
+  EXPECT_EQ(reach_of(box), Eigen::Vector3d(3, 4, 5));
+}
+
 class Trees : public testing::TestWithParam<CodecId> {};
 
 // Every corner of every face, as a reader of single nodes meets them.
@@ -75,6 +80,16 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
   }
 }
 
+// Whoever asks for more faces at once than a batch has room for is told, before anything is written
+// behind it.
+TEST_P(Trees, LeavesOfMoreTrianglesThanABatchHoldsAreRefused) {
+  const test::CookedTree cooked = test::cook_tree(test::soup(40, 3), GetParam());
+  TriangleBatch batch;
+  EXPECT_EQ(cooked.tree.leaves().read(0, kMaxLeafTriangles, batch), Errc::kOk);
+  EXPECT_EQ(batch.count, kMaxLeafTriangles);
+  EXPECT_EQ(cooked.tree.leaves().read(0, kMaxLeafTriangles + 1, batch), Errc::kFaceOutOfRange);
+}
+
 // The application's own arrays of a mesh without quads.
 struct Arrays {
   std::vector<float> positions;
@@ -116,6 +131,41 @@ TEST_P(Trees, ExternalGeometryAnswersAsStoredGeometryDoes) {
     EXPECT_EQ((*a)->t, (*b)->t);
     EXPECT_EQ((*a)->face.id, (*b)->face.id);
   }
+}
+
+// Positions and corners of an application may be of other types; triangles are the same to the bit.
+TEST_P(Trees, ExternalArraysOfEveryTypeAreRead) {
+  const SourceMesh mesh = test::torus(12, 8);
+  const Arrays arrays(mesh);
+  const auto vertices = static_cast<std::uint32_t>(mesh.positions.size());
+  const auto faces = static_cast<std::uint32_t>(mesh.faces.size());
+  SourceMesh in_f64 = mesh;
+  in_f64.positions = {cooker::Precision::kF64, {}, {}};
+  // More digits than an f32 has.
+  for (const float x : mesh.positions.f32) in_f64.positions.f64.push_back(1.1 * x);
+  std::vector<std::uint16_t> narrow;
+  for (const std::uint32_t corner : arrays.corners) {
+    narrow.push_back(static_cast<std::uint16_t>(corner));
+  }
+  const auto expect_same = [](const SourceMesh& source, const MeshArrays& given) {
+    BindOptions bind;
+    bind.mesh = given;
+    bind.verify_mesh = true;
+    const test::CookedTree outside = test::cook_tree(source, GetParam(), external(), bind);
+    const test::CookedTree inside = test::cook_tree(source, GetParam());
+    const std::vector<Triangle> read = test::all_triangles(outside.tree);
+    const std::vector<Triangle> stored = test::all_triangles(inside.tree);
+    ASSERT_EQ(read.size(), stored.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      for (std::size_t corner = 0; corner < 3; ++corner) {
+        ASSERT_EQ(read[i].corner[corner], stored[i].corner[corner]) << i;
+      }
+    }
+  };
+  expect_same(mesh, arrays.view());
+  expect_same(mesh, external_mesh(arrays.positions.data(), vertices, narrow.data(), faces));
+  expect_same(in_f64,
+              external_mesh(in_f64.positions.f64.data(), vertices, arrays.corners.data(), faces));
 }
 
 TEST_P(Trees, NoFacesAtAllMayStayExternal) {
