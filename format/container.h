@@ -61,7 +61,7 @@ enum class SectionKind : std::uint32_t {
   kLayers = 14,         // LayerRecord[]
   kMaterials = 15,      // MaterialRecord[]
   kMaterialRuns = 16,   // owner: a tree; MaterialRun[]
-  kFaceMaterials = 17,  // owner: a tree; material of each face in tree order, u8 or u16
+  kFaceMaterials = 17,  // owner: a tree; material of each face in tree order
   kLeftOut = 18,        // LeftOutRecord[]
   kDuplicates = 19,     // owner: a tree; the face of which each duplicate is a copy
 };

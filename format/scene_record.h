@@ -96,6 +96,12 @@ struct MaterialRun {
 };
 static_assert(sizeof(MaterialRun) == 8 && std::is_trivially_copyable_v<MaterialRun>);
 
+/// Bytes of the number of a face's material: as many as the largest number takes.
+[[nodiscard]] constexpr std::uint8_t material_number_bytes(std::uint32_t material_count) noexcept {
+  if (material_count <= 1u << 8) return 1;
+  return material_count <= 1u << 16 ? 2 : 4;
+}
+
 /// Stands for the material of a face in files or trees without materials.
 inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
 

@@ -153,8 +153,7 @@ class SceneWalk {
         }
       }
       const Bytes faces = file_.section(SectionKind::kFaceMaterials, tree);
-      const std::uint32_t face_count = file_.tree_record(tree).face_count;
-      const std::uint8_t bytes = faces.size() == face_count ? 1 : 2;
+      const std::uint8_t bytes = material_number_bytes(count);
       for (std::size_t face = 0; face < faces.size() / bytes; ++face) {
         if (load_number(faces.data(), bytes, face) >= count) {
           add(Errc::kRecordInvalid, what + "face " + std::to_string(face));

@@ -128,15 +128,18 @@ class SceneEncoder {
       append(out_.materials,
              MaterialRecord{add_name(material), static_cast<std::uint32_t>(material.size())});
     }
-    const bool is_narrow = parts_.materials.size() <= 256;
+    const std::uint8_t number_bytes =
+        material_number_bytes(static_cast<std::uint32_t>(parts_.materials.size()));
     for (const TreeMaterials& materials : parts_.tree_materials) {
       std::vector<std::byte> runs, faces;
       for (const MaterialRun& run : materials.runs) append(runs, run);
       for (const std::uint32_t material : materials.faces) {
-        if (is_narrow) {
+        if (number_bytes == 1) {
           append(faces, static_cast<std::uint8_t>(material));
-        } else {
+        } else if (number_bytes == 2) {
           append(faces, static_cast<std::uint16_t>(material));
+        } else {
+          append(faces, material);
         }
       }
       out_.material_runs.push_back(std::move(runs));

@@ -89,14 +89,16 @@ Status Scene::check_materials(const File& file) {
                                            section_text(SectionKind::kMaterialRuns) + ": " +
                                            std::to_string(runs.size()) + " bytes"};
     }
-    if (!faces.empty() && faces.size() != count && faces.size() != 2 * count) {
+    const std::uint8_t number_bytes = material_number_bytes(material_count());
+    if (!faces.empty() && faces.size() != number_bytes * count) {
       return Error{Errc::kSectionSize,
                    "tree " + std::to_string(i) + ": " + section_text(SectionKind::kFaceMaterials) +
-                       ": " + section_size_error(faces.size(), count).detail + " or twice that"};
+                       ": " + section_size_error(faces.size(), number_bytes * count).detail +
+                       " for " + std::to_string(material_count()) + " materials"};
     }
     materials_of_tree_[i] = {
         runs.data(), static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
-        faces.empty() ? nullptr : faces.data(), faces.empty() || faces.size() == count ? 1u : 2u};
+        faces.empty() ? nullptr : faces.data(), number_bytes};
   }
   return {};
 }
