@@ -4,6 +4,7 @@
 #include <cmath>
 #include <string>
 
+#include <boxtree/format/codec_wide.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/format/tree_record.h>
 
@@ -33,6 +34,14 @@ bool root_fits(const TreeRecord& record) {
       return record.face_count > 0 && record.node_count > 0;
   }
   return false;
+}
+
+// Each leaf has its own faces: eight of them in wide trees, one in binary ones. What a record claims
+// beyond what its nodes can hold no walk could find, but it would make room for it.
+bool leaves_fit(const TreeRecord& record) {
+  const std::uint64_t faces_of_node = is_wide(record.codec) ? kWideChildren * kLeafFaces : 2;
+  const std::uint64_t nodes = std::max(record.node_count, 1u);
+  return faces_in_leaves(record) <= faces_of_node * nodes;
 }
 
 bool frame_fits(const TreeRecord& record) {
@@ -94,12 +103,13 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
                  place + "geometry " + std::to_string(static_cast<unsigned>(record.geometry))};
   }
   const auto invalid = [&](const char* what) { return Error{Errc::kRecordInvalid, place + what}; };
-  if (!counts_fit(record)) return invalid("counts contradict each other or exceed the limits");
+  if (!counts_fit(record) || !leaves_fit(record) || !duplicates_fit(record)) {
+    return invalid("counts contradict each other or exceed the limits");
+  }
   if (!root_fits(record)) return invalid("kind of root contradicts the counts");
   if (!frame_fits(record))
     return invalid("origin, scale or root box is not finite, ordered and within limits");
   if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
-  if (!duplicates_fit(record)) return invalid("duplicates contradict the other counts");
   if (!reserve_is_zero(record)) return invalid("reserved bits are set");
   return {};
 }
