@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,14 @@
 
 namespace boxtree::cooker {
 
+/// Told of all files that were read, before anything is written; an error ends the cook.
+using BeforeWriting = std::function<Status(std::span<const std::filesystem::path> files_read)>;
+
 struct CookOptions : SearchOptions {
   std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be asked
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
   ImportOptions import;
+  BeforeWriting before_writing;  // may be empty
 };
 
 /// A part that the options left out of the file.
@@ -54,9 +59,16 @@ struct CookReport {
 /// Told of every step ("import bunny.obj"); may be empty.
 using Progress = std::function<void(const std::string& step)>;
 
+/// What comes before writing `output`: it must be none of the files read (kWriteFailed); then
+/// CookOptions::before_writing.
+Status prepare_writing(const std::filesystem::path& output,
+                       std::span<const std::filesystem::path> files_read,
+                       const CookOptions& options);
+
 /// Cooks each input into one tree named after its file, and writes and proves the file. On any
-/// error nothing of `output` changes. Runs on the threads of the enclosing oneTBB arena; the bytes
-/// written do not depend on their number, nor on where the inputs lie.
+/// error nothing of `output` changes; kWriteFailed if it is one of the files read. Runs on the
+/// threads of the enclosing oneTBB arena; the bytes written do not depend on their number, nor on
+/// where the inputs lie.
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress = {});

@@ -5,6 +5,7 @@
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/cook_record.h>
 #include <boxtree/cooker/write/blob_writer.h>
+#include <boxtree/cooker/write/outputs.h>
 #include <boxtree/runtime/query/float_state.h>
 
 namespace boxtree::cooker {
@@ -72,6 +73,11 @@ class FileCook {
       cooked.tree.name = trees.back().name;
       report_.trees.push_back(std::move(cooked));
     }
+    std::vector<std::filesystem::path> read;
+    for (const ImportReport& import : report_.imports) {
+      read.insert(read.end(), import.files_read.begin(), import.files_read.end());
+    }
+    if (Status status = prepare_writing(output, read, options_); !status) return status.error();
     step("write " + output.filename().string());
     const std::string record = options_.cook_record
                                    ? cook_record(options_, report_.trees, report_.imports)
@@ -96,6 +102,13 @@ class FileCook {
 };
 
 }  // namespace
+
+Status prepare_writing(const std::filesystem::path& output,
+                       std::span<const std::filesystem::path> files_read,
+                       const CookOptions& options) {
+  if (Status status = check_outputs(std::span(&output, 1), files_read); !status) return status;
+  return options.before_writing ? options.before_writing(files_read) : Status();
+}
 
 Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,

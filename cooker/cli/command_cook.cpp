@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -16,6 +17,7 @@
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/cli/step_printer.h>
 #include <boxtree/cooker/scene/cook_scene.h>
+#include <boxtree/cooker/write/outputs.h>
 #include <boxtree/format/grid.h>
 
 namespace boxtree::cooker {
@@ -64,20 +66,26 @@ const CookReport& trees_of(const CookedFile& cooked) {
   return scene != nullptr ? scene->cook : std::get<CookReport>(cooked);
 }
 
-Status write_depfile(const Arguments& arguments, const CookedFile& cooked) {
+Status write_depfile(const Arguments& arguments, std::span<const std::filesystem::path> read) {
   std::string text = make_name(arguments.output) + ":";
   const auto add = [&](const std::filesystem::path& file) { text += " \\\n  " + make_name(file); };
-  if (const auto* scene = std::get_if<SceneReport>(&cooked)) {
-    for (const std::filesystem::path& file : scene->files_read) add(file);
-  }
-  for (const ImportReport& import : trees_of(cooked).imports) {
-    for (const std::filesystem::path& file : import.files_read) add(file);
-  }
+  for (const std::filesystem::path& file : read) add(file);
+  if (!arguments.costs.empty()) add(arguments.costs);
   text += "\n";
   Result<AtomicFile> file = AtomicFile::create(arguments.depfile);
   if (!file) return file.error();
   if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
   return file->commit();
+}
+
+// Before minutes of work; what a file refers to is known, and checked, only after it was read.
+Status check_names(const Arguments& arguments) {
+  std::vector<std::filesystem::path> inputs = arguments.inputs;
+  for (const std::filesystem::path& more : {arguments.profile, arguments.costs}) {
+    if (!more.empty()) inputs.push_back(more);
+  }
+  if (arguments.output.empty()) return Error{Errc::kWriteFailed, "the output has no name"};
+  return check_outputs(std::array{arguments.output, arguments.depfile}, inputs);
 }
 
 // What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
@@ -170,6 +178,15 @@ int run(Arguments& arguments) {
     options.costs = std::move(*costs);
   }
 
+  if (Status status = check_names(arguments); !status) return fail_usage(status.error());
+  // First, so that no error of it leaves a new output without one.
+  if (!arguments.depfile.empty()) {
+    options.before_writing = [&arguments](std::span<const std::filesystem::path> read) {
+      const Status status = check_outputs(std::span(&arguments.depfile, 1), read);
+      return status.ok() ? write_depfile(arguments, read) : status;
+    };
+  }
+
   const Clock::time_point start = Clock::now();
   Result<CookedFile> cooked = Errc::kInternal;
   {
@@ -185,9 +202,6 @@ int run(Arguments& arguments) {
          cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
   }
   if (!cooked) return fail(cooked.error());
-  if (!arguments.depfile.empty()) {
-    if (Status status = write_depfile(arguments, *cooked); !status) return fail(status.error());
-  }
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
     print(report_json(arguments, *cooked, seconds));

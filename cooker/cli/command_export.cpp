@@ -17,6 +17,7 @@
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/import/source_scene.h>
+#include <boxtree/cooker/write/outputs.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -80,11 +81,6 @@ std::optional<ExportOptions> options_of(const Arguments& arguments) {
   if (arguments.order == "source") options.order = ExportOrder::kSource;
   if (arguments.order == "tree") options.order = ExportOrder::kTree;
   return options;
-}
-
-bool is_same_file(const std::filesystem::path& a, const std::filesystem::path& b) {
-  std::error_code ignored;  // a file that is not there is no other
-  return !a.empty() && !b.empty() && std::filesystem::equivalent(a, b, ignored);
 }
 
 Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, const File& file) {
@@ -244,9 +240,10 @@ int run(const Arguments& arguments) {
     return usage(
         fmt::format("--levels: expected levels as in 0-3,6, found \"{}\"", arguments.levels));
   }
-  if (is_same_file(arguments.output, arguments.file) ||
-      is_same_file(arguments.output, arguments.mesh)) {
-    return usage(arguments.output.string() + ": is what it would be made from");
+  std::vector<std::filesystem::path> inputs{arguments.file};
+  if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
+  if (Status status = check_outputs(std::span(&arguments.output, 1), inputs); !status) {
+    return fail_usage(status.error());
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree report`: which encoding to use for a mesh; with --paper the tables of the paper.
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -13,6 +14,7 @@
 #include <boxtree/cooker/report/paper_tables.h>
 #include <boxtree/cooker/report/tradeoff_page.h>
 #include <boxtree/cooker/write/atomic_file.h>
+#include <boxtree/cooker/write/outputs.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -254,6 +256,11 @@ int run_tradeoff(const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
+  std::vector<std::filesystem::path> inputs = arguments.meshes;
+  inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
+  const std::array outputs{arguments.output, arguments.json, arguments.csv,
+                           arguments.approximate_csv};
+  if (Status status = check_outputs(outputs, inputs); !status) return fail_usage(status.error());
   return arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
 }
 

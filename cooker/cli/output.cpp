@@ -32,6 +32,11 @@ int fail(const Error& error) {
   return error_info(error.code).exit_status;
 }
 
+int fail_usage(const Error& error) {
+  fmt::print(stderr, "boxtree: {}\n", error.detail);
+  return kExitUsage;
+}
+
 Json to_json(const Eigen::Vector3d& vector) {
   return {vector[0], vector[1], vector[2]};
 }

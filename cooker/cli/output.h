@@ -24,6 +24,9 @@ inline constexpr int kExitInternal = 4;
 /// Prints "boxtree: CODE: DETAIL" to standard error and returns the exit status of the code.
 int fail(const Error& error);
 
+/// The same for a command line that contradicts itself, without a code: kExitUsage.
+int fail_usage(const Error& error);
+
 /// Prints one JSON document to standard output.
 void print(const Json& document);
 

@@ -63,6 +63,11 @@ class SceneCook {
     if (Status status = choose_encodings(); !status) return status.error();
     if (Status status = assemble(); !status) return status.error();
     if (Status status = keep_to_bytes(); !status) return status.error();
+    std::vector<fs::path> read = profile_.files_read;
+    for (const ImportReport& import : loaded_.imports) {
+      read.insert(read.end(), import.files_read.begin(), import.files_read.end());
+    }
+    if (Status status = prepare_writing(output, read, options_); !status) return status.error();
     step("write " + output.filename().string());
     const FileParts parts{trees_, record_, &parts_};
     const Status written =

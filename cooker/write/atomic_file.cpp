@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Write, fsync, rename, fsync of the directory.
+// Write, fsync, rename, fsync of the directory; whatever can fail is tried before the rename.
+#include <array>
 #include <cerrno>
-#include <csignal>
+#include <cstdint>
+#include <cstdio>
 #include <fcntl.h>
+#include <optional>
 #include <string_view>
+#include <sys/file.h>
+#include <sys/random.h>
 #include <sys/stat.h>
 #include <system_error>
 #include <unistd.h>
@@ -19,7 +24,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr mode_t kMode = 0666;  // the umask takes away what the user does not want
+constexpr mode_t kModeBits = 07777;
 constexpr std::string_view kSuffix = ".cooking";
+constexpr std::size_t kRandomDigits = 16;
+constexpr std::size_t kLongestName =
+    200;  // of a target in the name of a temporary: 255 bytes in all
 
 Error failure(const fs::path& path, const char* what) {
   return Error{Errc::kWriteFailed,
@@ -30,60 +39,101 @@ fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-// ".NAME.PID.cooking": hidden, and tells whether its writer still runs.
+// ".NAME.RANDOM.cooking"
 std::string prefix_of(const fs::path& target) {
-  return fmt::format(".{}.", target.filename().string());
+  return fmt::format(".{}.", target.filename().string().substr(0, kLongestName));
 }
 
-// Removes what killed writers of the same target left. A pid that was given to another process
-// keeps its litter until that one ends; nothing is ever taken from a living writer.
+bool is_temporary(std::string_view name, std::string_view prefix) {
+  if (name.size() != prefix.size() + kRandomDigits + kSuffix.size()) return false;
+  const std::string_view digits = name.substr(prefix.size(), kRandomDigits);
+  return name.starts_with(prefix) && name.ends_with(kSuffix) &&
+         digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+std::optional<std::string> random_digits() {
+  std::uint64_t random = 0;
+  if (::getrandom(&random, sizeof(random), 0) != sizeof(random)) return std::nullopt;
+  return fmt::format("{:016x}", random);
+}
+
+// Removes what killed writers of the same target left. A writer holds a lock on its temporary as
+// long as it lives, in whatever container: what can be locked is nobody's.
 void sweep(const fs::path& target) {
   std::error_code ignored;
   const std::string prefix = prefix_of(target);
   for (const fs::directory_entry& entry : fs::directory_iterator(directory_of(target), ignored)) {
-    const std::string name = entry.path().filename().string();
-    if (!name.starts_with(prefix) || !name.ends_with(kSuffix)) continue;
-    if (name.size() <= prefix.size() + kSuffix.size()) continue;
-    const std::string pid =
-        name.substr(prefix.size(), name.size() - prefix.size() - kSuffix.size());
-    if (pid.find_first_not_of("0123456789") != std::string::npos || pid.size() > 9) continue;
-    const bool alive = ::kill(static_cast<pid_t>(std::stol(pid)), 0) == 0 || errno != ESRCH;
-    if (!alive) fs::remove(entry.path(), ignored);
+    if (!is_temporary(entry.path().filename().string(), prefix)) continue;
+    const int file = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlink(entry.path().c_str());
+    ::close(file);
   }
 }
 
 }  // namespace
 
+Result<fs::path> follow_links(const fs::path& target) {
+  fs::path path = target;
+  constexpr int kMostLinks = 40;  // as in the kernel
+  for (int links = 0; links < kMostLinks; ++links) {
+    std::error_code error;
+    if (!fs::is_symlink(fs::symlink_status(path, error))) return path;
+    const fs::path to = fs::read_symlink(path, error);
+    if (error) return Error{Errc::kWriteFailed, path.string() + ": " + error.message()};
+    path = to.is_absolute() ? to : directory_of(path) / to;
+  }
+  return Error{Errc::kWriteFailed, target.string() + ": too many links lead on from it"};
+}
+
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::move(other.temporary_)),
       named_(std::exchange(other.named_, false)),
-      descriptor_(std::exchange(other.descriptor_, -1)) {}
+      replaces_(other.replaces_),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      directory_(std::exchange(other.directory_, -1)) {}
 
 AtomicFile::~AtomicFile() {
-  if (descriptor_ >= 0) ::close(descriptor_);
   if (named_) ::unlink(temporary_.c_str());
+  if (descriptor_ >= 0) ::close(descriptor_);
+  if (directory_ >= 0) ::close(directory_);
 }
 
-Result<AtomicFile> AtomicFile::create(const fs::path& target) {
-  std::error_code ignored;
-  const fs::file_status status = fs::status(target, ignored);
-  if (fs::exists(status) && !fs::is_regular_file(status)) {
-    return Error{Errc::kWriteFailed, target.string() + ": exists and is not a regular file"};
+Result<AtomicFile> AtomicFile::create(const fs::path& given) {
+  const Result<fs::path> target = follow_links(given);
+  if (!target) return target.error();
+  struct stat old {};
+  const bool exists = ::stat(target->c_str(), &old) == 0;
+  if (exists && !S_ISREG(old.st_mode)) {
+    return Error{Errc::kWriteFailed, given.string() + ": exists and is not a regular file"};
   }
-  sweep(target);
+  if (!target->has_filename()) return Error{Errc::kWriteFailed, "a file without a name"};
+  sweep(*target);
   AtomicFile file;
-  file.target_ = target;
-  file.temporary_ = directory_of(target) /
-                    (prefix_of(target) + std::to_string(::getpid()) + std::string(kSuffix));
-  file.descriptor_ = ::open(directory_of(target).c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
+  file.target_ = *target;
+  file.replaces_ = exists;
+  const fs::path directory = directory_of(*target);
+  // Needed after the rename, when it is too late to fail.
+  file.directory_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file.directory_ < 0) return failure(given, "cannot open its directory");
+  const std::optional<std::string> digits = random_digits();
+  if (!digits) return failure(given, "no random numbers");
+  file.temporary_ = directory / (prefix_of(*target) + *digits + std::string(kSuffix));
+  file.descriptor_ = ::open(directory.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, kMode);
   if (file.descriptor_ < 0) {
-    ::unlink(file.temporary_.c_str());  // of an earlier process with our pid
     file.descriptor_ =
         ::open(file.temporary_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, kMode);
-    if (file.descriptor_ < 0) return failure(target, "cannot create");
+    if (file.descriptor_ < 0) return failure(given, "cannot create");
     file.named_ = true;
   }
+  // File systems without locks sweep too much or nothing; a writer whose temporary goes fails.
+  static_cast<void>(::flock(file.descriptor_, LOCK_EX | LOCK_NB));
+  if (exists && ::fchmod(file.descriptor_, old.st_mode & kModeBits) != 0) {
+    return failure(given, "cannot keep its mode");
+  }
+  // Only root may give files away.
+  if (exists) static_cast<void>(!::fchown(file.descriptor_, old.st_uid, old.st_gid));
   return file;
 }
 
@@ -99,7 +149,6 @@ Status AtomicFile::write(Bytes bytes) {
 
 // Gives the anonymous file its temporary name. Linking by descriptor needs a privilege or /proc.
 Status AtomicFile::link_anonymous() {
-  ::unlink(temporary_.c_str());
   if (::linkat(descriptor_, "", AT_FDCWD, temporary_.c_str(), AT_EMPTY_PATH) != 0) {
     const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, temporary_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
@@ -110,18 +159,34 @@ Status AtomicFile::link_anonymous() {
   return {};
 }
 
+// The old file keeps a name until the new one is known to stay. Where names cannot be exchanged, it
+// does not; and then nothing is left to bring back.
 Status AtomicFile::commit() {
   if (::fsync(descriptor_) != 0) return failure(target_, "cannot flush");
   if (!named_) {
     if (Status status = link_anonymous(); !status) return status;
   }
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return failure(target_, "cannot rename");
-  named_ = false;
-  const int directory = ::open(directory_of(target_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (directory < 0) return failure(target_, "cannot open the directory");
-  const int flushed = ::fsync(directory);
-  ::close(directory);
-  return flushed == 0 ? Status{} : Status{failure(target_, "cannot flush the directory")};
+  const bool is_exchanged = replaces_ && ::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD,
+                                                     target_.c_str(), RENAME_EXCHANGE) == 0;
+  if (!is_exchanged) {
+    if (::rename(temporary_.c_str(), target_.c_str()) != 0) {
+      return failure(target_, "cannot rename");
+    }
+    named_ = false;
+  }
+  if (::fsync(directory_) == 0) {
+    if (named_) ::unlink(temporary_.c_str());  // the old file
+    named_ = false;
+    return {};
+  }
+  const Error error = failure(target_, "cannot flush the directory");
+  if (is_exchanged) {
+    static_cast<void>(
+        !::renameat2(AT_FDCWD, temporary_.c_str(), AT_FDCWD, target_.c_str(), RENAME_EXCHANGE));
+  } else if (!replaces_) {
+    ::unlink(target_.c_str());
+  }
+  return error;
 }
 
 }  // namespace boxtree::cooker

@@ -10,10 +10,17 @@
 
 namespace boxtree::cooker {
 
+/// The file that a chain of symbolic links leads to, be it there or not; `path` itself if it is no
+/// link. Error: kWriteFailed for a loop.
+Result<std::filesystem::path> follow_links(const std::filesystem::path& path);
+
 /// Collects bytes beside the target and puts them in its place by rename. Where the file system
 /// allows (O_TMPFILE) the bytes have no name until they are complete, so that even a killed process
-/// leaves nothing behind; elsewhere the next AtomicFile for the same target sweeps what a killed
-/// one left. Not for use by several threads at once.
+/// leaves nothing behind but between two system calls; the next AtomicFile for the same target
+/// sweeps what a killed one left. A target that is a link stays one: what it leads to is replaced.
+/// An existing file keeps its mode, and its owner where the process may give files away. Two
+/// processes that write one target do not hinder each other: the last one stays. Not for use by
+/// several threads at once.
 class AtomicFile {
  public:
   /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.
@@ -32,6 +39,7 @@ class AtomicFile {
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
   /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
+  /// After an error the old file is in its place, or none if there was none.
   Status commit();
 
  private:
@@ -41,7 +49,9 @@ class AtomicFile {
   std::filesystem::path target_;
   std::filesystem::path temporary_;  // the name before the rename
   bool named_ = false;               // whether `temporary_` exists
+  bool replaces_ = false;            // whether the target was there
   int descriptor_ = -1;
+  int directory_ = -1;
 };
 
 }  // namespace boxtree::cooker

@@ -360,7 +360,21 @@ cmp shown.obj before.obj
 cp cube.bxt link-target.bxt && ln -s link-target.bxt link.obj && cp cube.obj own.obj
 expect 1 "$boxtree" export link-target.bxt -o link.obj
 expect 1 "$boxtree" export external.bxt --mesh own.obj -o ./own.obj
-cmp link-target.bxt cube.bxt && cmp own.obj cube.obj
+cmp link-target.bxt cube.bxt
+cmp own.obj cube.obj
+# Nor is what is cooked or reported on: by no name, and no other output either.
+ln own.obj hard.obj && ln -s own.obj soft.obj && printf '' >empty.toml
+for output in own.obj ./own.obj hard.obj soft.obj; do
+  expect 1 "$boxtree" cook own.obj -o "$output" -q
+  expect 1 "$boxtree" cook own.obj -o not-own.bxt --depfile "$output" -q
+  expect 1 "$boxtree" report own.obj --quick -o "$output"
+done
+expect 1 "$boxtree" cook own.obj -o not-own.bxt --depfile ./not-own.bxt -q
+expect 1 "$boxtree" cook own.obj --profile empty.toml -o empty.toml -q
+expect 1 "$boxtree" cook own.obj -o '' -q
+same "$(stat -c %s empty.toml)" 0
+cmp own.obj cube.obj
+if [ -e not-own.bxt ]; then echo "not-own.bxt was written"; exit 1; fi
 same "$(find . -name '*.cooking' | wc -l)" 0
 
 # Help: common options, all options. Output to a file or a pipe shows no progress.

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What is left behind when writing fails, is abandoned or is killed: the old file and nothing else.
 #include <csignal>
+#include <fcntl.h>
+#include <sys/file.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -80,16 +83,79 @@ TEST(AtomicFile, KilledLeavesTheOldAndNoLitter) {
 TEST(AtomicFile, SweepsWhatDeadWritersLeftAndNothingElse) {
   const test::TempFolder folder;
   const auto target = folder.write("out", "old");
-  const pid_t child = ::fork();
-  if (child == 0) ::_exit(0);
-  ASSERT_EQ(::waitpid(child, nullptr, 0), child);  // a pid that was and is no more
-  const auto dead = folder.write(".out." + std::to_string(child) + ".cooking", "litter");
-  const auto living = folder.write(".out." + std::to_string(::getppid()) + ".cooking", "at work");
+  const auto dead = folder.write(".out.0123456789abcdef.cooking", "litter");
+  const auto living = folder.write(".out.fedcba9876543210.cooking", "at work");
   const auto other = folder.write(".out.notes.cooking", "not ours");
+  const int writer = ::open(living.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(writer, LOCK_EX), 0);
   ASSERT_TRUE(AtomicFile::create(target).ok());
   EXPECT_FALSE(std::filesystem::exists(dead));
   EXPECT_TRUE(std::filesystem::exists(living));
   EXPECT_TRUE(std::filesystem::exists(other));
+  ::close(writer);
+}
+
+// Whatever names the writers' processes have: each has a temporary of its own.
+TEST(AtomicFile, TwoWritersOfOneTargetDoNotMix) {
+  const test::TempFolder folder;
+  const auto target = folder.path() / "out";
+  Result<AtomicFile> first = AtomicFile::create(target);
+  Result<AtomicFile> second = AtomicFile::create(target);
+  ASSERT_TRUE(first->write(bytes_of("first")).ok());
+  ASSERT_TRUE(second->write(bytes_of("the second")).ok());
+  ASSERT_TRUE(second->commit().ok());
+  EXPECT_EQ(test::read_text(target), "the second");
+  ASSERT_TRUE(first->commit().ok());
+  EXPECT_EQ(test::read_text(target), "first");
+  EXPECT_EQ(entries(folder.path()), 1u);
+}
+
+TEST(AtomicFile, LinksStayLinksAndModesStay) {
+  const test::TempFolder folder;
+  const auto target = folder.write("real", "old");
+  ASSERT_EQ(::chmod(target.c_str(), 0640), 0);
+  std::filesystem::create_directory(folder.path() / "sub");
+  const auto link = folder.path() / "sub" / "link";
+  std::filesystem::create_symlink("../real", link);
+  Result<AtomicFile> file = AtomicFile::create(link);
+  ASSERT_TRUE(file->write(bytes_of("new")).ok());
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_TRUE(std::filesystem::is_symlink(link));
+  EXPECT_EQ(test::read_text(target), "new");
+  struct stat status {};
+  ASSERT_EQ(::stat(target.c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777u, 0640u);
+
+  const auto dangling = folder.path() / "dangling";
+  std::filesystem::create_symlink("not_yet", dangling);
+  ASSERT_TRUE(AtomicFile::create(dangling)->commit().ok());
+  EXPECT_TRUE(std::filesystem::is_regular_file(folder.path() / "not_yet"));
+  const auto loop = folder.path() / "loop";
+  std::filesystem::create_symlink("loop", loop);
+  EXPECT_EQ(AtomicFile::create(loop).code(), Errc::kWriteFailed);
+}
+
+TEST(AtomicFile, NamesMayBeAsLongAsTheSystemAllows) {
+  const test::TempFolder folder;
+  for (const std::size_t length : {200u, 244u, 255u}) {
+    const auto target = folder.path() / std::string(length, 'n');
+    ASSERT_TRUE(AtomicFile::create(target)->commit().ok()) << length;
+    EXPECT_TRUE(std::filesystem::exists(target));
+  }
+}
+
+// After the rename it would be too late to find out.
+TEST(AtomicFile, CommitNeedsNoMoreDescriptors) {
+  const test::TempFolder folder;
+  const auto target = folder.write("out", "old");
+  Result<AtomicFile> file = AtomicFile::create(target);
+  rlimit old{};
+  ::getrlimit(RLIMIT_NOFILE, &old);
+  const rlimit none{0, old.rlim_max};
+  ::setrlimit(RLIMIT_NOFILE, &none);
+  const Status status = file->commit();
+  ::setrlimit(RLIMIT_NOFILE, &old);
+  EXPECT_TRUE(status.ok());
 }
 
 TEST(AtomicFile, NoFolderNoFile) {
