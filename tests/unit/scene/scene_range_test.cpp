@@ -152,6 +152,58 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
   EXPECT_GT(nearest_there, 100u);
 }
 
+// A sheet through the origin, far larger than what single precision holds, and small boxes on it:
+// against the predicate for all placed triangles.
+TEST_P(SceneRange, SmallBoxesTouchTheLargestInstances) {
+  cooker::SourceMesh sheet;
+  constexpr int kSide = 9;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const auto x = static_cast<float>(i % kSide - kSide / 2), y = static_cast<float>(i / kSide - 3);
+    sheet.positions.f32.insert(sheet.positions.f32.end(), {x, y, (x - 2 * y) / 4});
+  }
+  for (std::uint32_t i = 0; i + kSide + 1 < kSide * kSide; ++i) {
+    if (i % kSide == kSide - 1) continue;
+    sheet.faces.push_back({{i, i + 1, i + kSide, cooker::kNoCorner}});
+    sheet.faces.push_back({{i + 1, i + kSide + 1, i + kSide, cooker::kNoCorner}});
+  }
+  cooker::SceneParts parts;
+  parts.instances.resize(2);
+  parts.instances[0].tree = 1;
+  parts.instances[1].id = 1;
+  parts.instances[1].moves = true;
+  const CookedScene cooked = test::cook_scene({sheet, test::soup(20, 3)}, parts, {GetParam()});
+  Scene scene = require(Scene::bind(cooked.file));
+  const std::uint32_t moving = scene.moving().front().instance;
+  for (int exponent = 0; exponent <= 180; exponent += 20) {
+    SCOPED_TRACE(exponent);
+    Pose pose = Pose::Identity();
+    pose.linear() *= std::ldexp(1.0, exponent);
+    ASSERT_TRUE(scene.update(moving, pose).ok());
+    const std::vector<WorldTriangle> triangles = test::world_triangles(cooked, scene);
+    std::size_t all = 0;
+    for (const double half : {0.0, 0x1p-30, 0.5, 0x1p20}) {
+      const Eigen::AlignedBox3d box(Eigen::Vector3d::Constant(-half),
+                                    Eigen::Vector3d::Constant(half));
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> found, expected;
+      for (const WorldTriangle& t : triangles) {
+        if (triangle_intersects_box(t.triangle, box.min(), box.max())) {
+          expected.emplace_back(t.instance, t.face);
+        }
+      }
+      const auto visit = overlap_box(scene, box, [&found](const SceneFace& face) {
+        found.emplace_back(face.instance, face.face.id);
+        return true;
+      });
+      EXPECT_EQ(require(visit), Visit::kComplete);
+      std::sort(found.begin(), found.end());
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(found, expected) << half;
+      all += found.size();
+    }
+    EXPECT_GE(all, 4 * 6u);  // those around the origin
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, SceneRange,
                          testing::Values(CodecId::kWide8, CodecId::kWide4, CodecId::kPlainF32),
                          test::test_name);
