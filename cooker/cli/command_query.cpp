@@ -2,10 +2,11 @@
 // `boxtree query`: asks one tree of a mapped file, or two trees against each other, one question
 // from options or many from a file of JSON lines.
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
+#include <cstdio>
 #include <functional>
-#include <iostream>
 #include <memory>
+#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
@@ -49,29 +50,79 @@ int usage(const std::string& what) {
   return kExitUsage;
 }
 
+// The lines of a batch. Not a stream of C++: those take a read error of standard input for its end.
+class BatchLines {
+ public:
+  // Nobody asks in longer lines; endless ones would fill the memory.
+  static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
+
+  explicit BatchLines(const std::filesystem::path& path)
+      : path_(path), file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
+    if (file_ == nullptr) error_ = errno;
+  }
+  BatchLines(const BatchLines&) = delete;
+  BatchLines& operator=(const BatchLines&) = delete;
+  ~BatchLines() {
+    if (file_ != nullptr && file_ != stdin) static_cast<void>(std::fclose(file_));
+  }
+
+  // The next line, without its end; false after the last one and after an error.
+  bool next(std::string& line) {
+    line.clear();
+    if (file_ == nullptr) return false;
+    ++number_;
+    int c = 0;
+    while ((c = std::getc(file_)) != EOF && c != '\n') {
+      if (line.size() == kLongestLine) {
+        is_too_long_ = true;
+        return false;
+      }
+      line += static_cast<char>(c);
+    }
+    if (c == EOF && std::ferror(file_) != 0) {
+      error_ = errno;
+      return false;
+    }
+    return c != EOF || !line.empty();
+  }
+
+  [[nodiscard]] std::size_t number() const { return number_; }
+
+  // Why there is no next line, unless the file simply ended.
+  [[nodiscard]] Status status() const {
+    if (is_too_long_) {
+      return Error{Errc::kInvalidQuery, fmt::format("{}: line {} has more than {} bytes",
+                                                    path_.string(), number_, kLongestLine)};
+    }
+    if (error_ == 0) return {};
+    return Error{Errc::kFileUnreadable,
+                 fmt::format("{}: {}", path_.string(), std::generic_category().message(error_))};
+  }
+
+ private:
+  const std::filesystem::path path_;
+  std::FILE* file_;
+  std::size_t number_ = 0;
+  int error_ = 0;  // of the system
+  bool is_too_long_ = false;
+};
+
 // Answers each line of the batch: JSON lines as they come, or one document with --json. A line that
 // cannot be answered gets an error in its place; the exit status is that of the first such line.
 using Ask = std::function<Result<Json>(const Question& question, TreeCache& others)>;
 int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& kind) {
-  std::ifstream opened;
-  const bool from_input = arguments.batch == "-";
-  if (!from_input) {
-    opened.open(arguments.batch);
-    if (!opened) {
-      return fail({Errc::kFileUnreadable, arguments.batch.string() + ": cannot be read"});
-    }
-  }
-  std::istream& in = from_input ? std::cin : opened;
+  BatchLines lines(arguments.batch);
   TreeCache others;
   Json answers = Json::array();
   int status = 0;
   std::string line;
-  for (std::size_t number = 1; std::getline(in, line); ++number) {
+  while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     const Result<Question> question = parse_question(line, kind);
     Result<Json> answer = question ? ask_it(*question, others) : Result<Json>(question.error());
     if (!answer) {
-      const Error error{answer.code(), fmt::format("line {}: {}", number, answer.error().detail)};
+      const Error error{answer.code(),
+                        fmt::format("line {}: {}", lines.number(), answer.error().detail)};
       if (status == 0) status = error_info(error.code).exit_status;
       answer = Json{{"error", error_info(error.code).name}, {"detail", error.detail}};
     }
@@ -82,6 +133,7 @@ int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& 
     }
   }
   if (arguments.json) print({{"answers", answers}});
+  if (const Status read = lines.status(); !read.ok()) return fail(read.error());
   return status;
 }
 

@@ -38,8 +38,9 @@ int main(int argc, char** argv) {
     fmt::print(stderr, "boxtree: out of memory\n");
     return cooker::kExitInternal;
   } catch (const std::exception& error) {
+    if (std::ferror(stdout) != 0) return boxtree::cooker::fail_to_print();
     fmt::print(stderr, "boxtree: internal: {}\n", error.what());
     return cooker::kExitInternal;
   }
-  return std::fflush(stdout) == 0 ? status : cooker::kExitInputOutput;
+  return std::fflush(stdout) == 0 ? status : cooker::fail_to_print();
 }

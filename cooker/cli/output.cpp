@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Output conventions of the command line.
 #include <array>
+#include <cerrno>
 #include <charconv>
 #include <cstdio>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include <fmt/format.h>
@@ -35,6 +37,12 @@ int fail(const Error& error) {
 int fail_usage(const Error& error) {
   fmt::print(stderr, "boxtree: {}\n", error.detail);
   return kExitUsage;
+}
+
+int fail_to_print() {
+  const int error = errno;
+  fmt::print(stderr, "boxtree: standard output: {}\n", std::generic_category().message(error));
+  return kExitInputOutput;
 }
 
 Json to_json(const Eigen::Vector3d& vector) {

@@ -27,6 +27,9 @@ int fail(const Error& error);
 /// The same for a command line that contradicts itself, without a code: kExitUsage.
 int fail_usage(const Error& error);
 
+/// Says that standard output takes no more; kExitInputOutput.
+int fail_to_print();
+
 /// Prints one JSON document to standard output.
 void print(const Json& document);
 

@@ -30,7 +30,8 @@ expect 0 "$boxtree" cook cube.obj -o cube.bxt --json --depfile cube.d
 same "$(jq -r '.trees[0].triangles' out)" 12
 same "$(jq -r '.trees[0].import.quads_kept' out)" 6
 same "$(jq -r '[.trees[0].candidates[] | select(.rejected == null)] | length' out)" 1
-grep -q '^cube.bxt:' cube.d && grep -q 'cube.obj' cube.d
+grep -q '^cube.bxt:' cube.d
+grep -q 'cube.obj' cube.d
 expect 0 "$boxtree" verify cube.bxt
 expect 0 "$boxtree" info cube.bxt --json
 same "$(jq -c '.trees[0].bounds' out)" '{"min":[0,0,0],"max":[1,1,1]}'
@@ -138,7 +139,8 @@ for kind in distance overlap; do
 done
 
 # Same bytes from another folder and with other thread counts.
-mkdir elsewhere && cp cube.obj elsewhere/
+mkdir elsewhere
+cp cube.obj elsewhere/
 (cd elsewhere && "$boxtree" cook cube.obj -o cube.bxt --jobs 1 -q)
 cmp cube.bxt elsewhere/cube.bxt
 
@@ -214,6 +216,12 @@ expect 1 "$boxtree" query cube.bxt
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
 grep -q -- '--direction is required' err
 expect 2 "$boxtree" query cube.bxt --batch missing.jsonl
+# A batch that cannot be read to its end is no answer.
+expect 2 "$boxtree" query cube.bxt --batch .
+expect 2 sh -c "'$boxtree' query cube.bxt point --batch - <."
+expect 1 "$boxtree" query cube.bxt point --batch /dev/zero
+expect 2 sh -c "'$boxtree' info cube.bxt >/dev/full"
+grep -q 'standard output: No space left on device' err
 
 # Own constants: what the calibration prints decides; what makes no sense is refused by name.
 expect 0 "$boxtree" bench --calibrate cube.obj --runs 1 --json
@@ -289,7 +297,8 @@ done
 
 # The paper's tables: text, a page and figures that agree with each other.
 expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json paper.json
-grep -q 'Table A.2' out && grep -q 'A.6 and A.7' out
+grep -q 'Table A.2' out
+grep -q 'A.6 and A.7' out
 grep -q '<td class="word">cube</td>' paper.html
 same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
 same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[8]'
@@ -328,7 +337,8 @@ same "$(grep -c '^l ' shown.obj)" 12
 expect 0 "$boxtree" verify external.bxt --mesh shown.obj
 expect 0 "$boxtree" export both.bxt -o shown.glb --triangles
 same "$(head -c 4 shown.glb)" glTF
-grep -q '^cube: 12 triangles$' out && grep -q '^flat: 1 triangles$' out
+grep -q '^cube: 12 triangles$' out
+grep -q '^flat: 1 triangles$' out
 expect 0 "$boxtree" cook shown.glb -o again.bxt --flatten --json
 same "$(jq -r '.trees[0].triangles' out)" 13
 for tree in 1 flat; do
@@ -357,13 +367,17 @@ expect 2 "$boxtree" export cube.bxt -o no/such/folder/shown.obj
 expect 3 "$boxtree" export cube.obj -o shown.obj
 cmp shown.obj before.obj
 # What an export is made from is never its output, whatever the name it goes by.
-cp cube.bxt link-target.bxt && ln -s link-target.bxt link.obj && cp cube.obj own.obj
+cp cube.bxt link-target.bxt
+ln -s link-target.bxt link.obj
+cp cube.obj own.obj
 expect 1 "$boxtree" export link-target.bxt -o link.obj
 expect 1 "$boxtree" export external.bxt --mesh own.obj -o ./own.obj
 cmp link-target.bxt cube.bxt
 cmp own.obj cube.obj
 # Nor is what is cooked or reported on: by no name, and no other output either.
-ln own.obj hard.obj && ln -s own.obj soft.obj && printf '' >empty.toml
+ln own.obj hard.obj
+ln -s own.obj soft.obj
+printf '' >empty.toml
 for output in own.obj ./own.obj hard.obj soft.obj; do
   expect 1 "$boxtree" cook own.obj -o "$output" -q
   expect 1 "$boxtree" cook own.obj -o not-own.bxt --depfile "$output" -q

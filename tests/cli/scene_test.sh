@@ -80,9 +80,11 @@ same "$(jq -c '[.scene.instances, .scene.placed_triangles, ([.trees[].instances]
 expect 0 "$boxtree" cook shown.glb -o shown.bxt --exact --json
 same "$(jq -c '[.scene.instances, (.trees | length)]' out)" '[53,8]'
 expect 0 "$boxtree" export level.bxt -o shown.obj --triangles
-grep -q '^scene: 53 instances, 9648 triangles placed$' out && grep -q '^step: 12 triangles, 10 instances$' out
+grep -q '^scene: 53 instances, 9648 triangles placed$' out
+grep -q '^step: 12 triangles, 10 instances$' out
 same "$(grep -c '^o ' shown.obj)" 53
-grep -q '^o Step 2$' shown.obj && grep -q '^g Step_2_triangles$' shown.obj
+grep -q '^o Step 2$' shown.obj
+grep -q '^g Step_2_triangles$' shown.obj
 expect 0 "$boxtree" cook shown.obj -o shown-flat.bxt --exact --json
 same "$(jq -c '.trees[0].triangles' out)" 9648
 for file in level shown; do
@@ -128,7 +130,8 @@ same "$(jq -c '[.scene.instances, .scene.moving]' out)" '[53,1]'
 same "$(jq '[.why[] | select(.kept) | .bytes] | add' out)" "$(stat -c %s profiled.bxt)"
 jq -e '[.why[] | select(.kept | not) | .line // ""] | any(contains("scene.toml:")) ' out >/dev/null
 jq -e '.trees | all(.left_out | any(.what == "face ids"))' out >/dev/null
-grep -q 'scene.toml' profiled.d && grep -q 'level.gltf' profiled.d
+grep -q 'scene.toml' profiled.d
+grep -q 'level.gltf' profiled.d
 expect 0 "$boxtree" verify profiled.bxt
 # On grids and without face ids it is shown as it is asked.
 for name in profiled.obj profiled.glb; do
@@ -158,6 +161,7 @@ expect 0 "$boxtree" cook squashed.gltf -o squashed.bxt --flatten --quiet
 expect 0 "$boxtree" verify squashed.bxt
 
 # The same bytes from another folder and with one thread.
-mkdir other && cp level.gltf scene.toml other/
+mkdir other
+cp level.gltf scene.toml other/
 expect 0 "$boxtree" cook --profile other/scene.toml -o other.bxt --jobs 1 --quiet
 cmp profiled.bxt other.bxt
