@@ -67,7 +67,7 @@ class MaterialIntake {
   }
   std::uint32_t number_of_unnamed() {
     const std::uint32_t number = next();
-    names_.push_back(fmt::format("material {}", number));
+    names_.push_back(unnamed_material(number));
     return number;
   }
   [[nodiscard]] std::uint32_t next() const { return static_cast<std::uint32_t>(names_.size()); }
@@ -77,14 +77,6 @@ class MaterialIntake {
   std::vector<std::uint32_t> numbers_;  // of each source material, or kNoMaterial: not yet in use
   std::map<std::string, std::uint32_t> by_name_;
 };
-
-bool is_equal(const SceneMesh& a, const SceneMesh& b) {
-  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
-    return x.first_face == y.first_face && x.material == y.material;
-  };
-  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
-                                            b.materials.begin(), b.materials.end(), is_same_run);
-}
 
 Pose pose_of(const Transform& transform) {
   Pose pose = Pose::Identity();

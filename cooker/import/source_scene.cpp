@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What makes two meshes of a scene equal.
 #define XXH_INLINE_ALL
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <span>
@@ -32,6 +33,18 @@ bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
     }
   }
   return true;
+}
+
+bool is_equal(const SceneMesh& a, const SceneMesh& b) {
+  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
+    return x.first_face == y.first_face && x.material == y.material;
+  };
+  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
+                                            b.materials.begin(), b.materials.end(), is_same_run);
+}
+
+std::string unnamed_material(std::uint32_t number) {
+  return "material " + std::to_string(number);
 }
 
 std::uint64_t hash_of_shape(const SceneMesh& mesh) {

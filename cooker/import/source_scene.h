@@ -29,6 +29,12 @@ struct SceneMesh {
 [[nodiscard]] bool has_same_shape(const SceneMesh& a, const SceneMesh& b);
 [[nodiscard]] std::uint64_t hash_of_shape(const SceneMesh& mesh);
 
+/// Whether they are equal in all but name; material numbers are those of one scene.
+[[nodiscard]] bool is_equal(const SceneMesh& a, const SceneMesh& b);
+
+/// How a material without a name is called.
+[[nodiscard]] std::string unnamed_material(std::uint32_t number);
+
 /// A placed mesh.
 struct SceneInstance {
   std::string name;        // of its node, as assimp has it; may be empty, need not be unique

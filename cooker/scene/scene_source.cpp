@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Gathers meshes and instances; numbers of a later file follow those of the earlier ones.
+#include <map>
+#include <optional>
+#include <string>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include <boxtree/cooker/scene/scene_source.h>
 
@@ -9,21 +14,72 @@ namespace {
 
 namespace fs = std::filesystem;
 
-void append(SourceScene& to, SourceScene from) {
-  const auto meshes = static_cast<std::uint32_t>(to.meshes.size());
-  const auto materials = static_cast<std::uint32_t>(to.materials.size());
-  const auto instances = static_cast<std::uint32_t>(to.instances.size());
-  for (SceneMesh& mesh : from.meshes) {
-    for (MaterialRun& run : mesh.materials) run.material += materials;
-    to.meshes.push_back(std::move(mesh));
+// Makes one scene of several: what is equal is there once, as in the scene of one file.
+class SceneJoin {
+ public:
+  explicit SceneJoin(SourceScene& scene) : scene_(scene) {
+    for (std::uint32_t i = 0; i < scene.materials.size(); ++i) note_material(i);
+    for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
+      by_hash_.emplace(hash_of_shape(scene.meshes[i]), i);
+    }
   }
-  for (SceneInstance& instance : from.instances) {
-    instance.mesh += meshes;
-    instance.id += instances;
-    to.instances.push_back(std::move(instance));
+
+  void add(SourceScene from) {
+    std::vector<std::uint32_t> materials, meshes;  // their numbers here
+    for (std::uint32_t i = 0; i < from.materials.size(); ++i) {
+      const bool has_name = from.materials[i] != unnamed_material(i);
+      materials.push_back(has_name ? add_material(from.materials[i]) : add_unnamed());
+    }
+    for (SceneMesh& mesh : from.meshes) {
+      for (MaterialRun& run : mesh.materials) run.material = materials[run.material];
+      meshes.push_back(add_mesh(std::move(mesh)));
+    }
+    const auto instances = static_cast<std::uint32_t>(scene_.instances.size());
+    for (SceneInstance& instance : from.instances) {
+      instance.mesh = meshes[instance.mesh];
+      instance.id += instances;
+      scene_.instances.push_back(std::move(instance));
+    }
   }
-  std::move(from.materials.begin(), from.materials.end(), std::back_inserter(to.materials));
-}
+
+ private:
+  void note_material(std::uint32_t number) {
+    const std::string& name = scene_.materials[number];
+    if (name != unnamed_material(number)) by_name_.emplace(name, number);
+  }
+
+  std::uint32_t add_material(const std::string& name) {
+    const auto known = by_name_.find(name);
+    if (known != by_name_.end()) return known->second;
+    const auto number = static_cast<std::uint32_t>(scene_.materials.size());
+    scene_.materials.push_back(name);
+    by_name_.emplace(name, number);
+    return number;
+  }
+
+  // Of two without a name nobody knows whether they are one.
+  std::uint32_t add_unnamed() {
+    const auto number = static_cast<std::uint32_t>(scene_.materials.size());
+    scene_.materials.push_back(unnamed_material(number));
+    return number;
+  }
+
+  std::uint32_t add_mesh(SceneMesh&& mesh) {
+    const std::uint64_t hash = hash_of_shape(mesh);
+    const auto [first, last] = by_hash_.equal_range(hash);
+    for (auto candidate = first; candidate != last; ++candidate) {
+      if (is_equal(scene_.meshes[candidate->second], mesh)) return candidate->second;
+    }
+    const auto number = static_cast<std::uint32_t>(scene_.meshes.size());
+    scene_.meshes.push_back(std::move(mesh));
+    by_hash_.emplace(hash, number);
+    return number;
+  }
+
+  SourceScene& scene_;
+  std::map<std::string, std::uint32_t> by_name_;                   // numbers of materials
+  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;  // numbers of meshes
+};
 
 // The meshes of a profile become those of the scene, one each; a file that several name is read
 // once for each, as each may be cooked in another way.
@@ -70,6 +126,7 @@ Result<LoadedScene> load_scene(std::span<const fs::path> inputs, const Profile& 
   LoadedScene loaded;
   const std::span<const fs::path> files =
       profile.source ? std::span(&profile.source->value, 1) : inputs;
+  std::optional<SceneJoin> join;  // of the first and all others
   for (const fs::path& file : files) {
     progress("import " + file.filename().string());
     Result<SourceScene> scene = import_scene(file, options);
@@ -78,8 +135,9 @@ Result<LoadedScene> load_scene(std::span<const fs::path> inputs, const Profile& 
     loaded.import_names.push_back(file.filename().string());
     if (loaded.imports.size() == 1) {
       loaded.scene = std::move(*scene);
+      join.emplace(loaded.scene);
     } else {
-      append(loaded.scene, std::move(*scene));
+      join->add(std::move(*scene));
     }
   }
   return loaded;

@@ -529,6 +529,39 @@ translation = [1, 0, 0]
   EXPECT_EQ(border[0], border[1]);
 }
 
+// Two files of one content are one tree placed twice; a material of one name is one.
+TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
+  test::TempFolder folder;
+  const std::string wood = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n";
+  const std::string stone = "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl stone\nf 1 2 3\n";
+  const std::string both =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl stone\nf 1 2 3\nusemtl wood\nf 1 2 4\n";
+  const std::vector<fs::path> inputs{folder.write("a.obj", wood), folder.write("b.obj", wood),
+                                     folder.write("c.obj", stone), folder.write("d.obj", both)};
+  const fs::path out = folder.path() / "out.bxt";
+  const SceneReport report = require(cook_scene(inputs, out, CookOptions(), Profile()));
+  EXPECT_EQ(report.meshes, 3u);
+  const File file = require(File::open(out));
+  const Scene scene = require(Scene::bind(file));
+  EXPECT_EQ(scene.instance_count(), 4u);
+  EXPECT_EQ(scene.trees().size(), 3u);
+  EXPECT_EQ(scene.material_count(), 2u);
+  std::vector<std::vector<std::string>> names(4);  // of each instance's faces, by id
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const InstanceInfo info = require(scene.info(i));
+    const Tree& tree = scene.trees()[info.tree];
+    std::vector<std::string>& of_faces = names[info.id];
+    of_faces.resize(tree.record().face_count);
+    for (std::uint32_t face = 0; face < of_faces.size(); ++face) {
+      const std::uint32_t id = tree.face_id(face);
+      of_faces[id] = scene.material_name(scene.material(i, {id, face}));
+    }
+  }
+  const std::vector<std::vector<std::string>> expected{
+      {"wood"}, {"wood"}, {"stone"}, {"stone", "wood"}};
+  EXPECT_EQ(names, expected);
+}
+
 TEST(CookScene, InvalidScenesAreRefused) {
   test::TempFolder folder;
   const fs::path out = folder.path() / "out.bxt";
