@@ -178,7 +178,7 @@ int run(Arguments& arguments) {
     options.costs = std::move(*costs);
   }
 
-  if (Status status = check_names(arguments); !status) return fail_usage(status.error());
+  if (Status status = check_names(arguments); !status) return usage(status.error().detail);
   // First, so that no error of it leaves a new output without one.
   if (!arguments.depfile.empty()) {
     options.before_writing = [&arguments](std::span<const std::filesystem::path> read) {

@@ -37,11 +37,6 @@ struct Arguments {
   bool json = false;
 };
 
-int usage(const std::string& what) {
-  fmt::print(stderr, "boxtree: {}\n", what);
-  return kExitUsage;
-}
-
 // "0-3,6": levels and ranges of levels.
 std::optional<std::vector<LevelRange>> parse_levels(std::string_view text) {
   std::vector<LevelRange> ranges;
@@ -243,7 +238,7 @@ int run(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.file};
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
   if (Status status = check_outputs(std::span(&arguments.output, 1), inputs); !status) {
-    return fail_usage(status.error());
+    return usage(status.error().detail);
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());

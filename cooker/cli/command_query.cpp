@@ -45,15 +45,10 @@ void print_answer(const Arguments& arguments, const Json& json) {
   }
 }
 
-int usage(const std::string& what) {
-  fmt::print(stderr, "boxtree: {}\n", what);
-  return kExitUsage;
-}
-
 // The lines of a batch. Not a stream of C++: those take a read error of standard input for its end.
 class BatchLines {
  public:
-  // Nobody asks in longer lines; endless ones would fill the memory.
+  // Far beyond any query; an endless line would fill the memory.
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
   explicit BatchLines(const std::filesystem::path& path)

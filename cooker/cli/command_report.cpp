@@ -260,7 +260,7 @@ int run(const Arguments& arguments) {
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
   const std::array outputs{arguments.output, arguments.json, arguments.csv,
                            arguments.approximate_csv};
-  if (Status status = check_outputs(outputs, inputs); !status) return fail_usage(status.error());
+  if (Status status = check_outputs(outputs, inputs); !status) return usage(status.error().detail);
   return arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
 }
 

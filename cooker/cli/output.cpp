@@ -34,8 +34,8 @@ int fail(const Error& error) {
   return error_info(error.code).exit_status;
 }
 
-int fail_usage(const Error& error) {
-  fmt::print(stderr, "boxtree: {}\n", error.detail);
+int usage(const std::string& what) {
+  fmt::print(stderr, "boxtree: {}\n", what);
   return kExitUsage;
 }
 

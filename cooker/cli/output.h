@@ -25,7 +25,7 @@ inline constexpr int kExitInternal = 4;
 int fail(const Error& error);
 
 /// The same for a command line that contradicts itself, without a code: kExitUsage.
-int fail_usage(const Error& error);
+int usage(const std::string& what);
 
 /// Says that standard output takes no more; kExitInputOutput.
 int fail_to_print();

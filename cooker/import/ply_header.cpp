@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cstring>
 
 #include <boxtree/cooker/import/ply_header.h>
@@ -22,13 +21,6 @@ std::optional<PlyType> type_of(std::string_view name) {
   if (name == "float" || name == "float32") return PlyType::kFloat32;
   if (name == "double" || name == "float64") return PlyType::kFloat64;
   return std::nullopt;
-}
-
-std::optional<std::uint64_t> to_count(std::string_view token) {
-  std::uint64_t count = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), count);
-  if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
-  return count;
 }
 
 template <class T>
@@ -68,7 +60,7 @@ bool read_line(const Tokens& tokens, PlyHeader& header) {
     header.is_plain = header.is_plain && form.has_value();
   } else if (tokens[0] == "element") {
     const std::optional<std::uint64_t> count =
-        tokens.size() > 2 ? to_count(tokens[2]) : std::nullopt;
+        tokens.size() > 2 ? read_count(tokens[2]) : std::nullopt;
     if (!count) return false;
     header.elements.push_back({std::string(tokens[1]), *count, {}});
   } else if (tokens[0] == "property" && !header.elements.empty()) {

@@ -6,7 +6,6 @@
 #include <optional>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 
 #include <Eigen/LU>
@@ -123,20 +122,20 @@ class SceneIntake {
         context_(context),
         out_(out),
         materials_(scene, out.materials),
-        uses_(scene.mNumMeshes, 0) {}
+        uses_(scene.mNumMeshes, 0),
+        meshes_(out.meshes) {}
 
   Status take(const Placements& placements);
 
  private:
   Result<std::uint32_t> take_meshes(const Placement& placement);
-  std::uint32_t merge(SceneMesh&& mesh);
 
   aiScene& scene_;
   const SourceContext& context_;
   SourceScene& out_;
   MaterialIntake materials_;
   MeshUses uses_;
-  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;  // numbers of out.meshes
+  MeshMerger meshes_;
 };
 
 Status SceneIntake::take(const Placements& placements) {
@@ -187,24 +186,11 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   std::uint32_t number = kNoMesh;
   if (!mesh.mesh.faces.empty()) {
     mesh.materials = materials_.take(runs);
-    number = merge(std::move(mesh));
+    number = meshes_.add(std::move(mesh));
   }
   for (std::size_t i = skipped_before; i < out_.report.skipped.size(); ++i) {
     out_.report.skipped[i].mesh = number;
   }
-  return number;
-}
-
-// The number of `mesh`, or of one with the same content.
-std::uint32_t SceneIntake::merge(SceneMesh&& mesh) {
-  const std::uint64_t hash = hash_of_shape(mesh);
-  const auto [first, last] = by_hash_.equal_range(hash);
-  for (auto candidate = first; candidate != last; ++candidate) {
-    if (is_equal(out_.meshes[candidate->second], mesh)) return candidate->second;
-  }
-  const auto number = static_cast<std::uint32_t>(out_.meshes.size());
-  out_.meshes.push_back(std::move(mesh));
-  by_hash_.emplace(hash, number);
   return number;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstring>
 #include <span>
+#include <utility>
 
 #include <xxhash.h>
 
@@ -21,6 +22,14 @@ Shape shape_of(const SceneMesh& mesh) {
           std::as_bytes(std::span(mesh.mesh.faces)), std::as_bytes(std::span(mesh.mesh.face_ids))};
 }
 
+bool is_equal(const SceneMesh& a, const SceneMesh& b) {
+  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
+    return x.first_face == y.first_face && x.material == y.material;
+  };
+  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
+                                            b.materials.begin(), b.materials.end(), is_same_run);
+}
+
 }  // namespace
 
 bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
@@ -35,12 +44,20 @@ bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
   return true;
 }
 
-bool is_equal(const SceneMesh& a, const SceneMesh& b) {
-  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
-    return x.first_face == y.first_face && x.material == y.material;
-  };
-  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
-                                            b.materials.begin(), b.materials.end(), is_same_run);
+MeshMerger::MeshMerger(std::vector<SceneMesh>& meshes) : meshes_(meshes) {
+  for (std::uint32_t i = 0; i < meshes.size(); ++i) by_hash_.emplace(hash_of_shape(meshes[i]), i);
+}
+
+std::uint32_t MeshMerger::add(SceneMesh&& mesh) {
+  const std::uint64_t hash = hash_of_shape(mesh);
+  const auto [first, last] = by_hash_.equal_range(hash);
+  for (auto candidate = first; candidate != last; ++candidate) {
+    if (is_equal(meshes_[candidate->second], mesh)) return candidate->second;
+  }
+  const auto number = static_cast<std::uint32_t>(meshes_.size());
+  meshes_.push_back(std::move(mesh));
+  by_hash_.emplace(hash, number);
+  return number;
 }
 
 std::string unnamed_material(std::uint32_t number) {

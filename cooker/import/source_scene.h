@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <unordered_map>
 #include <variant>
 #include <vector>
 
@@ -29,8 +30,20 @@ struct SceneMesh {
 [[nodiscard]] bool has_same_shape(const SceneMesh& a, const SceneMesh& b);
 [[nodiscard]] std::uint64_t hash_of_shape(const SceneMesh& mesh);
 
-/// Whether they are equal in all but name; material numbers are those of one scene.
-[[nodiscard]] bool is_equal(const SceneMesh& a, const SceneMesh& b);
+/// Puts meshes into a list in which no two are equal in all but name. Their material numbers are
+/// those of one scene.
+class MeshMerger {
+ public:
+  /// `meshes`, among which no two are equal, must outlive it; nobody else adds to them.
+  explicit MeshMerger(std::vector<SceneMesh>& meshes);
+
+  /// The number of `mesh` in the list, or of one that is equal to it.
+  std::uint32_t add(SceneMesh&& mesh);
+
+ private:
+  std::vector<SceneMesh>& meshes_;
+  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;
+};
 
 /// How a material without a name is called.
 [[nodiscard]] std::string unnamed_material(std::uint32_t number);

@@ -2,7 +2,6 @@
 // Line by line, word by word, without keeping any of it.
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -45,21 +44,13 @@ class Lines {
   std::size_t number_;  // of the line at hand, from 1
 };
 
-std::optional<std::uint64_t> to_count(std::string_view word) {
-  std::uint64_t count = 0;
-  const char* const last = word.data() + word.size();
-  const auto [end, error] = std::from_chars(word.data(), last, count);
-  if (error != std::errc() || end != last) return std::nullopt;
-  return count;
-}
-
 // How many words an element takes by its properties and by the lengths of its lists; or what is
 // wrong with it.
 Result<std::uint64_t> words_of(const PlyElement& element, const Tokens& words, const Lines& lines) {
   std::uint64_t wanted = 0;
   for (const PlyProperty& property : element.properties) {
     if (property.length && wanted < words.size()) {
-      const std::optional<std::uint64_t> count = to_count(words[wanted]);
+      const std::optional<std::uint64_t> count = read_count(words[wanted]);
       if (!count || *count > words.size()) {
         return lines.failure(fmt::format("a list of '{}' numbers, but the line has {} words",
                                          words[wanted], words.size()));

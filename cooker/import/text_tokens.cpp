@@ -57,6 +57,13 @@ void split_tokens(std::string_view text, Tokens& tokens) {
   }
 }
 
+std::optional<std::uint64_t> read_count(std::string_view token) {
+  std::uint64_t count = 0;
+  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), count);
+  if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
+  return count;
+}
+
 template <class T>
 std::optional<T> read_number(std::string_view token) {
   // from_chars knows no plus sign.

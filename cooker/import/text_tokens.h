@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -26,6 +27,9 @@ void split_tokens(std::string_view text, Tokens& tokens);
 /// is no number.
 template <class T>
 [[nodiscard]] std::optional<T> read_number(std::string_view token);
+
+/// The whole number that all of `token` is; nothing for a sign, a fraction or another spelling.
+[[nodiscard]] std::optional<std::uint64_t> read_count(std::string_view token);
 
 /// The first of `tokens` that is no number, or an empty one.
 [[nodiscard]] std::string_view find_no_number(std::span<const std::string_view> tokens);

@@ -3,7 +3,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -17,11 +16,8 @@ namespace fs = std::filesystem;
 // Makes one scene of several: what is equal is there once, as in the scene of one file.
 class SceneJoin {
  public:
-  explicit SceneJoin(SourceScene& scene) : scene_(scene) {
+  explicit SceneJoin(SourceScene& scene) : scene_(scene), meshes_(scene.meshes) {
     for (std::uint32_t i = 0; i < scene.materials.size(); ++i) note_material(i);
-    for (std::uint32_t i = 0; i < scene.meshes.size(); ++i) {
-      by_hash_.emplace(hash_of_shape(scene.meshes[i]), i);
-    }
   }
 
   void add(SourceScene from) {
@@ -32,7 +28,7 @@ class SceneJoin {
     }
     for (SceneMesh& mesh : from.meshes) {
       for (MaterialRun& run : mesh.materials) run.material = materials[run.material];
-      meshes.push_back(add_mesh(std::move(mesh)));
+      meshes.push_back(meshes_.add(std::move(mesh)));
     }
     const auto instances = static_cast<std::uint32_t>(scene_.instances.size());
     for (SceneInstance& instance : from.instances) {
@@ -64,21 +60,9 @@ class SceneJoin {
     return number;
   }
 
-  std::uint32_t add_mesh(SceneMesh&& mesh) {
-    const std::uint64_t hash = hash_of_shape(mesh);
-    const auto [first, last] = by_hash_.equal_range(hash);
-    for (auto candidate = first; candidate != last; ++candidate) {
-      if (is_equal(scene_.meshes[candidate->second], mesh)) return candidate->second;
-    }
-    const auto number = static_cast<std::uint32_t>(scene_.meshes.size());
-    scene_.meshes.push_back(std::move(mesh));
-    by_hash_.emplace(hash, number);
-    return number;
-  }
-
   SourceScene& scene_;
-  std::map<std::string, std::uint32_t> by_name_;                   // numbers of materials
-  std::unordered_multimap<std::uint64_t, std::uint32_t> by_hash_;  // numbers of meshes
+  MeshMerger meshes_;
+  std::map<std::string, std::uint32_t> by_name_;  // numbers of materials
 };
 
 // The meshes of a profile become those of the scene, one each; a file that several name is read

@@ -10,8 +10,8 @@
 namespace boxtree::cooker {
 
 /// Whether the outputs are files of their own: none of them is an input or another output, by
-/// whatever name, hard link or symbolic link. Empty paths are outputs that nobody wants. Asks the
-/// file system alone; to be called before anything is written. Error: kWriteFailed.
+/// whatever name, hard link or symbolic link. Empty paths are outputs that were not given. Reads
+/// no file; to be called before anything is written. Error: kWriteFailed.
 Status check_outputs(std::span<const std::filesystem::path> outputs,
                      std::span<const std::filesystem::path> inputs);
 

@@ -80,8 +80,8 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
   }
 }
 
-// Whoever asks for more faces at once than a batch has room for is told, before anything is written
-// behind it.
+// A leaf of more faces than a batch has room for is refused before anything is written
+// behind the batch.
 TEST_P(Trees, LeavesOfMoreTrianglesThanABatchHoldsAreRefused) {
   const test::CookedTree cooked = test::cook_tree(test::soup(40, 3), GetParam());
   TriangleBatch batch;
