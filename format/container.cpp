@@ -4,15 +4,21 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <string_view>
 
 #include <boxtree/format/container.h>
+#include <boxtree/format/message.h>
 
 namespace boxtree {
 namespace {
 
-std::string describe(std::size_t index, const SectionEntry& entry) {
-  return "section " + std::to_string(index) + " (" +
-         std::string(section_name(static_cast<SectionKind>(entry.kind))) + ")";
+// An error about one section.
+Error section_error(Errc code, std::size_t index, const SectionEntry& entry, std::string_view text,
+                    std::initializer_list<std::uint64_t> numbers = {}) {
+  std::string place = "section " + std::to_string(index) + " (";
+  place += section_name(static_cast<SectionKind>(entry.kind));
+  place += "): ";
+  return error_with(code, place, text, numbers);
 }
 
 bool is_known(std::uint32_t kind) {
@@ -24,25 +30,24 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
   if (header.magic != kMagic)
     return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
   if (header.version_major != kVersionMajor) {
-    return Error{Errc::kVersionUnsupported,
-                 "file has format version " + std::to_string(header.version_major) + "." +
-                     std::to_string(header.version_minor) + ", this reader knows " +
-                     std::to_string(kVersionMajor) + "." + std::to_string(kVersionMinor)};
+    return error_with(Errc::kVersionUnsupported, {},
+                      "file has format version #.#, this reader knows #.#",
+                      {header.version_major, header.version_minor, kVersionMajor, kVersionMinor});
   }
   if ((header.incompatible_features & ~known_features) != 0) {
-    return Error{Errc::kFeatureUnsupported,
-                 "incompatible feature bits " + std::to_string(header.incompatible_features)};
+    return error_with(Errc::kFeatureUnsupported, {}, "incompatible feature bits #",
+                      {header.incompatible_features});
   }
   if (header.header_bytes != sizeof(FileHeader) || header.reserved0 != 0 || header.reserved1 != 0) {
     return Error{Errc::kHeaderCorrupt, "header size or reserved fields are not as specified"};
   }
   if (header.file_bytes != file_size) {
-    return Error{Errc::kTruncated, "header states " + std::to_string(header.file_bytes) +
-                                       " bytes, the file has " + std::to_string(file_size)};
+    return error_with(Errc::kTruncated, {}, "header states # bytes, the file has #",
+                      {header.file_bytes, file_size});
   }
   if (header.section_count > kMaxSections) {
-    return Error{Errc::kTooManySections, std::to_string(header.section_count) +
-                                             " sections, limit " + std::to_string(kMaxSections)};
+    return error_with(Errc::kTooManySections, {}, "# sections, limit #",
+                      {header.section_count, kMaxSections});
   }
   return {};
 }
@@ -51,28 +56,24 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
 Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t file_size,
                      std::uint64_t& free_from) {
   if (!is_known(entry.kind) && (entry.flags & kSectionRequired) != 0) {
-    return Error{Errc::kSectionUnknown,
-                 describe(index, entry) + ": kind " + std::to_string(entry.kind) + " is required"};
+    return section_error(Errc::kSectionUnknown, index, entry, "kind # is required", {entry.kind});
   }
   if ((entry.flags & ~kSectionRequired) != 0 || entry.reserved != 0) {
-    return Error{Errc::kHeaderCorrupt, describe(index, entry) + ": reserved bits are set"};
+    return section_error(Errc::kHeaderCorrupt, index, entry, "reserved bits are set");
   }
   if (entry.offset % kSectionAlignment != 0) {
-    return Error{Errc::kSectionMisaligned, describe(index, entry) + ": offset " +
-                                               std::to_string(entry.offset) +
-                                               " is not a multiple of 64"};
+    return section_error(Errc::kSectionMisaligned, index, entry, "offset # is not a multiple of 64",
+                         {entry.offset});
   }
   if (entry.offset < free_from || entry.offset - free_from > kMaxSectionGap) {
-    return Error{Errc::kSectionOverlap, describe(index, entry) + ": offset " +
-                                            std::to_string(entry.offset) + ", expected at least " +
-                                            std::to_string(free_from) + " and at most " +
-                                            std::to_string(kMaxSectionGap) + " above"};
+    return section_error(Errc::kSectionOverlap, index, entry,
+                         "offset #, expected at least # and at most # above",
+                         {entry.offset, free_from, kMaxSectionGap});
   }
   if (!in_range(entry.offset, entry.size, file_size)) {
-    return Error{Errc::kSectionOutOfRange, describe(index, entry) + ": offset " +
-                                               std::to_string(entry.offset) + " + " +
-                                               std::to_string(entry.size) +
-                                               " ends past file size " + std::to_string(file_size)};
+    return section_error(Errc::kSectionOutOfRange, index, entry,
+                         "offset # + # ends past file size #",
+                         {entry.offset, entry.size, file_size});
   }
   free_from = entry.offset + entry.size;
   return {};
@@ -98,9 +99,8 @@ Status index_sections(Container& container) {
       order.begin(), order.end(),
       [&](std::uint32_t a, std::uint32_t b) { return key_of(sections[a]) == key_of(sections[b]); });
   if (twice == order.end()) return {};
-  return Error{Errc::kSectionDuplicate, describe(*twice, sections[*twice]) + ": owner " +
-                                            std::to_string(sections[*twice].owner) +
-                                            " has it twice"};
+  return section_error(Errc::kSectionDuplicate, *twice, sections[*twice], "owner # has it twice",
+                       {sections[*twice].owner});
 }
 
 }  // namespace
@@ -178,9 +178,8 @@ FileHeader make_header(std::span<const SectionEntry> sections, std::uint64_t fea
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
                                   std::uint64_t known_features) {
   if (file.size() < sizeof(FileHeader)) {
-    return Error{Errc::kTruncated, "the file has " + std::to_string(file.size()) +
-                                       " bytes, a header alone has " +
-                                       std::to_string(sizeof(FileHeader))};
+    return error_with(Errc::kTruncated, {}, "the file has # bytes, a header alone has #",
+                      {file.size(), sizeof(FileHeader)});
   }
   Container container{load<FileHeader>(file.data()), {}, {}};
   const FileHeader& header = container.header;
@@ -219,9 +218,8 @@ Status check_padding(Bytes file, const Container& container) {
     const auto stain =
         std::find_if(gap.begin(), gap.end(), [](std::byte b) { return b != std::byte{0}; });
     if (stain == gap.end()) return {};
-    return Error{Errc::kPaddingNotZero,
-                 "byte " + std::to_string(begin + static_cast<std::uint64_t>(stain - gap.begin())) +
-                     " is padding and not zero"};
+    return error_with(Errc::kPaddingNotZero, {}, "byte # is padding and not zero",
+                      {begin + static_cast<std::uint64_t>(stain - gap.begin())});
   };
   for (const SectionEntry& entry : container.sections) {
     if (Status status = check_gap(entry.offset); !status) return status;

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: MIT
+// Puts numbers into the text of an error.
+#include <string>
+#include <utility>
+
+#include <boxtree/format/message.h>
+
+namespace boxtree {
+
+Error error_with(Errc code, std::string_view place, std::string_view text,
+                 std::initializer_list<std::uint64_t> numbers) {
+  std::string detail(place);
+  const std::uint64_t* number = numbers.begin();
+  for (const char c : text) {
+    if (c == '#') {
+      detail += std::to_string(*number++);
+    } else {
+      detail += c;
+    }
+  }
+  return {code, std::move(detail)};
+}
+
+}  // namespace boxtree
