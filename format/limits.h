@@ -26,6 +26,12 @@ inline constexpr std::uint32_t kMaxNodes = 0xfffffffeu;
 /// Bound of |TreeRecord::scale_exponent|: 2^e and 2^-e are both normal doubles.
 inline constexpr std::int32_t kMaxScaleExponent = 1010;
 
+/// Whether -limit <= x <= limit; the magnitude of the least number is none. Precondition: 0 <=
+/// limit.
+[[nodiscard]] constexpr bool is_within(std::int64_t x, std::int64_t limit) noexcept {
+  return -limit <= x && x <= limit;
+}
+
 /// Bound of the root box's coordinates, in tree space: finite in the scalar of every codec. Honest
 /// ones are below 2^41 (the largest extent is 2^15, and f32 tells positions 2^-24 apart).
 inline constexpr double kMaxRootCoordinate = 0x1p100;

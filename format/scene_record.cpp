@@ -37,8 +37,11 @@ bool frame_fits(const SceneRecord& record) {
     if (!std::isfinite(record.origin[k]) || !is_ordered) return false;
     if (std::abs(low) > kMaxRootCoordinate || std::abs(high) > kMaxRootCoordinate) return false;
   }
-  return std::isfinite(record.condition) && record.condition >= 0 &&
-         std::abs(record.scale_exponent) <= kMaxScaleExponent;
+  if (!is_within(record.scale_exponent, kMaxScaleExponent)) return false;
+  for (const double origin : record.origin) {
+    if (!std::isfinite(std::ldexp(origin, -record.scale_exponent))) return false;
+  }
+  return std::isfinite(record.condition) && record.condition >= 0;
 }
 
 bool reserve_is_zero(const SceneRecord& record) {

@@ -36,8 +36,8 @@ bool root_fits(const TreeRecord& record) {
   return false;
 }
 
-// Each leaf has its own faces: eight of them in wide trees, one in binary ones. What a record claims
-// beyond what its nodes can hold no walk could find, but it would make room for it.
+// Each leaf has its own faces: eight of them in wide trees, one in binary ones. What a record
+// claims beyond what its nodes can hold no walk could find, but it would make room for it.
 bool leaves_fit(const TreeRecord& record) {
   const std::uint64_t faces_of_node = is_wide(record.codec) ? kWideChildren * kLeafFaces : 2;
   const std::uint64_t nodes = std::max(record.node_count, 1u);
@@ -51,7 +51,7 @@ bool frame_fits(const TreeRecord& record) {
     const bool ordered = -kMaxRootCoordinate <= low && low <= high && high <= kMaxRootCoordinate;
     if (!std::isfinite(record.origin[k]) || !ordered) return false;  // NaN is not ordered
   }
-  return std::abs(record.scale_exponent) <= kMaxScaleExponent;
+  return is_within(record.scale_exponent, kMaxScaleExponent);
 }
 
 // Copies need an original, and leaves that name faces by their numbers in the source cannot have
@@ -76,8 +76,8 @@ bool geometry_fits(const TreeRecord& record) {
   if (record.geometry == GeometryId::kGrid) {
     return record.corner_bytes == 0 &&
            (record.corners_per_face == 3 || record.corners_per_face == 4) &&
-           std::abs(record.grid_exponent) <= kMaxScaleExponent &&
-           std::abs(record.grid_exponent - record.scale_exponent) <= kMaxGridShift;
+           is_within(record.grid_exponent, kMaxScaleExponent) &&
+           is_within(std::int64_t{record.grid_exponent} - record.scale_exponent, kMaxGridShift);
   }
   return (record.corner_bytes == 2 || record.corner_bytes == 4) &&
          (record.corners_per_face == 3 || record.corners_per_face == 4);

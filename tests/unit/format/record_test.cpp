@@ -142,6 +142,39 @@ TEST(TreeRecords, FramesAreFiniteAndOrdered) {
   }
 }
 
+// Their magnitude is no int32: std::abs of the least one is undefined.
+TEST(TreeRecords, TheLeastExponentsAreRefused) {
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  EXPECT_EQ(tree_after([](TreeRecord& record) { record.scale_exponent = kLeast; }), kInvalid);
+  const auto with_grid = [](std::int32_t grid, std::int32_t scale) {
+    return tree_after([=](TreeRecord& record) {
+      record.geometry = GeometryId::kGrid;
+      record.corner_bytes = 0;
+      record.grid_exponent = grid;
+      record.scale_exponent = scale;
+    });
+  };
+  EXPECT_EQ(with_grid(3, 3), kOk);
+  EXPECT_EQ(with_grid(kLeast, 3), kInvalid);
+  EXPECT_EQ(with_grid(3, kLeast), kInvalid);
+  EXPECT_EQ(with_grid(kMaxScaleExponent, -kMaxScaleExponent), kInvalid);
+  EXPECT_EQ(scene_after([](SceneRecord& record) { record.scale_exponent = kLeast; }), kInvalid);
+}
+
+// Boxes of instances are taken less the origin: it has to be a number in units of the scene.
+TEST(SceneRecords, OriginsAreFiniteInUnitsOfTheScene) {
+  const auto with_origin = [](double origin, std::int32_t scale) {
+    return scene_after([=](SceneRecord& record) {
+      record.origin = {0, origin, 0};
+      record.scale_exponent = scale;
+    });
+  };
+  EXPECT_EQ(with_origin(1e300, 900), kOk);
+  EXPECT_EQ(with_origin(1e300, 0), kOk);
+  EXPECT_EQ(with_origin(1e300, -900), kInvalid);
+  EXPECT_EQ(with_origin(-1e300, -kMaxScaleExponent), kInvalid);
+}
+
 TEST(SceneRecords, CountsKeepTheirLimits) {
   EXPECT_EQ(scene_after([](SceneRecord& record) { record.instance_count = kMaxInstances; }), kOk);
   EXPECT_EQ(scene_after([](SceneRecord& record) { record.instance_count = kMaxInstances + 1; }),
