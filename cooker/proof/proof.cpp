@@ -13,6 +13,7 @@
 
 #include <boxtree/cooker/import/mesh_arrays.h>
 #include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/proof/reserved.h>
 #include <boxtree/cooker/proof/scene_proof.h>
 #include <boxtree/format/limits.h>
 #include <boxtree/runtime/query/traversal.h>
@@ -323,6 +324,11 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
     }
     const bool with_geometry = tree->record().geometry != GeometryId::kExternal || mesh.has_value();
     TreeProof proof = prove_tree(*tree, with_geometry);
+    for (Error& finding : check_reserved(tree->record(), file.section(SectionKind::kNodes, i),
+                                         file.section(SectionKind::kVertices, i),
+                                         file.section(SectionKind::kCorners, i))) {
+      proof.findings.push_back(std::move(finding));
+    }
     if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
       proof.findings.push_back(status.error());
     }

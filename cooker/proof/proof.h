@@ -34,9 +34,9 @@ struct TreeProof {
 [[nodiscard]] bool certificate_holds(const CertificateRecord& stated,
                                      const CertificateRecord& found, bool with_geometry);
 
-/// Everything that can be checked of an open file: padding, section checksums, records, names, each
-/// tree by prove_tree and against its certificate. `mesh` serves trees with external geometry;
-/// without it their triangles are not looked at.
+/// Everything that can be checked of an open file: padding, section checksums, records, names,
+/// bytes that have to be zero, each tree by prove_tree and against its certificate. `mesh` serves
+/// trees with external geometry; without it their triangles are not looked at.
 [[nodiscard]] Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh = {});
 
 }  // namespace boxtree::cooker

@@ -219,6 +219,8 @@ class Wide:
     def expand(self, ref, box):
         codes, next_node, next_leaf, mask, count = self.fields(ref)
         expect(1 <= count <= 8 and mask >> count == 0, "children of a node")
+        expect(not any(any(axis[count:]) for side in codes for axis in side),
+               "zero codes of children that are not there")
         of_extent = 255 if self.is_wide8 else 688
         children = []
         for i in range(count):

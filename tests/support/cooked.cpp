@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <stdexcept>
 
 #include <boxtree/runtime/file/checksum.h>
 
@@ -81,6 +82,14 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
     for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
   }
   return triangles;
+}
+
+SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind) {
+  const File opened = require(File::open(Bytes(file)));
+  for (const SectionEntry& entry : opened.container().sections) {
+    if (entry.kind == static_cast<std::uint32_t>(kind)) return entry;
+  }
+  throw std::runtime_error("no such section");
 }
 
 void repair_checksums(std::vector<std::byte>& bytes) {

@@ -2,6 +2,8 @@
 // Cooked files in memory, for tests that start from a mesh and end at a tree.
 #pragma once
 
+#include <cstring>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -50,8 +52,31 @@ struct Encoding {
 /// "plain_f32" for "plain-f32": test names allow no dashes.
 [[nodiscard]] std::string test_name(const testing::TestParamInfo<CodecId>& info);
 
+/// The entry of a section of a file with one of the kind.
+[[nodiscard]] SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind);
+
+/// Changes each record of a section, given its number and how many there are, and makes the
+/// checksums right again: bytes that lie.
+template <class Record>
+void edit_records(std::vector<std::byte>& file, SectionKind kind,
+                  const std::function<void(Record&, std::uint32_t, std::uint32_t)>& change);
+
 /// Makes the checksums of header and sections right again after a change, so that the checks
 /// behind them are reached.
 void repair_checksums(std::vector<std::byte>& bytes);
+
+template <class Record>
+void edit_records(std::vector<std::byte>& file, SectionKind kind,
+                  const std::function<void(Record&, std::uint32_t, std::uint32_t)>& change) {
+  const SectionEntry entry = entry_of(file, kind);
+  const auto count = static_cast<std::uint32_t>(entry.size / sizeof(Record));
+  for (std::uint32_t i = 0; i < count; ++i) {
+    std::byte* const at = file.data() + entry.offset + i * sizeof(Record);
+    auto record = load<Record>(at);
+    change(record, i, count);
+    std::memcpy(at, &record, sizeof(record));
+  }
+  repair_checksums(file);
+}
 
 }  // namespace boxtree::test

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What verify says of hostile trees, and that it ends: work and memory are bounded by the bytes.
 #include <algorithm>
-#include <cstring>
-#include <functional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,30 +17,6 @@ namespace {
 
 using FileBytes = std::vector<std::byte>;
 
-SectionEntry entry_of(const FileBytes& bytes, SectionKind kind) {
-  const Result<File> file = File::open(Bytes(bytes));
-  for (const SectionEntry& entry : file->container().sections) {
-    if (entry.kind == static_cast<std::uint32_t>(kind)) return entry;
-  }
-  ADD_FAILURE() << "no such section";
-  return {};
-}
-
-// Changes each record of a section, given its number and how many there are.
-template <class Record>
-void edit_all(FileBytes& bytes, SectionKind kind,
-              const std::function<void(Record&, std::uint32_t, std::uint32_t)>& change) {
-  const SectionEntry entry = entry_of(bytes, kind);
-  const auto count = static_cast<std::uint32_t>(entry.size / sizeof(Record));
-  for (std::uint32_t i = 0; i < count; ++i) {
-    std::byte* const at = bytes.data() + entry.offset + i * sizeof(Record);
-    auto record = load<Record>(at);
-    change(record, i, count);
-    std::memcpy(at, &record, sizeof(record));
-  }
-  test::repair_checksums(bytes);
-}
-
 bool has(const cooker::Findings& findings, Errc code) {
   return std::any_of(findings.begin(), findings.end(),
                      [code](const Error& finding) { return finding.code == code; });
@@ -51,7 +25,7 @@ bool has(const cooker::Findings& findings, Errc code) {
 // Nodes that share their children are met 2^59 times if nobody counts.
 TEST(Proof, SharedChildrenOfBinaryNodesEndIt) {
   FileBytes bytes = test::cook_bytes(test::soup(61, 1), CodecId::kPlainF32);
-  edit_all<PlainNodeF32>(
+  test::edit_records<PlainNodeF32>(
       bytes, SectionKind::kNodes, [](PlainNodeF32& node, std::uint32_t i, std::uint32_t count) {
         if (i + 1 == count) return;
         node = {
@@ -64,14 +38,14 @@ TEST(Proof, SharedChildrenOfBinaryNodesEndIt) {
 
 TEST(Proof, SharedChildrenOfWideNodesEndIt) {
   FileBytes bytes = test::cook_bytes(test::soup(20000, 1), CodecId::kWide8);
-  edit_all<Wide8Node>(bytes, SectionKind::kNodes,
-                      [](Wide8Node& node, std::uint32_t i, std::uint32_t count) {
-                        if (i + 8 >= count) return;
-                        node = {};
-                        node.first_node = i + 1;
-                        node.inner_mask = 0xff;
-                        node.child_count = 8;
-                      });
+  test::edit_records<Wide8Node>(bytes, SectionKind::kNodes,
+                                [](Wide8Node& node, std::uint32_t i, std::uint32_t count) {
+                                  if (i + 8 >= count) return;
+                                  node = {};
+                                  node.first_node = i + 1;
+                                  node.inner_mask = 0xff;
+                                  node.child_count = 8;
+                                });
   const Result<File> file = File::open(Bytes(bytes));
   ASSERT_TRUE(file.ok());
   EXPECT_FALSE(cooker::verify_file(*file).empty());
@@ -82,11 +56,11 @@ TEST(Proof, FacesWithoutLeavesAreRefused) {
   for (const CodecId codec : test::all_codecs()) {
     for (const std::uint32_t source_faces : {1u, 30u}) {
       FileBytes bytes = test::cook_bytes(test::soup(source_faces, 1), codec);
-      edit_all<TreeRecord>(bytes, SectionKind::kTrees,
-                           [](TreeRecord& record, std::uint32_t, std::uint32_t) {
-                             record.face_count = kMaxFaces;
-                             record.triangle_count = kMaxFaces;
-                           });
+      test::edit_records<TreeRecord>(bytes, SectionKind::kTrees,
+                                     [](TreeRecord& record, std::uint32_t, std::uint32_t) {
+                                       record.face_count = kMaxFaces;
+                                       record.triangle_count = kMaxFaces;
+                                     });
       const Result<File> file = File::open(Bytes(bytes));
       ASSERT_TRUE(file.ok());
       EXPECT_EQ(Tree::bind(*file).code(), Errc::kRecordInvalid);
