@@ -30,9 +30,14 @@ namespace boxtree::cooker {
 /// Stands for the mesh of a tree with external geometry when it is not at hand and no leaf will be
 /// read: such a tree can be bound and its boxes walked.
 [[nodiscard]] inline MeshArrays absent_arrays(const TreeRecord& record) {
+  static constexpr std::byte kNowhere{0};
   MeshArrays absent;
   absent.face_count = record.face_count;
   absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
+  absent.position_stride = 3 * sizeof(double);
+  absent.positions = &kNowhere;
+  absent.corners = &kNowhere;
+  absent.corner_bytes = sizeof(std::uint32_t);
   return absent;
 }
 

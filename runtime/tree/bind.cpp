@@ -3,16 +3,29 @@
 #include <cmath>
 #include <string>
 
+#include <boxtree/format/message.h>
 #include <boxtree/runtime/file/section.h>
 #include <boxtree/runtime/tree/float_range.h>
 #include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree {
+namespace {
+
+// Whether a caller's own arrays can be read: after this, numbers of faces and vertices are all that
+// has to be checked.
+bool are_readable(const MeshArrays& mesh) {
+  const std::size_t position_bytes = 3 * (mesh.positions_f64 ? sizeof(double) : sizeof(float));
+  const bool is_there = mesh.corners != nullptr && mesh.positions != nullptr;
+  return (mesh.corners_per_face == 3 || mesh.corners_per_face == 4) &&
+         (mesh.corner_bytes == 2 || mesh.corner_bytes == 4) &&
+         mesh.position_stride >= position_bytes && (is_there || mesh.face_count == 0);
+}
+
+}  // namespace
 
 Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions& options) {
   if (index >= file.tree_count()) {
-    return Error{Errc::kTreeIndex,
-                 "tree " + std::to_string(index) + " of " + std::to_string(file.tree_count())};
+    return error_with(Errc::kTreeIndex, {}, "tree # of #", {index, file.tree_count()});
   }
   return bind(
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
@@ -85,13 +98,16 @@ Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
 Status Tree::bind_external_geometry(const std::string& place, const BindOptions& options) {
   if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
   const MeshArrays& mesh = *options.mesh;
+  if (!are_readable(mesh)) {
+    return error_with(Errc::kExternalMeshMismatch, place,
+                      "expected 3 or 4 corners a face, of 2 or 4 bytes, positions apart, no null");
+  }
   const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
   if (mesh.face_count != record_.face_count || mesh.positions_f64 != positions_f64) {
-    return Error{Errc::kExternalMeshMismatch,
-                 place + "expected " + std::to_string(record_.face_count) + " faces of " +
-                     (positions_f64 ? "f64" : "f32") + " positions, given " +
-                     std::to_string(mesh.face_count) + " of " +
-                     (mesh.positions_f64 ? "f64" : "f32")};
+    const auto bits = [](bool f64) -> std::uint64_t { return f64 ? 64 : 32; };
+    return error_with(
+        Errc::kExternalMeshMismatch, place, "expected # faces of f# positions, given # of f#",
+        {record_.face_count, bits(positions_f64), mesh.face_count, bits(mesh.positions_f64)});
   }
   if (options.verify_mesh) {
     const Result<std::uint64_t> hash = geometry_hash(mesh);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A bound tree: its root, and what lies below a node.
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <variant>
@@ -61,7 +62,8 @@ FaceRange Tree::duplicates_of(std::uint32_t face) const noexcept {
     }
     return low;
   };
-  return {originals + from(face), originals + from(face + 1)};
+  const std::uint32_t first = from(face);
+  return {originals + first, originals + std::max(first, from(face + 1))};
 }
 
 std::uint32_t Tree::original_of(std::uint32_t face) const noexcept {

@@ -71,6 +71,9 @@ class Tree {
   /// kExternalMeshNeeded, kExternalMeshMismatch.
   static Result<Tree> bind(const File& file, std::uint32_t index = 0,
                            const BindOptions& options = {});
+  /// A tree must not outlive its file.
+  static Result<Tree> bind(const File&& file, std::uint32_t index = 0,
+                           const BindOptions& options = {}) = delete;
 
   /// The same for parts that are not in a file (yet). `index` only serves messages.
   static Result<Tree> bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options);
@@ -105,7 +108,7 @@ class Tree {
   [[nodiscard]] bool has_duplicates() const noexcept { return duplicates_ != nullptr; }
   /// The copies of a face that is in a leaf: the same triangles, to the bit, and larger ids.
   /// Visitors of the queries are told of them; traversals that read leaves themselves meet the
-  /// original alone.
+  /// original alone. Corrupt bytes may state any copies, for several faces the same.
   [[nodiscard]] FaceRange duplicates_of(std::uint32_t face) const noexcept;
   /// The face of which a face is a copy; itself, if it is none or copies are not known. What
   /// corrupt bytes state may be any number. Precondition: face < record().face_count.

@@ -249,7 +249,8 @@ TEST(Record, WithoutASectionItNeedsItIsRefused) {
     s.flags = 0;
   });
   test::repair_checksums(bytes);
-  EXPECT_EQ(Tree::bind(*File::open(Bytes(bytes))).code(), Errc::kSectionMissing);
+  const Result<File> file = File::open(Bytes(bytes));
+  EXPECT_EQ(Tree::bind(*file).code(), Errc::kSectionMissing);
 }
 
 }  // namespace

@@ -177,6 +177,44 @@ TEST_P(Trees, NoFacesAtAllMayStayExternal) {
   EXPECT_TRUE(test::cook_tree(mesh, GetParam(), external(), bind).tree.empty());
 }
 
+// What an application says of its arrays is checked before a leaf is read through it.
+TEST_P(Trees, ExternalArraysThatCannotBeAreRefused) {
+  const SourceMesh mesh = test::torus(8, 6);
+  const std::vector<std::byte> bytes = test::cook_bytes(mesh, GetParam(), external());
+  const Result<File> file = File::open(Bytes(bytes));
+  const Arrays arrays(mesh);
+  const auto bound_with = [&](const std::function<void(MeshArrays&)>& change) {
+    BindOptions bind;
+    bind.verify_mesh = true;
+    bind.mesh = arrays.view();
+    change(*bind.mesh);
+    return Tree::bind(*file, 0, bind).code();
+  };
+  EXPECT_EQ(bound_with([](MeshArrays&) {}), Errc::kOk);
+  for (const std::uint32_t corners : {0u, 1u, 2u, 5u, 0xffffffffu}) {
+    EXPECT_EQ(bound_with([=](MeshArrays& given) { given.corners_per_face = corners; }),
+              Errc::kExternalMeshMismatch);
+  }
+  for (const std::uint32_t width : {0u, 1u, 3u, 8u}) {
+    EXPECT_EQ(bound_with([=](MeshArrays& given) { given.corner_bytes = width; }),
+              Errc::kExternalMeshMismatch);
+  }
+  EXPECT_EQ(bound_with([](MeshArrays& given) { given.position_stride = 11; }),
+            Errc::kExternalMeshMismatch);
+  EXPECT_EQ(bound_with([](MeshArrays& given) { given.positions = nullptr; }),
+            Errc::kExternalMeshMismatch);
+  EXPECT_EQ(bound_with([](MeshArrays& given) { given.corners = nullptr; }),
+            Errc::kExternalMeshMismatch);
+}
+
+// A tree of a temporary file would point into memory that is gone.
+template <class F>
+concept BindsTree = requires(F&& file) {
+  Tree::bind(std::forward<F>(file));
+};
+static_assert(BindsTree<File&> && BindsTree<const File&>);
+static_assert(!BindsTree<File> && !BindsTree<const File>);
+
 TEST_P(Trees, ExternalGeometryIsAskedForAndRecognised) {
   const SourceMesh mesh = test::torus(8, 6);
   const std::vector<std::byte> bytes = test::cook_bytes(mesh, GetParam(), external());
