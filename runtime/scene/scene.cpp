@@ -48,8 +48,9 @@ Status Scene::update(std::uint32_t instance, const Pose& pose) {
   moving.placed.pose = pose;
   moving.placed.placement = *placement;
   moving.bounds = *bounds;
-  condition_ = std::max(condition_, bounds->condition);
-  moving_tree_.refit(static_cast<std::uint32_t>(found - moving_.data()), to_frame(bounds->world));
+  const auto number = static_cast<std::uint32_t>(found - moving_.data());
+  conditions_.set(number, bounds->condition);
+  moving_tree_.refit(number, to_frame(bounds->world));
   return {};
 }
 

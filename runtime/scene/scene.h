@@ -2,6 +2,7 @@
 // A scene of an open file, ready to be asked: placed trees under one top-level tree.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -11,6 +12,7 @@
 
 #include <boxtree/format/scene_record.h>
 #include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/scene/largest.h>
 #include <boxtree/runtime/scene/moving_tree.h>
 #include <boxtree/runtime/scene/placement.h>
 #include <boxtree/runtime/scene/top_level.h>
@@ -63,6 +65,12 @@ class Scene {
   /// Errors: kNoScene, kPartLeftOut (naming the part and the line of the profile),
   /// kInstanceIndex, kRecordInvalid, kSectionMissing, kSectionSize, and those of Tree::bind.
   static Result<Scene> bind(const File& file, const SceneOptions& options = {});
+  /// A scene must not outlive its file.
+  static Result<Scene> bind(const File&& file, const SceneOptions& options = {}) = delete;
+
+  Scene(Scene&&) noexcept = default;
+  Scene& operator=(Scene&&) noexcept = default;
+  ~Scene() = default;
 
   [[nodiscard]] std::uint32_t instance_count() const noexcept { return record().instance_count; }
   [[nodiscard]] std::span<const Tree> trees() const noexcept { return trees_; }
@@ -130,7 +138,9 @@ class Scene {
   [[nodiscard]] bool is_detached(std::uint32_t number) const noexcept;
   [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
   /// At least PlacementBounds::condition of every instance.
-  [[nodiscard]] double condition() const noexcept { return condition_; }
+  [[nodiscard]] double condition() const noexcept {
+    return std::max(record().condition, conditions_.of_all());
+  }
   /// World coordinates in units of the scene, and back.
   [[nodiscard]] Eigen::Vector3d to_units(const Eigen::Vector3d& world) const noexcept {
     return world * frame_.inverse_scale;
@@ -186,7 +196,7 @@ class Scene {
   const std::byte* materials_ = nullptr;
   std::vector<Moving> moving_;  // by instance
   MovingTree moving_tree_;
-  double condition_ = 0;
+  Largest conditions_;  // of moving instances
   bool has_detached_ = false;
 };
 

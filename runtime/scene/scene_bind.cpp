@@ -53,7 +53,6 @@ Status Scene::bind_sections(const File& file) {
   materials_ = *materials;
   names_ = file.section(SectionKind::kNames);
   left_out_ = file.section(SectionKind::kLeftOut);
-  condition_ = record.condition;
   if (left_out_.size() % sizeof(LeftOutRecord) != 0) {
     return Error{Errc::kSectionSize, section_text(SectionKind::kLeftOut) + ": " +
                                          std::to_string(left_out_.size()) + " bytes"};
@@ -96,9 +95,9 @@ Status Scene::check_materials(const File& file) {
                        ": " + section_size_error(faces.size(), number_bytes * count).detail +
                        " for " + std::to_string(material_count()) + " materials"};
     }
-    materials_of_tree_[i] = {
-        runs.data(), static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
-        faces.empty() ? nullptr : faces.data(), number_bytes};
+    materials_of_tree_[i] = {runs.data(),
+                             static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
+                             faces.empty() ? nullptr : faces.data(), number_bytes};
   }
   return {};
 }
@@ -166,8 +165,9 @@ Status Scene::bind_moving(const SceneOptions& options) {
     const auto bounds = placed->bounds();
     if (!bounds) return corrupt(": its pose");
     moving_.push_back({number, *placed, *bounds});
-    condition_ = std::max(condition_, bounds->condition);
   }
+  conditions_.reset(moving_.size());
+  for (std::size_t i = 0; i < moving_.size(); ++i) conditions_.set(i, moving_[i].bounds.condition);
   rebuild();
   return {};
 }

@@ -468,10 +468,12 @@ TEST(CookScene, OneFileIsCookedAsWhatItIs) {
   const fs::path obj = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/meshes/crate.obj";
   const CookedFile mesh = require(cook_file(obj, folder.path() / "mesh.bxt", CookOptions()));
   EXPECT_TRUE(std::holds_alternative<CookReport>(mesh));
-  EXPECT_EQ(Scene::bind(require(File::open(folder.path() / "mesh.bxt"))).code(), Errc::kNoScene);
+  const File without = require(File::open(folder.path() / "mesh.bxt"));
+  EXPECT_EQ(Scene::bind(without).code(), Errc::kNoScene);
   const CookedFile scene = require(cook_file(kLevel, folder.path() / "scene.bxt", CookOptions()));
   EXPECT_TRUE(std::holds_alternative<SceneReport>(scene));
-  EXPECT_TRUE(Scene::bind(require(File::open(folder.path() / "scene.bxt"))).ok());
+  const File with = require(File::open(folder.path() / "scene.bxt"));
+  EXPECT_TRUE(Scene::bind(with).ok());
 }
 
 // A tile whose left and right border are alike, side by side with itself on the grid: the points of

@@ -2,6 +2,7 @@
 // Binding scenes: what the file says, what was left out, what cannot move; and damaged bytes.
 #include <set>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -204,11 +205,69 @@ TEST(SceneBind, NamesAreMissedWhereNoInstanceHasOne) {
   for (std::size_t named = 0; named < parts.instances.size(); ++named) {
     cooker::SceneParts one = parts;
     one.instances[named].name = "door";
-    EXPECT_TRUE(Scene::bind(cook(one).file, options).ok()) << named;
+    const CookedScene with_name = cook(one);
+    EXPECT_TRUE(Scene::bind(with_name.file, options).ok()) << named;
   }
   parts.instances.clear();
   const CookedScene nobody = cook(parts);
   EXPECT_TRUE(Scene::bind(nobody.file, options).ok());
+}
+
+// A scene of a temporary file would point into memory that is gone, and so would a copy into its
+// original.
+template <class F>
+concept BindsScene = requires(F&& file) {
+  Scene::bind(std::forward<F>(file));
+};
+static_assert(BindsScene<File&> && BindsScene<const File&>);
+static_assert(!BindsScene<File> && !BindsScene<const File>);
+static_assert(!std::is_copy_constructible_v<Scene> && !std::is_copy_assignable_v<Scene>);
+static_assert(std::is_nothrow_move_constructible_v<Scene>);
+
+TEST(SceneBind, MovedScenesAnswerAsBefore) {
+  const CookedScene cooked = cook(named_parts());
+  Scene scene = require(Scene::bind(cooked.file));
+  const auto all_contacts = [](const Scene& of) {
+    std::vector<std::uint32_t> found;
+    EXPECT_TRUE(contacts(of, [&](const ScenePair& pair) {
+                  found.insert(found.end(), {pair.first.instance, pair.first.face.id,
+                                             pair.second.instance, pair.second.face.id});
+                  return true;
+                }).ok());
+    return found;
+  };
+  const std::vector<std::uint32_t> before = all_contacts(scene);
+  Scene moved = std::move(scene);
+  EXPECT_EQ(all_contacts(moved), before);
+  ASSERT_TRUE(moved.update(moved.moving().front().instance, Pose::Identity()).ok());
+  const std::vector<std::uint32_t> updated = all_contacts(moved);
+  scene = std::move(moved);
+  EXPECT_EQ(all_contacts(scene), updated);
+}
+
+// Rays are widened by the worst map of all: one that was once hard to undo does not count for ever.
+TEST(SceneBind, TheConditionIsThatOfTheInstancesAsTheyAre) {
+  const CookedScene cooked = cook(named_parts());
+  Scene scene = require(Scene::bind(cooked.file));
+  ASSERT_GE(scene.moving().size(), 2u);
+  const std::uint32_t first = scene.moving()[0].instance, second = scene.moving()[1].instance;
+  ASSERT_TRUE(scene.update(first, Pose::Identity()).ok());
+  ASSERT_TRUE(scene.update(second, Pose::Identity()).ok());
+  const double usual = scene.condition();
+  const auto sheared = [](double by) {
+    Pose pose = Pose::Identity();
+    pose.linear()(0, 1) = by;
+    return pose;
+  };
+  ASSERT_TRUE(scene.update(first, sheared(1e4)).ok());
+  const double larger = scene.condition();
+  EXPECT_GT(larger, 1e4);
+  ASSERT_TRUE(scene.update(second, sheared(1e5)).ok());
+  EXPECT_GT(scene.condition(), larger);
+  ASSERT_TRUE(scene.update(second, Pose::Identity()).ok());
+  EXPECT_EQ(scene.condition(), larger);
+  ASSERT_TRUE(scene.update(first, Pose::Identity()).ok());
+  EXPECT_EQ(scene.condition(), usual);
 }
 
 TEST(SceneBind, OnlyWhatMovesIsMoved) {
