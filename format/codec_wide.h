@@ -100,11 +100,15 @@ inline constexpr std::uint32_t kMaxWide4Leaves = 1u << 27;
 [[nodiscard]] inline WideLinks links_of(const Wide8Node& node) noexcept {
   return {node.first_node, node.first_leaf, node.inner_mask, node.child_count};
 }
+/// Of Wide4Node::links.
+[[nodiscard]] inline WideLinks links_of_word(std::uint64_t links) noexcept {
+  return {static_cast<std::uint32_t>(links) & (kMaxWide4Nodes - 1),
+          static_cast<std::uint32_t>(links >> 26) & (kMaxWide4Leaves - 1),
+          static_cast<std::uint32_t>(links >> 53) & 0xffu,
+          static_cast<std::uint32_t>(links >> 61) + 1};
+}
 [[nodiscard]] inline WideLinks links_of(const Wide4Node& node) noexcept {
-  return {static_cast<std::uint32_t>(node.links) & (kMaxWide4Nodes - 1),
-          static_cast<std::uint32_t>(node.links >> 26) & (kMaxWide4Leaves - 1),
-          static_cast<std::uint32_t>(node.links >> 53) & 0xffu,
-          static_cast<std::uint32_t>(node.links >> 61) + 1};
+  return links_of_word(node.links);
 }
 
 /// Length of a step on one axis of a box: fl(fl(high - low) * fl(1 / steps of the extent)).

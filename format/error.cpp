@@ -65,6 +65,7 @@ constexpr std::array kTable = {
              1},
     ErrcInfo{Errc::kInstanceStatic, "instance_static",
              "an instance that was bound as static cannot be moved", 1},
+    ErrcInfo{Errc::kWorkLimit, "work_limit", "the query would cost more than its caller allows", 1},
     ErrcInfo{Errc::kFileNotFound, "file_not_found", "no such file", 2},
     ErrcInfo{Errc::kFileUnreadable, "file_unreadable", "the file cannot be read", 2},
     ErrcInfo{Errc::kMapFailed, "map_failed", "the file cannot be mapped", 2},

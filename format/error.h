@@ -56,6 +56,7 @@ enum class Errc : std::uint16_t {
   kNoScene = 56,
   kInstanceIndex = 57,
   kInstanceStatic = 58,
+  kWorkLimit = 59,
 
   // 60..69: the operating system.
   kFileNotFound = 60,

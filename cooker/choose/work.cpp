@@ -63,7 +63,8 @@ struct LeafPairCounter {
 Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {
   int exponent = 0;
   static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
-  Listening query{RayQuery(tree, ray, exponent, false), &counts};
+  WalkBound nodes(tree.record().node_count);
+  Listening query{RayQuery(tree, nodes, ray, exponent, false), &counts};
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
@@ -71,15 +72,17 @@ Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {
 Errc ask(const Tree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
-  Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, Errc::kOk, false, {}}, &counts};
+  WalkBound nodes(tree.record().node_count);
+  Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, nodes}, &counts};
   const Errc walked = traverse_overlap(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 
 Errc ask(const Tree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  Listening query{PointQuery{tree, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}},
-                  &counts};
+  WalkBound nodes(tree.record().node_count);
+  Listening query{
+      PointQuery{tree, nodes, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}}, &counts};
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
@@ -90,7 +93,8 @@ Errc ask(const Tree& tree, const Pose& pose, Counts& counts) {
   if (!relative) return Errc::kOk;
   const auto go_on = [](const FacePair&) { return true; };
   const ListeningCodec codec{&tree, &counts};
-  return PairWalk(tree, codec, tree, codec, *relative, go_on, LeafPairCounter{&counts})
+  PairBound bound(tree, tree, nullptr);
+  return PairWalk(tree, codec, tree, codec, *relative, go_on, bound, LeafPairCounter{&counts})
       .run()
       .code();
 }

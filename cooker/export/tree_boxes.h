@@ -9,6 +9,7 @@
 #include <vector>
 
 #include <boxtree/format/limits.h>
+#include <boxtree/runtime/query/work.h>
 #include <boxtree/runtime/tree/tree.h>
 
 namespace boxtree::cooker {
@@ -34,8 +35,8 @@ struct BoxGroup {
 };
 
 /// Calls visit(level, is_leaf, Box<double>) for the boxes of levels 0 to `deepest`, each before
-/// those below it, in the order of the children. Boxes are of tree space. Ends on any bytes: an
-/// honest walk expands each node once. kNodeCorrupt and kDepthExceeded for corrupt bytes.
+/// those below it, in the order of the children. Boxes are of tree space. Ends on any bytes, as
+/// WalkBound sees to. kNodeCorrupt and kDepthExceeded for corrupt bytes.
 template <class Visit>
 [[nodiscard]] Errc walk_boxes(const Tree& tree, std::uint32_t deepest, Visit visit) {
   struct Entry {
@@ -45,7 +46,7 @@ template <class Visit>
   if (tree.empty()) return Errc::kOk;
   std::vector<Entry> stack = {{tree.root(), 0}};
   NodeChildren children;
-  std::uint64_t unexpanded = tree.record().node_count;
+  WalkBound bound(tree.record().node_count);
   while (!stack.empty()) {
     const Entry entry = stack.back();
     stack.pop_back();
@@ -57,7 +58,7 @@ template <class Visit>
     if (entry.node.is_leaf) continue;
     if (entry.level >= kMaxDepth) return Errc::kDepthExceeded;
     if (entry.level >= deepest) continue;
-    if (unexpanded-- == 0) return Errc::kNodeCorrupt;
+    if (!bound.take_one()) return bound.error();
     if (const Errc error = tree.expand(entry.node, children); error != Errc::kOk) return error;
     for (std::uint32_t i = children.count; i-- > 0;) {
       stack.push_back({children.child[i], entry.level + 1});

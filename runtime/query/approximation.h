@@ -6,10 +6,9 @@
 #include <cstdint>
 #include <limits>
 
-namespace boxtree {
+#include <boxtree/runtime/query/work.h>
 
-/// No limit of the nodes that a query may visit.
-inline constexpr std::uint64_t kUnlimitedNodes = std::numeric_limits<std::uint64_t>::max();
+namespace boxtree {
 
 /// An answer [lower, upper] is near enough if upper <= lower * (1 + relative_error) or
 /// upper <= lower + absolute_error: whichever allows more. Zeros ask for all that double tells.

@@ -6,13 +6,15 @@
 #include <boxtree/runtime/wide/walks.h>
 
 namespace boxtree {
-Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor) {
+Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
+                          const QueryLimits& limits) {
   const DefaultFloatState state;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
   const BoxQuery query{tree.frame().to_tree(box.min()).cwiseMax(-kReach).cwiseMin(kReach),
                        tree.frame().to_tree(box.max()).cwiseMax(-kReach).cwiseMin(kReach)};
-  return visit_faces(tree, query, visitor);
+  QueryWork work(limits);
+  return visit_faces(tree, query, visitor, work);
 }
 
 }  // namespace boxtree

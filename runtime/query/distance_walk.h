@@ -39,7 +39,7 @@ class DistanceWalk {
         pose_(pose),
         metric_(metric),
         node_budget_(approximation.node_budget),
-        unmet_(most_pairs(first.record(), second.record())),
+        bound_(first, second, nullptr),
         nearest_(first, second, pose, metric, approximation) {}
 
   Errc run() noexcept {
@@ -67,7 +67,6 @@ class DistanceWalk {
         break;
       }
       ++visited_;
-      if (unmet_-- == 0) return Errc::kNodeCorrupt;
       const Errc error = visit(entry);
       if (error != Errc::kOk) return error;
     }
@@ -114,7 +113,11 @@ class DistanceWalk {
   }
 
   Errc visit(const Entry& entry) noexcept {
-    if (entry.first_leaf && entry.second_leaf) return nearest_.compare(entry.first, entry.second);
+    if (entry.first_leaf && entry.second_leaf) {
+      const Errc error = bound_.compare(entry.first, entry.second);
+      return error != Errc::kOk ? error : nearest_.compare(entry.first, entry.second);
+    }
+    if (const Errc error = bound_.take_apart(); error != Errc::kOk) return error;
     // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
     // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
     const Box<double> image = pose_.hull_in_first(entry.second_box);
@@ -217,7 +220,7 @@ class DistanceWalk {
   const RelativePose& pose_;
   const WorldMetric& metric_;
   const std::uint64_t node_budget_;
-  std::uint64_t unmet_;
+  PairBound bound_;
   std::uint64_t visited_ = 0;
   bool is_spent_ = false;
   NearestTriangles nearest_;

@@ -34,12 +34,11 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
         continue;
       if (triangles_intersect(triangle, leaves_.moved[j])) {
         found |= std::uint64_t{1} << j;
-        stopped_ =
-            !report_pair(first_, leaves_.first.face[i], second_, leaves_.second.face[j], visitor_);
-      } else if (watch != nullptr) {
-        stopped_ = (*watch)(triangle, leaves_.moved[j]);
+        if (!report_.tell(leaves_.first.face[i], leaves_.second.face[j])) return report_.error();
+      } else if (watch != nullptr && (*watch)(triangle, leaves_.moved[j])) {
+        stopped_ = true;
+        return Errc::kOk;
       }
-      if (stopped_) return Errc::kOk;
     }
   }
   return Errc::kOk;

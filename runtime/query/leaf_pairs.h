@@ -7,6 +7,7 @@
 #include <boxtree/format/box.h>
 #include <boxtree/format/children.h>
 #include <boxtree/runtime/query/leaf_reading.h>
+#include <boxtree/runtime/query/pair_work.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/types.h>
 
@@ -29,26 +30,20 @@ class LeafPairTest {
  public:
   LeafPairTest(const Tree& first, const Tree& second, const RelativePose& pose,
                PairVisitor visitor) noexcept
-      : first_(first),
-        second_(second),
-        pose_(pose),
-        visitor_(visitor),
-        leaves_(first, second, pose) {}
+      : pose_(pose), report_(first, second, visitor), leaves_(first, second, pose) {}
 
-  /// Each pair of faces once. `watch` may be null. Errors: those of corrupt leaves.
+  /// Each pair of faces once. `watch` may be null. Errors: those of corrupt leaves and copies.
   [[nodiscard]] Errc run(const LeafPair& leaves, const TriangleWatch* watch);
 
   /// Whether the visitor or the watch asked to stop.
-  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+  [[nodiscard]] bool stopped() const noexcept { return stopped_ || report_.stopped(); }
 
  private:
   [[nodiscard]] bool was_found(std::uint64_t found, std::uint32_t j) const noexcept;
 
-  const Tree& first_;
-  const Tree& second_;
   const RelativePose& pose_;
-  PairVisitor visitor_;
-  bool stopped_ = false;
+  PairReport report_;
+  bool stopped_ = false;  // by the watch
   LeafReading leaves_;
 };
 

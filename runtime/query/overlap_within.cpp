@@ -75,7 +75,8 @@ bool is_binary(const Tree& tree) noexcept {
 
 template <Codec C>
 Result<Visit> walk(const Tree& first, const Tree& second, Watch& watch, PairVisitor visitor) {
-  return PairWalk<C, C, Watcher>(first, C{&first}, second, C{&second}, watch.pose, visitor,
+  PairBound bound(first, second, nullptr);
+  return PairWalk<C, C, Watcher>(first, C{&first}, second, C{&second}, watch.pose, visitor, bound,
                                  Watcher{&watch})
       .run();
 }
@@ -150,7 +151,7 @@ struct BoxSearch {
     const Box<double> root = root_box<double>(tree);
     if (!box.overlaps(root)) return Errc::kOk;
     stack[size++] = {root, tree.root_ref(), tree.record().root == RootKind::kLeaf};
-    std::uint64_t unexpanded = tree.record().node_count;
+    WalkBound bound(tree.record().node_count);
     ErasedCodec::Children children;
     while (size > 0) {
       const Entry entry = stack[--size];
@@ -160,9 +161,8 @@ struct BoxSearch {
         if (error != Errc::kOk || result.overlap != Overlap::kFree) return error;
         continue;
       }
-      if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.node, children)) {
-        return Errc::kNodeCorrupt;
-      }
+      if (!bound.take_one()) return bound.error();
+      if (!codec.expand(entry.ref, entry.node, children)) return Errc::kNodeCorrupt;
       for (std::uint32_t i = 0; i < children.count; ++i) {
         const Box<double> child = children.box(i);
         if (!box.overlaps(child)) continue;

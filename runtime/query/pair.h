@@ -6,6 +6,7 @@
 
 #include <boxtree/configuration.h>
 #include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/work.h>
 
 namespace boxtree {
 
@@ -18,12 +19,14 @@ static_assert(kHasPairQueries, "BOXTREE_QUERIES left pair queries out of this bu
 /// Answers are exact for the coordinates that arise when the second tree's triangles are brought
 /// into the first one's space in double precision (translations subtracted first).
 /// Errors: kInvalidPose (not finite, not invertible) and the codes of corrupt bytes as for
-/// closest_hit. Never allocates.
+/// closest_hit; kWorkLimit. Never allocates.
 Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
-                            const Pose& second_pose, PairVisitor visitor);
+                            const Pose& second_pose, PairVisitor visitor,
+                            const QueryLimits& limits = {});
 
 /// Some pair of faces that share a point, or nothing. Errors as for overlap_pairs.
 Result<std::optional<FacePair>> first_contact(const Tree& first, const Pose& first_pose,
-                                              const Tree& second, const Pose& second_pose);
+                                              const Tree& second, const Pose& second_pose,
+                                              const QueryLimits& limits = {});
 
 }  // namespace boxtree

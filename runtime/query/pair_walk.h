@@ -8,6 +8,7 @@
 #include <cstdint>
 
 #include <boxtree/runtime/query/leaf_pairs.h>
+#include <boxtree/runtime/query/pair_work.h>
 #include <boxtree/runtime/query/relative_pose.h>
 #include <boxtree/runtime/query/traversal.h>
 
@@ -36,31 +37,20 @@ struct PairSide {
   }
 };
 
-/// As many pairs as an honest walk can meet: each node or leaf of one tree with each of the other,
-/// once. A walk of corrupt bytes that would meet more ends with kNodeCorrupt.
-[[nodiscard]] inline std::uint64_t most_pairs(const TreeRecord& first,
-                                              const TreeRecord& second) noexcept {
-  const auto size = [](const TreeRecord& r) {
-    return std::uint64_t{r.node_count} + faces_in_leaves(r);
-  };
-  const std::uint64_t a = size(first);
-  const std::uint64_t b = size(second);
-  return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;
-}
-
 /// One test of two trees. Everything passed by reference must outlive it.
 template <Codec A, Codec B, class Observer = NoPairObserver>
 class PairWalk {
  public:
   PairWalk(const Tree& first, const A& first_codec, const Tree& second, const B& second_codec,
-           const RelativePose& pose, PairVisitor visitor, Observer observer = {}) noexcept
+           const RelativePose& pose, PairVisitor visitor, PairBound& bound,
+           Observer observer = {}) noexcept
       : first_(first),
         second_(second),
         first_codec_(first_codec),
         second_codec_(second_codec),
         pose_(pose),
         observer_(observer),
-        unmet_(most_pairs(first.record(), second.record())),
+        bound_(bound),
         leaves_(first, second, pose, visitor) {}
 
   [[nodiscard]] Result<Visit> run() {
@@ -114,9 +104,9 @@ class PairWalk {
   void descend(const Entry entry) {
     if (stops(entry.first_box, entry.second_box)) return;
     observer_.node_pair(entry.first, entry.first_leaf, entry.second, entry.second_leaf);
-    if (unmet_-- == 0) {
-      error_ = Errc::kNodeCorrupt;
-    } else if constexpr (kBothSides) {
+    error_ = bound_.take_apart();
+    if (error_ != Errc::kOk) return;
+    if constexpr (kBothSides) {
       descend_both(entry);
     } else {
       descend_one(entry);
@@ -216,6 +206,8 @@ class PairWalk {
 
   void test_leaves(const Entry& entry) {
     if (stops(entry.first_box, entry.second_box)) return;
+    error_ = bound_.compare(entry.first, entry.second);
+    if (error_ != Errc::kOk) return;
     observer_.leaf_pair(entry.first, entry.second);
     const LeafPair leaves{box_cast<double>(entry.first_box), box_cast<double>(entry.second_box),
                           entry.first, entry.second};
@@ -237,7 +229,7 @@ class PairWalk {
   const B second_codec_;
   const RelativePose& pose_;
   [[no_unique_address]] Observer observer_;
-  std::uint64_t unmet_;
+  PairBound& bound_;
   Errc error_ = Errc::kOk;
   bool stopped_ = false;
   PairSide<A> first_side_;

@@ -28,7 +28,6 @@ class BestFirst {
     Entry entry{root_box<double>(tree_), tree_.root_ref(), tree_.record().root == RootKind::kLeaf};
     double key = query_.key(entry.box);
     if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
-    std::uint64_t unexpanded = tree_.record().node_count;
     ErasedCodec::Children children;
     while (frontier_.pop(enough(), key, entry)) {
       bool goes_on = true;
@@ -43,9 +42,8 @@ class BestFirst {
           break;
         }
         ++query_.nodes_expanded;
-        if (unexpanded-- == 0 || !codec_.expand(entry.ref, entry.box, children)) {
-          return Errc::kNodeCorrupt;
-        }
+        if (!query_.nodes.take_one()) return query_.nodes.error();
+        if (!codec_.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
         const Errc error = meet(children, goes_on, key, entry);
         if (error != Errc::kOk) return error;
       }
@@ -126,12 +124,14 @@ Errc find_nearest(const Tree& tree, PointQuery& query) {
 }
 
 Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen::Vector3d& point,
-                                                  double max_distance) {
+                                                  double max_distance, const QueryLimits& limits) {
   const DefaultFloatState state;
   const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
   if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;
-  PointQuery query{tree, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
+  QueryWork work(limits);
+  WalkBound nodes(tree.record().node_count, &work);
+  PointQuery query{tree, nodes, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
   if (const Errc error = find_nearest(tree, query); error != Errc::kOk) return error;
   if (query.found) {
     query.found->point = tree.frame().to_object(query.found->point);
@@ -154,8 +154,9 @@ Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& 
   Approximation approximation = options;
   approximation.absolute_error *= frame.inverse_scale;
   approximation.max_distance *= frame.inverse_scale;
-  PointQuery query{tree, tree_point, approximation.max_distance * approximation.max_distance,
-                   {},   Errc::kOk,  {}};
+  WalkBound nodes(tree.record().node_count);
+  const double most = approximation.max_distance * approximation.max_distance;
+  PointQuery query{tree, nodes, tree_point, most, {}, Errc::kOk, {}};
   query.approximation = &approximation;
   double left = std::numeric_limits<double>::infinity();  // squared: of what was not looked at
   Errc walked;

@@ -23,10 +23,10 @@ struct ClosestPoint {
 /// The nearest point of the tree's surface within `max_distance` of `point` (object space), or
 /// nothing. Of several faces at the same distance the one with the smallest id (order, if the file
 /// has no ids). Errors: kInvalidQuery (NaN or infinite point, NaN or negative distance) and the
-/// codes of corrupt bytes as for closest_hit. Never allocates.
+/// codes of corrupt bytes and limits as for closest_hit. Never allocates.
 Result<std::optional<ClosestPoint>> closest_point(
     const Tree& tree, const Eigen::Vector3d& point,
-    double max_distance = std::numeric_limits<double>::infinity());
+    double max_distance = std::numeric_limits<double>::infinity(), const QueryLimits& limits = {});
 
 using PointOptions = Approximation;
 

@@ -40,6 +40,7 @@ struct PlacedPoint {
 /// A query of traverse_nearest, in tree space.
 struct PointQuery {
   const Tree& tree;
+  WalkBound& nodes;
   Eigen::Vector3d point;  // tree space
   double best;            // squared distance; shrinks
   std::optional<ClosestPoint> found;

@@ -27,11 +27,13 @@ int direction_exponent(const Eigen::Vector3d& direction) noexcept {
   return exponent;
 }
 
-Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first) {
+Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first,
+                                       QueryWork& work) {
   if (!is_valid(ray) || !is_within_reach(tree.frame().to_tree(ray.origin))) {
     return Errc::kInvalidQuery;
   }
-  RayQuery query(tree, ray, direction_exponent(ray.direction), stop_at_first);
+  WalkBound nodes(tree.record().node_count, &work);
+  RayQuery query(tree, nodes, ray, direction_exponent(ray.direction), stop_at_first);
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
   if (walked != Errc::kOk) return walked;
@@ -40,14 +42,17 @@ Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool st
   return query.hit;
 }
 
-Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray) {
+Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray,
+                                          const QueryLimits& limits) {
   const DefaultFloatState state;
-  return cast_ray(tree, ray, false);
+  QueryWork work(limits);
+  return cast_ray(tree, ray, false, work);
 }
 
-Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray) {
+Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits) {
   const DefaultFloatState state;
-  return cast_ray(tree, ray, true);
+  QueryWork work(limits);
+  return cast_ray(tree, ray, true, work);
 }
 
 }  // namespace boxtree

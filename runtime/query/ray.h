@@ -7,6 +7,7 @@
 
 #include <boxtree/configuration.h>
 #include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/work.h>
 
 namespace boxtree {
 
@@ -34,11 +35,12 @@ struct RayHit {
 /// Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
 /// interval, an origin more than 2^180 mesh extents away), and
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
-/// bytes. Never
-/// allocates.
-Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray);
+/// bytes; kWorkLimit when `limits` do not suffice. Never allocates.
+Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray,
+                                          const QueryLimits& limits = {});
 
 /// Some hit, or nothing: cheaper than closest_hit when only the fact matters. Errors as there.
-Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray);
+Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray,
+                                      const QueryLimits& limits = {});
 
 }  // namespace boxtree

@@ -20,8 +20,10 @@ namespace boxtree {
 /// component of the direction is in [1/2, 1), so that directions of any length behave alike and t
 /// is converted without rounding. A query of traverse_nearest.
 struct RayQuery {
-  RayQuery(const Tree& asked, const Ray& ray, int direction_exponent, bool stop_at_first) noexcept
+  RayQuery(const Tree& asked, WalkBound& bound, const Ray& ray, int direction_exponent,
+           bool stop_at_first) noexcept
       : tree(asked),
+        nodes(bound),
         parameter_exponent(direction_exponent - asked.record().scale_exponent),
         origin(asked.frame().to_tree(ray.origin)),
         direction(scaled(ray.direction, -direction_exponent)),
@@ -75,6 +77,7 @@ struct RayQuery {
   }
 
   const Tree& tree;
+  WalkBound& nodes;
   int parameter_exponent;
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
@@ -102,6 +105,7 @@ struct RayQuery {
 [[nodiscard]] bool is_valid(const Ray& ray) noexcept;
 
 /// closest_hit or any_hit for callers that have seen to the floating-point state.
-Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first);
+Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first,
+                                       QueryWork& work);
 
 }  // namespace boxtree

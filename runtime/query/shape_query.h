@@ -64,6 +64,7 @@ struct SphereQuery {
 };
 
 /// overlap_sphere for callers that have made the shape themselves.
-Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor);
+Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor,
+                           QueryWork& work);
 
 }  // namespace boxtree

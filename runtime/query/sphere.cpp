@@ -10,12 +10,13 @@
 
 namespace boxtree {
 
-Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor) {
-  return visit_faces(tree, sphere, visitor);
+Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor,
+                           QueryWork& work) {
+  return visit_faces(tree, sphere, visitor, work);
 }
 
 Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
-                             FaceVisitor visitor) {
+                             FaceVisitor visitor, const QueryLimits& limits) {
   const DefaultFloatState state;
   const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
   if (!(radius >= 0) || !std::isfinite(radius) || !is_within_reach(tree_center)) {
@@ -23,7 +24,8 @@ Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, do
   }
   // Twice the reach spans every distance that can occur; a larger radius changes no answer.
   const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kReach);
-  return visit_sphere(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor);
+  QueryWork work(limits);
+  return visit_sphere(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor, work);
 }
 
 }  // namespace boxtree

@@ -4,6 +4,7 @@
 
 #include <boxtree/configuration.h>
 #include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/work.h>
 
 namespace boxtree {
 
@@ -12,8 +13,8 @@ static_assert(kHasSphereQueries,
 
 /// Visits every face whose distance from `center` is at most `radius` (object space), each once, in
 /// no promised order. Errors: kInvalidQuery (NaN, infinite, negative radius) and the codes of
-/// corrupt bytes as for closest_hit. Never allocates.
+/// corrupt bytes and limits as for closest_hit. Never allocates.
 Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
-                             FaceVisitor visitor);
+                             FaceVisitor visitor, const QueryLimits& limits = {});
 
 }  // namespace boxtree

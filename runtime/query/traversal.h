@@ -7,8 +7,7 @@
 // bounds through the same box test. So a triangle that the predicate accepts passes at every node
 // above it, whatever the rounding.
 //
-// Why it ends on any bytes: an honest walk expands each node at most once, so a walk that would
-// expand more nodes than the record states has met a node twice and stops with kNodeCorrupt.
+// Why it ends on any bytes: WalkBound.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +16,9 @@
 #include <limits>
 
 #include <boxtree/format/limits.h>
+#include <boxtree/runtime/query/face_copies.h>
 #include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/work.h>
 #include <boxtree/runtime/tree/dispatch.h>
 
 namespace boxtree {
@@ -34,41 +35,6 @@ namespace boxtree {
     box.high[k] = std::max({a, b, c});
   }
   return box;
-}
-
-/// How an answer names the face at position `order` of the tree. Precondition: it is there.
-[[nodiscard]] inline FaceRef face_ref(const Tree& tree, std::uint32_t order) noexcept {
-  return {tree.face_id(order), order};
-}
-
-/// Tells a visitor of faces of all that are copies of a face; whether to go on.
-template <class Visitor>
-[[nodiscard]] bool report_copies(const Tree& tree, std::uint32_t face, Visitor& visitor) {
-  const FaceRange copies = tree.duplicates_of(face);
-  for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
-    if (!visitor(face_ref(tree, copy))) return false;
-  }
-  return true;
-}
-
-/// Tells a visitor of faces of a face and of all that are copies of it; whether to go on.
-template <class Visitor>
-[[nodiscard]] [[gnu::always_inline]] inline bool report_face(const Tree& tree, std::uint32_t face,
-                                                             Visitor& visitor) {
-  if (!visitor(face_ref(tree, face))) return false;
-  return !tree.has_duplicates() || report_copies(tree, face, visitor);
-}
-
-/// The same for a pair of faces and a visitor of pairs: each copy of the one with each of the
-/// other.
-template <class Visitor>
-[[nodiscard]] bool report_pair(const Tree& first_tree, std::uint32_t first, const Tree& second_tree,
-                               std::uint32_t second, Visitor& visitor) {
-  const auto with_first = [&](const FaceRef& a) {
-    const auto with_second = [&](const FaceRef& b) { return visitor({a, b}); };
-    return report_face(second_tree, second, with_second);
-  };
-  return report_face(first_tree, first, with_first);
 }
 
 /// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
@@ -120,7 +86,8 @@ template <class Query>
 /// empty(), record(), root_ref() and root_box<S>() as a tree has.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
-/// Returns kNodeCorrupt or kDepthExceeded for corrupt nodes, else kOk.
+/// query.nodes: a WalkBound, of as many nodes as the tree's record states.
+/// Returns kNodeCorrupt or kDepthExceeded for corrupt nodes, kWorkLimit, else kOk.
 template <class Source, Codec C, class Query>
 Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
@@ -139,12 +106,10 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
   std::size_t size = 0;
   stack[size++] = {root, tree.root_ref()};
   typename C::Children children;
-  std::uint64_t unexpanded = tree.record().node_count;
   while (size > 0) {
     const Entry entry = stack[--size];
-    if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.box, children)) {
-      return Errc::kNodeCorrupt;
-    }
+    if (!query.nodes.take_one()) return query.nodes.error();
+    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const Box<S> box = children.box(i);
       if (!query.overlaps(box)) continue;
@@ -165,7 +130,7 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
 /// query.bound() -> double: keys above it cannot improve the answer. Equal keys are still visited,
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
-/// query.nodes_expanded, if it has one, counts the nodes taken apart.
+/// query.nodes_expanded, if it has one, counts the nodes taken apart. query.nodes: as above.
 template <class Source, Codec C, class Query>
 Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
@@ -187,14 +152,12 @@ Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   std::size_t size = 0;
   stack[size++] = {root_key, root, tree.root_ref()};
   typename C::Children children;
-  std::uint64_t unexpanded = tree.record().node_count;
   while (size > 0) {
     const Entry entry = stack[--size];
     if (entry.key > query.bound()) continue;
     if constexpr (requires { query.nodes_expanded; }) ++query.nodes_expanded;
-    if (unexpanded-- == 0 || !codec.expand(entry.ref, entry.box, children)) {
-      return Errc::kNodeCorrupt;
-    }
+    if (!query.nodes.take_one()) return query.nodes.error();
+    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
 
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that pass, nearest first

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Contacts in a scene: candidates by their boxes in the world, then tree against tree.
 #include <boxtree/runtime/query/float_state.h>
+#include <boxtree/runtime/query/pair_query.h>
 #include <boxtree/runtime/scene/scene_queries.h>
 #include <boxtree/runtime/scene/scene_walk.h>
 
@@ -40,10 +41,14 @@ struct BodyInScene {
       return is_first ? visitor({body, placed}) : visitor({placed, body});
     };
     const Result<Visit> visited =
-        swap ? overlap_pairs(*other.tree, other.pose, tree, pose,
-                             [&](const FacePair& pair) { return report(pair.second, pair.first); })
-             : overlap_pairs(tree, pose, *other.tree, other.pose,
-                             [&](const FacePair& pair) { return report(pair.first, pair.second); });
+        swap ? visit_pairs(
+                   *other.tree, other.pose, tree, pose,
+                   [&](const FacePair& pair) { return report(pair.second, pair.first); },
+                   admission.work)
+             : visit_pairs(
+                   tree, pose, *other.tree, other.pose,
+                   [&](const FacePair& pair) { return report(pair.first, pair.second); },
+                   admission.work);
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
     return !is_done();
@@ -67,8 +72,8 @@ struct LaterMoving {
 };
 
 BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Placed& placed,
-                    const PlacementBounds& bounds, ScenePairVisitor visitor) {
-  return {{scene, kPairQueries, scene.layer(placed.layer).meets},
+                    const PlacementBounds& bounds, ScenePairVisitor visitor, QueryWork& work) {
+  return {{scene, kPairQueries, scene.layer(placed.layer).meets, work},
           *placed.tree,
           placed.pose,
           bounds.condition,
@@ -84,16 +89,17 @@ bool asks_for_contacts(const Scene& scene, std::uint32_t layer) {
 
 }  // namespace
 
-Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
+Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor, const QueryLimits& limits) {
   const DefaultFloatState state;
+  QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const Scene::Moving& moving : scene.moving()) {
     if (!asks_for_contacts(scene, moving.placed.layer)) continue;
-    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor);
+    BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor, work);
     Errc walked = walk_static(scene, body);
     if (walked == Errc::kOk && !body.is_done()) {
       LaterMoving later{body, body.admission, body.error};
-      MovingInstances<LaterMoving> others{later};
+      MovingInstances<LaterMoving> others(later, scene.moving_tree());
       walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
     }
     Result<Visit> visit = outcome_of(walked, body);
@@ -102,8 +108,10 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor) {
   return Visit::kComplete;
 }
 
-Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor) {
+Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor,
+                          const QueryLimits& limits) {
   const DefaultFloatState state;
+  QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
   const std::optional<Scene::Placed> placed = scene.place_now(instance);
@@ -111,21 +119,22 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
   if (!asks_for_contacts(scene, placed->layer)) return Visit::kComplete;
   const auto bounds = placed->bounds();
   if (!bounds) return Errc::kRecordInvalid;
-  BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor);
+  BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor, work);
   return outcome_of(walk_overlap(scene, body), body);
 }
 
 Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
-                            ScenePairVisitor visitor, LayerMask layers) {
+                            ScenePairVisitor visitor, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
+  QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   const std::optional<Placement> placement = scene.place_in_units(tree, pose);
   if (!placement) return Errc::kInvalidPose;
   if (tree.empty()) return Visit::kComplete;
   const auto bounds = placement->bounds(root_box<double>(tree));
   if (!bounds) return Errc::kInvalidPose;
-  BodyInScene body{{scene, kPairQueries, layers}, tree,        pose,  bounds->condition,
-                   scene.to_frame(bounds->world), kNoInstance, false, visitor};
+  BodyInScene body{{scene, kPairQueries, layers, work}, tree,        pose,  bounds->condition,
+                   scene.to_frame(bounds->world),       kNoInstance, false, visitor};
   return outcome_of(walk_overlap(scene, body), body);
 }
 

@@ -16,8 +16,9 @@ namespace {
 // is the error of the ray's own origin on its way to object space and back, of which the slab's
 // margin gets its share by a larger reach.
 struct SceneRayQuery {
-  SceneRayQuery(const Scene& scene, const Ray& world, bool stop_at_first, LayerMask layers) noexcept
-      : admission{scene, kRayQueries, layers},
+  SceneRayQuery(const Scene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
+                QueryWork& work) noexcept
+      : admission{scene, kRayQueries, layers, work},
         exponent(direction_exponent(world.direction)),
         parameter_exponent(exponent - scene.record().scale_exponent),
         ray{scene.to_units(world.origin), RayQuery::scaled(world.direction, -exponent),
@@ -56,7 +57,7 @@ struct SceneRayQuery {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
     const Result<std::optional<RayHit>> found =
-        cast_ray(*placed.tree, placed.placement.to_object(ray), any);
+        cast_ray(*placed.tree, placed.placement.to_object(ray), any, admission.work);
     if (!found) {
       error = found.code();
       return false;
@@ -82,13 +83,14 @@ struct SceneRayQuery {
 };
 
 Result<std::optional<SceneRayHit>> cast(const Scene& scene, const Ray& ray, bool stop_at_first,
-                                        LayerMask layers) {
+                                        LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
+  QueryWork work(limits);
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
   if (!is_valid(ray) || !is_within_reach(scene.to_units(ray.origin))) {
     return Errc::kInvalidQuery;
   }
-  SceneRayQuery query(scene, ray, stop_at_first, layers);
+  SceneRayQuery query(scene, ray, stop_at_first, layers, work);
   const Errc walked = walk_nearest(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
@@ -100,13 +102,14 @@ Result<std::optional<SceneRayHit>> cast(const Scene& scene, const Ray& ray, bool
 
 }  // namespace
 
-Result<std::optional<SceneRayHit>> closest_hit(const Scene& scene, const Ray& ray,
-                                               LayerMask layers) {
-  return cast(scene, ray, false, layers);
+Result<std::optional<SceneRayHit>> closest_hit(const Scene& scene, const Ray& ray, LayerMask layers,
+                                               const QueryLimits& limits) {
+  return cast(scene, ray, false, layers, limits);
 }
 
-Result<std::optional<SceneRayHit>> any_hit(const Scene& scene, const Ray& ray, LayerMask layers) {
-  return cast(scene, ray, true, layers);
+Result<std::optional<SceneRayHit>> any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
+                                           const QueryLimits& limits) {
+  return cast(scene, ray, true, layers, limits);
 }
 
 }  // namespace boxtree

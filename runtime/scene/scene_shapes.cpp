@@ -33,7 +33,7 @@ struct ShapeInScene {
     return shape.walk(top, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
-    const Result<Visit> visited = shape.ask(placed, {visitor, instance});
+    const Result<Visit> visited = shape.ask(placed, {visitor, instance}, admission.work);
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
     return !is_done();
@@ -42,8 +42,9 @@ struct ShapeInScene {
 
 template <class Shape>
 Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
-                        LayerMask layers) {
-  ShapeInScene<Shape> query{{scene, kBoxQueries, layers}, shape, visitor};
+                        LayerMask layers, const QueryLimits& limits) {
+  QueryWork work(limits);
+  ShapeInScene<Shape> query{{scene, kBoxQueries, layers, work}, shape, visitor};
   return outcome_of(walk_overlap(scene, query), query);
 }
 
@@ -60,9 +61,10 @@ struct WorldBox {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces,
+                                  QueryWork& work) const {
     const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
-    return visit_faces_compactly(*placed.tree, query, faces);
+    return visit_faces_compactly(*placed.tree, query, faces, work);
   }
 };
 
@@ -104,7 +106,8 @@ struct SphereInUnits {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, center_in_frame, squared_radius_in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces) const {
+  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces,
+                                  QueryWork& work) const {
     const Placement& placement = placed.placement;
     const PlacedSphere exact{placement.to_world(), center, radius * radius};
     const PointInTree in_tree(placement, center);
@@ -120,7 +123,7 @@ struct SphereInUnits {
     }
     const SphereQuery query{in_tree.at, most * most * (1 + 16 * kUnitRoundoff), &exact,
                             certain * certain * (1 - 16 * kUnitRoundoff)};
-    return visit_sphere(*placed.tree, query, faces);
+    return visit_sphere(*placed.tree, query, faces, work);
   }
 };
 
@@ -154,7 +157,8 @@ struct PointInScene {
       exact.least_stretch = stretch_of(placement.to_world().linear).least;
       exact.error = placement.distance_error(in_tree.at, point, root_box<double>(tree));
     }
-    PointQuery query{tree, in_tree.at, exact.bound_in_tree(), {}, Errc::kOk, {}};
+    WalkBound nodes(tree.record().node_count, &admission.work);
+    PointQuery query{tree, nodes, in_tree.at, exact.bound_in_tree(), {}, Errc::kOk, {}};
     query.placed = &exact;
     error = find_nearest(tree, query);
     if (error != Errc::kOk) return false;
@@ -171,7 +175,7 @@ struct PointInScene {
 }  // namespace
 
 Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
-                          SceneFaceVisitor visitor, LayerMask layers) {
+                          SceneFaceVisitor visitor, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
@@ -185,11 +189,12 @@ Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
   const WorldBox shape{
       clamped(box.min(), box.max()),
       scene.to_frame(clamped(scene.to_units(box.min()), scene.to_units(box.max())))};
-  return ask_scene(scene, shape, visitor, layers);
+  return ask_scene(scene, shape, visitor, layers, limits);
 }
 
 Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, double radius,
-                             SceneFaceVisitor visitor, LayerMask layers) {
+                             SceneFaceVisitor visitor, LayerMask layers,
+                             const QueryLimits& limits) {
   const DefaultFloatState state;
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(center);
@@ -197,18 +202,20 @@ Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, 
   if (!(length >= 0) || !(length <= kReach) || !is_within_reach(at)) return Errc::kInvalidQuery;
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, scene_error(scene, at))};
-  return ask_scene(scene, shape, visitor, layers);
+  return ask_scene(scene, shape, visitor, layers, limits);
 }
 
 Result<std::optional<SceneClosestPoint>> closest_point(const Scene& scene,
                                                        const Eigen::Vector3d& point,
-                                                       double max_distance, LayerMask layers) {
+                                                       double max_distance, LayerMask layers,
+                                                       const QueryLimits& limits) {
   const DefaultFloatState state;
+  QueryWork work(limits);
   if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(point);
   const double most = scene.to_units(max_distance);
   if (!is_within_reach(at) || !(most >= 0)) return Errc::kInvalidQuery;
-  PointInScene query{{scene, kPointQueries, layers},
+  PointInScene query{{scene, kPointQueries, layers, work},
                      at,
                      scene.to_frame(at),
                      scene_error(scene, at),

@@ -3,16 +3,18 @@
 #pragma once
 
 #include <boxtree/runtime/query/traversal.h>
+#include <boxtree/runtime/query/work.h>
 #include <boxtree/runtime/scene/scene.h>
 #include <boxtree/runtime/scene/top_level_walk.h>
 
 namespace boxtree {
 
-/// Which instances a query is for.
+/// Which instances a query is for, and what may be spent on them.
 struct Admission {
   const Scene& scene;
   QueryKinds kind;
   LayerMask layers;
+  QueryWork& work;
 
   [[nodiscard]] bool admits(std::uint32_t layer) const noexcept {
     return ((layers >> layer) & 1u) != 0 && (scene.layer(layer).query_kinds & kind) != 0;
@@ -25,10 +27,22 @@ struct Admission {
 // query.admission; and query.error, which is set when an instance is corrupt.
 // What the templates of query/traversal.h ask of boxes, in the scene's frame.
 
+/// Counts an instance and visits it; whether to go on.
+template <class Query>
+[[nodiscard]] bool visit_instance(Query& query, std::uint32_t instance,
+                                  const Scene::Placed& placed) {
+  if (!query.admission.work.take_one()) query.error = Errc::kWorkLimit;
+  return query.error == Errc::kOk && query.visit(instance, placed);
+}
+
 /// The query of query/traversal.h over moving instances.
 template <class Query>
 struct MovingInstances {
+  MovingInstances(Query& asked, const MovingTree& tree) noexcept
+      : query(asked), nodes(tree.record().node_count) {}
+
   Query& query;
+  WalkBound nodes;
 
   [[nodiscard]] double bound() const noexcept { return query.bound(); }
   template <class S>
@@ -44,20 +58,25 @@ struct MovingInstances {
     const Scene& scene = query.admission.scene;
     const Scene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
     return !query.admission.admits(moving.placed.layer) ||
-           query.visit(moving.instance, moving.placed);
+           visit_instance(query, moving.instance, moving.placed);
   }
 };
 
-/// Visits the static instances that the query may meet.
+/// Visits the static instances that the query may meet, each at most once whatever the bytes.
 template <class Query>
 Errc walk_static(const Scene& scene, Query& query) {
+  WalkBound visits(scene.instance_count());
   return query.walk(scene.top_level(), [&](std::uint32_t instance) {
+    if (!visits.take_one()) {
+      query.error = visits.error();
+      return false;
+    }
     if (scene.is_detached(instance)) return true;
     const std::optional<InstanceRecord> record = scene.record_of(instance);
     if (record && !query.admission.admits(record->layer)) return true;
     const auto placed = record ? scene.place(instance, *record) : std::nullopt;
     if (!placed) query.error = Errc::kRecordInvalid;
-    return placed && query.visit(instance, *placed);
+    return placed && visit_instance(query, instance, *placed);
   });
 }
 
@@ -66,14 +85,14 @@ template <class Query>
 Errc walk_overlap(const Scene& scene, Query& query) {
   const Errc walked = walk_static(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
-  MovingInstances<Query> moving{query};
+  MovingInstances<Query> moving(query, scene.moving_tree());
   return traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), moving);
 }
 
 /// The same from near to far. Moving instances come first: they are few, and near what asks.
 template <class Query>
 Errc walk_nearest(const Scene& scene, Query& query) {
-  MovingInstances<Query> moving{query};
+  MovingInstances<Query> moving(query, scene.moving_tree());
   const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().codec(), moving);
   if (walked != Errc::kOk || query.is_done()) return walked;
   return walk_static(scene, query);

@@ -9,8 +9,12 @@ namespace {
 
 // Queries of query/traversal.h whose leaves are instances.
 struct Instances {
+  Instances(const TopLevel& level, InstanceVisitor visitor)
+      : top(level), visit(visitor), nodes(level.scene.node_count) {}
+
   const TopLevel& top;
   InstanceVisitor visit;
+  WalkBound nodes;
 
   [[nodiscard]] bool leaf(NodeRef ref) const { return visit(top.instance(ref)); }
 };

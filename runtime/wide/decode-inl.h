@@ -58,16 +58,14 @@ struct ChildBoxes {
 /// One product and one sum, each rounded: the planes are part of the format. A box has low[axis]
 /// and high[axis].
 template <class Node, class AnyBox>
-HWY_INLINE VectorBox decode(const Node& node, const AnyBox& box, std::size_t part,
+HWY_INLINE VectorBox decode(const NodeView<Node>& node, const AnyBox& box, std::size_t part,
                             ChildBoxes& out) {
   const Floats d;
   VectorBox boxes;
   for (std::size_t k = 0; k < 3; ++k) {
     const FloatVector step = hn::Set(d, wide_step<Node>(box.low[k], box.high[k]));
-    boxes.low[k] =
-        hn::Add(hn::Set(d, box.low[k]), hn::Mul(steps_of(codes(node, 0, k), part), step));
-    boxes.high[k] =
-        hn::Sub(hn::Set(d, box.high[k]), hn::Mul(steps_of(codes(node, 1, k), part), step));
+    boxes.low[k] = hn::Add(hn::Set(d, box.low[k]), hn::Mul(node.steps(0, k, part), step));
+    boxes.high[k] = hn::Sub(hn::Set(d, box.high[k]), hn::Mul(node.steps(1, k, part), step));
     hn::Store(boxes.low[k], d, out.low[k] + part * kLanes);
     hn::Store(boxes.high[k], d, out.high[k] + part * kLanes);
   }

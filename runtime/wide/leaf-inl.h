@@ -104,11 +104,11 @@ class LeafFloats {
       visit(triangle, first_ + lane, 0u);
       return true;
     }
-    const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
     const double scale = reader_.frame().inverse_scale;
     bool is_finite = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      const float* p = positions + start_[std::size_t{3} * lane + c];
+      const auto p = boxtree::load<std::array<float, 3>>(
+          mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
       triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
       is_finite &= is_within_reach(triangle.corner[c]);
     }

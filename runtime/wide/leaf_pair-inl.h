@@ -8,6 +8,7 @@
 #endif
 
 #include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/runtime/query/pair_work.h>
 #include <boxtree/runtime/query/types.h>
 #include <boxtree/runtime/wide/leaf-inl.h>
 #include <boxtree/runtime/wide/pair_filter.h>
@@ -90,8 +91,8 @@ HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector leng
   const FloatVector spread =
       hn::MulAdd(hn::Set(d, 32 * kUnit), away, hn::Set(d, 8 * (plane_error + point_error)));
   constexpr float kUnderflow = 0x1p-100f;
-  const FloatVector doubt = hn::MulAdd(length, hn::MulAdd(blur, away, hn::Mul(length, spread)),
-                                       hn::Set(d, kUnderflow));
+  const FloatVector doubt =
+      hn::MulAdd(length, hn::MulAdd(blur, away, hn::Mul(length, spread)), hn::Set(d, kUnderflow));
   return hn::Or(hn::Gt(hn::Min(h0, hn::Min(h1, h2)), doubt),
                 hn::Lt(hn::Max(h0, hn::Max(h1, h2)), hn::Neg(doubt)));
 }
@@ -102,11 +103,9 @@ class LeafPairs {
  public:
   LeafPairs(const Tree& first, const Tree& second, const RelativePose& pose,
             const PairFilter& filter, PairVisitor visitor)
-      : first_tree_(first),
-        second_tree_(second),
-        pose_(pose),
+      : pose_(pose),
         filter_(filter),
-        visitor_(visitor),
+        report_(first, second, visitor),
         first_(first),
         second_(second) {}
 
@@ -126,8 +125,8 @@ class LeafPairs {
     return true;
   }
 
-  [[nodiscard]] bool stopped() const { return stopped_; }
-  [[nodiscard]] Errc error() const { return error_; }
+  [[nodiscard]] bool stopped() const { return report_.stopped(); }
+  [[nodiscard]] Errc error() const { return error_ != Errc::kOk ? error_ : report_.error(); }
 
  private:
   bool read_first(NodeRef leaf) {
@@ -269,15 +268,12 @@ class LeafPairs {
     }
     if (!touch) return true;
     found |= pair;
-    stopped_ = !report_pair(first_tree_, first_face, second_tree_, second_face, visitor_);
-    return !stopped_;
+    return report_.tell(first_face, second_face);
   }
 
-  const Tree& first_tree_;
-  const Tree& second_tree_;
   const RelativePose& pose_;
   const PairFilter& filter_;
-  PairVisitor visitor_;
+  PairReport report_;
   LeafFloats first_;
   LeafFloats second_;
   static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
@@ -285,7 +281,6 @@ class LeafPairs {
   NodeRef second_read_ = kNone;
   PreparedLeaf prepared_first_;
   PreparedLeaf prepared_second_;
-  bool stopped_ = false;
   Errc error_ = Errc::kOk;
 };
 

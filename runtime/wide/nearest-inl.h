@@ -10,6 +10,7 @@
 
 #include <array>
 
+#include <boxtree/runtime/query/work.h>
 #include <boxtree/runtime/wide/decode-inl.h>
 #include <boxtree/runtime/wide/waiting-inl.h>
 
@@ -23,27 +24,29 @@ namespace boxtree::HWY_NAMESPACE {
 /// query.bound() -> float: keys above it cannot improve the answer.
 /// query.expanding(const WideLinks&, std::uint32_t passing): a node was taken apart, whose children
 ///   `passing` will wait.
+/// query.nodes() -> WalkBound&: of as many nodes as the codec has.
 /// query.leaf(number) -> bool: whether to go on; the query keeps its own error.
 template <class Node, class Query>
 class NearestWalk {
  public:
   NearestWalk(const WideCodec<Node>& codec, Query& query) : codec_(codec), query_(query) {}
 
-  /// `root`: the box of node 0. Returns kNodeCorrupt or kDepthExceeded for corrupt nodes.
+  /// `root`: the box of node 0. Returns kNodeCorrupt or kDepthExceeded for corrupt nodes;
+  /// kWorkLimit.
   Errc run(const Box<float>& root) {
     // The children of a node at depth n are in open_[n].
     Box<float> box = root;
     std::size_t depth = 0;
     std::uint32_t number = 0;
-    std::uint64_t unexpanded = codec_.node_count;
     for (;;) {
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
-      const WideLinks links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      if (!query_.nodes().take_one()) return query_.nodes().error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
       if (depth == open_.size()) return Errc::kDepthExceeded;
       open_[depth].links = links;
       query_.expanding(links,
-                       meet(*node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1));
+                       meet(node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1));
       for (;;) {
         typename decltype(waiting_)::Child at;
         if (!waiting_.pop(query_.bound(), at)) return Errc::kOk;
@@ -66,8 +69,8 @@ class NearestWalk {
   };
 
   // Lets those of a node's children wait that can matter; bit i is child i.
-  HWY_INLINE std::uint32_t meet(const Node& node, const Box<float>& box, ChildBoxes& children,
-                                std::size_t depth, std::uint32_t all) {
+  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const Box<float>& box,
+                                ChildBoxes& children, std::size_t depth, std::uint32_t all) {
     HWY_ALIGN float keys[kWideChildren];
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {

@@ -9,8 +9,10 @@
 #endif
 
 #include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <hwy/highway.h>
+#include <type_traits>
 
 #include <boxtree/format/codec_wide.h>
 
@@ -32,30 +34,53 @@ HWY_INLINE std::uint32_t bits_of(hn::Mask<Floats> mask) {
   return bits[0];
 }
 
-/// Codes of planes `part` * kLanes and on, as steps. `codes` are the eight codes of an axis.
-HWY_INLINE FloatVector steps_of(const std::uint8_t* codes, std::size_t part) {
-  const hn::Rebind<std::int32_t, Floats> integers;
-  const hn::Rebind<std::uint8_t, Floats> bytes;
-  return hn::ConvertTo(Floats(), hn::PromoteTo(integers, hn::LoadU(bytes, codes + part * kLanes)));
-}
-HWY_INLINE FloatVector steps_of(const std::uint32_t* codes, std::size_t part) {
-  const hn::Rebind<std::uint32_t, Floats> words;
-  const hn::Rebind<std::int32_t, Floats> integers;
-  const auto shift = hn::ShiftLeft<2>(hn::Iota(words, static_cast<std::uint32_t>(part * kLanes)));
-  const auto code = hn::And(hn::Shr(hn::Set(words, *codes), shift), hn::Set(words, 15u));
-  const FloatVector number = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
-  return hn::Mul(number,
-                 hn::Add(number, hn::Set(Floats(), static_cast<float>(Wide4Node::kFirstSteps))));
-}
-
-/// The codes of the low (side 0) or high (side 1) planes of an axis.
+/// A node where it lies, in memory of any alignment: fields are read one by one.
 template <class Node>
-HWY_INLINE const auto* codes(const Node& node, std::size_t side, std::size_t axis) {
-  using Code = std::conditional_t<std::is_same_v<Node, Wide8Node>, std::uint8_t, std::uint32_t>;
-  constexpr std::size_t kCodesOfSide = sizeof(Node::low) / sizeof(Code);
-  static_assert(offsetof(Node, low) == 0 && offsetof(Node, high) == sizeof(Node::low));
-  return reinterpret_cast<const Code*>(&node) + side * kCodesOfSide + axis * (kCodesOfSide / 3);
-}
+class NodeView {
+ public:
+  NodeView(const WideCodec<Node>& codec, std::uint32_t number)
+      : bytes_(codec.nodes + std::size_t{number} * sizeof(Node)) {}
+
+  [[nodiscard]] HWY_INLINE WideLinks links() const {
+    if constexpr (kIsWide8) {
+      return {load<std::uint32_t>(bytes_ + offsetof(Node, first_node)),
+              load<std::uint32_t>(bytes_ + offsetof(Node, first_leaf)),
+              load<std::uint8_t>(bytes_ + offsetof(Node, inner_mask)),
+              load<std::uint8_t>(bytes_ + offsetof(Node, child_count))};
+    } else {
+      return links_of_word(load<std::uint64_t>(bytes_ + offsetof(Node, links)));
+    }
+  }
+
+  /// The low (side 0) or high (side 1) planes of an axis, in steps: of children `part` * kLanes and
+  /// on.
+  [[nodiscard]] HWY_INLINE FloatVector steps(std::size_t side, std::size_t axis,
+                                             std::size_t part) const {
+    constexpr std::size_t kBytesOfSide = sizeof(Node::low);
+    static_assert(offsetof(Node, low) == 0 && offsetof(Node, high) == kBytesOfSide);
+    const std::byte* const codes = bytes_ + side * kBytesOfSide + axis * (kBytesOfSide / 3);
+    const hn::Rebind<std::int32_t, Floats> integers;
+    if constexpr (kIsWide8) {
+      const hn::Rebind<std::uint8_t, Floats> small;
+      const auto* const first = reinterpret_cast<const std::uint8_t*>(codes) + part * kLanes;
+      return hn::ConvertTo(Floats(), hn::PromoteTo(integers, hn::LoadU(small, first)));
+    } else {
+      const hn::Rebind<std::uint32_t, Floats> words;
+      const auto shift =
+          hn::ShiftLeft<2>(hn::Iota(words, static_cast<std::uint32_t>(part * kLanes)));
+      const auto all = hn::Set(words, load<std::uint32_t>(codes));
+      const auto code = hn::And(hn::Shr(all, shift), hn::Set(words, 15u));
+      const FloatVector number = hn::ConvertTo(Floats(), hn::BitCast(integers, code));
+      const auto first_steps = hn::Set(Floats(), static_cast<float>(Node::kFirstSteps));
+      return hn::Mul(number, hn::Add(number, first_steps));
+    }
+  }
+
+ private:
+  static constexpr bool kIsWide8 = std::is_same_v<Node, Wide8Node>;
+
+  const std::byte* bytes_;
+};
 
 /// How many of the bits below bit i are set.
 HWY_INLINE std::uint32_t rank(std::uint32_t mask, std::uint32_t i) {

@@ -38,8 +38,7 @@ template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
   OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
-      : tree_(tree),
-        codec_(codec),
+      : codec_(codec),
         walk_(walk),
         filter_(tree, walk.shape),
         prefetch_(tree, codec),
@@ -50,14 +49,14 @@ class OverlapWalk {
     std::uint32_t number = 0;
     bool inside = false;
     std::size_t depth = 0;
-    std::uint64_t unexpanded = codec_.node_count;
     for (;;) {
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
+      const NodeView<Node> node(codec_, number);
       if (depth == open_.size()) return Errc::kDepthExceeded;
       Children& children = open_[depth];
-      const WideLinks links = children.links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
-      const Verdict verdict = judge(*node, box, inside, children.boxes);
+      const WideLinks links = children.links = node.links();
+      if (!walk_.nodes.take_one()) return walk_.nodes.error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Verdict verdict = judge(node, links, box, inside, children.boxes);
       prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
       prefetch_.nodes(links, verdict.touched & links.inner_mask);
       const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
@@ -91,9 +90,9 @@ class OverlapWalk {
     std::uint32_t inside;
   };
 
-  HWY_INLINE Verdict judge(const Node& node, const Box<float>& box, bool inside,
-                           ChildBoxes& children) const {
-    const std::uint32_t all = (1u << links_of(node).child_count) - 1;
+  HWY_INLINE Verdict judge(const NodeView<Node>& node, const WideLinks& links,
+                           const Box<float>& box, bool inside, ChildBoxes& children) const {
+    const std::uint32_t all = (1u << links.child_count) - 1;
     if (inside) return {all, all};
     Verdict verdict{0, 0};
     for (std::size_t part = 0; part < kParts; ++part) {
@@ -105,14 +104,9 @@ class OverlapWalk {
     return verdict;
   }
 
-  bool report(std::uint32_t face) {
-    walk_.stopped = !report_face(tree_, face, walk_.visitor);
-    return !walk_.stopped;
-  }
-
   bool report_all(std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t face = first; face < first + count; ++face) {
-      if (!report(face)) return false;
+      if (!walk_.report(face)) return false;
     }
     return true;
   }
@@ -135,7 +129,7 @@ class OverlapWalk {
         if (leaf_.face(lane) == reported) return true;
         if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
         reported = leaf_.face(lane);
-        return report(reported);
+        return walk_.report(reported);
       });
       if (!go_on) return false;
     }
@@ -152,7 +146,6 @@ class OverlapWalk {
     return touched;
   }
 
-  const Tree& tree_;
   const WideCodec<Node>& codec_;
   FaceWalk<Shape>& walk_;
   const Filter filter_;

@@ -21,8 +21,9 @@ namespace {
 
 #if HWY_TARGET == HWY_SCALAR
 Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
-                        const PairFilter& /*filter*/, PairVisitor visitor) {
-  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
+                        const PairFilter& /*filter*/, PairVisitor visitor, PairBound& bound) {
+  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor, bound)
+      .run();
 }
 #else
 // Vectors of three axes; what the fourth lane holds means nothing. Written and read as a whole, so
@@ -102,12 +103,12 @@ class WidePairWalk {
  public:
   WidePairWalk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
                const WideCodec<Node>& second_codec, const RelativePose& pose,
-               const PairFilter& filter, PairVisitor visitor)
+               const PairFilter& filter, PairVisitor visitor, PairBound& bound)
       : codec_{&first_codec, &second_codec},
         filter_(filter),
         map_{&filter_.to_second, &filter_.to_first},
         leaves_(first, second, pose, filter_, visitor),
-        unmet_(most_pairs(first.record(), second.record())) {}
+        bound_(bound) {}
 
   // The pairs of a path are in open_, each with its siblings; first the roots, the first one as if
   // it were a child.
@@ -148,7 +149,7 @@ class WidePairWalk {
     child.is_leaf = ((from.links.inner_mask >> at.number) & 1u) == 0;
     child.number =
         child.is_leaf ? first_face(from.links, at.number) : node_number(from.links, at.number);
-    if (unmet_-- == 0) return fail(Errc::kNodeCorrupt);
+    if (const Errc error = bound_.take_apart(); error != Errc::kOk) return fail(error);
     if (at.depth + 1 == kDepths) return fail(Errc::kDepthExceeded);
     set_image(child.centered, *map_[from.side], from.child_image);
     return from.side == 0 ? choose<0>(from, at.depth + 1) : choose<1>(from, at.depth + 1);
@@ -179,13 +180,13 @@ class WidePairWalk {
 
   HWY_INLINE bool take_apart(const PairPart& parent, PairChildren& to, std::size_t depth) {
     const WideCodec<Node>& codec = *codec_[to.side];
-    const Node* node = reinterpret_cast<const Node*>(codec.nodes) + parent.number;
-    to.links = links_of(*node);
+    const NodeView<Node> node(codec, parent.number);
+    to.links = node.links();
     if (!is_sound(codec, parent.number, to.links)) return fail(Errc::kNodeCorrupt);
     std::uint32_t near = 0;
     HWY_ALIGN float key[kWideChildren];
     for (std::size_t part = 0; part < kParts; ++part) {
-      near |= overlap(decode(*node, parent, part, to.boxes), *map_[to.side], *to.other_image,
+      near |= overlap(decode(node, parent, part, to.boxes), *map_[to.side], *to.other_image,
                       to.other->centered, key + part * kLanes)
               << (part * kLanes);
     }
@@ -199,6 +200,8 @@ class WidePairWalk {
     return for_each_bit(near & ~to.links.inner_mask, [&](std::uint32_t i) {
       const NodeRef child = leaf_of(first_face(to.links, i), codec);
       const NodeRef other = leaf_of(to.other->number, *codec_[1 - to.side]);
+      const Errc error = to.side == 0 ? bound_.compare(child, other) : bound_.compare(other, child);
+      if (error != Errc::kOk) return fail(error);
       return to.side == 0 ? leaves_.visit(child, to.boxes.box(i), other)
                           : leaves_.visit(other, to.other->box(), child);
     });
@@ -246,7 +249,7 @@ class WidePairWalk {
   const PairFilter& filter_;
   const FloatMap* map_[2];  // from each tree's space to the other's
   LeafPairs leaves_;
-  std::uint64_t unmet_;
+  PairBound& bound_;
   Errc error_ = Errc::kOk;
   Waiting<kDepths> waiting_;
   PairPart second_root_;  // what the first one in open_ is compared with
@@ -257,14 +260,15 @@ class WidePairWalk {
 template <class Node>
 Result<Visit> walk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
                    const WideCodec<Node>& second_codec, const RelativePose& pose,
-                   const PairFilter& filter, PairVisitor visitor) {
-  return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, filter, visitor)
+                   const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
+  return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, filter, visitor, bound)
       .run(root_box<float>(first), root_box<float>(second));
 }
 Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
-                        const PairFilter& filter, PairVisitor visitor) {
+                        const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
-    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, filter, visitor);
+    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, filter, visitor,
+                bound);
   });
 }
 #endif
@@ -282,14 +286,15 @@ HWY_EXPORT(walk_pair);
 }  // namespace
 
 Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
-                              PairVisitor visitor) {
+                              PairVisitor visitor, PairBound& bound) {
   if (first.has_float_nodes() && second.has_float_nodes()) {
     const PairFilter filter(first, second, pose);
     if (filter.is_in_range()) {
-      return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, filter, visitor);
+      return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, filter, visitor, bound);
     }
   }
-  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor).run();
+  return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor, bound)
+      .run();
 }
 
 }  // namespace boxtree

@@ -10,16 +10,17 @@ namespace boxtree {
 
 /// The walk by vectors. Precondition: both trees have the same wide codec.
 Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
-                              PairVisitor visitor);
+                              PairVisitor visitor, PairBound& bound);
 
-/// Visits the pairs of faces that touch. Errors: those of corrupt nodes and leaves.
+/// Visits the pairs of faces that touch. Errors: those of corrupt nodes and leaves, kWorkLimit.
 template <Codec C>
 Result<Visit> walk_pairs(const Tree& first, const C& first_codec, const Tree& second,
-                         const C& second_codec, const RelativePose& pose, PairVisitor visitor) {
+                         const C& second_codec, const RelativePose& pose, PairVisitor visitor,
+                         PairBound& bound) {
   if constexpr (kIsWalkedByVectors<C>) {
-    return walk_wide_pairs(first, second, pose, visitor);
+    return walk_wide_pairs(first, second, pose, visitor, bound);
   } else {
-    return PairWalk(first, first_codec, second, second_codec, pose, visitor).run();
+    return PairWalk(first, first_codec, second, second_codec, pose, visitor, bound).run();
   }
 }
 

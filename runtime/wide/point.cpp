@@ -39,6 +39,7 @@ class PointFaces {
   }
 
   [[nodiscard]] float bound() const { return bound_; }
+  [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
 
   HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
     key = nearest_squared(filter_, boxes);

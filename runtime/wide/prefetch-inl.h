@@ -21,7 +21,7 @@ template <class Node>
 class Prefetch {
  public:
   Prefetch(const Tree& tree, const WideCodec<Node>& codec)
-      : nodes_(reinterpret_cast<const Node*>(codec.nodes)),
+      : nodes_(codec.nodes),
         corners_(tree.leaves().mesh().corners),
         clusters_(tree.leaves().grid().clusters) {
     const MeshArrays& mesh = tree.leaves().mesh();
@@ -35,7 +35,7 @@ class Prefetch {
   HWY_INLINE void nodes(const WideLinks& links, std::uint32_t children) const {
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
-      hwy::Prefetch(nodes_ + node_number(links, child));
+      hwy::Prefetch(nodes_ + std::size_t{node_number(links, child)} * sizeof(Node));
     }
   }
   HWY_INLINE void leaves(const WideLinks& links, std::uint32_t children) const {
@@ -53,7 +53,7 @@ class Prefetch {
   }
 
  private:
-  const Node* nodes_;
+  const std::byte* nodes_;
   const std::byte* corners_;
   const std::byte* clusters_;  // or null: no grid
   std::size_t face_bytes_ = 0;

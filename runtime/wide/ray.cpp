@@ -54,16 +54,16 @@ class RayWalk {
     }
     typename decltype(waiting_)::Child at{0, 0};
     std::uint32_t number = 0;
-    std::uint64_t unexpanded = codec_.node_count;
     HWY_ALIGN float enter[kWideChildren];
     for (;;) {
-      const Node* node = reinterpret_cast<const Node*>(codec_.nodes) + number;
-      const WideLinks links = links_of(*node);
-      if (unexpanded-- == 0 || !is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      if (!query_.nodes.take_one()) return query_.nodes.error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
       if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
       RayChildren& children = open_[at.depth + 1];
-      const std::uint32_t passing = meet(*node, open_[at.depth], at.number, children, enter) &
-                                    ((1u << links.child_count) - 1);
+      const std::uint32_t passing =
+          meet(node, open_[at.depth], at.number, children, enter) & ((1u << links.child_count) - 1);
       children.links = links;
       prefetch_.leaves(links, passing & ~links.inner_mask);
       prefetch_.nodes(links, passing & links.inner_mask);
@@ -82,8 +82,8 @@ class RayWalk {
  private:
   // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
   // widened by the margins; the steps between its planes are those of the box itself.
-  HWY_INLINE std::uint32_t meet(const Node& node, const RayChildren& parent, std::uint32_t child,
-                                RayChildren& out, float* enters) const {
+  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const RayChildren& parent,
+                                std::uint32_t child, RayChildren& out, float* enters) const {
     const Floats d;
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
@@ -96,10 +96,8 @@ class RayWalk {
             hn::Mul(hn::Sub(hn::Sub(far_of_box, near_of_box), hn::Set(d, filter_.margins[k])),
                     hn::Set(d, 1 / Node::kStepsOfExtent));
         const std::uint32_t near_high = filter_.near_high[k];
-        const FloatVector near =
-            hn::MulAdd(steps_of(codes(node, near_high, k), part), step, near_of_box);
-        const FloatVector far =
-            hn::NegMulAdd(steps_of(codes(node, 1 - near_high, k), part), step, far_of_box);
+        const FloatVector near = hn::MulAdd(node.steps(near_high, k, part), step, near_of_box);
+        const FloatVector far = hn::NegMulAdd(node.steps(1 - near_high, k, part), step, far_of_box);
         hn::Store(near, d, out.near[k] + part * kLanes);
         hn::Store(far, d, out.far[k] + part * kLanes);
         enter = hn::Max(enter, near);

@@ -84,10 +84,15 @@ struct AskedRay {
 template <class Asked>
 class Instances {
  public:
-  Instances(const Asked& asked, const double& bound, InstanceVisitor visit)
-      : asked_(asked), best_(bound), limit_(asked.limit_of(bound)), visit_(visit) {}
+  Instances(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit)
+      : asked_(asked),
+        best_(bound),
+        limit_(asked.limit_of(bound)),
+        visit_(visit),
+        nodes_(top.scene.node_count) {}
 
   [[nodiscard]] float bound() const { return limit_; }
+  [[nodiscard]] WalkBound& nodes() { return nodes_; }
   HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
     return asked_.meet(boxes, limit_, key);
   }
@@ -103,11 +108,12 @@ class Instances {
   const double& best_;  // a visit may lower it
   float limit_;         // of keys
   InstanceVisitor visit_;
+  WalkBound nodes_;
 };
 
 template <class Asked>
 Errc walk(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit) {
-  Instances<Asked> instances(asked, bound, visit);
+  Instances<Asked> instances(top, asked, bound, visit);
   return NearestWalk<Wide8Node, Instances<Asked>>(top.codec, instances).run(root_box<float>(top));
 }
 

@@ -16,6 +16,12 @@ struct PointQuery;
 struct RayQuery;
 struct SphereQuery;
 
+/// Whether trees of a wide codec can be bound.
+inline constexpr bool kHasWideCodecs = []<CodecId... Ids>(CodecList<Ids...>) {
+  return (is_wide(Ids) || ...);
+}
+(BuiltCodecs());
+
 /// Whether trees of a codec are walked by vectors.
 template <Codec C>
 inline constexpr bool kIsWalkedByVectors = false;
@@ -64,8 +70,10 @@ Errc walk_overlap(const Tree& tree, const C& codec, FaceWalk<Shape>& walk) {
 
 /// Visits each face once of which some triangle touches the shape.
 template <class Shape>
-Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::Visitor visitor) {
-  FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
+Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::Visitor visitor,
+                          QueryWork& work) {
+  WalkBound nodes(tree.record().node_count, &work);
+  FaceWalk<Shape> walk{tree, shape, visitor, nodes};
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_overlap(tree, codec, walk); });
   return outcome_of(walked, walk);
@@ -74,9 +82,10 @@ Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::
 /// The same without a walk of its own for each codec: by vectors, and one walk for all others.
 template <class Shape>
 Result<Visit> visit_faces_compactly(const Tree& tree, const Shape& shape,
-                                    typename Shape::Visitor visitor) {
-  FaceWalk<Shape> walk{tree, shape, visitor, Errc::kOk, false, {}};
-  if constexpr (kWalksByVectors) {
+                                    typename Shape::Visitor visitor, QueryWork& work) {
+  WalkBound nodes(tree.record().node_count, &work);
+  FaceWalk<Shape> walk{tree, shape, visitor, nodes};
+  if constexpr (kWalksByVectors && kHasWideCodecs) {
     if (is_wide(tree.codec())) return outcome_of(walk_wide(tree, walk), walk);
   }
   return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, walk), walk);

@@ -169,9 +169,10 @@ class BoxtreeSubject : public Subject {
       with_codec(tree_, [&]<class C>(const C& codec) {
         const Listener<C> listener{&codec, &encoded_.geometry, &work, &cache};
         const auto visitor = [&](const FacePair&) { return !first_only; };
-        static_cast<void>(require(
-            PairWalk<C, C, Listener<C>>(tree_, codec, tree_, codec, *relative, visitor, listener)
-                .run()));
+        PairBound bound(tree_, tree_, nullptr);
+        static_cast<void>(require(PairWalk<C, C, Listener<C>>(tree_, codec, tree_, codec, *relative,
+                                                              visitor, bound, listener)
+                                      .run()));
       });
     }
     return work;

@@ -61,9 +61,10 @@ void far_from_origin(Run& run) {
       pose.translation() = shift;
       const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
       with_codec(tree, [&]<class C>(const C& codec) {
+        PairBound bound(tree, tree, nullptr);
         static_cast<void>(PairWalk<C, C, Count>(
                               tree, codec, tree, codec, *relative,
-                              [](const FacePair&) { return true; }, Count{&count})
+                              [](const FacePair&) { return true; }, bound, Count{&count})
                               .run());
       });
     }

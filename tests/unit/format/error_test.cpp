@@ -54,6 +54,7 @@ constexpr Row kPinned[] = {
     {56, "no_scene", 1},
     {57, "instance_index", 1},
     {58, "instance_static", 1},
+    {59, "work_limit", 1},
     {60, "file_not_found", 2},
     {61, "file_unreadable", 2},
     {62, "map_failed", 2},

@@ -243,22 +243,5 @@ TEST_F(PairRange, AnyAffinePose) {
   EXPECT_GT(contacts, 500u);
 }
 
-// The bound on the work that two trees of hostile bytes can make.
-TEST(MostPairs, IsTheProductOfNodesAndLeaves) {
-  const auto record = [](std::uint32_t nodes, std::uint32_t faces) {
-    TreeRecord made{};
-    made.node_count = nodes;
-    made.face_count = faces;
-    return made;
-  };
-  EXPECT_EQ(most_pairs(record(3, 4), record(5, 6)), 77u);
-  EXPECT_EQ(most_pairs(record(0, 0), record(5, 6)), 0u);
-  EXPECT_EQ(most_pairs(record(5, 6), record(0, 0)), 0u);
-  const TreeRecord largest = record(kMaxNodes, kMaxFaces);
-  const std::uint64_t size = std::uint64_t{kMaxNodes} + kMaxFaces;
-  const bool fits = size <= ~std::uint64_t{0} / size;
-  EXPECT_EQ(most_pairs(largest, largest), fits ? size * size : ~std::uint64_t{0});
-}
-
 }  // namespace
 }  // namespace boxtree

@@ -26,6 +26,7 @@ struct All {
   const std::vector<Box<double>>& boxes;
   std::set<std::uint32_t> found;
   Box<double> asked;
+  WalkBound& nodes;
 
   [[nodiscard]] bool overlaps(const Box<double>& box) const noexcept {
     bool apart = false;
@@ -45,7 +46,8 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
     MovingTree tree;
     tree.build(boxes);
     for (int round = 0; round < 200; ++round) {
-      All query{tree, boxes, {}, random_box(random)};
+      WalkBound nodes(tree.record().node_count);
+      All query{tree, boxes, {}, random_box(random), nodes};
       std::set<std::uint32_t> expected;
       Box<double> whole = boxes[0];
       for (std::uint32_t i = 0; i < count; ++i) {

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// Bounds of walks of two trees.
+#include <boxtree/runtime/query/pair_work.h>
+
+namespace boxtree {
+
+PairBound::PairBound(const Tree& first, const Tree& second, QueryWork* work) noexcept
+    : parts_(most_pairs(first.record(), second.record()), work),
+      faces_left_(
+          saturated_product(faces_in_leaves(first.record()), faces_in_leaves(second.record()))) {}
+
+PairReport::PairReport(const Tree& first, const Tree& second, PairVisitor visitor) noexcept
+    : first_(first),
+      second_(second),
+      visitor_(visitor),
+      pairs_left_(saturated_product(first.record().face_count, second.record().face_count)) {}
+
+// An honest walk tells of each pair once; in corrupt files many faces may have the same copies.
+bool PairReport::tell_copies(std::uint32_t first, std::uint32_t second) {
+  const FaceWithCopies a(first_, first), b(second_, second);
+  const std::uint64_t pairs = saturated_product(a.count(), b.count());
+  if (pairs > pairs_left_) {
+    error_ = Errc::kNodeCorrupt;
+    return false;
+  }
+  pairs_left_ -= pairs;
+  for (std::uint32_t i = 0; i < a.count(); ++i) {
+    for (std::uint32_t j = 0; j < b.count(); ++j) {
+      stopped_ = !visitor_({a.face(i), b.face(j)});
+      if (stopped_) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: MIT
+// What walks of two trees may cost, and how they tell of the pairs that they find.
+//
+// Why a walk ends on any bytes after work that the sizes of the trees bound: an honest one compares
+// each node or leaf of one tree with each of the other at most once, and each face of one with each
+// of the other. It is the second that bounds the work on leaves: in corrupt files many leaves may
+// hold the same faces.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include <boxtree/format/children.h>
+#include <boxtree/format/codec.h>
+#include <boxtree/format/limits.h>
+#include <boxtree/format/tree_record.h>
+#include <boxtree/runtime/query/face_copies.h>
+#include <boxtree/runtime/query/types.h>
+#include <boxtree/runtime/query/work.h>
+
+namespace boxtree {
+
+/// a * b, or the largest number where that is more.
+[[nodiscard]] constexpr std::uint64_t saturated_product(std::uint64_t a, std::uint64_t b) noexcept {
+  return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;
+}
+
+/// As many leaves as a tree may have: what its faces fill, or its nodes have children for.
+[[nodiscard]] constexpr std::uint64_t most_leaves(const TreeRecord& record) noexcept {
+  const std::uint64_t faces = faces_in_leaves(record);
+  if (is_wide(record.codec)) return leaves_of(faces);
+  return std::min(faces, std::uint64_t{record.node_count} + 1);
+}
+
+/// Nodes and leaves of one tree, each with each of the other.
+[[nodiscard]] constexpr std::uint64_t most_pairs(const TreeRecord& first,
+                                                 const TreeRecord& second) noexcept {
+  return saturated_product(first.node_count + most_leaves(first),
+                           second.node_count + most_leaves(second));
+}
+
+/// Counts the work of one walk of two trees.
+class PairBound {
+ public:
+  PairBound(const Tree& first, const Tree& second, QueryWork* work) noexcept;
+
+  /// Counts a pair of nodes, or of a node and a leaf, about to be taken apart. kOk to go on.
+  [[nodiscard]] Errc take_apart() noexcept {
+    return parts_.take_one() ? Errc::kOk : parts_.error();
+  }
+  /// Counts a pair of leaves about to be compared.
+  [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept {
+    const std::uint64_t faces = saturated_product(first.second, second.second);
+    if (faces > faces_left_) return Errc::kNodeCorrupt;
+    faces_left_ -= faces;
+    return Errc::kOk;
+  }
+
+ private:
+  WalkBound parts_;
+  std::uint64_t faces_left_;
+};
+
+/// Tells a visitor of the pairs of faces that touch.
+class PairReport {
+ public:
+  PairReport(const Tree& first, const Tree& second, PairVisitor visitor) noexcept;
+
+  /// Tells of two faces, and of each copy of the one with each of the other. Whether to go on; see
+  /// stopped() and error().
+  [[nodiscard]] bool tell(std::uint32_t first, std::uint32_t second) {
+    if (!first_.has_duplicates() && !second_.has_duplicates()) {
+      stopped_ = !visitor_({face_ref(first_, first), face_ref(second_, second)});
+      return !stopped_;
+    }
+    return tell_copies(first, second);
+  }
+
+  /// Whether the visitor asked to stop.
+  [[nodiscard]] bool stopped() const noexcept { return stopped_; }
+  [[nodiscard]] Errc error() const noexcept { return error_; }
+
+ private:
+  [[nodiscard]] bool tell_copies(std::uint32_t first, std::uint32_t second);
+
+  const Tree& first_;
+  const Tree& second_;
+  PairVisitor visitor_;
+  std::uint64_t pairs_left_;
+  bool stopped_ = false;
+  Errc error_ = Errc::kOk;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,367 @@
+// SPDX-License-Identifier: MIT
+// What queries cost: limits of the caller, and the bounds that hold for any bytes.
+#include <functional>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/format/codec_plain.h>
+#include <boxtree/format/codec_wide.h>
+#include <boxtree/runtime/query/pair_work.h>
+
+#include "tests/support/coincident.h"
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/scenes.h"
+
+namespace boxtree {
+namespace {
+
+constexpr auto kGoOn = [](const auto&) { return true; };
+
+Eigen::AlignedBox3d everywhere() {
+  return {Eigen::Vector3d::Constant(-1e6), Eigen::Vector3d::Constant(1e6)};
+}
+
+// A query under a limit: its error, and a number that stands for its answer.
+struct Outcome {
+  Errc error = Errc::kOk;
+  double answer = 0;
+};
+struct LimitedQuery {
+  const char* name;
+  std::function<Outcome(const QueryLimits&)> ask;
+};
+
+template <class T, class Value>
+Outcome outcome(const Result<T>& result, const Value& value) {
+  return result ? Outcome{Errc::kOk, value(*result)} : Outcome{result.code(), 0};
+}
+template <class T>
+Outcome outcome_of_hit(const Result<std::optional<T>>& result, double (*value)(const T&)) {
+  return outcome(result, [&](const std::optional<T>& found) { return found ? value(*found) : -1; });
+}
+// Of a query with a visitor: how many it was told of.
+Outcome outcome_of_visit(const std::function<Result<Visit>(std::size_t& told)>& ask) {
+  std::size_t told = 0;
+  const Result<Visit> visit = ask(told);
+  return outcome(visit, [&](Visit) { return static_cast<double>(told); });
+}
+
+// The least limit under which a query is answered; every larger one gives the same answer, every
+// smaller one kWorkLimit.
+std::uint64_t least_limit(const LimitedQuery& query) {
+  const Outcome whole = query.ask({});
+  EXPECT_EQ(whole.error, Errc::kOk);
+  std::uint64_t nodes = 0;
+  for (; nodes < 100000; ++nodes) {
+    const Outcome limited = query.ask({nodes});
+    if (limited.error == Errc::kOk) {
+      EXPECT_EQ(limited.answer, whole.answer) << nodes;
+      break;
+    }
+    EXPECT_EQ(limited.error, Errc::kWorkLimit) << nodes;
+  }
+  for (const std::uint64_t more : {nodes + 1, 2 * nodes + 9}) {
+    const Outcome limited = query.ask({more});
+    EXPECT_EQ(limited.error, Errc::kOk) << more;
+    EXPECT_EQ(limited.answer, whole.answer) << more;
+  }
+  return nodes;
+}
+
+std::vector<LimitedQuery> tree_queries(const Tree& tree) {
+  const Ray ray{{0.1, 0.2, 50}, {0.01, 0.02, -1}};
+  Pose turned = Pose::Identity();
+  turned.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  return {
+      {"closest_hit",
+       [=, &tree](const QueryLimits& limits) {
+         return outcome_of_hit<RayHit>(closest_hit(tree, ray, limits),
+                                       [](const RayHit& hit) { return hit.t; });
+       }},
+      {"any_hit",
+       [=, &tree](const QueryLimits& limits) {
+         return outcome_of_hit<RayHit>(any_hit(tree, ray, limits),
+                                       [](const RayHit& hit) { return hit.t; });
+       }},
+      {"overlap_box",
+       [&tree](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_box(
+               tree, everywhere(), [&](const FaceRef&) { return ++told > 0; }, limits);
+         });
+       }},
+      {"overlap_sphere",
+       [&tree](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_sphere(
+               tree, {0, 0, 0}, 1, [&](const FaceRef&) { return ++told > 0; }, limits);
+         });
+       }},
+      {"closest_point",
+       [&tree](const QueryLimits& limits) {
+         return outcome_of_hit<ClosestPoint>(
+             closest_point(tree, {3, 2, 1}, 100, limits),
+             [](const ClosestPoint& closest) { return closest.distance; });
+       }},
+      {"overlap_pairs",
+       [=, &tree](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_pairs(
+               tree, Pose::Identity(), tree, turned, [&](const FacePair&) { return ++told > 0; },
+               limits);
+         });
+       }},
+      {"first_contact",
+       [=, &tree](const QueryLimits& limits) {
+         return outcome_of_hit<FacePair>(
+             first_contact(tree, Pose::Identity(), tree, turned, limits),
+             [](const FacePair& pair) { return double{pair.first.id * 1e6} + pair.second.id; });
+       }},
+  };
+}
+
+class Limits : public testing::TestWithParam<CodecId> {};
+
+TEST_P(Limits, TellWhenTheyDoNotSuffice) {
+  const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
+  const std::uint64_t nodes = cooked.tree.record().node_count;
+  for (const LimitedQuery& query : tree_queries(cooked.tree)) {
+    SCOPED_TRACE(query.name);
+    const std::uint64_t least = least_limit(query);
+    EXPECT_GT(least, 0u);
+    const bool is_pair = std::string(query.name).find("pair") != std::string::npos ||
+                         std::string(query.name).find("contact") != std::string::npos;
+    EXPECT_LE(least, is_pair ? most_pairs(cooked.tree.record(), cooked.tree.record()) : nodes);
+    // Everything is inside the box: every node is taken apart.
+    if (std::string(query.name) == "overlap_box") {
+      EXPECT_EQ(least, nodes);
+    }
+  }
+}
+
+TEST_P(Limits, WhatWasToldBeforeIsTrue) {
+  const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
+  for (const std::uint64_t nodes : {0u, 1u, 2u, 5u}) {
+    std::set<std::uint32_t> told;
+    const Result<Visit> visit =
+        overlap_box(cooked.tree, everywhere(),
+                    [&](const FaceRef& face) { return told.insert(face.id).second; }, {nodes});
+    if (nodes >= cooked.tree.record().node_count) continue;
+    EXPECT_EQ(visit.code(), Errc::kWorkLimit);
+    EXPECT_LT(told.size(), cooked.tree.record().face_count);
+    EXPECT_LE(told.size(), nodes * kWideChildren * kLeafFaces);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, Limits, testing::ValuesIn(test::all_codecs()), test::test_name);
+
+// Instances count one each, and what is spent in one is not there for the next.
+TEST(SceneLimits, CountForAllInstancesTogether) {
+  test::CookedScene cooked =
+      test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(12, 2, 3, 1, 1));
+  Scene scene = test::require(Scene::bind(cooked.file));
+  const Tree body = test::require(Tree::bind(cooked.file, 0));
+  const Ray ray{{-200, 0.3, 0.2}, {1, 0, 0}};
+  const auto counting = [](std::size_t& told) {
+    return [&told](const auto&) { return ++told > 0; };
+  };
+  const std::vector<LimitedQuery> queries = {
+      {"closest_hit",
+       [&](const QueryLimits& limits) {
+         return outcome_of_hit<SceneRayHit>(closest_hit(scene, ray, kAllLayers, limits),
+                                            [](const SceneRayHit& hit) { return hit.hit.t; });
+       }},
+      {"any_hit",
+       [&](const QueryLimits& limits) {
+         return outcome_of_hit<SceneRayHit>(any_hit(scene, ray, kAllLayers, limits),
+                                            [](const SceneRayHit& hit) { return hit.hit.t; });
+       }},
+      {"overlap_box",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_box(scene, everywhere(), counting(told), kAllLayers, limits);
+         });
+       }},
+      {"overlap_sphere",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_sphere(scene, {0, 0, 0}, 1e4, counting(told), kAllLayers, limits);
+         });
+       }},
+      {"closest_point",
+       [&](const QueryLimits& limits) {
+         return outcome_of_hit<SceneClosestPoint>(
+             closest_point(scene, {3, 2, 1}, 1e4, kAllLayers, limits),
+             [](const SceneClosestPoint& found) { return found.closest.distance; });
+       }},
+      {"contacts",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit(
+             [&](std::size_t& told) { return contacts(scene, counting(told), limits); });
+       }},
+      {"contacts_of",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit(
+             [&](std::size_t& told) { return contacts_of(scene, 0, counting(told), limits); });
+       }},
+      {"overlap_pairs",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return overlap_pairs(scene, body, Pose::Identity(), counting(told), kAllLayers, limits);
+         });
+       }},
+  };
+  for (const LimitedQuery& query : queries) {
+    SCOPED_TRACE(query.name);
+    EXPECT_GT(least_limit(query), 0u);
+  }
+  // All is in the box: every instance and all nodes of its tree.
+  std::uint64_t all = 0;
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    all += 1 + scene.trees()[test::require(scene.info(i)).tree].record().node_count;
+  }
+  EXPECT_EQ(least_limit(queries[2]), all);
+}
+
+// The bound on the work that two trees of hostile bytes can make.
+TEST(MostPairs, IsTheProductOfNodesAndLeaves) {
+  const auto record = [](CodecId codec, std::uint32_t nodes, std::uint32_t faces) {
+    TreeRecord made{};
+    made.codec = codec;
+    made.node_count = nodes;
+    made.face_count = faces;
+    return made;
+  };
+  const auto binary = [&](std::uint32_t nodes, std::uint32_t faces) {
+    return record(CodecId::kPlainF32, nodes, faces);
+  };
+  EXPECT_EQ(most_leaves(binary(3, 4)), 4u);
+  EXPECT_EQ(most_leaves(binary(3, 40)), 4u);  // two children each at most
+  EXPECT_EQ(most_leaves(binary(0, 1)), 1u);
+  EXPECT_EQ(most_leaves(record(CodecId::kWide8, 3, 40)), 5u);
+  EXPECT_EQ(most_leaves(record(CodecId::kWide4, 3, 41)), 6u);
+  EXPECT_EQ(most_pairs(binary(3, 4), binary(5, 6)), 77u);
+  EXPECT_EQ(most_pairs(binary(0, 0), binary(5, 6)), 0u);
+  EXPECT_EQ(most_pairs(binary(5, 6), binary(0, 0)), 0u);
+  const TreeRecord largest = binary(kMaxNodes, kMaxFaces);
+  const std::uint64_t size = std::uint64_t{kMaxNodes} + kMaxFaces;
+  EXPECT_EQ(most_pairs(largest, largest), saturated_product(size, size));
+  EXPECT_EQ(saturated_product(size, size), ~std::uint64_t{0});
+  EXPECT_EQ(saturated_product(0xffffffffu, 0xffffffffu), 0xfffffffe00000001u);
+}
+
+// Nodes in levels whose nodes all have the same children; the last ones have the first leaves, so
+// that the same faces are met over and over.
+std::vector<std::byte> shared_leaves_binary() {
+  std::vector<std::byte> bytes = test::cook_bytes(test::soup(61, 1), CodecId::kPlainF32);
+  test::edit_records<PlainNodeF32>(
+      bytes, SectionKind::kNodes, [](PlainNodeF32& node, std::uint32_t i, std::uint32_t) {
+        constexpr std::uint32_t kLevels = 12;
+        if (i < kLevels) {
+          node = {plain_cutplane(0, PlainChild::kSubtree, PlainChild::kSubtree),
+                  {i + 1, i + 1},
+                  {0, 0}};
+        } else {
+          node = {plain_cutplane(0, PlainChild::kLeaf, PlainChild::kLeaf), {0, 1}, {0, 0}};
+        }
+      });
+  return bytes;
+}
+std::vector<std::byte> shared_leaves_wide() {
+  std::vector<std::byte> bytes = test::cook_bytes(test::soup(1200, 1), CodecId::kWide8);
+  test::edit_records<Wide8Node>(bytes, SectionKind::kNodes,
+                                [](Wide8Node& node, std::uint32_t i, std::uint32_t) {
+                                  node = {};
+                                  node.child_count = 8;
+                                  if (i < 9) {
+                                    node.first_node = i == 0 ? 1 : 9;
+                                    node.inner_mask = 0xff;
+                                  }
+                                });
+  return bytes;
+}
+
+TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
+  for (const std::vector<std::byte>& bytes : {shared_leaves_binary(), shared_leaves_wide()}) {
+    const File file = test::require(File::open(Bytes(bytes)));
+    const Tree tree = test::require(Tree::bind(file));
+    const std::uint64_t most =
+        saturated_product(faces_in_leaves(tree.record()), faces_in_leaves(tree.record()));
+    std::uint64_t told = 0;
+    const Pose here = Pose::Identity();
+    const auto count = [&](const FacePair&) { return ++told > 0; };
+    EXPECT_EQ(overlap_pairs(tree, here, tree, here, count).code(), Errc::kNodeCorrupt);
+    EXPECT_LE(told, most);
+    Pose apart = here;
+    apart.translation() = Eigen::Vector3d(0, 0, 1e-3);
+    const Result<Distance> distant = distance(tree, here, tree, apart);
+    EXPECT_TRUE(distant.ok() || distant.code() == Errc::kNodeCorrupt);
+    if (distant) {
+      EXPECT_LE(distant->nodes_expanded, most_pairs(tree.record(), tree.record()));
+    }
+  }
+}
+
+// Scenes of hostile trees are asked about each instance once.
+TEST(HostileLeaves, OfATopLevelAreVisitedOnce) {
+  test::CookedScene cooked =
+      test::cook_scene({test::torus(12, 8)}, test::random_parts(40, 1, 0, 1, 1));
+  test::edit_records<Wide8Node>(cooked.bytes, SectionKind::kSceneNodes,
+                                [](Wide8Node& node, std::uint32_t i, std::uint32_t count) {
+                                  ASSERT_GE(count, 6u);
+                                  node = {};
+                                  node.child_count = 8;
+                                  node.first_node = i == 0 ? 1 : 0;
+                                  node.inner_mask = i == 0 ? 0x1f : 0;
+                                });
+  const File file = test::require(File::open(Bytes(cooked.bytes)));
+  const Scene scene = test::require(Scene::bind(file));
+  std::size_t told = 0;
+  const Result<Visit> visit =
+      overlap_box(scene, everywhere(), [&](const SceneFace&) { return ++told > 0; });
+  // Three instances at the root and eight below each of its five nodes: 43 visits of 40 instances.
+  EXPECT_EQ(visit.code(), Errc::kNodeCorrupt);
+  EXPECT_EQ(told, 40 * scene.trees()[0].record().face_count);
+}
+
+// Copies of a face are told again each time that a leaf with it is met.
+TEST(HostileLeaves, WithCopiesAreToldOnce) {
+  const cooker::SourceMesh mesh = test::mixed(test::identical_faces(300), test::soup(300, 1));
+  std::vector<std::byte> bytes = test::cook_bytes(mesh, CodecId::kWide8);
+  std::uint32_t original = 0;
+  {
+    const File file = test::require(File::open(Bytes(bytes)));
+    const Tree tree = test::require(Tree::bind(file));
+    ASSERT_TRUE(tree.has_duplicates());
+    original = tree.original_of(tree.record().face_count - 1);
+  }
+  const std::uint32_t leaf = std::min(original / kLeafFaces, 300 / kLeafFaces - 8);
+  test::edit_records<Wide8Node>(
+      bytes, SectionKind::kNodes, [&](Wide8Node& node, std::uint32_t i, std::uint32_t count) {
+        node = {};
+        node.child_count = static_cast<std::uint8_t>(i == 0 ? std::min(count - 1, 8u) : 8);
+        node.first_node = i == 0 ? 1 : 0;
+        node.inner_mask = static_cast<std::uint8_t>(i == 0 ? 0xff >> (8 - node.child_count) : 0);
+        node.first_leaf = leaf;
+      });
+  const File file = test::require(File::open(Bytes(bytes)));
+  const Tree tree = test::require(Tree::bind(file));
+  std::uint64_t told = 0;
+  const auto count = [&](const auto&) { return ++told > 0; };
+  EXPECT_EQ(overlap_box(tree, everywhere(), count).code(), Errc::kNodeCorrupt);
+  EXPECT_GT(told, 299u);
+  EXPECT_LE(told, 8 * 64 + 299u);
+  told = 0;
+  EXPECT_EQ(overlap_sphere(tree, {0, 0, 0}, 1e6, count).code(), Errc::kNodeCorrupt);
+  EXPECT_LE(told, 8 * 64 + 299u);
+  told = 0;
+  const Pose here = Pose::Identity();
+  static_cast<void>(overlap_pairs(tree, here, tree, here, count));
+  EXPECT_LE(told, std::uint64_t{599} * 599 + std::uint64_t{300} * 300);
+}
+
+}  // namespace
+}  // namespace boxtree
