@@ -16,8 +16,11 @@ function(boxtree_set_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
   # Same bytes and same answers everywhere: no fused multiply-add that the source does not ask for.
-  target_compile_options(${target} PRIVATE -ffp-contract=off -Wall -Wextra -Wpedantic -Wshadow
-                                           -Wconversion -Wsign-conversion -Wno-missing-field-initializers
+  # Programs that use the library compile its inline functions, too.
+  target_compile_options(${target} PUBLIC
+    $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-ffp-contract=off>)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                                           -Wsign-conversion -Wno-missing-field-initializers
                                            # Programs linked with --gc-sections keep what they call.
                                            -ffunction-sections -fdata-sections)
   if(BOXTREE_WERROR)
