@@ -2,10 +2,13 @@
 // Files through all stages, and the record of how they were cooked.
 #include <utility>
 
+#include <fmt/format.h>
+
 #include <boxtree/cooker/cook.h>
 #include <boxtree/cooker/cook_record.h>
 #include <boxtree/cooker/write/blob_writer.h>
 #include <boxtree/cooker/write/outputs.h>
+#include <boxtree/format/limits.h>
 #include <boxtree/runtime/query/float_state.h>
 
 namespace boxtree::cooker {
@@ -114,6 +117,11 @@ Result<CookReport> cook(const std::vector<std::filesystem::path>& inputs,
                         const std::filesystem::path& output, const CookOptions& options,
                         const Progress& progress) {
   const DefaultFloatState state;
+  // Each is a tree: told before hours of work, not after.
+  if (inputs.size() > kMaxTrees) {
+    return Error{Errc::kMeshTooLarge, fmt::format("{} inputs, each a tree: a file holds {} at most",
+                                                  inputs.size(), kMaxTrees)};
+  }
   FileCook file(options, progress);
   const bool is_scene =
       inputs.size() > 1 && (options.geometry == GeometryId::kGrid || options.may_use_grid);

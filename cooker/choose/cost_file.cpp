@@ -3,14 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <boxtree/cooker/choose/cost_file.h>
+#include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -115,10 +114,9 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
 }
 
 Result<std::vector<CodecCost>> read_costs(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return Error{Errc::kFileUnreadable, path.string()};
-  Result<std::vector<CodecCost>> costs = parse_costs(text);
+  const Result<std::string> text = read_whole_file(path, kMaxCostsBytes);
+  if (!text) return text.error();
+  Result<std::vector<CodecCost>> costs = parse_costs(*text);
   if (!costs) return Error{costs.code(), path.string() + ": " + costs.error().detail};
   return costs;
 }

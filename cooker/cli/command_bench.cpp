@@ -115,7 +115,7 @@ void print_approximate(const Json& kinds) {
 }
 
 void print_row(const Json& row) {
-  fmt::print("{} ({}, {}, {} triangles)\n", row["file"].get<std::string>(),
+  fmt::print("{} ({}, {}, {} triangles)\n", shown(row["file"].get<std::string>()),
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
@@ -174,8 +174,9 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   const Result<PageFigures> figures = measure_pages(path, index, arguments.quick ? 100 : 1000);
   if (!figures) return figures.error();
   if (!arguments.json) {
-    fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", path.string(), tree.name(),
-               codec_name(tree.codec()), tree.record().triangle_count, figures->file_pages);
+    fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", shown(path.string()),
+               shown(tree.name()), codec_name(tree.codec()), tree.record().triangle_count,
+               figures->file_pages);
     fmt::print("  open  {:5} pages\n", figures->open);
     print_row("ray", figures->ray);
     print_row("box", figures->box);

@@ -141,7 +141,7 @@ void print_report(const Arguments& arguments, const CookedFile& cooked, double s
     print_trees(trees_of(cooked));
   }
   fmt::print("wrote {} in {:.2f} s; every triangle proven inside every box above it\n",
-             arguments.output.string(), seconds);
+             shown(arguments.output.string()), seconds);
 }
 
 // The same of a share, for which CLI11's Range lets NaN pass.

@@ -212,13 +212,13 @@ std::string counted(std::uint64_t count, const char* one, const char* several) {
 }
 
 void print_report(const Arguments& arguments, const ExportReport& report) {
-  fmt::print("{}: {} bytes\n", arguments.output.string(), report.bytes);
+  fmt::print("{}: {} bytes\n", shown(arguments.output.string()), report.bytes);
   if (report.instances) {
     fmt::print("scene: {}, {} triangles placed\n",
                counted(*report.instances, "instance", "instances"), report.placed_triangles);
   }
   for (const ExportedTree& tree : report.trees) {
-    fmt::print("{}: {} triangles", tree.name, tree.triangles);
+    fmt::print("{}: {} triangles", shown(tree.name), tree.triangles);
     for (const BoxGroup& group : tree.boxes) {
       fmt::print(", {}: {}", group.name(), counted(group.count, "box", "boxes"));
     }

@@ -96,7 +96,7 @@ void print_file(const Json& json) {
              json["file_bytes"].get<std::uint64_t>());
   for (const Json& tree : json["trees"]) {
     fmt::print("{}: {} triangles, {}, geometry {}, {} nodes, depth {}\n",
-               tree["name"].get<std::string>(), tree["triangles"].get<std::uint32_t>(),
+               shown(tree["name"].get<std::string>()), tree["triangles"].get<std::uint32_t>(),
                tree["codec"].get<std::string>(), tree["geometry"].get<std::string>(),
                tree["nodes"].get<std::uint32_t>(), tree["depth"].get<std::uint32_t>());
     if (const auto copies = tree["duplicates"].get<std::uint32_t>(); copies > 0) {
@@ -107,7 +107,8 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["tree"].get<double>(),
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
-    fmt::print("  bounds {} to {}\n", tree["bounds"]["min"].dump(), tree["bounds"]["max"].dump());
+    fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
+               line_of(tree["bounds"]["max"]));
   }
   if (json.contains("scene")) print_scene(json["scene"]);
 }

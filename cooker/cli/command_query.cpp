@@ -41,7 +41,7 @@ void print_answer(const Arguments& arguments, const Json& json) {
   if (arguments.json) {
     print(json);
   } else {
-    for (const auto& [key, value] : json.items()) fmt::print("{}: {}\n", key, value.dump());
+    for (const auto& [key, value] : json.items()) fmt::print("{}: {}\n", key, line_of(value));
   }
 }
 
@@ -124,7 +124,7 @@ int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& 
     if (arguments.json) {
       answers.push_back(*answer);
     } else {
-      fmt::print("{}\n", answer->dump(-1, ' ', false, Json::error_handler_t::replace));
+      fmt::print("{}\n", line_of(*answer));
     }
   }
   if (arguments.json) print({{"answers", answers}});

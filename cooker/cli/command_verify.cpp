@@ -51,9 +51,9 @@ void report(const Arguments& arguments, const Findings& findings, const std::str
     return;
   }
   for (const Error& finding : findings) {
-    fmt::print("{:04} {}\n", static_cast<unsigned>(finding.code), finding.message());
+    fmt::print("{:04} {}\n", static_cast<unsigned>(finding.code), shown(finding.message()));
   }
-  if (findings.empty()) fmt::print("{}: {}\n", arguments.file.string(), summary);
+  if (findings.empty()) fmt::print("{}: {}\n", shown(arguments.file.string()), summary);
 }
 
 int run(const Arguments& arguments) {

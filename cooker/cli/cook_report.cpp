@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/cli/cook_report.h>
+#include <boxtree/cooker/cli/output.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -108,7 +109,7 @@ void print_import(const ImportReport& import) {
         "  the last line of the source has no end: a file that was cut short looks the same\n");
   }
   for (const SkippedFace& face : import.skipped) {
-    fmt::print("  skipped face {}: {}\n", face.face_id, face.reason);
+    fmt::print("  skipped face {}: {}\n", face.face_id, shown(face.reason));
   }
 }
 
@@ -132,11 +133,11 @@ void print_choices(const CookReport& report) {
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
       if (!candidate.rejected.empty()) continue;
-      fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f}  {:>9.2g}\n",
-                 cooked.tree.name, width, cooked.tree.triangle_count, codec_name(candidate.codec),
-                 geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
-                 per_triangle(candidate.bytes(), cooked.tree), slower[i],
-                 candidate.max_vertex_error);
+      fmt::print(
+          "  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f}  {:>9.2g}\n",
+          shown(cooked.tree.name), width, cooked.tree.triangle_count, codec_name(candidate.codec),
+          geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
+          per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.max_vertex_error);
     }
   }
 }
@@ -223,7 +224,7 @@ Json report_json(const SceneReport& report) {
 void print_trees(const CookReport& report) {
   for (std::size_t i = 0; i < report.trees.size(); ++i) {
     const CookedTree& cooked = report.trees[i];
-    fmt::print("{}: {} triangles\n", cooked.tree.name, cooked.tree.triangle_count);
+    fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
     print_contest(cooked);
     print_grid(cooked);
   }
@@ -244,7 +245,7 @@ void print_scene(const SceneReport& report, bool candidates) {
     fmt::print("  left out: {} instances, {} meshes\n", report.instances_left_out,
                report.meshes - report.cook.trees.size());
   }
-  for (const std::string& notice : report.notices) fmt::print("  {}\n", notice);
+  for (const std::string& notice : report.notices) fmt::print("  {}\n", shown(notice));
 }
 
 void print_why(const SceneReport& report) {
@@ -261,8 +262,9 @@ void print_why(const SceneReport& report) {
       if (wanted) kept += line.bytes;
       const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)
                                                             : fmt::format("~{}", line.bytes);
-      fmt::print("  {:<{}}  {:<{}}  {:>12}  {}{}{}\n", line.part, part_width, line.owner,
-                 owner_width, bytes, line.reason, line.line.empty() ? "" : "  <- ", line.line);
+      fmt::print("  {:<{}}  {:<{}}  {:>12}  {}{}{}\n", line.part, part_width, shown(line.owner),
+                 owner_width, bytes, shown(line.reason), line.line.empty() ? "" : "  <- ",
+                 shown(line.line));
     }
     if (wanted) fmt::print("  {:<{}}  {:<{}}  {:>12}\n", "sum", part_width, "", owner_width, kept);
   }

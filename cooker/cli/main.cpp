@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The command line `boxtree`: one sub-command a file.
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <memory>
 #include <new>
+#include <string>
 
 #include <fmt/format.h>
 
@@ -13,6 +15,10 @@
 int main(int argc, char** argv) {
   using namespace boxtree;
   int status = 0;
+#ifdef SIGXFSZ
+  // A limit of file sizes is an error of the write, which is reported and leaves no half a file.
+  static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
+#endif
   try {
     CLI::App app{"Cooks meshes into small collision trees and asks them.", "boxtree"};
     app.set_version_flag("--version", fmt::format("boxtree {}", cooker::kVersion));
@@ -35,11 +41,11 @@ int main(int argc, char** argv) {
       return app.exit(error) == 0 ? 0 : cooker::kExitUsage;
     }
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "boxtree: out of memory\n");
+    static_cast<void>(std::fputs("boxtree: out of memory\n", stderr));
     return cooker::kExitInternal;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return boxtree::cooker::fail_to_print();
-    fmt::print(stderr, "boxtree: internal: {}\n", error.what());
+    cooker::complain(std::string("internal: ") + error.what());
     return cooker::kExitInternal;
   }
   return std::fflush(stdout) == 0 ? status : cooker::fail_to_print();

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Output conventions of the command line.
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <charconv>
@@ -27,21 +28,57 @@ bool parse_vector(const std::string& text, Eigen::Vector3d& out) {
   return at == end;
 }
 
+// Bytes of the character that a text begins with; 0 if it is a control character (C0, DEL or C1;
+// but for line feeds, which messages of several lines have) or no UTF-8. Unicode 15, table 3-7.
+std::size_t character_bytes(std::string_view text) {
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
+  const auto is_between = [](unsigned x, unsigned low, unsigned high) {
+    return low <= x && x <= high;
+  };
+  const unsigned first = byte(0);
+  if (first < 0x80) return first == '\n' || is_between(first, 0x20, 0x7e) ? 1 : 0;
+  const auto continues = [&](std::size_t from, std::size_t to) {
+    for (std::size_t i = from; i <= to; ++i) {
+      if (!is_between(byte(i), 0x80, 0xbf)) return false;
+    }
+    return true;
+  };
+  if (first == 0xc2) return is_between(byte(1), 0xa0, 0xbf) ? 2 : 0;
+  if (is_between(first, 0xc3, 0xdf)) return continues(1, 1) ? 2 : 0;
+  if (is_between(first, 0xe0, 0xef)) {
+    const bool fits = first == 0xe0 ? byte(1) >= 0xa0 : first != 0xed || byte(1) <= 0x9f;
+    return fits && continues(1, 2) ? 3 : 0;
+  }
+  if (is_between(first, 0xf0, 0xf4)) {
+    const bool fits = first == 0xf0 ? byte(1) >= 0x90 : first != 0xf4 || byte(1) <= 0x8f;
+    return fits && continues(1, 3) ? 4 : 0;
+  }
+  return 0;
+}
+
 }  // namespace
 
+// Where standard error takes nothing either, the exit status has to say it all: fmt would throw.
+void complain(std::string_view what) noexcept {
+  const std::string line = "boxtree: " + shown(what) + "\n";
+  static_cast<void>(std::fputs(line.c_str(), stderr));
+}
+
 int fail(const Error& error) {
-  fmt::print(stderr, "boxtree: {}\n", error.message());
+  complain(error.message());
   return error_info(error.code).exit_status;
 }
 
 int usage(const std::string& what) {
-  fmt::print(stderr, "boxtree: {}\n", what);
+  complain(what);
   return kExitUsage;
 }
 
 int fail_to_print() {
   const int error = errno;
-  fmt::print(stderr, "boxtree: standard output: {}\n", std::generic_category().message(error));
+  complain("standard output: " + std::generic_category().message(error));
   return kExitInputOutput;
 }
 
@@ -49,8 +86,26 @@ Json to_json(const Eigen::Vector3d& vector) {
   return {vector[0], vector[1], vector[2]};
 }
 
+std::string shown(std::string_view text) {
+  std::string printable;
+  while (!text.empty()) {
+    const std::size_t bytes = character_bytes(text);
+    if (bytes > 0) {
+      printable += text.substr(0, bytes);
+    } else {
+      printable += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+    }
+    text.remove_prefix(std::max<std::size_t>(bytes, 1));
+  }
+  return printable;
+}
+
 void print(const Json& document) {
   fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+}
+
+std::string line_of(const Json& value) {
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string HelpFormatter::make_help(const CLI::App* app, std::string name,

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -21,6 +22,9 @@ inline constexpr int kExitInputOutput = 2;
 inline constexpr int kExitBadInput = 3;
 inline constexpr int kExitInternal = 4;
 
+/// Prints "boxtree: WHAT" to standard error.
+void complain(std::string_view what) noexcept;
+
 /// Prints "boxtree: CODE: DETAIL" to standard error and returns the exit status of the code.
 int fail(const Error& error);
 
@@ -30,8 +34,14 @@ int usage(const std::string& what);
 /// Says that standard output takes no more; kExitInputOutput.
 int fail_to_print();
 
-/// Prints one JSON document to standard output.
+/// Text from a file or a path as a terminal may be given it: control characters, and bytes that are
+/// no UTF-8, as \\xNN.
+[[nodiscard]] std::string shown(std::string_view text);
+
+/// Prints one JSON document to standard output. Bytes that are no UTF-8 become U+FFFD.
 void print(const Json& document);
+/// The same in one line, as text.
+[[nodiscard]] std::string line_of(const Json& value);
 
 /// A vector as three numbers.
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);

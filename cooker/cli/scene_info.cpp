@@ -105,7 +105,7 @@ Result<Json> scene_json(const File& file) {
 void print_scene(const Json& scene) {
   fmt::print("scene: {} instances ({} moving), {} triangles placed; answers {}\n",
              scene["instance_count"].get<std::uint32_t>(), scene["moving"].get<std::size_t>(),
-             scene["placed_triangles"].get<std::uint64_t>(), scene["queries"].dump());
+             scene["placed_triangles"].get<std::uint64_t>(), line_of(scene["queries"]));
   std::map<std::uint32_t, std::size_t> of_layer;
   for (const Json& instance : scene["instances"]) {
     if (instance.contains("layer")) ++of_layer[instance["layer"].get<std::uint32_t>()];
@@ -113,14 +113,15 @@ void print_scene(const Json& scene) {
   for (std::uint32_t i = 0; i < scene["layers"].size(); ++i) {
     const Json& layer = scene["layers"][i];
     fmt::print("  layer {} {}: {} instances, answers {}, meets layers {}\n", i,
-               layer["name"].dump(), of_layer[i], layer["queries"].dump(), layer["meets"].dump());
+               line_of(layer["name"]), of_layer[i], line_of(layer["queries"]),
+               line_of(layer["meets"]));
   }
-  if (!scene["materials"].empty()) fmt::print("  materials {}\n", scene["materials"].dump());
+  if (!scene["materials"].empty()) fmt::print("  materials {}\n", line_of(scene["materials"]));
   for (const Json& part : scene["left_out"]) {
     const std::string owner =
         part["tree"].is_null() ? "" : fmt::format(" of tree {}", part["tree"].get<std::uint32_t>());
-    fmt::print("  left out: {}{}, by {}\n", part["part"].get<std::string>(), owner,
-               part["by"].get<std::string>());
+    fmt::print("  left out: {}{}, by {}\n", shown(part["part"].get<std::string>()), owner,
+               shown(part["by"].get<std::string>()));
   }
 }
 

@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/output.h>
+
 namespace boxtree::cooker {
 
 /// Steps on a terminal only, and only once the work has taken half a second.
@@ -19,11 +21,12 @@ class StepPrinter {
   StepPrinter(const StepPrinter&) = delete;
   StepPrinter& operator=(const StepPrinter&) = delete;
   ~StepPrinter() {
-    if (printed_) fmt::print(stderr, "\r\033[K");
+    if (printed_) static_cast<void>(std::fputs("\r\033[K", stderr));
   }
   void operator()(const std::string& step) {
     if (!enabled_ || Clock::now() - start_ < std::chrono::milliseconds(500)) return;
-    fmt::print(stderr, "\r\033[K{} ...", step);
+    const std::string line = "\r\033[K" + shown(step) + " ...";
+    static_cast<void>(std::fputs(line.c_str(), stderr));
     static_cast<void>(std::fflush(stderr));
     printed_ = true;
   }

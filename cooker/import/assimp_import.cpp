@@ -29,6 +29,7 @@
 #include <boxtree/cooker/import/source_scene.h>
 #include <boxtree/cooker/import/text_checks.h>
 #include <boxtree/cooker/import/text_tokens.h>
+#include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -154,7 +155,7 @@ template <class Read>
 Status import_text(const Request& request, const std::string& name, const Read& read_text,
                    ImportedFile& out) {
   const fs::path& path = request.path;
-  Result<std::string> file = read_source_file(path);
+  Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
   StandIn seen{name, {}, {}, ExactPositions(request.options.precision)};
   Result<std::string> text = read_text(file.value(), seen.known, seen.exact);
@@ -176,7 +177,7 @@ std::string with_line_feeds(std::string text) {
 // A file whose vertices cannot be found is read as any other.
 Status import_ply(const Request& request, ImportedFile& out) {
   const fs::path& path = request.path;
-  Result<std::string> file = read_source_file(path);
+  Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
   StandIn numbered{path.string(),
                    with_line_feeds(std::move(file).value()),
@@ -196,7 +197,7 @@ Status import_ply(const Request& request, ImportedFile& out) {
 }
 
 Status import_stl(const Request& request, ImportedFile& out) {
-  const Result<std::string> file = read_source_file(request.path);
+  const Result<std::string> file = read_whole_file(request.path, kAnyBytes);
   if (!file.ok()) return file.error();
   if (Status status = check_stl_text(*file); !status.ok()) {
     return in_file(request.path, status.error());

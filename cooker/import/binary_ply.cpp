@@ -283,11 +283,11 @@ std::optional<FaceFault> Reader<T>::fault_of_face() const {
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     const std::uint32_t vertex = corners_[i];
     if (vertex >= numbers_.size()) {
-      return vertex_out_of_range(i, fmt::format("vertex {}", vertex), numbers_.size());
+      return vertex_out_of_range(i, vertex_text(vertex), numbers_.size());
     }
     if (all_finite_ || is_finite(vertex)) continue;
     const T* p = &positions_[std::size_t{3} * vertex];
-    return vertex_not_finite(fmt::format("vertex {}", vertex), {p[0], p[1], p[2]});
+    return vertex_not_finite(vertex_text(vertex), {p[0], p[1], p[2]});
   }
   return std::nullopt;
 }

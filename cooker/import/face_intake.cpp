@@ -15,6 +15,12 @@ namespace boxtree::cooker {
 
 using Eigen::Vector3d;
 
+std::string vertex_text(std::uint32_t vertex) {
+  const bool is_negative = vertex > kMaxVertices;
+  return is_negative ? fmt::format("vertex {}", static_cast<std::int32_t>(vertex))
+                     : fmt::format("vertex {}", vertex);
+}
+
 FaceFault vertex_out_of_range(std::size_t corner, const std::string& vertex,
                               std::uint64_t vertex_count) {
   return {Errc::kMeshIndexOutOfRange, fmt::format("corner {} names {}, but there are {} vertices",

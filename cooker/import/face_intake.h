@@ -19,6 +19,10 @@ struct FaceFault {
   std::string reason;
 };
 
+/// "vertex 7". Numbers that no mesh can have are those below zero, which were read as unsigned
+/// ones.
+[[nodiscard]] std::string vertex_text(std::uint32_t vertex);
+
 /// How a corner that names no vertex, and a vertex that is not finite, are put.
 [[nodiscard]] FaceFault vertex_out_of_range(std::size_t corner, const std::string& vertex,
                                             std::uint64_t vertex_count);

@@ -167,7 +167,7 @@ std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
 
 template <class T>
 std::string Flattener<T>::name_of_vertex(unsigned vertex) const {
-  std::string name = fmt::format("vertex {}", vertex);
+  std::string name = vertex_text(vertex);
   if (source_->mName.length > 0) name += fmt::format(" of mesh '{}'", source_->mName.C_Str());
   return name;
 }

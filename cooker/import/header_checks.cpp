@@ -17,6 +17,7 @@
 #include <boxtree/cooker/import/header_checks.h>
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/text_tokens.h>
+#include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -121,7 +122,7 @@ Status check_ply_header(const std::filesystem::path& path) {
 Status check_gltf_faces(const std::filesystem::path& path, const aiScene& scene) {
   const bool is_binary = has_extension(path, "glb");
   if (!is_binary && !has_extension(path, "gltf")) return {};
-  const Result<std::string> file = read_source_file(path);
+  const Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
   const std::string_view text = is_binary ? glb_json(*file) : std::string_view(*file);
   const Json document = Json::parse(text, nullptr, false);

@@ -13,13 +13,12 @@
 #include <xxhash.h>
 
 #include <boxtree/cooker/import/source_files.h>
+#include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
 struct CloseFile {
   void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
@@ -32,21 +31,6 @@ Error unreadable(const fs::path& path, const std::string& why) {
 
 std::string system_message(int error) {
   return std::generic_category().message(error);
-}
-
-// Hands the bytes of `path` to `sink` in chunks.
-template <class Sink>
-Status read_chunks(const fs::path& path, const Sink& sink) {
-  const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return unreadable(path, system_message(errno));
-  std::vector<char> chunk(kChunkBytes);
-  for (;;) {
-    const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get());
-    sink(chunk.data(), got);
-    if (got == chunk.size()) continue;
-    return std::ferror(file.get()) != 0 ? Status(unreadable(path, system_message(errno)))
-                                        : Status();
-  }
 }
 
 }  // namespace
@@ -68,14 +52,6 @@ Status check_source_file(const fs::path& path) {
   return Error{Errc::kImportFailed, path.string() + ": the file is empty"};
 }
 
-Result<std::string> read_source_file(const fs::path& path) {
-  std::string text;
-  const Status status = read_chunks(
-      path, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); });
-  if (!status.ok()) return status.error();
-  return text;
-}
-
 Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
   struct FreeState {
     void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
@@ -84,9 +60,10 @@ Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
   if (!state) return Error{Errc::kInternal, "no memory for a hash"};
   XXH3_64bits_reset(state.get());
   for (const fs::path& file : files) {
-    const Status status = read_chunks(file, [&state](const char* bytes, std::size_t count) {
-      XXH3_64bits_update(state.get(), bytes, count);
-    });
+    const Status status =
+        read_chunks(file, kAnyBytes, [&state](const char* bytes, std::size_t count) {
+          XXH3_64bits_update(state.get(), bytes, count);
+        });
     if (!status.ok()) return status.error();
   }
   return XXH3_64bits_digest(state.get());

@@ -18,9 +18,6 @@ namespace boxtree::cooker {
 /// Whether `path` is a regular file that can be opened and holds at least one byte.
 Status check_source_file(const std::filesystem::path& path);
 
-/// The whole file as text.
-Result<std::string> read_source_file(const std::filesystem::path& path);
-
 /// XXH3 (64 bits) over the bytes of the files, one after the other. Does not depend on their paths.
 Result<std::uint64_t> hash_source_files(std::span<const std::filesystem::path> files);
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether texts that assimp reads are whole: of a file that was cut short it makes faces of its own.
+// Whether texts that assimp reads are whole: of a file that was cut short it makes faces of its
+// own.
 #pragma once
 
 #include <string_view>

@@ -3,13 +3,13 @@
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
-#include <iterator>
 #include <sys/utsname.h>
 #include <thread>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <boxtree/cooker/import/whole_file.h>
 #include <boxtree/cooker/report/pages_json.h>
 #include <boxtree/cooker/report/tradeoff_advice.h>
 #include <boxtree/cooker/report/tradeoff_data.h>
@@ -194,10 +194,9 @@ Surroundings surroundings(const std::string& command) {
 }
 
 Result<IncludedResults> read_results(const std::filesystem::path& path) {
-  std::ifstream in(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  if (!in) return Error{Errc::kFileUnreadable, path.string()};
-  const Json document = Json::parse(text, nullptr, false);
+  const Result<std::string> text = read_whole_file(path, kMaxResultsBytes);
+  if (!text) return text.error();
+  const Json document = Json::parse(*text, nullptr, false);
   const bool has_rows = document.is_object() && document.contains("rows");
   const Json& rows = has_rows ? document["rows"] : document;
   const auto is_row = [](const Json& row) { return row.is_object(); };

@@ -2,12 +2,11 @@
 // The tables of a profile, read into values that are complete: what an object does not say is
 // taken from [scene] here, so that nothing later has to look in two places.
 #include <algorithm>
-#include <array>
-#include <fstream>
 #include <map>
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/import/whole_file.h>
 #include <boxtree/cooker/scene/hidden_faces.h>
 #include <boxtree/cooker/scene/profile.h>
 #include <boxtree/cooker/scene/profile_fields.h>
@@ -30,21 +29,6 @@ std::vector<std::string> codec_names() {
   names.reserve(kCodecs.size());
   for (const CodecInfo& info : kCodecs) names.emplace_back(info.name);
   return names;
-}
-
-Result<std::string> read_text(const std::filesystem::path& path) {
-  std::error_code error;
-  if (!std::filesystem::exists(path, error)) return Error{Errc::kFileNotFound, path.string()};
-  std::ifstream file(path, std::ios::binary);
-  std::string text;
-  std::array<char, 4096> buffer;
-  // Of a stream's functions, read() is one that does not let its buffer's exceptions pass.
-  while (file) {
-    file.read(buffer.data(), buffer.size());
-    text.append(buffer.data(), static_cast<std::size_t>(file.gcount()));
-  }
-  if (!file.is_open() || file.bad()) return Error{Errc::kFileUnreadable, path.string()};
-  return text;
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -301,7 +285,7 @@ void ProfileReader::read_hidden_faces(Fields& fields, ProfileMesh& mesh) {
   const auto list = fields.text("hidden_faces");
   if (!list) return;
   const std::filesystem::path path = beside(*list).value;
-  const Result<std::string> text = read_text(path);
+  const Result<std::string> text = read_whole_file(path, kMaxFaceListBytes);
   if (!text) {
     complaints_.expected(list->line, "hidden_faces", "the name of a list of faces",
                          text.error().message());
@@ -416,7 +400,7 @@ std::string Profile::cite(std::uint32_t line) const {
 
 Result<Profile> read_profile(const std::filesystem::path& path) {
   const DefaultFloatState state;
-  const Result<std::string> text = read_text(path);
+  const Result<std::string> text = read_whole_file(path, kMaxProfileBytes);
   if (!text) return text.error();
   const Result<TomlTable> root = parse_toml(*text, path.string());
   if (!root) return root.error();

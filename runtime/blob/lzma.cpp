@@ -12,6 +12,26 @@ const std::uint8_t* octets(Bytes bytes) {
   return reinterpret_cast<const std::uint8_t*>(bytes.data());
 }
 
+const char* meaning_of(lzma_ret result) {
+  switch (result) {
+    case LZMA_OK:
+      return "ended early or late";
+    case LZMA_MEM_ERROR:
+      return "out of memory";
+    case LZMA_FORMAT_ERROR:
+      return "no .xz stream";
+    case LZMA_OPTIONS_ERROR:
+    case LZMA_UNSUPPORTED_CHECK:
+      return "made with options that this liblzma does not know";
+    case LZMA_DATA_ERROR:
+      return "damaged";
+    case LZMA_BUF_ERROR:
+      return "cut short, or more than it states";
+    default:
+      return "refused by liblzma";
+  }
+}
+
 }  // namespace
 
 Status decompress_lzma(Bytes stream, std::span<std::byte> out, std::uint64_t memory_limit) {
@@ -27,9 +47,9 @@ Status decompress_lzma(Bytes stream, std::span<std::byte> out, std::uint64_t mem
   }
   if (result == LZMA_OK && in_at == stream.size() && out_at == out.size()) return {};
   return Error{Errc::kBlobCorrupt,
-               "lzma stream: code " + std::to_string(result) + ", read " + std::to_string(in_at) +
-                   " of " + std::to_string(stream.size()) + " bytes, gave " +
-                   std::to_string(out_at) + " of " + std::to_string(out.size())};
+               std::string("lzma stream: ") + meaning_of(result) + ": read " +
+                   std::to_string(in_at) + " of " + std::to_string(stream.size()) +
+                   " bytes, gave " + std::to_string(out_at) + " of " + std::to_string(out.size())};
 }
 
 Result<std::vector<std::byte>> compress_lzma(Bytes bytes) {
@@ -39,7 +59,7 @@ Result<std::vector<std::byte>> compress_lzma(Bytes bytes) {
       LZMA_PRESET_DEFAULT | LZMA_PRESET_EXTREME, LZMA_CHECK_CRC32, nullptr, octets(bytes),
       bytes.size(), reinterpret_cast<std::uint8_t*>(out.data()), &size, out.size());
   if (result != LZMA_OK) {
-    return Error{Errc::kInternal, "lzma encoder: code " + std::to_string(result)};
+    return Error{Errc::kInternal, std::string("lzma encoder: ") + meaning_of(result)};
   }
   out.resize(size);
   return out;

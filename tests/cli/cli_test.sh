@@ -391,6 +391,47 @@ cmp own.obj cube.obj
 if [ -e not-own.bxt ]; then echo "not-own.bxt was written"; exit 1; fi
 same "$(find . -name '*.cooking' | wc -l)" 0
 
+# Names are whatever bytes they are: shown so that no terminal obeys them, and never the end of it.
+odd=$(printf 'odd\033[31m\377\302\233name')
+cp cube.obj "$odd.obj"
+expect 0 "$boxtree" cook "$odd.obj" -o "$odd.bxt"
+grep -qF 'odd\x1b[31m\xff\xc2\x9bname' out
+expect 0 "$boxtree" info "$odd.bxt"
+grep -qF 'odd\x1b[31m\xff\xc2\x9bname: 12 triangles' out
+expect 0 "$boxtree" info "$odd.bxt" --json
+expect 0 "$boxtree" verify "$odd.bxt"
+expect 0 "$boxtree" query "$odd.bxt" ray --origin 0.2,0.3,5 --direction 0,0,-1
+expect 2 "$boxtree" info "missing$odd.bxt"
+grep -qF 'missingodd\x1b[31m\xff\xc2\x9bname.bxt' err
+if grep -l "$(printf '\033')" out err; then echo "an escape sequence was printed"; exit 1; fi
+cp cube.obj 'Würfel 方.obj'
+expect 0 "$boxtree" cook 'Würfel 方.obj' -o plain.bxt
+grep -qF 'Würfel 方' out
+
+# Devices never end; a limit of file sizes is an error like any other.
+for option in --profile --costs; do
+  expect 2 timeout 20 "$boxtree" cook cube.obj -o endless.bxt "$option" /dev/zero
+  grep -q '/dev/zero: more than the [0-9]* bytes that such a file may have' err
+done
+printf '[[mesh]]\nname = "*"\nhidden_faces = "/dev/zero"\n' >endless.toml
+expect 3 timeout 60 "$boxtree" cook cube.obj -o endless.bxt --profile endless.toml
+grep -q '/dev/zero: more than the [0-9]* bytes' err
+got=0
+said=$(ulimit -f 0; "$boxtree" cook cube.obj -o no-room.bxt 2>&1 >/dev/null) || got=$?
+same "$got" 2
+case $said in *write_failed*'File too large'*) ;; *) echo "unclear: $said"; exit 1 ;; esac
+got=0
+(ulimit -f 0; exec "$boxtree" cook missing.obj -o no-room.bxt >/dev/null 2>nowhere) || got=$?
+same "$got" 2 # standard error takes nothing either
+if [ -e no-room.bxt ]; then echo "no-room.bxt was written"; exit 1; fi
+# More inputs than a file can hold are told before any is read.
+yes cube.obj | head -4097 | xargs -n 5000 timeout 20 "$boxtree" cook -o many.bxt >out 2>err && exit 1
+grep -q 'mesh_too_large: 4097 inputs, each a tree: a file holds 4096 at most' err
+# assimp reads a number below zero as a large one.
+printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 -2\n' >negative.ply
+expect 3 "$boxtree" cook negative.ply -o negative.bxt
+grep -q 'corner 2 names vertex -2, but there are 3 vertices' err
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out

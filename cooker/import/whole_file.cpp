@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Reads files by stdio, whose errors say why.
+#include <cerrno>
+#include <cstdio>
+#include <memory>
+#include <system_error>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/whole_file.h>
+
+namespace boxtree::cooker {
+namespace {
+
+constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
+
+struct CloseFile {
+  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
+};
+
+Error unreadable(const std::filesystem::path& path, int error) {
+  const Errc code = error == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable;
+  return {code, path.string() + ": " + std::generic_category().message(error)};
+}
+
+}  // namespace
+
+Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
+                   const std::function<void(const char* bytes, std::size_t count)>& sink) {
+  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  if (!file) return unreadable(path, errno);
+  std::vector<char> chunk(kChunkBytes);
+  std::uint64_t left = most;
+  for (;;) {
+    const std::size_t got = std::fread(chunk.data(), 1, chunk.size(), file.get());
+    if (got > left) {
+      return Error{
+          Errc::kFileUnreadable,
+          fmt::format("{}: more than the {} bytes that such a file may have", path.string(), most)};
+    }
+    left -= got;
+    sink(chunk.data(), got);
+    if (got == chunk.size()) continue;
+    return std::ferror(file.get()) != 0 ? Status(unreadable(path, errno)) : Status();
+  }
+}
+
+Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most) {
+  std::string text;
+  const Status status = read_chunks(
+      path, most, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); });
+  if (!status.ok()) return status.error();
+  return text;
+}
+
+}  // namespace boxtree::cooker
