@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Quad test and ear clipping (Meisters, "Polygons have ears", 1975) on exact orientation signs.
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
@@ -15,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr std::uint32_t kNowhere = 0xffffffffu;
+constexpr std::uint32_t kNowhere = CornerSet::kNone;
 
 // Coordinates that orient2d takes as they are, with room for products of three of them. Others
 // (only f64 positions can hold such) are scaled by a power of two, which changes no sign.
@@ -130,35 +131,115 @@ bool is_planar_convex_quad(const std::array<RoundedCorner, 4>& corners) {
   return is_planar(scaled) && is_convex(scaled);
 }
 
+void CornerSet::reset(std::uint32_t count, bool all) {
+  std::size_t level = 0;
+  for (std::uint32_t size = count;; ++level) {
+    if (level == levels_.size()) levels_.emplace_back();
+    const std::uint32_t words = (size + 63) / 64;
+    levels_[level].assign(words, all ? ~std::uint64_t{0} : 0);
+    if (all && size % 64 != 0) levels_[level].back() = (std::uint64_t{1} << (size % 64)) - 1;
+    if (words <= 1) break;
+    size = words;
+  }
+  levels_.resize(level + 1);
+}
+
+void CornerSet::insert(std::uint32_t number) {
+  for (std::vector<std::uint64_t>& level : levels_) {
+    std::uint64_t& word = level[number / 64];
+    const bool was_empty = word == 0;
+    word |= std::uint64_t{1} << (number % 64);
+    if (!was_empty) return;
+    number /= 64;
+  }
+}
+
+void CornerSet::erase(std::uint32_t number) {
+  for (std::vector<std::uint64_t>& level : levels_) {
+    std::uint64_t& word = level[number / 64];
+    word &= ~(std::uint64_t{1} << (number % 64));
+    if (word != 0) return;
+    number /= 64;
+  }
+}
+
+std::uint32_t CornerSet::next_around(std::uint32_t from) const {
+  const std::uint32_t found = next(from);
+  return found != kNone ? found : next(0);
+}
+
+// Up while nothing is left in the word, then down to the first of each.
+std::uint32_t CornerSet::next(std::uint32_t from) const {
+  for (std::size_t level = 0; level < levels_.size(); ++level) {
+    const std::size_t at = from / 64;
+    if (at >= levels_[level].size()) return kNone;
+    std::uint64_t word = levels_[level][at] & (~std::uint64_t{0} << (from % 64));
+    if (word == 0) {
+      from = static_cast<std::uint32_t>(at) + 1;
+      continue;
+    }
+    auto found =
+        static_cast<std::uint32_t>(at * 64 + static_cast<std::size_t>(std::countr_zero(word)));
+    while (level-- > 0) {
+      word = levels_[level][found];
+      found = found * 64 + static_cast<std::uint32_t>(std::countr_zero(word));
+    }
+    return found;
+  }
+  return kNone;
+}
+
+void PolygonSplitter::Candidates::reset(std::uint32_t count) {
+  corners.reset(count, true);
+  blocker.assign(count, kNowhere);
+  last_block.assign(count, kNowhere);
+  blocks.clear();
+}
+
+void PolygonSplitter::Candidates::block(std::uint32_t corner, std::uint32_t by) {
+  corners.erase(corner);
+  blocker[corner] = by;
+  if (by == kNowhere) return;  // it does not turn left
+  blocks.push_back({corner, last_block[by]});
+  last_block[by] = static_cast<std::uint32_t>(blocks.size() - 1);
+}
+
+void PolygonSplitter::Candidates::unblock(std::uint32_t by) {
+  for (std::uint32_t i = last_block[by]; i != kNowhere; i = blocks[i].before) {
+    const std::uint32_t corner = blocks[i].blocked;
+    if (blocker[corner] == by) changed(corner);
+  }
+  last_block[by] = kNowhere;
+}
+
+void PolygonSplitter::Candidates::changed(std::uint32_t corner) {
+  blocker[corner] = kNowhere;
+  corners.insert(corner);
+}
+
 std::span<const PolygonSplitter::Triangle> PolygonSplitter::split(
     std::span<const Vector3d> corners) {
   assert(corners.size() >= 3);
   triangles_.clear();
   tests_ = 0;
   project(corners);
-  link(corners.size());
-  // Terminates: a circle without an ear of one kind moves on to the next kind, and every corner is
-  // an ear of the last kind. After a corner is clipped its neighbour is passed over, as in earcut:
-  // a convex polygon is halved again and again instead of becoming a fan of slivers.
+  const auto count = static_cast<std::uint32_t>(corners.size());
+  make_grid(count);
+  link(count);
+  // Terminates: each step clips a corner. An ear that does no harm comes first; then a corner
+  // without area, which changes nothing; then an ear that others touch; if there is none of them
+  // the polygon crosses itself, and any corner will do. After a corner is clipped its neighbour is
+  // passed over, as in earcut: a convex polygon is halved again and again instead of becoming a fan
+  // of slivers.
   std::uint32_t corner = 1;
-  std::size_t left = corners.size();
-  std::size_t tried = 0;
-  EarKind kind = EarKind::kClean;
-  while (left > 3) {
-    if (is_ear(corner, kind)) {
-      const std::uint32_t after = next_[corner];
-      clip(corner);
-      --left;
-      corner = next_[after];
-      tried = 0;
-      kind = EarKind::kClean;
-      continue;
-    }
-    corner = next_[corner];
-    if (++tried == left) {
-      tried = 0;
-      kind = static_cast<EarKind>(static_cast<int>(kind) + 1);
-    }
+  for (std::uint32_t left = count; left > 3; --left) {
+    std::uint32_t ear = find_ear(corner, EarKind::kClean);
+    if (ear == kNowhere) ear = flat_.next_around(corner);
+    if (ear == kNowhere) ear = find_ear(corner, EarKind::kTouching);
+    if (ear == kNowhere || tests_ > kMaxTests) ear = corner;
+    const std::uint32_t after = next_[ear];
+    clip(ear);
+    corner = next_[after];
   }
   // The three that are left, beginning with the lowest number so that a quad ends in (0,2,3).
   const std::uint32_t first = std::min({corner, next_[corner], previous_[corner]});
@@ -185,34 +266,90 @@ void PolygonSplitter::project(std::span<const Vector3d> corners) {
   }
 }
 
-void PolygonSplitter::link(std::size_t count) {
+void PolygonSplitter::link(std::uint32_t count) {
   next_.resize(count);
   previous_.resize(count);
   std::iota(next_.begin(), next_.end(), 1u);
   next_.back() = 0;
   std::iota(previous_.begin() + 1, previous_.end(), 0u);
-  previous_.front() = static_cast<std::uint32_t>(count - 1);
-  reflex_.clear();
-  reflex_slot_.assign(count, kNowhere);
-  for (std::uint32_t corner = 0; corner < count; ++corner) update_reflex(corner);
+  previous_.front() = count - 1;
+  flat_.reset(count, false);
+  slot_.assign(count, kNowhere);
+  for (Candidates& candidates : candidates_) candidates.reset(count);
+  for (std::uint32_t corner = 0; corner < count; ++corner) update(corner);
+}
+
+// Some four corners a cell, which is about as wide as high; polygons of few corners have one cell.
+void PolygonSplitter::make_grid(std::uint32_t count) {
+  Vector2d high = points_[0];
+  grid_low_ = points_[0];
+  for (const Vector2d& point : points_) {
+    grid_low_ = grid_low_.cwiseMin(point);
+    high = high.cwiseMax(point);
+  }
+  const Vector2d extent = high - grid_low_;
+  const double cells = std::max(1.0, count / 4.0);
+  const double aspect = extent[0] / std::max(extent[1], kSmallest);
+  const double columns = std::clamp(std::sqrt(cells * aspect), 1.0, cells);  // extents may be zero
+  const std::array<double, 2> wanted{columns, cells / columns};
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    const bool is_cut = extent[k] >= kSmallest;
+    cell_count_[axis] = is_cut ? static_cast<std::uint32_t>(wanted[axis]) : 1;
+    cells_per_length_[k] = is_cut ? cell_count_[axis] / extent[k] : 0;
+  }
+  const std::size_t used = std::size_t{cell_count_[0]} * cell_count_[1];
+  if (cells_.size() < used) cells_.resize(used);
+  for (std::size_t cell = 0; cell < used; ++cell) cells_[cell].clear();
+}
+
+// Monotone in each coordinate, so that the cells of a box's corners enclose those of what is in it.
+std::array<std::uint32_t, 2> PolygonSplitter::cell_of(const Vector2d& point) const {
+  std::array<std::uint32_t, 2> cell;
+  for (std::size_t axis = 0; axis < 2; ++axis) {
+    const auto k = static_cast<Eigen::Index>(axis);
+    const double place = (point[k] - grid_low_[k]) * cells_per_length_[k];
+    cell[axis] = static_cast<std::uint32_t>(
+        std::clamp(place, 0.0, static_cast<double>(cell_count_[axis] - 1)));
+  }
+  return cell;
 }
 
 int PolygonSplitter::turn(std::uint32_t corner) const {
   return orient2d(points_[previous_[corner]], points_[corner], points_[next_[corner]]);
 }
 
-bool PolygonSplitter::is_ear(std::uint32_t corner, EarKind kind) {
-  if (kind == EarKind::kAny || tests_ > kMaxTests) return true;
-  const int turned = turn(corner);
-  if (kind == EarKind::kFlat) return turned == 0;
-  if (turned <= 0) return false;
-  // A corner that turns left cannot be the only one inside, so the others need not be tested: of
-  // those inside the ear the one farthest from its diagonal does not turn left.
-  for (const std::uint32_t other : reflex_) {
-    ++tests_;
-    if (blocks(other, corner, kind == EarKind::kClean)) return false;
+// The first ear of a kind from `from` on, around the polygon; kNowhere if there is none.
+std::uint32_t PolygonSplitter::find_ear(std::uint32_t from, EarKind kind) {
+  Candidates& candidates = candidates_[static_cast<std::size_t>(kind)];
+  for (std::uint32_t corner = candidates.corners.next_around(from); corner != kNowhere;
+       corner = candidates.corners.next_around(corner)) {
+    if (tests_ > kMaxTests) return corner;
+    std::uint32_t blocker = kNowhere;
+    if (turn(corner) > 0) {
+      blocker = find_blocker(corner, kind);
+      if (blocker == kNowhere) return corner;
+    }
+    candidates.block(corner, blocker);
   }
-  return true;
+  return kNowhere;
+}
+
+// A corner that turns left cannot be the only one inside an ear, so the others need not be tested:
+// of those inside the ear the one farthest from its diagonal does not turn left.
+std::uint32_t PolygonSplitter::find_blocker(std::uint32_t corner, EarKind kind) {
+  const Vector2d &a = points_[previous_[corner]], &b = points_[corner], &c = points_[next_[corner]];
+  const auto low = cell_of(a.cwiseMin(b).cwiseMin(c)), high = cell_of(a.cwiseMax(b).cwiseMax(c));
+  for (std::uint32_t row = low[1]; row <= high[1]; ++row) {
+    for (std::uint32_t column = low[0]; column <= high[0]; ++column) {
+      ++tests_;  // of a cell, too
+      for (const std::uint32_t other : cells_[row * cell_count_[0] + column]) {
+        ++tests_;
+        if (blocks(other, corner, kind == EarKind::kClean)) return other;
+      }
+    }
+  }
+  return kNowhere;
 }
 
 // Whether `other` keeps the ear at `corner` from being clipped.
@@ -244,25 +381,37 @@ void PolygonSplitter::clip(std::uint32_t corner) {
   next_[before] = after;
   previous_[after] = before;
   next_[corner] = previous_[corner] = corner;
-  update_reflex(corner);
-  update_reflex(before);
-  update_reflex(after);
+  for (const std::uint32_t changed : {corner, before, after}) update(changed);
+  for (Candidates& candidates : candidates_) {
+    for (const std::uint32_t changed : {corner, before, after}) candidates.unblock(changed);
+    for (const std::uint32_t changed : {before, after}) candidates.changed(changed);
+    candidates.corners.erase(corner);
+  }
 }
 
-void PolygonSplitter::update_reflex(std::uint32_t corner) {
-  const bool clipped = next_[corner] == corner;
-  const bool is_reflex = !clipped && turn(corner) <= 0;
-  std::uint32_t& slot = reflex_slot_[corner];
+// Takes note of how a corner turns, after its neighbours have changed or it was clipped.
+void PolygonSplitter::update(std::uint32_t corner) {
+  const bool is_clipped = next_[corner] == corner;
+  const int turned = is_clipped ? 1 : turn(corner);
+  if (turned == 0) {
+    flat_.insert(corner);
+  } else {
+    flat_.erase(corner);
+  }
+  const bool is_reflex = turned <= 0;
+  std::uint32_t& slot = slot_[corner];
   if (is_reflex == (slot != kNowhere)) return;
+  const auto at = cell_of(points_[corner]);
+  std::vector<std::uint32_t>& cell = cells_[at[1] * cell_count_[0] + at[0]];
   if (is_reflex) {
-    slot = static_cast<std::uint32_t>(reflex_.size());
-    reflex_.push_back(corner);
+    slot = static_cast<std::uint32_t>(cell.size());
+    cell.push_back(corner);
     return;
   }
   // The last one takes its place.
-  reflex_slot_[reflex_.back()] = slot;
-  reflex_[slot] = reflex_.back();
-  reflex_.pop_back();
+  slot_[cell.back()] = slot;
+  cell[slot] = cell.back();
+  cell.pop_back();
   slot = kNowhere;
 }
 

@@ -29,6 +29,25 @@ struct RoundedCorner {
 /// corners are allowed). A quad whose corners all lie on one line counts as planar and convex.
 [[nodiscard]] bool is_planar_convex_quad(const std::array<RoundedCorner, 4>& corners);
 
+/// Numbers below a bound that finds the next one from any on, in the time of its logarithm to base
+/// 64: each word of a level tells which words of the level below are not zero.
+class CornerSet {
+ public:
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  /// Makes room for 0 to count - 1, all of them in it or none.
+  void reset(std::uint32_t count, bool all);
+  void insert(std::uint32_t number);
+  void erase(std::uint32_t number);
+  /// The first in it from `from` on, then from 0 on; kNone when it is empty.
+  [[nodiscard]] std::uint32_t next_around(std::uint32_t from) const;
+
+ private:
+  [[nodiscard]] std::uint32_t next(std::uint32_t from) const;
+
+  std::vector<std::vector<std::uint64_t>> levels_;  // the numbers first
+};
+
 /// Splits polygons into triangles by ear clipping. Holds buffers, so use one for many polygons.
 class PolygonSplitter {
  public:
@@ -40,8 +59,9 @@ class PolygonSplitter {
   /// corners. A quad without a reflex corner becomes (0,1,2), (0,2,3). The result is valid until
   /// the next call. Precondition: n >= 3, coordinates finite.
   ///
-  /// O(n) for convex polygons, O(n r) with r reflex corners. Beyond kMaxTests corner-in-ear tests
-  /// the rest is clipped without looking (some 30 000 corners of a comb), so that it always ends.
+  /// O(n log n) but for ears that are large and nearly empty, beside many reflex corners: each
+  /// looks at those in the grid cells that its bounds cover. Beyond kMaxTests corner-in-ear tests
+  /// the rest is clipped without looking, so that it always ends.
   std::span<const Triangle> split(std::span<const Eigen::Vector3d> corners);
 
   /// [2^29] corner-in-ear tests a polygon, about two seconds.
@@ -51,23 +71,47 @@ class PolygonSplitter {
   // How much an ear may do harm; a kind is tried only when no ear of the kinds before is left.
   enum class EarKind {
     kClean,     // turns left, no corner inside or on its border
-    kFlat,      // no area: clipping it changes nothing but a corner
-    kTouching,  // turns left, no corner strictly inside
-    kAny,       // the polygon crosses itself
+    kTouching,  // turns left, no corner strictly inside; after those without area, see split()
+  };
+
+  // Corners that may be ears of a kind. Those that are not in it are none: they do not turn left,
+  // or another corner blocks them, and they come back when either changes.
+  struct Candidates {
+    CornerSet corners;
+    std::vector<std::uint32_t> blocker;     // of each corner that one blocks
+    std::vector<std::uint32_t> last_block;  // of each corner, the last entry of blocks, or none
+    struct Block {
+      std::uint32_t blocked;
+      std::uint32_t before;  // the entry before it with the same blocker, or none
+    };
+    std::vector<Block> blocks;
+
+    void reset(std::uint32_t count);
+    void block(std::uint32_t corner, std::uint32_t by);
+    void changed(std::uint32_t corner);  // its neighbours, so that what it blocks may be free
+    void unblock(std::uint32_t by);
   };
 
   void project(std::span<const Eigen::Vector3d> corners);
-  void link(std::size_t count);
+  void link(std::uint32_t count);
+  void make_grid(std::uint32_t count);
+  [[nodiscard]] std::array<std::uint32_t, 2> cell_of(const Eigen::Vector2d& point) const;
   [[nodiscard]] int turn(std::uint32_t corner) const;
-  [[nodiscard]] bool is_ear(std::uint32_t corner, EarKind kind);
+  [[nodiscard]] std::uint32_t find_ear(std::uint32_t from, EarKind kind);
+  [[nodiscard]] std::uint32_t find_blocker(std::uint32_t corner, EarKind kind);
   [[nodiscard]] bool blocks(std::uint32_t other, std::uint32_t corner, bool border_blocks) const;
   void clip(std::uint32_t corner);
-  void update_reflex(std::uint32_t corner);
+  void update(std::uint32_t corner);
 
   std::vector<Eigen::Vector2d> points_;  // counter-clockwise
   std::vector<std::uint32_t> next_, previous_;
-  std::vector<std::uint32_t> reflex_;       // corners that do not turn left, in no order
-  std::vector<std::uint32_t> reflex_slot_;  // where a corner stands in reflex_, or kNowhere
+  std::array<Candidates, 2> candidates_;  // of each EarKind
+  CornerSet flat_;                        // corners without area
+  // Corners that do not turn left, in the cells of a grid over all of them.
+  std::vector<std::vector<std::uint32_t>> cells_;
+  std::vector<std::uint32_t> slot_;  // where a corner stands in its cell, or kNowhere
+  std::array<std::uint32_t, 2> cell_count_{1, 1};
+  Eigen::Vector2d grid_low_, cells_per_length_;
   std::vector<Triangle> triangles_;
   std::size_t tests_ = 0;
 };
