@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
+#include <boxtree/cooker/scene/toml_checks.h>
 #include <boxtree/cooker/scene/toml_tree.h>
 
 namespace boxtree::cooker {
@@ -72,6 +73,9 @@ struct Shown {
 }  // namespace
 
 Result<TomlTable> parse_toml(std::string_view text, std::string_view path) {
+  if (const auto fault = find_unreadable_toml(text)) {
+    return Error{Errc::kProfileInvalid, fmt::format("{}:{}: {}", path, fault->line, fault->what)};
+  }
   const toml::parse_result parsed = toml::parse(text);
   if (!parsed) {
     const toml::parse_error& error = parsed.error();

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: MIT
+// Goes through a TOML text once: strings and comments are passed over, dots of keys counted.
+#include <algorithm>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/scene/toml_checks.h>
+
+namespace boxtree::cooker {
+namespace {
+
+class Scan {
+ public:
+  explicit Scan(std::string_view text) : text_(text) {}
+
+  std::optional<TomlFault> run() {
+    while (at_ < text_.size() && !fault_) step();
+    if (!fault_ && is_header_) end_of_line();
+    return fault_;
+  }
+
+ private:
+  void step() {
+    const char c = text_[at_++];
+    switch (c) {
+      case '\n':
+        end_of_line();
+        return;
+      case ' ':
+      case '\t':
+      case '\r':
+        return;
+      case '#':
+        at_ = std::min(text_.find('\n', at_), text_.size());
+        return;
+      case '"':
+      case '\'':
+        has_begun_ = true;
+        pass_string(c);
+        return;
+      case '.':
+        has_begun_ = true;
+        if (++dots_ >= kMaxKeyParts) add(fmt::format("a key of more than {} parts", kMaxKeyParts));
+        return;
+      case '[':
+        if (!has_begun_) {
+          has_begun_ = is_header_ = true;
+          return;
+        }
+        if (is_value_) ++depth_;
+        break;
+      case '{':
+        if (is_value_) ++depth_;
+        break;
+      case ']':
+        is_header_ = false;  // its name ends here, what follows is for the parser to see
+        [[fallthrough]];
+      case '}':
+        if (depth_ > 0) --depth_;
+        break;
+      case '=':
+        is_value_ = true;
+        break;
+      case ',':
+        break;
+      default:
+        has_begun_ = true;
+        return;
+    }
+    has_begun_ = true;
+    dots_ = 0;  // the next key, or a value
+  }
+
+  void end_of_line() {
+    if (is_header_) add("the name of a table has to end on its line, by ']'");
+    ++line_;
+    dots_ = 0;
+    if (depth_ == 0) has_begun_ = is_value_ = is_header_ = false;
+  }
+
+  // Behind the first quote. A string of one line that has no end leaves the rest of it to the
+  // parser.
+  void pass_string(char quote) {
+    const std::string three(3, quote);
+    if (text_.substr(at_ - 1, 3) != three) {
+      while (at_ < text_.size() && text_[at_] != '\n') {
+        const char c = text_[at_++];
+        if (c == quote) return;
+        if (c == '\\' && quote == '"' && at_ < text_.size() && text_[at_] != '\n') ++at_;
+      }
+      return;
+    }
+    at_ += 2;
+    while (at_ < text_.size() && text_.substr(at_, 3) != three) {
+      if (text_[at_] == '\n') ++line_;
+      const bool escapes = text_[at_] == '\\' && quote == '"' && text_.substr(at_ + 1, 1) != "\n";
+      at_ += escapes ? std::size_t{2} : 1;
+    }
+    at_ = std::min(at_ + 3, text_.size());
+  }
+
+  void add(std::string what) {
+    if (!fault_) fault_ = TomlFault{line_, std::move(what)};
+  }
+
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::uint32_t line_ = 1;
+  std::uint32_t dots_ = 0;
+  std::uint32_t depth_ = 0;  // of arrays and inline tables
+  bool has_begun_ = false;   // something of a statement has been seen
+  bool is_value_ = false;
+  bool is_header_ = false;
+  std::optional<TomlFault> fault_;
+};
+
+}  // namespace
+
+std::optional<TomlFault> find_unreadable_toml(std::string_view text) {
+  return Scan(text).run();
+}
+
+}  // namespace boxtree::cooker
