@@ -18,6 +18,7 @@
 #include <boxtree/cooker/import/binary_ply.h>
 #include <boxtree/cooker/import/binary_stl.h>
 #include <boxtree/cooker/import/flatten.h>
+#include <boxtree/cooker/import/gltf_nesting.h>
 #include <boxtree/cooker/import/header_checks.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/node_graph.h>
@@ -136,6 +137,7 @@ Status take_over(const Request& request, aiScene& scene, SourceContext context,
 Status import_once(const Request& request, const StandIn* stand_in, ImportedFile& out) {
   const fs::path& path = request.path;
   if (Status status = check_ply_header(path); !status.ok()) return status;
+  if (Status status = check_gltf_nesting(path); !status.ok()) return status;
   ImportReport report;
   auto scene = read_scene(path, stand_in, FaceOrder::kOfFile, report.files_read);
   if (!scene.ok()) return scene.error();

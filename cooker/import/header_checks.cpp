@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <boxtree/cooker/import/glb.h>
 #include <boxtree/cooker/import/header_checks.h>
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -25,16 +26,6 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::size_t kPlyHeaderBytes = std::size_t{1} << 16;  // longer headers are not looked at
-
-// A binary glTF file: 12 bytes of header, then chunks of length, type and bytes; JSON comes first.
-constexpr std::size_t kGlbJsonStart = 20;
-
-std::string_view glb_json(std::string_view file) {
-  std::uint32_t length = 0;
-  if (file.size() < kGlbJsonStart) return {};
-  std::memcpy(&length, file.data() + 12, sizeof(length));
-  return file.substr(kGlbJsonStart, length);
-}
 
 std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
   const auto found = object.find(key);

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Where the JSON of a binary glTF file is: behind 12 bytes of header, in the first chunk, which has
+// a length, a type and bytes. Version 1 has the same fields at the same places.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <string_view>
+
+namespace boxtree::cooker {
+
+/// Empty when the file is shorter.
+[[nodiscard]] inline std::string_view glb_json(std::string_view file) {
+  constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
+  std::uint32_t length = 0;
+  if (file.size() < kJsonAt) return {};
+  std::memcpy(&length, file.data() + kLengthAt, sizeof(length));
+  return file.substr(kJsonAt, length);
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Depths of JSON and of the graph of nodes, without recursion.
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/import/glb.h>
+#include <boxtree/cooker/import/gltf_nesting.h>
+#include <boxtree/cooker/import/text_tokens.h>
+#include <boxtree/cooker/import/whole_file.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::json;
+
+Error fault(std::string what) {
+  return {Errc::kImportFailed, std::move(what)};
+}
+
+bool is_too_deep(std::string_view json) {
+  std::uint32_t depth = 0;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    const char c = json[i];
+    if (in_string) {
+      if (c == '\\') ++i;
+      in_string = c != '"';
+    } else if (c == '"') {
+      in_string = true;
+    } else if (c == '{' || c == '[') {
+      if (++depth > kMaxJsonDepth) return true;
+    } else if ((c == '}' || c == ']') && depth > 0) {
+      --depth;
+    }
+  }
+  return false;
+}
+
+// Children of each node. Nodes have numbers in glTF 2 and names in glTF 1; what names no node is
+// for the reader to refuse.
+using Children = std::vector<std::vector<std::uint32_t>>;
+
+Children children_of(const Json& nodes) {
+  std::map<std::string, std::uint32_t> numbers;
+  if (nodes.is_object()) {
+    for (const auto& [name, node] : nodes.items()) {
+      numbers.emplace(name, static_cast<std::uint32_t>(numbers.size()));
+    }
+  }
+  Children children(nodes.size());
+  std::uint32_t number = 0;
+  for (const Json& node : nodes) {
+    std::vector<std::uint32_t>& of_node = children[number++];
+    const auto listed = node.is_object() ? node.find("children") : node.end();
+    if (listed == node.end() || !listed->is_array()) continue;
+    for (const Json& child : *listed) {
+      if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size()) {
+        of_node.push_back(child.get<std::uint32_t>());
+      } else if (child.is_string()) {
+        const auto found = numbers.find(child.get<std::string>());
+        if (found != numbers.end()) of_node.push_back(found->second);
+      }
+    }
+  }
+  return children;
+}
+
+// From parents to children (Kahn, "Topological sorting of large networks", 1962): what a cycle
+// holds is never free of parents.
+Status check_nodes(const Children& children) {
+  std::vector<std::uint32_t> parents(children.size(), 0), depth(children.size(), 1);
+  std::vector<std::uint64_t> visits(children.size(), 0);
+  for (const auto& of_node : children) {
+    for (const std::uint32_t child : of_node) ++parents[child];
+  }
+  std::vector<std::uint32_t> free;
+  for (std::uint32_t node = 0; node < children.size(); ++node) {
+    if (parents[node] > 0) continue;
+    free.push_back(node);
+    visits[node] = 1;
+  }
+  const std::uint64_t most = children.size() + kMaxRepeatedVisits;
+  std::uint64_t all_visits = 0;
+  for (std::size_t next = 0; next < free.size(); ++next) {
+    const std::uint32_t node = free[next];
+    all_visits += visits[node];
+    if (depth[node] > kMaxNodeDepth) {
+      return fault(
+          fmt::format("node {}: more than {} nodes below each other", node, kMaxNodeDepth));
+    }
+    if (all_visits > most) {
+      return fault(
+          fmt::format("node {}: shared by so many parents that more than {} instances "
+                      "arise",
+                      node, most));
+    }
+    for (const std::uint32_t child : children[node]) {
+      visits[child] = std::min(visits[child] + visits[node], most + 1);
+      depth[child] = std::max(depth[child], depth[node] + 1);
+      if (--parents[child] == 0) free.push_back(child);
+    }
+  }
+  if (free.size() == children.size()) return {};
+  const auto cyclic = std::find_if(parents.begin(), parents.end(), [](auto n) { return n > 0; });
+  return fault(fmt::format("node {}: it is below itself", cyclic - parents.begin()));
+}
+
+}  // namespace
+
+Status check_gltf_nesting(std::string_view json) {
+  if (is_too_deep(json)) {
+    return fault(fmt::format("JSON values nest more than {} deep", kMaxJsonDepth));
+  }
+  const Json document = Json::parse(json, nullptr, false);
+  const auto nodes = document.is_object() ? document.find("nodes") : document.end();
+  return nodes == document.end() ? Status() : check_nodes(children_of(*nodes));
+}
+
+Status check_gltf_nesting(const std::filesystem::path& path) {
+  const bool is_binary = has_extension(path, "glb");
+  if (!is_binary && !has_extension(path, "gltf")) return {};
+  const Result<std::string> file = read_whole_file(path, kAnyBytes);
+  if (!file.ok()) return file.error();
+  const Status status = check_gltf_nesting(is_binary ? glb_json(*file) : std::string_view(*file));
+  if (status.ok()) return {};
+  return Error{status.code(), path.string() + ": " + status.error().detail};
+}
+
+}  // namespace boxtree::cooker
