@@ -52,7 +52,7 @@ struct TradeoffReport {
 
 /// Reads {"title": ..., "text": ..., "rows": [{"id", "what", "figure", "limit", "pass"}, ...]} or
 /// the array of rows alone; numbers and truth values become text, what is missing stays empty.
-/// Errors: kFileUnreadable; kMeshUnreadable when it is no such document.
+/// Errors: kFileNotFound; kFileUnreadable, also when it is no such document.
 Result<IncludedResults> read_results(const std::filesystem::path& path);
 
 [[nodiscard]] std::string to_json(const TradeoffReport& report);

@@ -394,7 +394,7 @@ TEST(TradeoffPage, SaysWhatWasLeftOutAndShowsWhatWasIncluded) {
   for (const char* bad : {"{", "3", "[3]", R"({"rows":{}})", ""}) {
     EXPECT_EQ(read_results(folder.write("bad.json", bad)).code(), Errc::kFileUnreadable) << bad;
   }
-  EXPECT_EQ(read_results(folder.path() / "none").code(), Errc::kFileUnreadable);
+  EXPECT_EQ(read_results(folder.path() / "none").code(), Errc::kFileNotFound);
 }
 
 TEST(TradeoffPage, OtherLibrariesStandWhereTheirFiguresAre) {
