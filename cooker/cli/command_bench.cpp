@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/choose/cost_file.h>
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/report/approximate.h>
@@ -146,7 +147,7 @@ void print_row(const CodecCost& cost) {
 int run_calibration(const Arguments& arguments) {
   std::vector<SourceMesh> meshes;
   for (const std::filesystem::path& path : arguments.files) {
-    Result<Imported> imported = import_mesh(path);
+    Result<Imported> imported = import_mesh(path, careful_import());
     if (!imported) return fail(imported.error());
     imported->mesh.name = path.stem().string();
     meshes.push_back(std::move(imported->mesh));

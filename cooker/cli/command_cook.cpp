@@ -44,6 +44,7 @@ struct Arguments {
   bool external = false;
   bool no_face_ids = false;
   bool strip = false;
+  bool trusted = false;
   bool f64 = false;
   bool json = false;
   bool quiet = false;
@@ -170,6 +171,7 @@ int run(Arguments& arguments) {
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
                          !options.blob && is_grid_welcome;
+  options.import.try_first = !arguments.trusted;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
   if (!arguments.costs.empty()) {
@@ -294,6 +296,9 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_flag("--f64", arguments->f64,
                         "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
+  rare(command.add_flag("--trusted", arguments->trusted,
+                        "Read formats that assimp reads once, not first in another process that "
+                        "may crash"));
   rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");

@@ -97,7 +97,7 @@ class SourceMeshes {
   // by one.
   static Result<SourceMeshes> read(const std::filesystem::path& path, const File& file,
                                    std::span<const std::uint32_t> trees) {
-    ImportOptions options;
+    ImportOptions options = careful_import();
     for (const std::uint32_t i : trees) {
       if (i >= file.tree_count()) continue;
       if ((file.tree_record(i).flags & kTreePositionsF64) != 0) options.precision = Precision::kF64;

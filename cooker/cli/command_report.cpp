@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/cli/open_file.h>
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/cli/peers.h>
 #include <boxtree/cooker/cli/step_printer.h>
@@ -157,7 +158,7 @@ std::string command_of(const Arguments& arguments) {
 }
 
 Result<SourceMesh> read_mesh(const std::filesystem::path& path) {
-  Result<Imported> imported = import_mesh(path);
+  Result<Imported> imported = import_mesh(path, careful_import());
   if (!imported) return imported.error();
   imported->mesh.name = path.stem().string();
   return std::move(imported->mesh);

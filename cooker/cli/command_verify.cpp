@@ -67,7 +67,7 @@ int run(const Arguments& arguments) {
   std::optional<MeshArrays> arrays;
   Imported imported;
   if (!arguments.mesh.empty()) {
-    ImportOptions options;
+    ImportOptions options = careful_import();
     if (any_f64(*file)) options.precision = Precision::kF64;
     Result<Imported> result = import_mesh(arguments.mesh, options);
     if (!result) return fail(result.error());

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <string>
 
+#include <boxtree/cooker/import/import.h>
 #include <boxtree/runtime/file/file.h>
 
 namespace boxtree::cooker {
@@ -17,6 +18,14 @@ struct OpenedFile {
 
 /// Errors as File::open and open_blob.
 Result<OpenedFile> open_file(const std::filesystem::path& path);
+
+/// How commands import meshes, which may come from anywhere: no file ends the command.
+[[nodiscard]] inline ImportOptions careful_import(Precision precision = Precision::kF32) {
+  ImportOptions options;
+  options.precision = precision;
+  options.try_first = true;
+  return options;
+}
 
 /// The number of a tree that is named by its number or its name. A number need not be in the file:
 /// binding finds that out.

@@ -327,7 +327,7 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
   BindOptions options;
   std::unique_ptr<SourceMesh> source;
   if (!mesh.empty()) {
-    ImportOptions import;
+    ImportOptions import = careful_import();
     const bool f64 =
         *index < file->tree_count() && (file->tree_record(*index).flags & kTreePositionsF64) != 0;
     if (f64) import.precision = Precision::kF64;

@@ -2,11 +2,13 @@
 // import_mesh, import_scene: our own reader, or one assimp import without post-processing, checked
 // before and after.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <exception>
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -29,7 +31,9 @@
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/source_scene.h>
 #include <boxtree/cooker/import/text_checks.h>
+#include <boxtree/cooker/import/text_ends.h>
 #include <boxtree/cooker/import/text_tokens.h>
+#include <boxtree/cooker/import/trial.h>
 #include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
@@ -70,7 +74,8 @@ struct StandIn {
 };
 
 // Reads the scene, from the file or from what stands in for it; the files read are noted in
-// `files`. No post-processing flags: each of them may drop, reorder, merge or generate.
+// `files`. Errors do not name the file. No post-processing flags: each of them may drop, reorder,
+// merge or generate.
 Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, const StandIn* stand_in,
                                             FaceOrder order, std::vector<fs::path>& files) {
   const CLocaleScope numbers_in_c_locale;
@@ -81,7 +86,8 @@ Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, const StandIn*
   importer.SetIOHandler(io.release());  // the importer owns it from here
   if (importer.ReadFile(stand_in != nullptr ? stand_in->name : path.string(), 0) == nullptr) {
     const std::string why = importer.GetErrorString();
-    return Error{Errc::kImportFailed, path.string() + ": " + (why.empty() ? "no scene" : why)};
+    if (why == std::bad_alloc().what()) throw std::bad_alloc();  // as when we run out of memory
+    return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
 }
@@ -134,22 +140,41 @@ Status take_over(const Request& request, aiScene& scene, SourceContext context,
                    : take_whole(scene, placements, context, request.path.stem().string(), whole);
 }
 
+Error in_file(const fs::path& path, const Error& error) {
+  return Error{error.code, path.string() + ": " + error.detail};
+}
+
+// All that assimp is going to read, read in a copy of this process.
+Status try_reading(const fs::path& path) {
+  std::error_code unknown;
+  const std::uintmax_t bytes = fs::file_size(path, unknown);
+  return try_in_child(trial_limits(unknown ? 0 : bytes), [&path] {
+    std::vector<fs::path> files;
+    const auto scene = read_scene(path, nullptr, FaceOrder::kOfFile, files);
+    if (!scene.ok()) return Status(scene.error());
+    if (has_extension(path, "fbx")) {  // once more for its materials
+      static_cast<void>(read_scene(path, nullptr, FaceOrder::kByMaterial, files));
+    }
+    return Status();
+  });
+}
+
 Status import_once(const Request& request, const StandIn* stand_in, ImportedFile& out) {
   const fs::path& path = request.path;
   if (Status status = check_ply_header(path); !status.ok()) return status;
   if (Status status = check_gltf_nesting(path); !status.ok()) return status;
+  if (stand_in == nullptr && request.options.try_first) {
+    const Status tried = try_reading(path);
+    if (!tried.ok()) return in_file(path, tried.error());
+  }
   ImportReport report;
   auto scene = read_scene(path, stand_in, FaceOrder::kOfFile, report.files_read);
-  if (!scene.ok()) return scene.error();
+  if (!scene.ok()) return in_file(path, scene.error());
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
   static const StandIn kNone;
   const StandIn& aside = stand_in != nullptr ? *stand_in : kNone;
   const SourceContext context{request.options, path.string(), aside.known, aside.exact};
   return take_over(request, *scene.value(), context, std::move(report), out);
-}
-
-Error in_file(const fs::path& path, const Error& error) {
-  return Error{error.code, path.string() + ": " + error.detail};
 }
 
 // Calls `read_text(file's text, stand-in)` to make what assimp is to see as `name`, and imports it.
@@ -198,13 +223,25 @@ Status import_ply(const Request& request, ImportedFile& out) {
   return {};
 }
 
-Status import_stl(const Request& request, ImportedFile& out) {
-  const Result<std::string> file = read_whole_file(request.path, kAnyBytes);
-  if (!file.ok()) return file.error();
-  if (Status status = check_stl_text(*file); !status.ok()) {
-    return in_file(request.path, status.error());
+// Texts of which assimp takes the beginning for the whole.
+struct TextCheck {
+  const char* extension;
+  Status (*check)(std::string_view file);
+};
+constexpr std::array kTextChecks = {
+    TextCheck{"stl", check_stl_text},       TextCheck{"ac", check_ac_end},
+    TextCheck{"ase", check_blocks_end},     TextCheck{"dxf", check_dxf_end},
+    TextCheck{"md5mesh", check_blocks_end},
+};
+
+Status check_text(const fs::path& path) {
+  for (const TextCheck& format : kTextChecks) {
+    if (!has_extension(path, format.extension)) continue;
+    const Result<std::string> file = read_whole_file(path, kAnyBytes);
+    if (!file.ok()) return file.error();
+    if (Status status = format.check(*file); !status.ok()) return in_file(path, status.error());
   }
-  return import_once(request, nullptr, out);
+  return {};
 }
 
 Status import_any(const Request& request, ImportedFile& out) {
@@ -216,7 +253,7 @@ Status import_any(const Request& request, ImportedFile& out) {
     return import_text(request, path.string() + ".obj", obj_from_off, out);
   }
   if (has_extension(path, "ply")) return import_ply(request, out);
-  if (has_extension(path, "stl")) return import_stl(request, out);
+  if (Status status = check_text(path); !status.ok()) return status;
   return import_once(request, nullptr, out);
 }
 

@@ -21,6 +21,12 @@ struct ImportOptions {
   /// [kF32] Hold positions as f32, or as f64 with all the digits of OBJ, OFF and PLY files; in
   /// other formats only node transforms gain by it.
   Precision precision = Precision::kF32;
+  /// [false] Let assimp read the file in a copy of this process first (trial.h), so that a file
+  /// that crashes its reader, or that it never ends with, is an error: kImportFailed. Costs a
+  /// second reading. For formats that assimp alone understands, and text STL and glTF; the
+  /// statements of OBJ, OFF and PLY have all been looked at before it sees them. The copy is made
+  /// by fork(): not for programs whose other threads hold locks that reading needs.
+  bool try_first = false;
 };
 
 /// SkippedFace::mesh: of the mesh nothing is left.
@@ -78,10 +84,11 @@ struct Imported {
 /// f32 or f64. What assimp decides: those of other formats have the digits of f32, and decimals
 /// among them can be a unit in the last place off the nearest. Where a reader of assimp repairs
 /// silently, we look first ourselves: OBJ, OFF, PLY, text STL and glTF. A file that was cut short
-/// is refused where its format states counts or an end; OBJ states none, and a last line without an
-/// end is reported. A glTF file with vertex numbers out of range is refused even with skip_bad, and
-/// named by its mesh: assimp has dropped the faces and their numbers with them. Its other readers
-/// (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
+/// is refused where its format states counts or an end (of the texts that assimp reads: AC3D, ASE,
+/// DXF, MD5 and those of its readers that look themselves); OBJ states none, and a last line
+/// without an end is reported. A glTF file with vertex numbers out of range is refused even with
+/// skip_bad, and named by its mesh: assimp has dropped the faces and their numbers with them. Its
+/// other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace boxtree::cooker

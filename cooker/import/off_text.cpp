@@ -60,10 +60,7 @@ Result<std::string> OffReader::run() {
 // Moves to the next line that holds anything but a comment.
 bool OffReader::next_line() {
   while (!rest_.empty()) {
-    const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-    const std::string_view text = rest_.substr(0, end);
-    rest_.remove_prefix(
-        std::min(end + (rest_.substr(end).starts_with("\r\n") ? 2 : 1), rest_.size()));
+    const std::string_view text = take_line(rest_);
     ++line_;
     split_tokens(text.substr(0, text.find('#')), tokens_);
     if (!tokens_.empty()) return true;

@@ -24,12 +24,8 @@ class Lines {
   // Leaves the words of the next one in `words`; false at the end.
   bool next(Tokens& words) {
     while (!rest_.empty()) {
-      const std::size_t end = std::min(rest_.find_first_of("\r\n"), rest_.size());
-      const std::string_view line = rest_.substr(0, end);
-      rest_.remove_prefix(
-          std::min(end + (rest_.substr(end).starts_with("\r\n") ? 2u : 1u), rest_.size()));
+      split_tokens(take_line(rest_), words);
       ++number_;
-      split_tokens(line, words);
       if (!words.empty()) return true;
     }
     return false;

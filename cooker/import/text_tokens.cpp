@@ -47,6 +47,14 @@ std::optional<float> read_as_assimp(std::string_view token) {
 
 }  // namespace
 
+std::string_view take_line(std::string_view& rest) {
+  const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  const std::size_t end_bytes = rest.substr(end).starts_with("\r\n") ? 2 : 1;
+  rest.remove_prefix(std::min(end + end_bytes, rest.size()));
+  return line;
+}
+
 void split_tokens(std::string_view text, Tokens& tokens) {
   tokens.clear();
   for (std::size_t i = 0; i < text.size();) {

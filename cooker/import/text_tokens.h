@@ -22,6 +22,10 @@ using Tokens = std::vector<std::string_view>;
 /// The words of `text`, between spaces, tabs, line ends and backslashes.
 void split_tokens(std::string_view text, Tokens& tokens);
 
+/// Takes the next line off `rest`, and its end: a line feed, a carriage return, or both. Returns it
+/// without that. Precondition: `rest` is not empty.
+std::string_view take_line(std::string_view& rest);
+
 /// The number that `token` is, rounded once to the nearest T (float or double), infinite beyond its
 /// range; of other spellings ("1,5", "2m") what assimp makes of their beginning; nothing if that
 /// is no number.

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <exception>
+#include <fcntl.h>
+#include <new>
+#include <string>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/trial.h>
+#include <boxtree/format/bytes.h>
+
+namespace boxtree::cooker {
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kHasShadowMemory = true;  // terabytes of address space: not to be limited
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+constexpr bool kHasShadowMemory = true;
+#else
+constexpr bool kHasShadowMemory = false;
+#endif
+#else
+constexpr bool kHasShadowMemory = false;
+#endif
+
+constexpr std::uint64_t kMostDetail = 1u << 16;  // of a message
+
+std::uint64_t page_bytes() {
+  return static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+}
+
+std::uint64_t address_space() {
+  unsigned long pages = 0;
+  std::FILE* const file = std::fopen("/proc/self/statm", "r");
+  if (file == nullptr) return 0;
+  if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
+  static_cast<void>(std::fclose(file));
+  return pages * page_bytes();
+}
+
+void limit(int resource, std::uint64_t most) {
+  rlimit now{};
+  if (getrlimit(static_cast<__rlimit_resource>(resource), &now) != 0) return;
+  now.rlim_cur = now.rlim_max = std::min<rlim_t>(now.rlim_max, most);
+  static_cast<void>(setrlimit(static_cast<__rlimit_resource>(resource), &now));
+}
+
+bool write_all(int to, const char* bytes, std::size_t count) {
+  while (count > 0) {
+    const ssize_t written = ::write(to, bytes, count);
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes += written;
+    count -= static_cast<std::size_t>(written);
+  }
+  return true;
+}
+
+// The copy's life. Ends without what exit() does: that is the parent's to do.
+[[noreturn]] void be_child(int to_parent, const TrialLimits& limits,
+                           const std::function<Status()>& work) {
+  static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
+  limit(RLIMIT_CORE, 0);
+  limit(RLIMIT_CPU, limits.cpu_seconds);
+  if (!kHasShadowMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
+  static_cast<void>(std::signal(SIGALRM, SIG_DFL));
+  static_cast<void>(
+      alarm(static_cast<unsigned>(std::min<std::uint64_t>(10 * limits.cpu_seconds, 1u << 30))));
+  const int nowhere = ::open("/dev/null", O_WRONLY);
+  if (nowhere >= 0) {
+    static_cast<void>(dup2(nowhere, STDOUT_FILENO));
+    static_cast<void>(dup2(nowhere, STDERR_FILENO));
+  }
+  Status status;
+  try {
+    status = work();
+  } catch (const std::bad_alloc&) {
+    status = Error{Errc::kMeshTooLarge, "not enough memory to import it"};
+  } catch (const std::exception& error) {
+    status = Error{Errc::kImportFailed, error.what()};
+  } catch (...) {
+    status = Error{Errc::kImportFailed, "unknown exception while reading"};
+  }
+  const auto code = static_cast<std::uint16_t>(status.ok() ? Errc::kOk : status.error().code);
+  const std::string detail = status.ok() ? std::string() : status.error().detail;
+  const bool is_told =
+      write_all(to_parent, reinterpret_cast<const char*>(&code), sizeof(code)) &&
+      write_all(to_parent, detail.data(), std::min<std::size_t>(detail.size(), kMostDetail));
+  _exit(is_told ? 0 : 1);
+}
+
+std::string read_all(int from) {
+  std::string text;
+  std::array<char, 4096> chunk;
+  for (;;) {
+    const ssize_t got = ::read(from, chunk.data(), chunk.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got <= 0) return text;
+    text.append(chunk.data(), static_cast<std::size_t>(got));
+  }
+}
+
+Error no_child(const char* what, int error) {
+  return {Errc::kImportFailed, fmt::format("no process to try it in: {}: {}", what,
+                                           std::generic_category().message(error))};
+}
+
+Error crashed(int signal, const TrialLimits& limits) {
+  if (signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM) {
+    return {Errc::kImportFailed,
+            fmt::format("assimp's reader was ended, by signal {}: it may take {} s and {} MB",
+                        signal, limits.cpu_seconds, limits.bytes >> 20)};
+  }
+  return {Errc::kImportFailed, fmt::format("assimp's reader crashed on it, by signal {}", signal)};
+}
+
+}  // namespace
+
+TrialLimits trial_limits(std::uint64_t file_bytes) {
+  const long pages = sysconf(_SC_PHYS_PAGES);
+  const std::uint64_t memory =
+      pages > 0 ? static_cast<std::uint64_t>(pages) * page_bytes() : std::uint64_t{1} << 33;
+  return {30 + file_bytes / 100000, memory / 2};
+}
+
+Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work) {
+  std::array<int, 2> ends;
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) return no_child("pipe", errno);
+  const pid_t child = ::fork();
+  if (child < 0) {
+    const int error = errno;
+    ::close(ends[0]);
+    ::close(ends[1]);
+    return no_child("fork", error);
+  }
+  if (child == 0) {
+    ::close(ends[0]);
+    be_child(ends[1], limits, work);
+  }
+  ::close(ends[1]);
+  const std::string said = read_all(ends[0]);
+  ::close(ends[0]);
+  int ended = 0;
+  while (::waitpid(child, &ended, 0) < 0) {
+    if (errno != EINTR) return no_child("waitpid", errno);
+  }
+  if (WIFSIGNALED(ended)) return crashed(WTERMSIG(ended), limits);
+  if (WEXITSTATUS(ended) != 0 || said.size() < sizeof(std::uint16_t)) {
+    return Error{
+        Errc::kImportFailed,
+        fmt::format("assimp's reader ended the process, with status {}", WEXITSTATUS(ended))};
+  }
+  const auto code = load<std::uint16_t>(reinterpret_cast<const std::byte*>(said.data()));
+  if (code == 0) return {};
+  return Error{static_cast<Errc>(code), said.substr(sizeof(code))};
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: MIT
+// Texts of formats that assimp reads: whole, and cut short at every byte.
+#include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/text_ends.h>
+
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+constexpr std::string_view kAc =
+    "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 shi 0 trans 0\n"
+    "OBJECT world\nkids 2\n"
+    "OBJECT poly\ndata 5\nhello\nnumvert 3\n0 0 0\n1 0 0\n0 1 0\nnumsurf 1\n"
+    "SURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n"
+    "OBJECT group\nkids 1\n"
+    "OBJECT poly\nnumvert 3\n0 0 1\n1 0 1\n0 1 1\nnumsurf 1\n"
+    "SURF 0x20\nmat 0\nrefs 3\n0 0 0\n1 0 0\n2 0 0\nkids 0\n";
+
+constexpr std::string_view kDxf =
+    "0\nSECTION\n2\nENTITIES\n0\n3DFACE\n8\n0\n10\n0.0\n20\n0.0\n30\n0.0\n11\n1.0\n21\n0.0\n31\n"
+    "0.0\n12\n1.0\n22\n1.0\n32\n0.0\n13\n0.0\n23\n1.0\n33\n0.0\n0\n3DFACE\n8\n0\n10\n0.0\n20\n"
+    "0.0\n30\n1.0\n11\n1.0\n21\n0.0\n31\n1.0\n12\n1.0\n22\n1.0\n32\n1.0\n13\n0.0\n23\n1.0\n33\n"
+    "1.0\n0\nENDSEC\n0\nEOF\n";
+
+// Each prefix is refused, or gives the same faces as the whole: what is missing were blanks.
+void check_prefixes(const char* name, std::string_view whole) {
+  const test::TempFolder folder;
+  const auto read = [&](std::string_view text) { return import_mesh(folder.write(name, text)); };
+  const Result<Imported> all = read(whole);
+  ASSERT_TRUE(all.ok()) << all.error().detail;
+  ASSERT_EQ(all->mesh.faces.size(), 2u);
+  for (std::size_t size = 0; size < whole.size(); ++size) {
+    const Result<Imported> part = read(whole.substr(0, size));
+    if (!part.ok()) continue;
+    EXPECT_EQ(part->mesh.positions.f32, all->mesh.positions.f32) << size;
+    EXPECT_EQ(part->mesh.faces.size(), 2u) << size;
+    EXPECT_GE(size + 3, whole.size());
+  }
+}
+
+TEST(TextEnds, EveryPrefixOfAc3dIsRefused) {
+  check_prefixes("two.ac", kAc);
+}
+
+TEST(TextEnds, EveryPrefixOfDxfIsRefused) {
+  check_prefixes("two.dxf", kDxf);
+}
+
+TEST(TextEnds, Ac3dObjectsFollowWhereTheyAreStated) {
+  EXPECT_TRUE(check_ac_end(kAc).ok());
+  EXPECT_TRUE(check_ac_end("AC3Db\nOBJECT world\nkids 0\nOBJECT world\nkids 0").ok());
+  EXPECT_TRUE(check_ac_end("OBJECT world\ndata 14\nOBJECT\nkids 9\n\nkids 0").ok());
+  for (const std::string_view cut :
+       {"AC3Db\nOBJECT world\nkids 1\n", "AC3Db\nOBJECT world\n",
+        "OBJECT world\nOBJECT poly\nkids 0\n", "OBJECT world\nkids 18446744073709551615\n",
+        "OBJECT world\ndata 99999\nkids 0\n"}) {
+    EXPECT_EQ(check_ac_end(cut).code(), Errc::kImportFailed) << cut;
+  }
+}
+
+TEST(TextEnds, BlocksAreClosed) {
+  EXPECT_TRUE(check_blocks_end("*A 1\n*B {\n *C \"{\" { }\n}\n").ok());
+  EXPECT_TRUE(check_blocks_end("} } {}").ok());
+  EXPECT_TRUE(check_blocks_end("").ok());
+  EXPECT_EQ(check_blocks_end("*B {\n *C \"}\" {\n }\n").code(), Errc::kImportFailed);
+}
+
+TEST(TextEnds, DxfEndsWithEof) {
+  EXPECT_TRUE(check_dxf_end("  0\r\nEOF\r\n\x1a").ok());
+  EXPECT_TRUE(check_dxf_end("EOF").ok());
+  EXPECT_TRUE(check_dxf_end("AutoCAD Binary DXF\r\n\x1a").ok());
+  for (const std::string_view cut : {"", "0\nSECTION\n", "0\nTHEOF", "0\nEO", "0\nEOF\n0\n"}) {
+    EXPECT_EQ(check_dxf_end(cut).code(), Errc::kImportFailed) << cut;
+  }
+}
+
+}  // namespace
+}  // namespace boxtree::cooker

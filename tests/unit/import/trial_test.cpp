@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+// Work in a copy of the process: its result comes back, its end does not hurt, its limits hold; and
+// files that crash assimp's readers are errors.
+#include <atomic>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/trial.h>
+
+#include "tests/support/temp_folder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+constexpr TrialLimits kLimits{10, std::uint64_t{1} << 28};
+
+TEST(Trial, WhatIsReturnedComesBackAndNothingElse) {
+  int changed = 0;
+  EXPECT_TRUE(try_in_child(kLimits, [&changed] {
+                ++changed;
+                std::puts("printed by nobody");
+                return Status();
+              }).ok());
+  EXPECT_EQ(changed, 0);
+  const Status status = try_in_child(kLimits, [] {
+    return Status(Error{Errc::kNoFaces, "no face: \xc3\xa9"});
+  });
+  EXPECT_EQ(status.code(), Errc::kNoFaces);
+  EXPECT_EQ(status.error().detail, "no face: \xc3\xa9");
+}
+
+TEST(Trial, CrashesAndExitsAreErrors) {
+  const Status crash = try_in_child(kLimits, []() -> Status {
+    static_cast<void>(std::signal(SIGSEGV, SIG_DFL));
+    static_cast<void>(std::raise(SIGSEGV));
+    return {};
+  });
+  EXPECT_EQ(crash.code(), Errc::kImportFailed);
+  EXPECT_EQ(crash.error().detail, "assimp's reader crashed on it, by signal 11");
+  const Status exit = try_in_child(kLimits, []() -> Status { std::_Exit(7); });
+  EXPECT_EQ(exit.code(), Errc::kImportFailed);
+  EXPECT_NE(exit.error().detail.find("status 7"), std::string::npos);
+  const Status thrown = try_in_child(kLimits, []() -> Status { throw 3; });
+  EXPECT_EQ(thrown.code(), Errc::kImportFailed);
+}
+
+TEST(Trial, WhatNeverEndsIsEnded) {
+  const Status status = try_in_child({1, kLimits.bytes}, []() -> Status {
+    for (std::atomic<unsigned> turns = 0;;) ++turns;
+  });
+  EXPECT_EQ(status.code(), Errc::kImportFailed);
+  EXPECT_NE(status.error().detail.find("it may take 1 s"), std::string::npos)
+      << status.error().detail;
+}
+
+TEST(Trial, MemoryHasALimit) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  GTEST_SKIP() << "the address space of sanitizers cannot be limited";
+#endif
+  const auto take = [](std::size_t bytes) {
+    return [bytes] {
+      const std::vector<char> much(bytes, 'x');
+      return much[bytes / 2] == 'x' ? Status() : Status(Error{Errc::kInternal, ""});
+    };
+  };
+  EXPECT_TRUE(try_in_child(kLimits, take(kLimits.bytes / 2)).ok());
+  EXPECT_EQ(try_in_child(kLimits, take(2 * kLimits.bytes)).code(), Errc::kMeshTooLarge);
+}
+
+// Objects below each other, deeper than the stack of the reader that goes down by recursion.
+TEST(Trial, AFileThatCrashesAssimpIsAnError) {
+  const test::TempFolder folder;
+  std::string text = "AC3Db\n";
+  for (int i = 0; i < 400000; ++i) text += "OBJECT group\nkids 1\n";
+  const auto path = folder.write("deep.ac", text + "OBJECT group\nkids 0\n");
+  const Result<Imported> imported = import_mesh(path, {.try_first = true});
+  ASSERT_EQ(imported.code(), Errc::kImportFailed);
+  EXPECT_NE(imported.error().detail.find(path.string() + ": assimp's reader crashed on it"),
+            std::string::npos)
+      << imported.error().detail;
+}
+
+TEST(Trial, WhatIsReadInTheEndIsTheSame) {
+  const test::TempFolder folder;
+  const auto path = folder.write("square.ac",
+                                 "AC3Db\nMATERIAL \"\" rgb 1 1 1 amb 1 1 1 emis 0 0 0 spec 0 0 0 "
+                                 "shi 0 trans 0\nOBJECT world\nkids 1\nOBJECT poly\nnumvert 4\n"
+                                 "0 0 0\n1 0 0\n1 1 0\n0 1 0\nnumsurf 1\nSURF 0x20\nmat 0\n"
+                                 "refs 4\n0 0 0\n1 0 0\n2 0 0\n3 0 0\nkids 0\n");
+  const Result<Imported> once = import_mesh(path);
+  const Result<Imported> tried = import_mesh(path, {.try_first = true});
+  ASSERT_TRUE(once.ok()) << once.error().detail;
+  ASSERT_TRUE(tried.ok()) << tried.error().detail;
+  EXPECT_EQ(tried->mesh.positions.f32, once->mesh.positions.f32);
+  EXPECT_EQ(tried->mesh.faces.size(), 1u);
+  EXPECT_EQ(tried->report.content_hash, once->report.content_hash);
+  EXPECT_EQ(tried->report.files_read, once->report.files_read);
+  const auto cut = folder.write("cut.ac", "AC3Db\nOBJECT");
+  EXPECT_EQ(import_mesh(cut, {.try_first = true}).error().detail, import_mesh(cut).error().detail);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
