@@ -33,6 +33,12 @@ struct GridOffsets {
   std::uint64_t start = 0;   // bit of the first one
 };
 
+/// Where the fields of a leaf lie, in bits of the section.
+struct GridLeafBits {
+  std::uint64_t begin = 0;
+  std::uint64_t end = 0;
+};
+
 namespace grid_detail {
 
 // Why no read leaves the section: where leaves start is told in at most 34 bytes; a leaf starts
@@ -51,6 +57,7 @@ class LeafBits {
     window_ = load<std::uint64_t>(bytes_ + position_ / 8) >> (position_ % 8);
   }
   [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t window() const { return window_; }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t position() const { return position_; }
   BOXTREE_ALWAYS_INLINE void skip(std::uint32_t width) {
     window_ >>= width;
     position_ += width;
@@ -219,10 +226,11 @@ BOXTREE_ALWAYS_INLINE std::array<std::uint8_t, 4> with_fourth(std::uint32_t corn
 }  // namespace grid_detail
 
 /// Reads the faces of leaf `leaf` and where its cluster's offsets lie. Otherwise as
-/// decode_grid_leaf; the vertices named are vertices of the cluster.
+/// decode_grid_leaf; the vertices named are vertices of the cluster. `place` may be null.
 template <bool kMayBeQuad>
 BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
-                                           GridLeafFaces& out, GridOffsets& offsets) noexcept {
+                                           GridLeafFaces& out, GridOffsets& offsets,
+                                           GridLeafBits* place = nullptr) noexcept {
   using namespace grid_detail;
   std::uint32_t vertex_count = 0;
   std::uint64_t leaf_start = 0;
@@ -244,6 +252,7 @@ BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t l
     out.corner[f] = with_fourth(corners, is_quad, bits, vertices);
   }
   out.vertex_count = vertices.count();
+  if (place != nullptr) *place = {leaf_start, bits.position()};
   return vertices.are_sound();
 }
 

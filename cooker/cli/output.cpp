@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/cli/output.h>
+#include <boxtree/cooker/text/utf8.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -28,34 +29,12 @@ bool parse_vector(const std::string& text, Eigen::Vector3d& out) {
   return at == end;
 }
 
-// Bytes of the character that a text begins with; 0 if it is a control character (C0, DEL or C1;
-// but for line feeds, which messages of several lines have) or no UTF-8. Unicode 15, table 3-7.
-std::size_t character_bytes(std::string_view text) {
-  const auto byte = [&](std::size_t i) -> unsigned {
-    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
-  };
-  const auto is_between = [](unsigned x, unsigned low, unsigned high) {
-    return low <= x && x <= high;
-  };
-  const unsigned first = byte(0);
-  if (first < 0x80) return first == '\n' || is_between(first, 0x20, 0x7e) ? 1 : 0;
-  const auto continues = [&](std::size_t from, std::size_t to) {
-    for (std::size_t i = from; i <= to; ++i) {
-      if (!is_between(byte(i), 0x80, 0xbf)) return false;
-    }
-    return true;
-  };
-  if (first == 0xc2) return is_between(byte(1), 0xa0, 0xbf) ? 2 : 0;
-  if (is_between(first, 0xc3, 0xdf)) return continues(1, 1) ? 2 : 0;
-  if (is_between(first, 0xe0, 0xef)) {
-    const bool fits = first == 0xe0 ? byte(1) >= 0xa0 : first != 0xed || byte(1) <= 0x9f;
-    return fits && continues(1, 2) ? 3 : 0;
-  }
-  if (is_between(first, 0xf0, 0xf4)) {
-    const bool fits = first == 0xf0 ? byte(1) >= 0x90 : first != 0xf4 || byte(1) <= 0x8f;
-    return fits && continues(1, 3) ? 4 : 0;
-  }
-  return 0;
+// A character that a terminal shows: no control character (C0, DEL or C1) but for line feeds, which
+// messages of several lines have.
+bool is_shown(std::string_view character) {
+  const auto first = static_cast<unsigned char>(character[0]);
+  if (first < 0x80) return first == '\n' || (0x20 <= first && first <= 0x7e);
+  return first != 0xc2 || static_cast<unsigned char>(character[1]) >= 0xa0;
 }
 
 }  // namespace
@@ -90,10 +69,12 @@ std::string shown(std::string_view text) {
   std::string printable;
   while (!text.empty()) {
     const std::size_t bytes = character_bytes(text);
-    if (bytes > 0) {
+    if (bytes > 0 && is_shown(text)) {
       printable += text.substr(0, bytes);
     } else {
-      printable += fmt::format("\\x{:02x}", static_cast<unsigned char>(text[0]));
+      for (const char c : text.substr(0, std::max<std::size_t>(bytes, 1))) {
+        printable += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+      }
     }
     text.remove_prefix(std::max<std::size_t>(bytes, 1));
   }

@@ -12,6 +12,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/proof/names.h>
 #include <boxtree/cooker/proof/proof.h>
 #include <boxtree/cooker/proof/reserved.h>
 #include <boxtree/cooker/proof/scene_proof.h>
@@ -330,6 +331,12 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
       proof.findings.push_back(std::move(finding));
     }
     if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
+      proof.findings.push_back(status.error());
+    }
+    const TreeRecord& record = tree->record();
+    if (Status status = check_text(file.section(SectionKind::kNames), record.name_offset,
+                                   record.name_bytes, "its name");
+        !status) {
       proof.findings.push_back(status.error());
     }
     for (Error& finding : proof.findings) {

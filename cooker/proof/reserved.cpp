@@ -70,6 +70,35 @@ void check_plain(Bytes nodes, Check& check) {
   }
 }
 
+// Whether a child that is not there is written as one: kind 0 and cut 0. Precondition: `node` is
+// the bit at which a node of that layout starts, and the section has been bound.
+bool is_written_as_missing(Bytes nodes, const PackedHeader& header, const PackedLayout& layout,
+                           std::uint64_t node, std::size_t side) {
+  const std::byte* const bytes = nodes.data();
+  const std::uint64_t cut = read_wide_bits(bytes, node + layout.cut_at[side], header.cut_bits);
+  const std::byte* const table = bytes + sizeof(PackedHeader);
+  const bool is_zero = header.cut_count == 0
+                           ? cut == 0
+                           : cut < header.cut_count && load<std::uint32_t>(table, cut) == 0;
+  return is_zero && read_bits(bytes, node + layout.kind_at[side], 2) == 0;
+}
+
+void check_packed_children(Bytes nodes, const PackedHeader& header, NodeKind kind,
+                           std::uint64_t array, Check& check) {
+  const PackedLayout layout(kind, header);
+  for (std::uint32_t n = 0; n < header.node_count[static_cast<std::size_t>(kind)]; ++n) {
+    const std::uint64_t node = array + std::uint64_t{n} * layout.bits;
+    for (std::size_t side = 0; side < 2; ++side) {
+      const std::uint32_t width = layout.number_bits[side];
+      const bool is_missing =
+          !is_leaf_side(kind, side) &&
+          read_bits(nodes.data(), node + layout.number_at[side], width) == low_bits(width);
+      check.expect(!is_missing || is_written_as_missing(nodes, header, layout, node, side), "node ",
+                   n, "kind and cut of a child that is not there");
+    }
+  }
+}
+
 // Precondition: the section has been bound.
 void check_packed(Bytes nodes, Check& check) {
   const auto header = load<PackedHeader>(nodes.data());
@@ -80,10 +109,38 @@ void check_packed(Bytes nodes, Check& check) {
     check.expect(are_zero(nodes, end, places.array_at[kind] * 8), "array ", kind,
                  "the bits before it");
     const PackedLayout layout(static_cast<NodeKind>(kind), header);
+    check_packed_children(nodes, header, static_cast<NodeKind>(kind), places.array_at[kind] * 8,
+                          check);
     end = places.array_at[kind] * 8 + std::uint64_t{header.node_count[kind]} * layout.bits;
   }
   check.expect(are_zero(nodes, end, std::uint64_t{nodes.size()} * 8), "array ", kNodeKinds - 1,
                "the bits behind it");
+}
+
+// What stands between the fields that say where leaves start, the leaves of cluster n, and its
+// vertices at bit `vertices`. False if a leaf cannot be read.
+bool check_leaves_of_cluster(const GridView& grid, std::uint32_t n, std::uint64_t vertices,
+                             Check& check) {
+  const auto cluster = load<ClusterRecord>(grid.clusters, n);
+  const auto leaves = static_cast<std::uint32_t>(leaves_of(grid.face_count));
+  const std::uint32_t end = std::min(leaves, (n + 1) * kClusterLeaves);
+  const std::uint64_t fields = end - n * kClusterLeaves + 1;
+  std::uint64_t last_bit = cluster.offset * kClusterUnit * 8 + fields * cluster.leaf_bits;
+  for (std::uint32_t leaf = n * kClusterLeaves; leaf < end; ++leaf) {
+    GridLeafFaces faces;
+    GridOffsets offsets;
+    GridLeafBits place;
+    const bool is_read = grid.corners_per_face == 4
+                             ? read_grid_faces<true>(grid, leaf, faces, offsets, &place)
+                             : read_grid_faces<false>(grid, leaf, faces, offsets, &place);
+    if (!is_read) return false;
+    check.expect(place.begin >= last_bit && are_zero(grid.bytes, last_bit, place.begin), "leaf ",
+                 leaf, "the bits before it");
+    last_bit = place.end;
+  }
+  check.expect(vertices >= last_bit && are_zero(grid.bytes, last_bit, vertices), "cluster ", n,
+               "the bits after its leaves");
+  return true;
 }
 
 // Precondition: the sections have been bound. Clusters whose leaves cannot be found are for the
@@ -98,14 +155,17 @@ void check_grid(const GridView& grid, Check& check) {
     GridOffsets offsets;
     std::uint64_t leaf = 0;
     if (!grid_detail::find_grid_leaf(grid, n * kClusterLeaves, vertices, offsets, leaf)) return;
+    if (!check_leaves_of_cluster(grid, n, offsets.start, check)) return;
     const std::uint64_t start = cluster.offset * kClusterUnit * 8;
     check.expect(start >= end && start - end < kClusterUnit * 8 && are_zero(grid.bytes, end, start),
                  "cluster ", n, "the bits between it and the one before");
     end = offsets.start + std::uint64_t{vertices} * offsets.stride;
   }
+  if (clusters == 0) return;
   const std::uint64_t size = std::uint64_t{grid.bytes.size()} * 8;
-  check.expect(end <= size && are_zero(grid.bytes, end, size), "clusters before ", clusters,
-               "the bits behind them");
+  const std::uint64_t padding = align_up(end, kClusterUnit * 8) + kClusterPadding * 8;
+  check.expect(size == padding && are_zero(grid.bytes, end, size), "clusters before ", clusters,
+               "the bits behind them, or their number,");
 }
 
 }  // namespace

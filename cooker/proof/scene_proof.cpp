@@ -4,6 +4,7 @@
 #include <vector>
 
 #include <boxtree/cooker/import/mesh_arrays.h>
+#include <boxtree/cooker/proof/names.h>
 #include <boxtree/cooker/proof/scene_proof.h>
 #include <boxtree/runtime/query/traversal.h>
 #include <boxtree/runtime/scene/scene.h>
@@ -113,8 +114,9 @@ class SceneWalk {
   }
 
   void check_text(const std::string& what, std::uint32_t offset, std::uint32_t bytes) {
-    if (in_range(offset, bytes, file_.section(SectionKind::kNames).size())) return;
-    add(Errc::kRecordInvalid, what + " lies outside section names");
+    const Bytes names = file_.section(SectionKind::kNames);
+    const Status status = cooker::check_text(names, offset, bytes, what);
+    if (!status.ok()) add(status.error().code, status.error().detail);
   }
 
   void check_layers() {

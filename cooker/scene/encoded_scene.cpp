@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/scene/encoded_scene.h>
+#include <boxtree/cooker/text/utf8.h>
 #include <boxtree/format/container.h>
 #include <boxtree/runtime/scene/placement.h>
 
@@ -80,12 +81,21 @@ class SceneEncoder {
     return {};
   }
 
-  // Equal names share their bytes: rows of props, and lines of a profile.
-  std::uint32_t add_name(const std::string& name) {
+  struct Name {
+    std::uint32_t offset;
+    std::uint32_t bytes;
+  };
+
+  // Equal names share their bytes: rows of props, and lines of a profile. Longer names than `most`
+  // bytes are cut: names serve people.
+  Name add_name(const std::string& given,
+                std::size_t most = std::numeric_limits<std::uint32_t>::max()) {
+    const std::string name = to_utf8(given, most);
+    if (name.empty()) return {0, 0};
     const auto [known, is_new] =
         offsets_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
     if (is_new) names_ += name;
-    return name.empty() ? 0 : known->second;
+    return {known->second, static_cast<std::uint32_t>(name.size())};
   }
 
   void write_instances() {
@@ -96,10 +106,9 @@ class SceneEncoder {
     has_f32_poses_ = std::all_of(parts_.instances.begin(), parts_.instances.end(), fits_f32);
     for (const std::uint32_t i : order_) {
       const PlacedTree& instance = parts_.instances[i];
-      // Longer names than the record can count are cut: names serve people.
-      const std::string name = instance.name.substr(0, std::numeric_limits<std::uint16_t>::max());
-      append(out_.instances, InstanceRecord{instance.tree, instance.id, add_name(name),
-                                            static_cast<std::uint16_t>(name.size()),
+      const Name name = add_name(instance.name, std::numeric_limits<std::uint16_t>::max());
+      append(out_.instances, InstanceRecord{instance.tree, instance.id, name.offset,
+                                            static_cast<std::uint16_t>(name.bytes),
                                             static_cast<std::uint8_t>(instance.layer),
                                             instance.moves ? kInstanceMoves : std::uint8_t{0}});
       for (Eigen::Index row = 0; row < 3; ++row) {
@@ -117,16 +126,17 @@ class SceneEncoder {
 
   void write_layers() {
     for (const SceneLayer& layer : parts_.layers) {
+      const Name name = add_name(layer.name);
       append(out_.layers,
              LayerRecord{layer.meets, static_cast<QueryKinds>(layer.queries & parts_.queries),
-                         add_name(layer.name), static_cast<std::uint32_t>(layer.name.size())});
+                         name.offset, name.bytes});
     }
   }
 
   void write_materials() {
     for (const std::string& material : parts_.materials) {
-      append(out_.materials,
-             MaterialRecord{add_name(material), static_cast<std::uint32_t>(material.size())});
+      const Name name = add_name(material);
+      append(out_.materials, MaterialRecord{name.offset, name.bytes});
     }
     const std::uint8_t number_bytes =
         material_number_bytes(static_cast<std::uint32_t>(parts_.materials.size()));
@@ -149,8 +159,9 @@ class SceneEncoder {
 
   void write_left_out() {
     for (const LeftOutPart& part : parts_.left_out) {
-      append(out_.left_out, LeftOutRecord{part.part, 0, part.owner, part.line, add_name(part.text),
-                                          static_cast<std::uint32_t>(part.text.size()), 0});
+      const Name text = add_name(part.text);
+      append(out_.left_out,
+             LeftOutRecord{part.part, 0, part.owner, part.line, text.offset, text.bytes, 0});
     }
   }
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include <boxtree/cooker/proof/proof.h>
+#include <boxtree/cooker/text/utf8.h>
 #include <boxtree/cooker/write/file_writer.h>
 #include <boxtree/format/container.h>
 #include <boxtree/runtime/file/checksum.h>
@@ -32,8 +33,9 @@ class Layout {
     std::uint32_t name_offset = 0;
     for (const EncodedTree& tree : parts.trees) {
       records_.push_back(record_of(tree, name_offset));
+      records_.back().name_bytes = static_cast<std::uint32_t>(to_utf8(tree.name).size());
       certificates_.push_back(certificate_of(tree));
-      name_offset += static_cast<std::uint32_t>(tree.name.size());
+      name_offset += records_.back().name_bytes;
     }
     sections_.push_back({SectionKind::kTrees, kNoOwner, bytes_of(records_)});
     add(SectionKind::kNames, kNoOwner, bytes_of(names_));
@@ -134,7 +136,7 @@ std::vector<std::byte> bytes_of_file(const Layout& layout) {
 // The names of all trees, to which a scene adds its own.
 std::string tree_names(std::span<const EncodedTree> trees) {
   std::string names;
-  for (const EncodedTree& tree : trees) names += tree.name;
+  for (const EncodedTree& tree : trees) names += to_utf8(tree.name);
   return names;
 }
 

@@ -10,6 +10,7 @@
 #include <boxtree/format/codec_plain.h>
 #include <boxtree/format/codec_wide.h>
 #include <boxtree/format/grid.h>
+#include <boxtree/format/grid_leaf.h>
 
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -131,6 +132,111 @@ TEST(ReservedBits, OfClustersAreFound) {
   for (std::uint64_t at = size - kClusterPadding; at < size; ++at) {
     EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, at, 1)) << at;
   }
+}
+
+// Found by the second reader: a child that is not there has kind 0 and cut 0.
+TEST(ReservedBits, OfMissingChildrenInPackedNodesAreFound) {
+  for (const CodecId codec :
+       {CodecId::kPackedF32, CodecId::kPackedF16, CodecId::kPackedF64, CodecId::kDedup}) {
+    const FileBytes bytes = test::cook_bytes(test::torus(24, 12), codec);
+    const SectionEntry entry = test::entry_of(bytes, SectionKind::kNodes);
+    const std::byte* const nodes = bytes.data() + entry.offset;
+    const auto header = load<PackedHeader>(nodes);
+    const auto kind = static_cast<std::size_t>(NodeKind::kNoLeaves);
+    const PackedLayout layout(NodeKind::kNoLeaves, header);
+    std::size_t missing = 0;
+    for (std::uint64_t n = 0; n < header.node_count[kind]; ++n) {
+      const std::uint64_t node = PackedPlaces(header).array_at[kind] * 8 + n * layout.bits;
+      for (std::size_t side = 0; side < 2; ++side) {
+        const std::uint32_t width = layout.number_bits[side];
+        if (read_bits(nodes, node + layout.number_at[side], width) != low_bits(width)) continue;
+        ++missing;
+        const auto is_found_in = [&](std::uint64_t bit) {
+          return is_found_at(bytes, SectionKind::kNodes, bit / 8, 1u << (bit % 8));
+        };
+        EXPECT_TRUE(is_found_in(node + layout.kind_at[side])) << codec_name(codec) << ' ' << n;
+        EXPECT_TRUE(is_found_in(node + layout.kind_at[side] + 1)) << codec_name(codec) << ' ' << n;
+        // The last bit of a cut, or another cut of the table.
+        EXPECT_TRUE(is_found_in(node + layout.cut_at[side])) << codec_name(codec) << ' ' << n;
+      }
+    }
+    EXPECT_GT(missing, 0u) << codec_name(codec);
+  }
+}
+
+// Found by the second reader: leaves end in whole bytes, clusters with their vertices.
+TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
+  cooker::CookOptions options;
+  options.geometry = GeometryId::kGrid;
+  options.grid.bits = 16;
+  for (const cooker::SourceMesh& mesh : {test::torus(24, 12), test::city(4, 1)}) {
+    const FileBytes bytes = test::cook_bytes(mesh, CodecId::kWide8, options);
+    const SectionEntry vertices = test::entry_of(bytes, SectionKind::kVertices);
+    const SectionEntry clusters = test::entry_of(bytes, SectionKind::kCorners);
+    const File file = test::require(File::open(Bytes(bytes)));
+    const TreeRecord record = file.tree_record(0);
+    const GridView grid{bytes.data() + clusters.offset,
+                        Bytes(bytes).subspan(vertices.offset, vertices.size), record.face_count,
+                        record.corners_per_face};
+    std::size_t gaps = 0;
+    for (std::uint32_t leaf = 0; leaf < leaves_of(record.face_count); ++leaf) {
+      GridLeafFaces faces;
+      GridOffsets offsets;
+      GridLeafBits place;
+      ASSERT_TRUE(record.corners_per_face == 4
+                      ? read_grid_faces<true>(grid, leaf, faces, offsets, &place)
+                      : read_grid_faces<false>(grid, leaf, faces, offsets, &place));
+      EXPECT_EQ(place.begin % 8, 0u);
+      for (std::uint64_t bit = place.end; bit % 8 != 0; ++bit, ++gaps) {
+        EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, bit / 8, 1u << (bit % 8))) << leaf;
+      }
+    }
+    EXPECT_GT(gaps, 0u);
+  }
+}
+
+// Found by the second reader: a cluster that states narrower vertices leaves bytes that are no
+// one's.
+TEST(ReservedBits, BytesBehindTheVerticesOfTheLastClusterAreFound) {
+  cooker::CookOptions options;
+  options.geometry = GeometryId::kGrid;
+  options.grid.bits = 16;
+  FileBytes bytes = test::cook_bytes(test::soup(20, 1), CodecId::kWide8, options);
+  const SectionEntry vertices = test::entry_of(bytes, SectionKind::kVertices);
+  std::uint64_t freed_bits = 0;
+  test::edit_records<ClusterRecord>(
+      bytes, SectionKind::kCorners, [&](ClusterRecord& cluster, std::uint32_t, std::uint32_t) {
+        freed_bits = std::uint64_t{cluster.vertex_count} * cluster.width[2];
+        cluster.width[2] = 0;
+      });
+  ASSERT_GT(freed_bits, 64u);
+  for (std::uint64_t i = 1; i <= freed_bits / 8 + kClusterUnit; ++i) {
+    bytes[vertices.offset + vertices.size - kClusterPadding - i] = std::byte{0};
+  }
+  test::repair_checksums(bytes);
+  EXPECT_TRUE(is_found(bytes));
+}
+
+// Found by the second reader.
+TEST(Names, ThatAreNoUtf8AreFoundAndNotWritten) {
+  cooker::SourceMesh mesh = test::soup(20, 1);
+  mesh.name = "t\xc3\xbcr\xff\xed\xa0\x80";
+  FileBytes bytes = test::cook_bytes(mesh, CodecId::kWide8);
+  const File file = test::require(File::open(Bytes(bytes)));
+  EXPECT_EQ(file.tree_name(0), "t\xc3\xbcr\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd\xef\xbf\xbd");
+  EXPECT_TRUE(cooker::verify_file(file).empty());
+  const SectionEntry names = test::entry_of(bytes, SectionKind::kNames);
+  bytes[names.offset] = std::byte{0xff};
+  test::repair_checksums(bytes);
+  const cooker::Findings findings = cooker::verify_file(test::require(File::open(Bytes(bytes))));
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].code, Errc::kRecordInvalid);
+  EXPECT_EQ(findings[0].detail, "tree 0: its name is no UTF-8");
+  test::edit_records<TreeRecord>(
+      bytes, SectionKind::kTrees,
+      [](TreeRecord& record, std::uint32_t, std::uint32_t) { record.name_bytes = 1000; });
+  EXPECT_EQ(cooker::verify_file(test::require(File::open(Bytes(bytes))))[0].detail,
+            "tree 0: its name lies outside section names");
 }
 
 }  // namespace

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Texts in the section of names, which trees and scenes refer to by offset and size.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include <boxtree/cooker/text/utf8.h>
+#include <boxtree/format/bytes.h>
+#include <boxtree/format/result.h>
+
+namespace boxtree::cooker {
+
+/// Whether such a text is inside the section and UTF-8; otherwise kRecordInvalid, beginning with
+/// `what` it is.
+[[nodiscard]] inline Status check_text(Bytes names, std::uint32_t offset, std::uint32_t bytes,
+                                       const std::string& what) {
+  if (!in_range(offset, bytes, names.size())) {
+    return Error{Errc::kRecordInvalid, what + " lies outside section names"};
+  }
+  const auto* const text = reinterpret_cast<const char*>(names.data());
+  if (bytes == 0 || is_utf8({text + offset, bytes})) return {};
+  return Error{Errc::kRecordInvalid, what + " is no UTF-8"};
+}
+
+}  // namespace boxtree::cooker
