@@ -84,6 +84,14 @@ done
 "$boxtree" cook "$work/square.obj" -o "$work/blob.bxt" --codec blob-zstd -q
 "$whole" "$work/blob.bxt" >/dev/null || fail "the whole runtime does not answer"
 
+# Scenes need no wide codec.
+built scene -DCMAKE_BUILD_TYPE=MinSizeRel -DBOXTREE_SIMD=OFF -DPROGRAM=scene \
+  -DBOXTREE_CODECS=plain-f32 -DBOXTREE_BLOB=OFF
+printf '[scene]\nsource = "square.obj"\ncodec = "plain-f32"\nexact = true\n' >"$work/scene.toml"
+"$boxtree" cook --profile "$work/scene.toml" -o "$work/scene.bxt" -q
+said=$("$work/scene/program" "$work/scene.bxt") || fail "scene of plain-f32: $said"
+[ "$said" = 't 9, face 1, 3 faces, distance 1' ] || fail "scene of plain-f32: wrong answer '$said'"
+
 # A query that was left out is an error of the compiler that says so; a codec or query that there is
 # not, and a cooker on less than a whole runtime, are errors of the configuration.
 sed -i 's/^PROGRAM:[A-Z]*=.*/PROGRAM:UNINITIALIZED=missing/' "$work/small/CMakeCache.txt"
