@@ -2,6 +2,7 @@
 // The command line `boxtree`: one sub-command a file.
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <memory>
 #include <new>
@@ -12,9 +13,22 @@
 #include <boxtree/cooker/cli/output.h>
 #include <boxtree/cooker/version.h>
 
+namespace {
+
+// Memory may run out in code that must not throw, such as destructors of libraries: a message and
+// an exit status rather than an abort.
+[[noreturn]] void end_at_once() {
+  static_cast<void>(
+      std::fputs("boxtree: internal: cannot go on, most likely out of memory\n", stderr));
+  std::_Exit(boxtree::cooker::kExitInternal);
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
   using namespace boxtree;
   int status = 0;
+  std::set_terminate(end_at_once);
 #ifdef SIGXFSZ
   // A limit of file sizes is an error of the write, which is reported and leaves no half a file.
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));

@@ -1,33 +1,60 @@
 // SPDX-License-Identifier: MIT
-// Named after the process, written as every file of ours.
+// A file without a name, found under the descriptor that holds it: whatever kills the process, the
+// system removes it, and no other process, of whatever namespace, comes upon it.
+#include <cerrno>
+#include <cstdlib>
+#include <fcntl.h>
 #include <string>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
 
 #include <boxtree/cooker/report/scratch_file.h>
-#include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
+namespace {
+
+Error failure(const std::filesystem::path& folder) {
+  return Error{Errc::kWriteFailed, folder.string() + ": cannot write a temporary file: " +
+                                       std::generic_category().message(errno)};
+}
+
+int create_unnamed(const std::filesystem::path& folder) {
+  const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
+  if (file >= 0) return file;
+  std::string name = (folder / "boxtree-XXXXXX").string();
+  const int named = ::mkostemp(name.data(), O_CLOEXEC);
+  if (named >= 0) ::unlink(name.c_str());
+  return named;
+}
+
+}  // namespace
 
 Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   std::error_code error;
-  std::filesystem::path path = std::filesystem::temp_directory_path(error);
+  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
   if (error) return Error{Errc::kWriteFailed, "no temporary folder: " + error.message()};
-  path /= "boxtree-" + std::to_string(::getpid()) + ".bxt";
-  Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return file.error();
-  if (Status status = file->write(bytes); !status) return status.error();
-  if (Status status = file->commit(); !status) return status.error();
-  return ScratchFile(std::move(path));
+  ScratchFile scratch(create_unnamed(folder));
+  if (scratch.descriptor_ < 0) return failure(folder);
+  while (!bytes.empty()) {
+    const ssize_t wrote = ::write(scratch.descriptor_, bytes.data(), bytes.size());
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote < 0) return failure(folder);
+    bytes = bytes.subspan(static_cast<std::size_t>(wrote));
+  }
+  // Pages that are not on disk cannot be dropped, and cold reads are what is measured.
+  if (::fsync(scratch.descriptor_) != 0) return failure(folder);
+  return scratch;
 }
 
+ScratchFile::ScratchFile(int descriptor)
+    : descriptor_(descriptor), path_("/proc/self/fd/" + std::to_string(descriptor)) {}
+
 ScratchFile::ScratchFile(ScratchFile&& other) noexcept
-    : path_(std::exchange(other.path_, std::filesystem::path())) {}
+    : descriptor_(std::exchange(other.descriptor_, -1)), path_(std::move(other.path_)) {}
 
 ScratchFile::~ScratchFile() {
-  std::error_code ignored;  // somebody may have cleaned up
-  if (!path_.empty()) std::filesystem::remove(path_, ignored);
+  if (descriptor_ >= 0) ::close(descriptor_);
 }
 
 }  // namespace boxtree::cooker

@@ -9,8 +9,8 @@
 
 namespace boxtree::cooker {
 
-/// A file in the system's temporary folder with a name that no other process uses; removed at the
-/// end. One at a time in a process.
+/// A file in the system's temporary folder without a name, gone with the process that made it. Its
+/// path leads through the process's descriptors and means nothing to other processes.
 class ScratchFile {
  public:
   /// Writes it. Error: kWriteFailed.
@@ -22,8 +22,9 @@ class ScratchFile {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
-  explicit ScratchFile(std::filesystem::path path) : path_(std::move(path)) {}
-  std::filesystem::path path_;  // empty once moved from
+  explicit ScratchFile(int descriptor);
+  int descriptor_;  // -1 once moved from
+  std::filesystem::path path_;
 };
 
 }  // namespace boxtree::cooker

@@ -44,6 +44,8 @@ class AtomicFile {
 
  private:
   AtomicFile() = default;
+  Status choose_name();
+  Status create_named();
   Status link_anonymous();
 
   std::filesystem::path target_;
