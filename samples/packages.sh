@@ -12,6 +12,8 @@ TEST_PACKAGES="libgtest-dev libcgal-dev libgmp-dev locales jq python3-xxhash chr
 PEER_PACKAGES="libembree-dev libbullet-dev libfcl-dev libode-dev"
 # Other compilers, standard libraries and machines, for tests/same_bytes/compare_builds.sh.
 COMPARE_PACKAGES="clang libc++-dev libc++abi-dev g++-aarch64-linux-gnu qemu-user-static"
+# libFuzzer, for tests/fuzz/run.sh.
+FUZZ_PACKAGES="clang libclang-rt-14-dev"
 
 # Reads C++ for tests/mutants.
 MUTANT_PACKAGES="python3-clang-14"

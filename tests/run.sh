@@ -45,6 +45,8 @@ compare_builds() {
 mkdir -p build
 run_preset release
 if [ "${1:-}" = --all ]; then
+  # shellcheck disable=SC2086 # a list of words
+  install_missing $FUZZ_PACKAGES
   for preset in debug scalar asan-ubsan tsan; do run_preset "$preset"; done
   compare_builds
 fi

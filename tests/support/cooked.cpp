@@ -93,6 +93,7 @@ SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind) {
 }
 
 void repair_checksums(std::vector<std::byte>& bytes) {
+  if (bytes.size() < sizeof(FileHeader)) return;
   const auto count = load<FileHeader>(bytes.data()).section_count;
   const std::size_t table = sizeof(FileHeader);
   if (!in_range(table, std::uint64_t{count} * sizeof(SectionEntry), bytes.size())) return;

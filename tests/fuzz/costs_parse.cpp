@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: MIT
+// Any text as the costs of a machine.
+#include <cmath>
+#include <string_view>
+
+#include <boxtree/cooker/choose/cost_file.h>
+
+#include "tests/fuzz/target.h"
+
+namespace boxtree::fuzz {
+
+void run(Bytes input) {
+  const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
+  const auto costs = cooker::parse_costs(text);
+  if (!costs && costs.code() != Errc::kFileUnreadable) finding("an error of another kind");
+  if (costs && costs->empty()) finding("costs of nothing");
+}
+
+}  // namespace boxtree::fuzz

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// Inputs of the targets that query: a file, and behind it 64 bytes that say what is queried.
+// Behind, so that what libFuzzer inserts or cuts off leaves the file's offsets alone.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include <boxtree/runtime/boxtree.h>
+
+namespace boxtree::fuzz {
+
+inline constexpr std::size_t kQuestionBytes = 64;
+
+/// Numbers of every magnitude, and options, out of any 64 bytes.
+class Question {
+ public:
+  explicit Question(Bytes bytes);
+
+  /// Number 0 to 11: small fractions mostly, also powers of two of every size, infinities and NaN.
+  [[nodiscard]] double number(std::size_t index) const;
+  [[nodiscard]] Eigen::Vector3d vector(std::size_t index) const;  // from that number on
+  /// The identity, a shift by the numbers from 9 on, or all twelve of them as a matrix.
+  [[nodiscard]] Pose pose() const;
+  /// Byte 0 to 15.
+  [[nodiscard]] std::uint8_t option(std::size_t index) const;
+  /// None, or a few nodes.
+  [[nodiscard]] QueryLimits limits() const;
+
+ private:
+  std::array<std::byte, kQuestionBytes> bytes_{};
+};
+
+/// An input taken apart. The file lies at the end of memory of its own, at an offset of 0 to 7 from
+/// an aligned address, so that a read behind it is found and misaligned ones happen.
+struct Input {
+  explicit Input(Bytes bytes);
+  [[nodiscard]] Bytes file() const { return Bytes(memory).subspan(shift); }
+
+  Question question;
+  std::size_t shift;
+  std::vector<std::byte> memory;
+};
+
+/// Call with the error of a query on a file: one of corrupt bytes is a finding when `verify`
+/// accepts the file.
+void check_error(const File& file, Errc code);
+
+}  // namespace boxtree::fuzz

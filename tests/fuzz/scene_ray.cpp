@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: MIT
+// Rays in the scene of any file.
+#include "tests/fuzz/tree_target.h"
+
+namespace boxtree::fuzz {
+
+void run(Bytes input) {
+  query_scene(input, [](const Scene& scene, const Question& question, const auto& check) {
+    const Ray ray{question.vector(0), question.vector(3)};
+    const LayerMask layers = question.option(1) == 0 ? kAllLayers : question.option(1);
+    const auto closest = closest_hit(scene, ray, layers, question.limits());
+    const auto any = any_hit(scene, ray, layers, question.limits());
+    check(closest);
+    check(any);
+    if (closest && any && closest->has_value() != any->has_value()) {
+      finding("closest_hit and any_hit differ");
+    }
+    // What an answer names is there.
+    if (closest && closest->has_value()) {
+      const std::uint32_t instance = (*closest)->instance;
+      if (!scene.info(instance)) finding("a hit names no instance");
+      static_cast<void>(scene.material_name(scene.material(instance, (*closest)->hit.face)));
+    }
+  });
+}
+
+}  // namespace boxtree::fuzz

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: MIT
+// Writes the inputs from which the targets that take .bxt files start: small files of every codec,
+// store and kind of section, each with a question. From time to time, when the format gains parts.
+//   seeds FOLDER    writes FOLDER/tree, FOLDER/scene and FOLDER/blob
+#include <array>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <boxtree/runtime/blob/blob.h>
+
+#include "tests/fuzz/question.h"
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/scenes.h"
+
+namespace boxtree {
+namespace {
+
+namespace fs = std::filesystem;
+using test::require;
+
+using QuestionBytes = std::array<std::byte, fuzz::kQuestionBytes>;
+
+// Numbers of the size of the meshes, another set for each seed.
+QuestionBytes question(unsigned seed) {
+  std::mt19937 random(seed);
+  QuestionBytes bytes{};
+  for (std::size_t i = 0; i < 12; ++i) {
+    const auto mantissa = static_cast<std::int16_t>(static_cast<int>(random() % 2048) - 512);
+    std::memcpy(bytes.data() + 4 * i, &mantissa, sizeof(mantissa));
+  }
+  for (std::size_t i = 48; i < 60; ++i) bytes[i] = static_cast<std::byte>(random() % 4);
+  bytes[60] = static_cast<std::byte>(random() % 4);  // updates of scenes
+  return bytes;
+}
+
+bool write(const fs::path& folder, const std::string& name, Bytes file, unsigned seed) {
+  fs::create_directories(folder);
+  const QuestionBytes tail = question(seed);
+  std::ofstream out(folder / name, std::ios::binary);
+  out.write(reinterpret_cast<const char*>(file.data()), std::ssize(file));
+  out.write(reinterpret_cast<const char*>(tail.data()), std::ssize(tail));
+  return out.flush().good();
+}
+
+struct Kind {
+  std::string name;
+  cooker::SourceMesh mesh;
+};
+
+std::vector<Kind> kinds() {
+  cooker::SourceMesh copies = test::city(1, 1);
+  copies.faces.insert(copies.faces.end(), 3, copies.faces[1]);
+  return {{"boxes", test::city(2, 1)},
+          {"soup", test::soup(30, 3)},
+          {"copies", copies},
+          {"one", test::duplicates(1)},
+          {"slivers", test::slivers(12, 5)}};
+}
+
+bool write_trees(const fs::path& folder) {
+  bool good = true;
+  unsigned seed = 0;
+  for (const Kind& kind : kinds()) {
+    for (const test::Encoding& encoding : test::all_encodings()) {
+      const std::string name = kind.name + "-" + std::string(codec_name(encoding.codec)) + "-" +
+                               std::string(geometry_name(encoding.geometry));
+      const test::CookedTree cooked = test::cook_tree(kind.mesh, encoding);
+      good = write(folder / "tree", name, cooked.bytes, ++seed) && good;
+      if (kind.name != "boxes" || encoding.geometry != GeometryId::kExact) continue;
+      for (const BlobMethod method : {BlobMethod::kLzma, BlobMethod::kZstd}) {
+        good = write(folder / "blob", name + (method == BlobMethod::kLzma ? "-lzma" : "-zstd"),
+                     require(make_blob(cooked.bytes, method)), ++seed) &&
+               good;
+      }
+    }
+  }
+  return good;
+}
+
+bool write_scenes(const fs::path& folder) {
+  bool good = true;
+  unsigned seed = 0;
+  for (const CodecId codec : test::all_codecs()) {
+    for (const std::uint32_t moving : {0u, 2u, 1u}) {
+      cooker::SceneParts parts = test::random_parts(5, 2, moving, 2, ++seed);
+      if (moving == 2) {
+        parts.materials = {"wood", "stone"};
+        parts.tree_materials.resize(2);
+        parts.tree_materials[0].runs = {{0, 1}, {3, 0}};
+      }
+      const test::CookedScene cooked =
+          test::cook_scene({test::city(1, 1), test::soup(9, seed)}, parts, {codec});
+      const std::string name =
+          std::string(codec_name(codec)) + "-" + std::to_string(moving) + "-moving";
+      good = write(folder / "scene", name, cooked.bytes, seed) && good;
+    }
+  }
+  return good;
+}
+
+}  // namespace
+}  // namespace boxtree
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::fprintf(stderr, "seeds FOLDER\n");
+    return 1;
+  }
+  return boxtree::write_trees(argv[1]) && boxtree::write_scenes(argv[1]) ? 0 : 1;
+}

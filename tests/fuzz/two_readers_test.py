@@ -1,0 +1,125 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Damaged files with good checksums, before both readers: what `boxtree verify` accepts, the second
+reader (tests/golden/read_bxt.py, written from docs/FORMAT.md alone) must accept, too. What ours
+refuses and theirs accepts is counted by code: theirs does not look at everything.
+
+    two_readers_test.py VERDICTS GOLDEN_DIR CORPUS_DIR [--files N] [--seed S]
+"""
+import argparse
+import collections
+import glob
+import random
+import struct
+import subprocess
+import sys
+
+import xxhash
+
+QUESTION_BYTES = 64  # behind each file of the corpus
+
+
+def repair(data):
+    """Makes the checksums of sections and header right again."""
+    count = struct.unpack_from("<I", data, 40)[0]
+    if 64 + 40 * count > len(data):
+        return
+    for i in range(count):
+        at = 64 + 40 * i
+        offset, size = struct.unpack_from("<QQ", data, at + 16)
+        if offset + size <= len(data):
+            body = bytes(data[offset:offset + size])
+            struct.pack_into("<Q", data, at + 32, xxhash.xxh3_64_intdigest(body))
+    head = bytes(data[:56]) + bytes(data[64:64 + 40 * count])
+    struct.pack_into("<Q", data, 56, xxhash.xxh3_64_intdigest(head))
+
+
+def sections(data):
+    count = struct.unpack_from("<I", data, 40)[0]
+    return [place for place in
+            (struct.unpack_from("<QQ", data, 64 + 40 * i + 16) for i in range(count)) if place[1]]
+
+
+def damaged(whole, rng):
+    data = bytearray(whole)
+    for _ in range(rng.choice((1, 1, 1, 2, 3))):
+        if rng.random() < 0.1:
+            offset, size = 0, min(len(data), 64 + 40 * len(sections(whole)))
+        else:
+            offset, size = rng.choice(sections(whole))
+        width = rng.choice([w for w in (1, 2, 4, 8) if w <= size])
+        at = offset + width * rng.randrange(size // width)
+        value = int.from_bytes(data[at:at + width], "little")
+        top = 1 << (8 * width)
+        value = rng.choice((value + 1, value - 1, 0, top - 1, value ^ 1 << rng.randrange(8 * width),
+                            rng.randrange(top))) % top
+        data[at:at + width] = value.to_bytes(width, "little")
+    repair(data)
+    return bytes(data)
+
+
+class Ours:
+    def __init__(self, program):
+        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def verdict(self, data):
+        self.process.stdin.write(struct.pack("<I", len(data)) + data)
+        self.process.stdin.flush()
+        return self.process.stdout.readline().decode(errors="replace").rstrip("\n")
+
+
+def theirs(read_bxt, data):
+    try:
+        read_bxt.read(data)
+    except (read_bxt.Broken, struct.error, UnicodeDecodeError, IndexError, ArithmeticError) as broken:
+        return f"{type(broken).__name__}: {broken}"
+    return "ok"
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("verdicts")
+    parser.add_argument("golden")
+    parser.add_argument("corpus")
+    parser.add_argument("--files", type=int, default=4000)
+    parser.add_argument("--seed", type=int, default=1)
+    arguments = parser.parse_args()
+    sys.path.insert(0, arguments.golden)
+    import read_bxt  # pylint: disable=import-outside-toplevel
+
+    wholes = [bytes.fromhex(open(path, encoding="ascii").read())
+              for path in sorted(glob.glob(arguments.golden + "/v*.hex"))]
+    for path in sorted(glob.glob(arguments.corpus + "/*")):
+        with open(path, "rb") as file:
+            wholes.append(file.read()[:-QUESTION_BYTES])
+    ours = Ours(arguments.verdicts)
+    wholes = [whole for whole in wholes if ours.verdict(whole) == "ok"]
+    if len(wholes) < 10:
+        sys.exit(f"only {len(wholes)} whole files to begin with")
+    for whole in wholes:
+        said = theirs(read_bxt, whole)
+        if said != "ok":
+            sys.exit(f"the second reader refuses a whole file: {said}")
+
+    rng = random.Random(arguments.seed)
+    both = collections.Counter()
+    only_ours = collections.Counter()
+    for number in range(arguments.files):
+        data = damaged(rng.choice(wholes), rng)
+        first, second = ours.verdict(data), theirs(read_bxt, data)
+        if first == "ok" and second != "ok":
+            with open(f"two-readers-{number}.bxt", "wb") as file:
+                file.write(data)
+            sys.exit(f"verify accepts two-readers-{number}.bxt, the second reader does not: {second}")
+        both[first == "ok", second == "ok"] += 1
+        if first != "ok" and second == "ok":
+            only_ours[first.split(":")[0]] += 1
+    if not both[True, True] or not both[False, False]:
+        sys.exit("no file was accepted, or none refused")
+    print(f"{arguments.files} files: {both[True, True]} accepted by both, {both[False, False]} "
+          f"refused by both, {both[False, True]} refused by ours alone: "
+          + ", ".join(f"{code} {count}" for code, count in only_ours.most_common()))
+
+
+if __name__ == "__main__":
+    main()
