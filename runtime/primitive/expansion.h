@@ -17,10 +17,17 @@ namespace boxtree {
 template <std::size_t Capacity>
 struct Expansion {
   std::size_t size = 0;
-  std::array<double, Capacity> term;
+  std::array<double, Capacity + 1> term;  // one more: see append_last
 
   void append(double value) noexcept {
     if (value != 0) term[size++] = value;
+  }
+  /// The last of a sum or product. Numbers keep within Capacity, as the first rounding error of
+  /// each is zero; but coordinates of corrupt files may overflow to terms that are none, and then
+  /// there can be one more.
+  void append_last(double value) noexcept {
+    append(value);
+    size = std::min(size, Capacity);
   }
   /// The last term outweighs all others together, so its sign is the sign of the sum.
   [[nodiscard]] int sign() const noexcept { return size == 0 ? 0 : (term[size - 1] > 0 ? 1 : -1); }
@@ -113,7 +120,7 @@ template <std::size_t M, std::size_t N>
     result.append(next.error);
     running = next.value;
   }
-  result.append(running);
+  result.append_last(running);
   return result;
 }
 
@@ -142,7 +149,7 @@ template <std::size_t N>
     result.append(high.error);
     carry = high.value;
   }
-  result.append(carry);
+  result.append_last(carry);
   return result;
 }
 

@@ -3,7 +3,9 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <iterator>
 #include <limits>
+#include <random>
 #include <tests/unit/primitive/exact_simplex.h>
 #include <tests/unit/primitive/triangle_cases.h>
 
@@ -210,6 +212,33 @@ TEST(WideInteger, DifferencesAndProductsAreExact) {
     const double next = std::nextafter(x, large * 2);
     EXPECT_EQ((wide_difference(next, x) - wide_integer(next - x)).sign(), 0) << e;
     EXPECT_EQ((wide_integer(x) + wide_integer(x) - wide_integer(2 * x)).sign(), 0) << e;
+  }
+}
+
+// Found by fuzzing scenes: coordinates of corrupt files overflow, and the terms of a product were
+// one more than there was room for.
+TEST(Expansion, WhatOverflowsKeepsWithinItsMemory) {
+  std::mt19937_64 random(1);
+  const double kinds[] = {0x1p1023,
+                          -0x1.fffffffffffffp1023,
+                          0x1p600,
+                          -0x1p-1074,
+                          1.0,
+                          0.0,
+                          std::numeric_limits<double>::infinity(),
+                          std::numeric_limits<double>::quiet_NaN()};
+  const auto any = [&] {
+    return kinds[random() % std::size(kinds)] * std::ldexp(1.0, static_cast<int>(random() % 3));
+  };
+  for (int i = 0; i < 100000; ++i) {
+    const Expansion<2> a = exact_difference(any(), any()), b = exact_product(any(), any());
+    const Expansion<8> product = a * b;
+    const Expansion<16> sum = product - b * a;
+    ASSERT_LE((a * any()).size, 4u);
+    ASSERT_LE(product.size, 8u);
+    ASSERT_LE(sum.size, 16u);
+    const auto point = [&] { return Eigen::Vector2d(any(), any()); };
+    static_cast<void>(orient2d(point(), point(), point()));
   }
 }
 
