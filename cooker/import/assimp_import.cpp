@@ -7,6 +7,7 @@
 #include <exception>
 #include <memory>
 #include <new>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -26,12 +27,15 @@
 #include <boxtree/cooker/import/node_graph.h>
 #include <boxtree/cooker/import/obj_text.h>
 #include <boxtree/cooker/import/off_text.h>
+#include <boxtree/cooker/import/ply_header.h>
 #include <boxtree/cooker/import/ply_positions.h>
 #include <boxtree/cooker/import/scene_intake.h>
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/source_scene.h>
 #include <boxtree/cooker/import/text_checks.h>
 #include <boxtree/cooker/import/text_ends.h>
+#include <boxtree/cooker/import/text_ply.h>
+#include <boxtree/cooker/import/text_stl.h>
 #include <boxtree/cooker/import/text_tokens.h>
 #include <boxtree/cooker/import/trial.h>
 #include <boxtree/cooker/import/whole_file.h>
@@ -213,7 +217,9 @@ Status import_ply(const Request& request, ImportedFile& out) {
   if (Status status = check_ply_text(numbered.text); !status.ok()) {
     return in_file(path, status.error());
   }
-  const bool is_open = has_open_end(numbered.text);
+  const std::optional<PlyHeader> header = read_ply_header(numbered.text);
+  const bool is_open =
+      header && header->form == PlyHeader::Form::kText && has_open_end(numbered.text);
   const bool is_numbered = number_ply_vertices(numbered.text, numbered.exact);
   if (!is_numbered) numbered.text = std::string();
   if (Status status = import_once(request, is_numbered ? &numbered : nullptr, out); !status.ok()) {
@@ -229,8 +235,9 @@ struct TextCheck {
   Status (*check)(std::string_view file);
 };
 constexpr std::array kTextChecks = {
-    TextCheck{"stl", check_stl_text},       TextCheck{"ac", check_ac_end},
-    TextCheck{"ase", check_blocks_end},     TextCheck{"dxf", check_dxf_end},
+    TextCheck{"ac", check_ac_end},
+    TextCheck{"ase", check_blocks_end},
+    TextCheck{"dxf", check_dxf_end},
     TextCheck{"md5mesh", check_blocks_end},
 };
 
@@ -257,13 +264,28 @@ Status import_any(const Request& request, ImportedFile& out) {
   return import_once(request, nullptr, out);
 }
 
-// Formats of large meshes, read past assimp. False if this file is for assimp.
+// Read past assimp, each if it says so. What of a format no reader takes is for assimp.
+struct MeshReader {
+  const char* extension;
+  Result<bool> (*import)(const fs::path& path, const ImportOptions& options, Imported& out);
+};
+constexpr std::array kReaders = {
+    MeshReader{"ply", import_binary_ply},
+    MeshReader{"ply", import_text_ply},
+    MeshReader{"stl", import_binary_stl},
+    MeshReader{"stl", import_text_stl},
+};
+
+// False if this file is for assimp.
 Result<bool> import_directly(const Request& request, ImportedFile& out) {
   const fs::path& path = request.path;
   Imported mesh;
   Result<bool> is_read = false;
-  if (has_extension(path, "ply")) is_read = import_binary_ply(path, request.options, mesh);
-  if (has_extension(path, "stl")) is_read = import_binary_stl(path, request.options, mesh);
+  for (const auto& [extension, import] : kReaders) {
+    if (!has_extension(path, extension)) continue;
+    is_read = import(path, request.options, mesh);
+    if (!is_read.ok() || is_read.value()) break;
+  }
   if (!is_read.ok() || !is_read.value()) return is_read;
   if (request.wanted == Wanted::kScene) {
     out = scene_of(std::move(mesh), path.stem().string());

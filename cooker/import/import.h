@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Mesh files in: the only door through which source meshes enter. Binary PLY and STL are read by
-// our own readers, everything else by assimp.
+// Mesh files in: the only door through which source meshes enter. PLY and STL are read by our own
+// readers, positions and corners of OBJ and OFF too; everything else by assimp.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,9 @@ struct ImportOptions {
   Precision precision = Precision::kF32;
   /// [false] Let assimp read the file in a copy of this process first (trial.h), so that a file
   /// that crashes its reader, or that it never ends with, is an error: kImportFailed. Costs a
-  /// second reading. For formats that assimp alone understands, and text STL and glTF; the
-  /// statements of OBJ, OFF and PLY have all been looked at before it sees them. The copy is made
-  /// by fork(): not for programs whose other threads hold locks that reading needs.
+  /// second reading. For formats that assimp alone understands, and glTF; of OBJ and OFF it sees
+  /// what we have written. The copy is made by fork(): not for programs whose other threads hold
+  /// locks that reading needs.
   bool try_first = false;
 };
 

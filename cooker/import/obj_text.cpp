@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include <assimp/material.h>
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/obj_text.h>
@@ -24,7 +25,7 @@ struct Statement {
 };
 
 bool is_line_end(char c) {
-  return c == '\n' || c == '\r' || c == '\f' || c == '\0';
+  return c == '\n' || c == '\r' || c == '\f';
 }
 
 bool is_blank(char c) {
@@ -37,9 +38,9 @@ constexpr std::array<bool, 256> set_of(std::string_view characters) {
   for (const char c : characters) set[static_cast<unsigned char>(c)] = true;
   return set;
 }
-constexpr auto kLineEnds = set_of(std::string_view("\n\r\f\0", 4));
-constexpr auto kLineEndsOrJoins = set_of(std::string_view("\n\r\f\0\\", 5));
-constexpr auto kElementEnds = set_of(std::string_view("\n\r\f\0\\#", 6));
+constexpr auto kLineEnds = set_of("\n\r\f");
+constexpr auto kLineEndsOrJoins = set_of("\n\r\f\\");
+constexpr auto kElementEnds = set_of("\n\r\f\\#");
 
 std::size_t find_of(const std::array<bool, 256>& set, std::string_view text, std::size_t from) {
   while (from < text.size() && !set[static_cast<unsigned char>(text[from])]) ++from;
@@ -53,13 +54,19 @@ bool is_element(std::string_view text) {
          (is_blank(text[1]) || text[1] == '\\');
 }
 
+// Statements of numbers that mean nothing without texture coordinates and normals.
+bool is_left_out(std::string_view text) {
+  const std::string_view keyword = text.substr(0, text.find_first_of(" \t\\"));
+  return keyword == "vt" || keyword == "vn" || keyword == "vp" || keyword == "s";
+}
+
 // Takes the next statement off `rest`; empty lines and comments are empty statements. A comment
 // ends with its line: paths end in backslashes, too.
 Statement take_statement(std::string_view& rest, std::size_t& line) {
   while (!rest.empty() && is_blank(rest[0])) rest.remove_prefix(1);
   const std::string_view from = rest;
   const std::size_t first_line = line;
-  const bool has_comments = is_element(rest);
+  const bool has_comments = is_element(rest) || is_left_out(rest);
   const auto& ends = has_comments ? kElementEnds : kLineEndsOrJoins;
   std::size_t end = 0;
   std::size_t length = rest.starts_with('#') ? 0 : std::string_view::npos;
@@ -111,7 +118,8 @@ class ObjReader {
  private:
   std::size_t vertices();
   Status add_vertex(const Statement& statement);
-  bool rewrite_element(const Statement& statement);
+  void split(const Statement& statement);
+  Status rewrite_element(const Statement& statement);
   static long long corner_number(std::string_view token);
   bool names_vertex(long long number);
   std::string corner_fault(std::string_view token, std::size_t corner, std::size_t line);
@@ -121,19 +129,25 @@ class ObjReader {
   ExactPositions& exact_;
   std::string text_;
   Tokens tokens_;
+  std::string joined_;                    // lines of the statement at hand
   std::vector<std::size_t> face_faults_;  // those whose marker follows at the end of the text
   std::optional<std::size_t> vertices_;   // in the whole file
   std::size_t vertices_so_far_ = 0;
+  bool has_material_ = true;  // assimp need not be told that faces have none
 };
 
 Result<std::string> ObjReader::run() {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (source_.starts_with(kByteOrderMark)) source_.remove_prefix(kByteOrderMark.size());
+  if (Status status = check_is_text(source_); !status.ok()) return status.error();
+  source_ = source_.substr(0, source_.find_last_not_of('\0') + 1);
   if (source_.ends_with('\x1a')) source_.remove_suffix(1);  // how DOS ended a text
   // Assimp wants 16 bytes of any file, even of one that holds comments alone.
   constexpr std::string_view kStart = "# statements of an OBJ file\n";
   text_.reserve(kStart.size() + source_.size() + 1);
   text_ = kStart;
+  has_material_ = source_.find("usemtl") == std::string_view::npos &&
+                  source_.find("mtllib") == std::string_view::npos;
   std::string_view rest = source_;
   std::size_t line = 1;
   while (!rest.empty()) {
@@ -142,7 +156,12 @@ Result<std::string> ObjReader::run() {
       if (Status status = add_vertex(statement); !status.ok()) return status.error();
       continue;
     }
-    if (is_element(statement.text) && rewrite_element(statement)) continue;
+    if (is_left_out(statement.text)) continue;
+    if (is_element(statement.text)) {
+      if (Status status = rewrite_element(statement); !status.ok()) return status.error();
+      continue;
+    }
+    has_material_ = has_material_ || keyword_of(statement.text) == "usemtl";
     if (!is_known(keyword_of(statement.text))) {
       return failure(statement, fmt::format("no statement of OBJ begins with {:?}",
                                             keyword_of(statement.text)));
@@ -165,8 +184,22 @@ std::size_t ObjReader::vertices() {
   return count;
 }
 
+// Into words, of which a backslash at the end of a line is none.
+void ObjReader::split(const Statement& statement) {
+  if (statement.text.find('\\') == std::string_view::npos) {
+    split_tokens(statement.text, tokens_);
+    return;
+  }
+  joined_ = statement.text;
+  for (std::size_t i = 0; i + 1 < joined_.size(); ++i) {
+    if (joined_[i] == '\\' && is_line_end(joined_[i + 1])) joined_[i] = ' ';
+  }
+  if (joined_.ends_with('\\')) joined_.back() = ' ';
+  split_tokens(joined_, tokens_);
+}
+
 Status ObjReader::add_vertex(const Statement& statement) {
-  split_tokens(statement.text, tokens_);
+  split(statement);
   tokens_.erase(tokens_.begin());
   // A fourth number alone is a weight; more are a colour.
   const std::size_t used = tokens_.size() == 4 ? 4 : std::min<std::size_t>(tokens_.size(), 3);
@@ -191,34 +224,39 @@ Status ObjReader::add_vertex(const Statement& statement) {
   return {};
 }
 
-// Whether the face, line or point was rewritten.
-bool ObjReader::rewrite_element(const Statement& statement) {
-  split_tokens(statement.text, tokens_);
-  const auto is_good = [this](std::string_view token) {
-    return names_vertex(corner_number(token)) && token.find("/0") == std::string_view::npos;
-  };
-  if (std::all_of(tokens_.begin() + 1, tokens_.end(), is_good)) return false;
+// Corners become the numbers of their vertices alone. Assimp would give faces that come before the
+// first material that one.
+Status ObjReader::rewrite_element(const Statement& statement) {
+  split(statement);
+  const bool is_face = tokens_[0] == "f";
+  if (is_face && !has_material_) {
+    text_ += "usemtl " AI_DEFAULT_MATERIAL_NAME "\n";
+    has_material_ = true;
+  }
   std::string fault;
   text_ += tokens_[0];
   for (std::size_t i = 1; i < tokens_.size(); ++i) {
-    const std::string_view token = tokens_[i];
-    text_ += ' ';
-    if (names_vertex(corner_number(token))) {
-      const bool has_zero = token.find("/0") != std::string_view::npos;
-      text_ += has_zero ? token.substr(0, token.find('/')) : token;
-      continue;
-    }
+    const long long number = corner_number(tokens_[i]);
     // Lines and points are not taken over, so any vertex will do.
-    const bool is_face = tokens_[0] == "f";
-    text_ += is_face ? std::to_string(vertices() + face_faults_.size() + 1) : "1";
-    if (fault.empty() && is_face) fault = corner_fault(token, i - 1, statement.line);
+    long long shown = 1;
+    if (names_vertex(number)) {
+      shown = number > 0 ? number : static_cast<long long>(vertices_so_far_) + number + 1;
+    } else if (is_face) {
+      shown = static_cast<long long>(vertices() + face_faults_.size() + 1);
+      if (fault.empty()) fault = corner_fault(tokens_[i], i - 1, statement.line);
+    }
+    const fmt::format_int digits(shown);
+    text_ += ' ';
+    text_.append(digits.data(), digits.size());
   }
   text_ += '\n';
+  // With fewer corners it is no face, and its fault none that skip_bad could leave out.
+  if (!fault.empty() && tokens_.size() < 4) return Error{Errc::kMeshIndexOutOfRange, fault};
   if (!fault.empty()) {
     face_faults_.push_back(known_.faults.size());
     known_.faults.push_back({Errc::kMeshIndexOutOfRange, std::move(fault)});
   }
-  return true;
+  return {};
 }
 
 // Counted from 1, or backwards from -1; 0 for what is no number.
@@ -227,7 +265,12 @@ long long ObjReader::corner_number(std::string_view token) {
   const std::size_t sign = token[0] == '+' ? 1 : 0;
   const char* const last = token.data() + token.size();
   const char* const end = std::from_chars(token.data() + sign, last, number).ptr;
-  return end == last || *end == '/' ? number : 0;
+  // Numbers of texture coordinates and normals may follow, and nothing else.
+  const std::string_view rest(end, static_cast<std::size_t>(last - end));
+  const bool is_corner =
+      rest.empty() ||
+      (rest[0] == '/' && rest.find_first_not_of("0123456789+-/") == std::string_view::npos);
+  return is_corner ? number : 0;
 }
 
 bool ObjReader::names_vertex(long long number) {

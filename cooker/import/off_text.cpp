@@ -36,6 +36,7 @@ class OffReader {
   std::size_t line_ = 0;
   std::size_t dimensions_ = 3;
   bool is_homogeneous_ = false;
+  std::size_t attributes_ = 0;  // numbers behind a position, at least: colours may have a fourth
   std::size_t vertices_ = 0;
   std::size_t faces_ = 0;
   std::vector<std::size_t> face_faults_;
@@ -49,6 +50,8 @@ std::optional<long long> to_integer(std::string_view token) {
 }
 
 Result<std::string> OffReader::run() {
+  if (Status status = check_is_text(rest_); !status.ok()) return status.error();
+  rest_ = rest_.substr(0, rest_.find_last_not_of('\0') + 1);
   for (Status (OffReader::*step)() : {&OffReader::read_header, &OffReader::read_counts,
                                       &OffReader::read_vertices, &OffReader::read_faces}) {
     if (Status status = (this->*step)(); !status.ok()) return status.error();
@@ -81,6 +84,8 @@ Status OffReader::read_header() {
     if (!key.starts_with(prefix)) continue;
     key.remove_prefix(prefix.size());
     if (prefix == "4") is_homogeneous_ = true;
+    if (prefix == "ST") attributes_ += 2;
+    if (prefix == "C" || prefix == "N") attributes_ += 3;
     if (prefix == "n") dimensions_ = 0;
   }
   if (key != "OFF") return failure("no OFF header");
@@ -115,12 +120,14 @@ Status OffReader::read_counts() {
 }
 
 Status OffReader::read_vertices() {
-  const std::size_t wanted = dimensions_ + (is_homogeneous_ ? 1 : 0);
+  const std::size_t wanted = dimensions_ + (is_homogeneous_ ? 1 : 0) + attributes_;
   for (std::size_t vertex = 0; vertex < vertices_; ++vertex) {
     if (!next_line()) {
       return failure(fmt::format("the file ends after {} of {} vertices", vertex, vertices_));
     }
-    if (tokens_.size() < wanted) return failure("too few coordinates");
+    if (tokens_.size() < wanted) {
+      return failure(fmt::format("a vertex of {} numbers; it has {}", tokens_.size(), wanted));
+    }
     if (!add_vertex(vertex)) {
       return failure(
           fmt::format("'{}' is no number", find_no_number(std::span(tokens_).first(wanted))));

@@ -63,7 +63,8 @@ bool read_line(const Tokens& tokens, PlyHeader& header) {
         tokens.size() > 2 ? read_count(tokens[2]) : std::nullopt;
     if (!count) return false;
     header.elements.push_back({std::string(tokens[1]), *count, {}});
-  } else if (tokens[0] == "property" && !header.elements.empty()) {
+  } else if (tokens[0] == "property") {
+    if (header.elements.empty()) return false;
     add_property(tokens, header.elements.back());
   }
   return true;
@@ -138,8 +139,10 @@ bool has_ply_header_end(std::string_view file) {
 std::optional<PlyHeader> read_ply_header(std::string_view file) {
   PlyHeader header;
   Tokens tokens;
+  // Old Macintosh files end lines by a carriage return alone.
+  const bool has_returns = file.starts_with("ply\r") && !file.starts_with("ply\r\n");
   for (std::size_t line = 0;; ++line) {
-    const std::size_t end = file.find('\n', header.bytes);
+    const std::size_t end = file.find(has_returns ? '\r' : '\n', header.bytes);
     if (end == std::string_view::npos) return std::nullopt;
     split_tokens(file.substr(header.bytes, end - header.bytes), tokens);
     header.bytes = end + 1;

@@ -55,7 +55,8 @@ struct PlyHeader {
 /// Whether a line of `file` is the last one of a header, and ends.
 [[nodiscard]] bool has_ply_header_end(std::string_view file);
 
-/// The header at the start of `file`; nothing if it does not end there, or an element has no count.
+/// The header at the start of `file`; nothing if it does not end there, an element has no
+/// count, or a property no element.
 [[nodiscard]] std::optional<PlyHeader> read_ply_header(std::string_view file);
 
 }  // namespace boxtree::cooker

@@ -64,6 +64,18 @@ bool SourceStream::refill(std::size_t count) {
   return kept + got >= count;
 }
 
+Result<std::string> SourceStream::take_rest() {
+  std::string rest;
+  rest.reserve(left());
+  while (left() > 0) {
+    const auto step = static_cast<std::size_t>(std::min<std::uint64_t>(left(), kBufferBytes));
+    const char* const bytes = take(step);
+    if (bytes == nullptr) return ended_in("its last bytes");
+    rest.append(bytes, step);
+  }
+  return rest;
+}
+
 bool SourceStream::skip(std::uint64_t count) {
   if (count > left()) return false;
   while (count > 0) {

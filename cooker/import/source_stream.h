@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -41,6 +42,9 @@ class SourceStream {
     at_ += count;
     return bytes;
   }
+
+  /// All that is left, at once. Errors: as ended_in.
+  [[nodiscard]] Result<std::string> take_rest();
 
   /// Passes over `count` bytes; false if the file has no more so many.
   [[nodiscard]] bool skip(std::uint64_t count);

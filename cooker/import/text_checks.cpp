@@ -31,6 +31,8 @@ class Lines {
     return false;
   }
 
+  [[nodiscard]] std::size_t number() const { return number_; }
+
   [[nodiscard]] Error failure(std::string_view why) const {
     return Error{Errc::kImportFailed, fmt::format("line {}: {}", number_, why)};
   }
@@ -58,7 +60,8 @@ Result<std::uint64_t> words_of(const PlyElement& element, const Tokens& words, c
   return wanted;
 }
 
-Status check_element(const PlyElement& element, Lines& lines, Tokens& words) {
+Status read_element(const PlyElement& element, Lines& lines, Tokens& words,
+                    const PlyRowVisitor& visit) {
   if (element.is_understood && element.properties.empty()) return {};
   for (std::uint64_t i = 0; i < element.count; ++i) {
     if (!lines.next(words)) {
@@ -74,98 +77,31 @@ Status check_element(const PlyElement& element, Lines& lines, Tokens& words) {
     }
     const std::string_view no_number = find_no_number(std::span(words));
     if (!no_number.empty()) return lines.failure(fmt::format("'{}' is no number", no_number));
+    if (Status status = visit(element, words, lines.number()); !status.ok()) return status;
   }
   return {};
 }
-
-// Takes the words of a text STL file in their order. Lines mean nothing but after "solid" and
-// "endsolid", where a name of any words follows; outside of facets unknown words are passed over.
-class StlChecker {
- public:
-  explicit StlChecker(std::string_view file) : lines_(file) {}
-
-  Status run() {
-    while (lines_.next(words_)) {
-      for (const std::string_view word : words_) {
-        if (Status status = take(word); !status.ok()) return status;
-        if (is_name_) break;
-      }
-      is_name_ = false;
-    }
-    if (corners_ != kOutside) return lines_.failure("the file ends within a facet");
-    return is_open_ ? Status(lines_.failure("the file ends without 'endsolid'")) : Status();
-  }
-
- private:
-  static constexpr int kOutside = -1;
-
-  Status take(std::string_view given) {
-    if (numbers_ > 0) {
-      --numbers_;
-      return read_number<double>(given) ? Status() : failure(given, "is no number");
-    }
-    std::string word = after_end_ ? "end" : "";  // some write "end facet"
-    for (const char c : given) word += c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    after_end_ = word == "end";
-    if (after_end_) return {};
-    return corners_ == kOutside ? take_outside(word) : take_inside(word, given);
-  }
-
-  Status take_outside(std::string_view word) {
-    if (word == "solid" || word == "endsolid") {
-      is_open_ = word == "solid";
-      is_name_ = true;
-    } else if (word == "facet") {
-      corners_ = 0;
-    }
-    return {};
-  }
-
-  Status take_inside(std::string_view word, std::string_view given) {
-    if (word == "normal" || word == "vertex") {
-      numbers_ = 3;
-      corners_ += word == "vertex" ? 1 : 0;
-    } else if (word == "endfacet") {
-      if (corners_ != 3) return lines_.failure(fmt::format("a facet of {} corners", corners_));
-      corners_ = kOutside;
-    } else if (word != "outer" && word != "loop" && word != "endloop") {
-      return failure(given, "within a facet");
-    }
-    return {};
-  }
-
-  [[nodiscard]] Status failure(std::string_view word, std::string_view what) const {
-    return lines_.failure(fmt::format("'{}' {}", word, what));
-  }
-
-  Lines lines_;
-  Tokens words_;
-  bool is_open_ = false;    // a solid is
-  bool is_name_ = false;    // the rest of the line is
-  bool after_end_ = false;  // the word before was "end"
-  int corners_ = kOutside;  // of the facet at hand
-  int numbers_ = 0;         // that are to come
-};
 
 }  // namespace
 
-Status check_ply_text(std::string_view file) {
-  const std::optional<PlyHeader> header = read_ply_header(file);
-  if (!header) return Error{Errc::kImportFailed, "an element of the header has no count"};
-  if (header->form != PlyHeader::Form::kText) return {};
-  const std::string_view before = file.substr(0, header->bytes);
-  Lines lines(file.substr(header->bytes),
-              static_cast<std::size_t>(std::count(before.begin(), before.end(), '\n')));
+Status read_ply_rows(const PlyHeader& header, std::string_view file, const PlyRowVisitor& visit) {
+  const std::string_view before = file.substr(0, header.bytes);
+  Lines lines(file.substr(header.bytes),
+              static_cast<std::size_t>(std::max(std::count(before.begin(), before.end(), '\n'),
+                                                std::count(before.begin(), before.end(), '\r'))));
   Tokens words;
-  for (const PlyElement& element : header->elements) {
-    if (Status status = check_element(element, lines, words); !status.ok()) return status;
+  for (const PlyElement& element : header.elements) {
+    if (Status status = read_element(element, lines, words, visit); !status.ok()) return status;
   }
   return {};
 }
 
-Status check_stl_text(std::string_view file) {
-  const std::size_t start = std::min(file.find_first_not_of(" \t\r\n"), file.size());
-  return file.substr(start).starts_with("solid") ? StlChecker(file).run() : Status();
+Status check_ply_text(std::string_view file) {
+  const std::optional<PlyHeader> header = read_ply_header(file);
+  if (!header) return Error{Errc::kImportFailed, "an element of the header has no count, or a property no element"};
+  if (header->form != PlyHeader::Form::kText) return {};
+  return read_ply_rows(*header, file,
+                       [](const PlyElement&, const Tokens&, std::size_t) { return Status(); });
 }
 
 bool has_open_end(std::string_view text) {

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Words and numbers, of which assimp's spellings are the widest.
 #include <algorithm>
 #include <charconv>
-#include <cmath>
+#include <cstdint>
 #include <limits>
 
-#include <assimp/fast_atof.h>
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/flatten.h>
@@ -14,13 +12,26 @@
 namespace boxtree::cooker {
 namespace {
 
-struct NotANumber {
-  template <class... Ignored>
-  explicit NotANumber(Ignored&&... /*words*/) {}
-};
-
 bool is_space(char c) {
-  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\0' || c == '\\';
+  return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
+}
+
+// Whether a number, spelled as from_chars reads it, is nearer to zero than to infinity.
+bool is_below_one(std::string_view digits) {
+  if (digits.starts_with('-')) digits.remove_prefix(1);
+  const std::size_t mantissa = std::min(digits.find_first_of("eE"), digits.size());
+  std::int64_t exponent = 0;
+  if (mantissa < digits.size()) {
+    const bool has_plus = digits.substr(mantissa + 1).starts_with('+');
+    const char* const last = digits.data() + digits.size();
+    const char* const first = digits.data() + mantissa + (has_plus ? 2 : 1);
+    if (std::from_chars(first, last, exponent).ec != std::errc()) return *first == '-';
+  }
+  // Places of the first digit that is not zero before the point, or behind it.
+  const std::size_t point = std::min(digits.find('.'), mantissa);
+  const std::size_t first = digits.find_first_of("123456789");
+  const auto place = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);
+  return place < -exponent;
 }
 
 template <class T>
@@ -34,18 +45,27 @@ std::optional<Eigen::Vector3d> position_as(const VertexWords& words) {
   return Eigen::Vector3d(value[0] / value[3], value[1] / value[3], value[2] / value[3]);
 }
 
-// Spellings of its own; no more digits than f32 has.
-std::optional<float> read_as_assimp(std::string_view token) {
-  float number = 0;
-  try {
-    Assimp::fast_atoreal_move<float, NotANumber>(std::string(token).c_str(), number);
-  } catch (const NotANumber&) {
-    return std::nullopt;
-  }
-  return number;
+}  // namespace
+
+bool begins_with_solid(std::string_view text) {
+  return in_lower_case(text.substr(0, 5)) == "solid";
 }
 
-}  // namespace
+std::string in_lower_case(std::string_view word) {
+  std::string lower(word);
+  for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return lower;
+}
+
+Status check_is_text(std::string_view file) {
+  const std::size_t end = file.find_last_not_of('\0') + 1;  // 0 where there is none
+  const std::size_t zero = file.substr(0, end).find('\0');
+  if (zero == std::string_view::npos) return {};
+  const auto line =
+      std::count(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+  return Error{Errc::kImportFailed,
+               fmt::format("line {}: a zero byte: no text, or one in UTF-16", line + 1)};
+}
 
 std::string_view take_line(std::string_view& rest) {
   const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
@@ -80,17 +100,11 @@ std::optional<T> read_number(std::string_view token) {
   const char* const last = token.data() + token.size();
   T number = 0;
   const auto [end, error] = std::from_chars(first, last, number);
-  if (end == last && error == std::errc()) return number;
-  if (end == last && error == std::errc::result_out_of_range) {
-    // What is beyond long double as well, assimp takes for infinite or zero.
-    long double wide = 0;
-    if (std::from_chars(first, last, wide).ec == std::errc()) {
-      const T beyond = std::abs(wide) > 1 ? std::numeric_limits<T>::infinity() : T{0};
-      return std::copysign(beyond, static_cast<T>(std::signbit(wide) ? -1 : 1));
-    }
-  }
-  const std::optional<float> rounded = read_as_assimp(token);
-  return rounded ? std::optional<T>(*rounded) : std::nullopt;
+  if (end != last || error == std::errc::invalid_argument) return std::nullopt;
+  if (error == std::errc()) return number;
+  const std::string_view digits(first, static_cast<std::size_t>(last - first));
+  const T beyond = is_below_one(digits) ? T{0} : std::numeric_limits<T>::infinity();
+  return digits.starts_with('-') ? -beyond : beyond;
 }
 template std::optional<float> read_number(std::string_view token);
 template std::optional<double> read_number(std::string_view token);
@@ -111,14 +125,8 @@ std::string marker_line(std::size_t fault) {
 }
 
 bool has_extension(const std::filesystem::path& path, std::string_view extension) {
-  const std::string own = path.extension().string();
-  if (own.size() != extension.size() + 1) return false;
-  for (std::size_t i = 0; i < extension.size(); ++i) {
-    const char c = own[i + 1];
-    const char lower = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    if (lower != extension[i]) return false;
-  }
-  return true;
+  const std::string own = in_lower_case(path.extension().string());
+  return own.starts_with('.') && std::string_view(own).substr(1) == extension;
 }
 
 }  // namespace boxtree::cooker

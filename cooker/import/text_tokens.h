@@ -14,21 +14,31 @@
 #include <Eigen/Core>
 
 #include <boxtree/cooker/import/source_mesh.h>
+#include <boxtree/format/result.h>
 
 namespace boxtree::cooker {
 
 using Tokens = std::vector<std::string_view>;
 
-/// The words of `text`, between spaces, tabs, line ends and backslashes.
+/// Refuses bytes that are no text of a mesh: zeros, but for those that fill up the end of the file.
+/// kImportFailed, naming the line.
+Status check_is_text(std::string_view file);
+
+/// The words of `text`, between spaces, tabs and line ends.
 void split_tokens(std::string_view text, Tokens& tokens);
+
+/// Whether a text begins with the word of an STL file, in any case.
+[[nodiscard]] bool begins_with_solid(std::string_view text);
+
+/// `word` with letters A to Z in lower case.
+[[nodiscard]] std::string in_lower_case(std::string_view word);
 
 /// Takes the next line off `rest`, and its end: a line feed, a carriage return, or both. Returns it
 /// without that. Precondition: `rest` is not empty.
 std::string_view take_line(std::string_view& rest);
 
-/// The number that `token` is, rounded once to the nearest T (float or double), infinite beyond its
-/// range; of other spellings ("1,5", "2m") what assimp makes of their beginning; nothing if that
-/// is no number.
+/// The number that all of `token` is, rounded once to the nearest T (float or double), infinite
+/// beyond its range; nothing for other spellings ("1,5", "2m", "0x10").
 template <class T>
 [[nodiscard]] std::optional<T> read_number(std::string_view token);
 

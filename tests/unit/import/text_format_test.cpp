@@ -2,6 +2,8 @@
 // Spellings of text formats behind which readers lose statements, and texts that were cut short.
 #include <string>
 
+#include <boxtree/cooker/import/source_scene.h>
+
 #include "temp_files.h"
 
 namespace boxtree::cooker {
@@ -114,6 +116,129 @@ TEST_F(TextFormatTest, StlClosesEveryFacetAndSolid) {
   std::string word = kStl;
   word.replace(word.find("vertex 1 1 0"), 12, "vertex 1 l 0");
   EXPECT_TRUE(has(fail("f.stl", word).detail, "'l' is no number"));
+}
+
+// All that follows was found by tests/import_oracle.
+
+const std::string kVertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+const std::string kPlyBody = "0 0 0\n1 0 0\n0 1 0\n";
+
+std::string ply_of(const std::string& vertex, const std::string& behind = "") {
+  return "ply\nformat ascii 1.0\n" + vertex + "element face 1\n" + behind +
+         "property list uchar int vertex_indices\nend_header\n";
+}
+
+TEST_F(TextFormatTest, CommentsInHeadersOfPlyEndNoElement) {
+  const std::string xyz =
+      "property float x\ncomment C:\\\nproperty float y\nobj_info 7\nproperty "
+      "float z\n";
+  expect_triangle(
+      "a.ply",
+      ply_of("element vertex 3\ncomment first\n" + xyz, "comment here\n") + kPlyBody + "3 0 1 2\n",
+      corners_);
+}
+
+TEST_F(TextFormatTest, OtherElementsOfPlyAreNoVertices) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string camera = "element camera 2\nproperty float view\nproperty list uchar int a\n";
+  const std::string rows = "7 2 8 9\n-1 0\n";
+  expect_triangle("a.ply",
+                  ply_of(camera + "element vertex 3\n" + xyz) + rows + kPlyBody + "3 0 1 2\n",
+                  corners_);
+  expect_triangle("b.ply",
+                  ply_of("element vertex 3\n" + xyz + camera) + kPlyBody + rows + "3 0 1 2\n",
+                  corners_);
+}
+
+TEST_F(TextFormatTest, TheLastNumberOfPlyEndsWithTheFile) {
+  const std::string xyz = "property short x\nproperty short y\nproperty short z\n";
+  expect_triangle("a.ply", ply_of("element vertex 3\n" + xyz) + kPlyBody + "3 0 1 2", corners_);
+}
+
+TEST_F(TextFormatTest, ListsAmongCoordinatesOfPlyHideNone) {
+  const std::string xyz =
+      "property float x\nproperty list uchar int seen\nproperty float y\nproperty float z\n";
+  expect_triangle("a.ply",
+                  ply_of("element vertex 3\n" + xyz) + "0 0 0 0\n1 2 7 8 0 0\n0 1 9 1 0\n3 0 1 2\n",
+                  corners_);
+}
+
+TEST_F(TextFormatTest, NumbersBeyondFloatsAreNotFinite) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string body = "0 0 730000000000000000000000000000000000000\n1 0 0\n0 1 0\n3 0 1 2\n";
+  EXPECT_EQ(fail("a.ply", ply_of("element vertex 3\n" + xyz) + body).code, Errc::kMeshNotFinite);
+  EXPECT_EQ(fail("b.obj", "v 0 0 1e99999\n" + kVertices + "f 1 2 3\n").code, Errc::kMeshNotFinite);
+  // ... and those too small for them are zero.
+  expect_triangle("c.obj",
+                  "v 0 1e-99999 0." + std::string(6000, '0') + "1\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+                  corners_);
+}
+
+TEST_F(TextFormatTest, NumbersEndWhereTheirWordsDo) {
+  for (const char* word : {"1.0f", "1,5", "0x10", "1.2.3", "1-2", "1\\2", "--1", "+-1", "1e"}) {
+    const std::string text = std::string("v ") + word + " 0 0\n" + kVertices + "f 1 2 3\n";
+    EXPECT_TRUE(has(fail("a.obj", text).detail, "is no number")) << word;
+  }
+  EXPECT_TRUE(
+      has(fail("b.off", "OFF\n3 1 0\n0 0 9\\.6\n1 0 0\n0 1 0\n3 0 1 2\n").detail, "is no number"));
+}
+
+TEST_F(TextFormatTest, CornersOfObjAreNumbersHoweverSpelled) {
+  for (const char* face : {"f 01 +2 03", "f -03 -2 3", "f +1 2/ 3//", "f 1/9/9 2/-9/9 3/9/-9"}) {
+    expect_triangle("a.obj", kVertices + "vt 0 0\nvn 0 0 1\n" + face + "\n", corners_);
+  }
+  EXPECT_EQ(fail("b.obj", kVertices + "f 1 2//1 3//-\x12\n").code, Errc::kMeshIndexOutOfRange);
+  EXPECT_EQ(fail("c.obj", kVertices + "f 1 2 3\nf -inf 2\n").code, Errc::kMeshIndexOutOfRange);
+}
+
+TEST_F(TextFormatTest, CommentsBehindNormalsEndWithTheirLine) {
+  for (const char* statement : {"vn 0 0 1 # C:\\", "vt 0 0 # C:\\", "s 1 # C:\\"}) {
+    expect_triangle("a.obj", kVertices + statement + "\nf 1 2 3\n", corners_);
+  }
+}
+
+TEST_F(TextFormatTest, FacesBeforeTheFirstMaterialHaveNone) {
+  const auto path = write("a.obj", kVertices + "f 1 2 3\nusemtl red\nf 1 3 2\n");
+  const Result<SourceScene> scene = import_scene(path);
+  ASSERT_TRUE(scene.ok()) << scene.error().detail;
+  ASSERT_EQ(scene->meshes.size(), 1u);
+  const std::vector<MaterialRun>& runs = scene->meshes[0].materials;
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_NE(scene->materials[runs[0].material], "red");
+  EXPECT_EQ(scene->materials[runs[1].material], "red");
+}
+
+TEST_F(TextFormatTest, NumbersOfTextStlMayHaveAnyDigits) {
+  const std::string one =
+      "00000000000000000000000000000000000001.000000000000000000000000000000000000";
+  const std::string facet = "SOLID x\nFacet normal 0 0 1\nouter loop\nvertex 0 0 0\nVERTEX " + one +
+                            " 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+  expect_triangle("a.stl", facet + "endsolid x\n", corners_);
+  EXPECT_TRUE(has(fail("b.stl", "solid x\nouter loop\nendloop\nendsolid\n").detail,
+                  "'outer' outside of a facet"));
+}
+
+TEST_F(TextFormatTest, ZeroBytesAreNoText) {
+  using namespace std::string_literals;
+  EXPECT_TRUE(has(fail("a.obj", kVertices + "f 1 2\0 3\n"s).detail, "line 4: a zero byte"));
+  EXPECT_TRUE(has(fail("b.off", "OFF\n3 1 0\n0 0 0\0\n1 0 0\n0 1 0\n3 0 1 2\n"s).detail, "line 3"));
+  expect_triangle("c.obj", kVertices + "f 1 2 3\n\0\0\0"s, corners_);
+}
+
+TEST_F(TextFormatTest, VerticesOfOffHaveAllTheirNumbers) {
+  const std::string faces = "3 0 1 2\n";
+  EXPECT_TRUE(
+      has(fail("a.off", "STNOFF\n3 1 0\n0 0 0 0 0 1 0 0\n1 0 0\n0 1 0 0 0 1 0 0\n" + faces).detail,
+          "line 4: a vertex of 3 numbers; it has 8"));
+}
+
+TEST_F(TextFormatTest, CarriageReturnsEndHeadersOfBinaryPly) {
+  std::string ply =
+      "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar x\r"
+      "property uchar y\rproperty uchar z\relement face 1\r"
+      "property list uchar uchar vertex_indices\rend_header\r";
+  for (const char byte : {0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2}) ply += byte;
+  expect_triangle("a.ply", ply, corners_);
 }
 
 // Of each format a file of several faces, cut after every byte: refused, whole nevertheless, or

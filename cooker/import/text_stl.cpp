@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: MIT
+// Word by word, in the precision of the binary files. Lines mean nothing but after "solid" and
+// "endsolid", where a name of any words follows; outside of facets other words are passed over.
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/source_stream.h>
+#include <boxtree/cooker/import/stl_mesh.h>
+#include <boxtree/cooker/import/text_stl.h>
+#include <boxtree/cooker/import/text_tokens.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// T is the type of the positions.
+template <class T>
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file, StlMesh<T>& mesh)
+      : rest_(text), file_(file), mesh_(mesh) {}
+
+  Status read() {
+    if (Status status = check_is_text(rest_); !status.ok()) {
+      return Error{status.error().code, file_ + ": " + status.error().detail};
+    }
+    rest_ = rest_.substr(0, rest_.find_last_not_of('\0') + 1);
+    while (!rest_.empty()) {
+      split_tokens(take_line(rest_), words_);
+      ++line_;
+      is_name_ = false;
+      for (const std::string_view word : words_) {
+        if (Status status = take(word); !status.ok()) return status;
+        if (is_name_) break;
+      }
+    }
+    if (is_in_facet_) return failure("the file ends within a facet");
+    if (is_open_) return failure("the file ends without 'endsolid'");
+    return mesh_.finish();
+  }
+
+ private:
+  Status take(std::string_view given) {
+    if (numbers_left_ > 0) return take_number(given);
+    std::string word = (after_end_ ? "end" : "") + in_lower_case(given);  // some write "end facet"
+    after_end_ = word == "end";
+    if (after_end_) return {};
+    return is_in_facet_ ? take_inside(word, given) : take_outside(word);
+  }
+
+  // Of a normal, or of a corner.
+  Status take_number(std::string_view given) {
+    const std::optional<float> number = read_number<float>(given);
+    if (!number) return failure(fmt::format("'{}' is no number", given));
+    if (is_corner_ && corners_ <= 3) corner_[corners_ - 1][3 - numbers_left_] = T{*number};
+    --numbers_left_;
+    return {};
+  }
+
+  Status take_outside(std::string_view word) {
+    if (word == "solid" || word == "endsolid") {
+      is_open_ = word == "solid";
+      is_name_ = true;
+    } else if (word == "facet") {
+      is_in_facet_ = true;
+      corners_ = 0;
+    } else if (word == "outer" || word == "vertex" || word == "endloop" || word == "endfacet") {
+      return failure(fmt::format("'{}' outside of a facet", word));
+    }
+    return {};
+  }
+
+  Status take_inside(std::string_view word, std::string_view given) {
+    if (word == "normal" || word == "vertex") {
+      numbers_left_ = 3;
+      is_corner_ = word == "vertex";
+      corners_ += is_corner_ ? 1u : 0u;
+    } else if (word == "endfacet") {
+      if (corners_ != 3) return failure(fmt::format("a facet of {} corners", corners_));
+      is_in_facet_ = false;
+      return mesh_.add(corner_);
+    } else if (word != "outer" && word != "loop" && word != "endloop") {
+      return failure(fmt::format("'{}' within a facet", given));
+    }
+    return {};
+  }
+
+  [[nodiscard]] Status failure(std::string_view why) const {
+    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, line_, why)};
+  }
+
+  std::string_view rest_;
+  const std::string& file_;
+  StlMesh<T>& mesh_;
+  std::size_t line_ = 0;  // at hand, from 1
+  Tokens words_;
+  bool is_open_ = false;    // a solid is
+  bool is_name_ = false;    // the rest of the line is
+  bool after_end_ = false;  // the word before was "end"
+  bool is_in_facet_ = false;
+  bool is_corner_ = false;        // the numbers at hand are
+  std::size_t numbers_left_ = 0;  // that are to come
+  std::size_t corners_ = 0;       // of the facet at hand
+  std::array<typename StlMesh<T>::Corner, 3> corner_{};
+};
+
+}  // namespace
+
+Result<bool> import_text_stl(const std::filesystem::path& path, const ImportOptions& options,
+                             Imported& out) {
+  Result<SourceStream> stream = SourceStream::open(path);
+  if (!stream.ok()) return stream.error();
+  const std::string_view start = stream->ahead();
+  const std::size_t word = std::min(start.find_first_not_of(" \t\r\n"), start.size());
+  if (!begins_with_solid(start.substr(word))) return false;
+  const Result<std::string> text = stream->take_rest();
+  if (!text.ok()) return text.error();
+
+  const std::string file = path.string();
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    StlMesh<T> mesh(file, options, positions, out);
+    return Reader<T>(*text, file, mesh).read();
+  });
+}
+
+}  // namespace boxtree::cooker
