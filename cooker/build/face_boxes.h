@@ -8,10 +8,10 @@
 
 namespace boxtree::cooker {
 
-/// Sets the frame. By precision, f32 positions keep the origin at zero, or are shifted along an axis
-/// on which all of them are the same: they are then represented without any rounding; f64 positions
-/// are shifted to the centre, so that f32 boxes resolve them.
-/// With Origin::kZero f64 ones are not shifted either: steps of a grid are counted from zero.
+/// Sets the frame. By precision, f32 positions keep the origin at zero, or are shifted along an
+/// axis on which all of them are the same: they are then represented without any rounding; f64
+/// positions are shifted to the centre, so that f32 boxes resolve them. With Origin::kZero f64 ones
+/// are not shifted either: steps of a grid are counted from zero.
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree);
 
 /// The boxes of all faces but duplicates in tree space, in the order of the mesh.

@@ -242,7 +242,7 @@ Status ObjReader::rewrite_element(const Statement& statement) {
     if (names_vertex(number)) {
       shown = number > 0 ? number : static_cast<long long>(vertices_so_far_) + number + 1;
     } else if (is_face) {
-      shown = static_cast<long long>(vertices() + face_faults_.size() + 1);
+      shown = static_cast<long long>(vertices()) + static_cast<long long>(face_faults_.size()) + 1;
       if (fault.empty()) fault = corner_fault(tokens_[i], i - 1, statement.line);
     }
     const fmt::format_int digits(shown);

@@ -98,7 +98,9 @@ Status read_ply_rows(const PlyHeader& header, std::string_view file, const PlyRo
 
 Status check_ply_text(std::string_view file) {
   const std::optional<PlyHeader> header = read_ply_header(file);
-  if (!header) return Error{Errc::kImportFailed, "an element of the header has no count, or a property no element"};
+  if (!header)
+    return Error{Errc::kImportFailed,
+                 "an element of the header has no count, or a property no element"};
   if (header->form != PlyHeader::Form::kText) return {};
   return read_ply_rows(*header, file,
                        [](const PlyElement&, const Tokens&, std::size_t) { return Status(); });

@@ -4,6 +4,7 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <fcntl.h>
@@ -43,12 +44,12 @@ std::uint64_t page_bytes() {
 }
 
 std::uint64_t address_space() {
-  unsigned long pages = 0;
+  std::array<char, 64> line{};  // pages of it, and other figures
   std::FILE* const file = std::fopen("/proc/self/statm", "r");
   if (file == nullptr) return 0;
-  if (std::fscanf(file, "%lu", &pages) != 1) pages = 0;
+  const bool is_read = std::fgets(line.data(), line.size(), file) != nullptr;
   static_cast<void>(std::fclose(file));
-  return pages * page_bytes();
+  return is_read ? std::strtoull(line.data(), nullptr, 10) * page_bytes() : 0;
 }
 
 void limit(int resource, std::uint64_t most) {

@@ -15,6 +15,8 @@ class Scan {
   explicit Scan(std::string_view text) : text_(text) {}
 
   std::optional<TomlFault> run() {
+    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+    if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
     while (at_ < text_.size() && !fault_) step();
     if (!fault_ && is_header_) end_of_line();
     return fault_;
@@ -65,6 +67,9 @@ class Scan {
       case ',':
         break;
       default:
+        if (static_cast<unsigned char>(c) >= 0x80) {
+          add("characters beyond ASCII stand in quotes or comments");
+        }
         has_begun_ = true;
         return;
     }

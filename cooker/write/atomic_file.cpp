@@ -79,6 +79,7 @@ void sweep(const fs::path& target) {
   const std::unique_ptr<DIR, CloseDirectory> folder(::opendir(directory_of(target).c_str()));
   if (!folder) return;
   const int at = ::dirfd(folder.get());
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the folder is read by nobody else
   while (const dirent* entry = ::readdir(folder.get())) {
     if (!is_temporary(entry->d_name, prefix)) continue;
     const int file = ::openat(at, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);

@@ -10,9 +10,9 @@
 
 namespace boxtree::cooker {
 
-/// The file that a chain of symbolic links leads to, be it there or not; `path` itself if it is no
-/// link. Error: kWriteFailed for a loop.
-Result<std::filesystem::path> follow_links(const std::filesystem::path& path);
+/// The file that a chain of symbolic links leads to, be it there or not; `target` itself if it is
+/// no link. Error: kWriteFailed for a loop.
+Result<std::filesystem::path> follow_links(const std::filesystem::path& target);
 
 /// Collects bytes beside the target and puts them in its place by rename. Where the file system
 /// allows (O_TMPFILE) the bytes have no name until they are complete, so that even a killed process
@@ -24,7 +24,7 @@ Result<std::filesystem::path> follow_links(const std::filesystem::path& path);
 class AtomicFile {
  public:
   /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.
-  static Result<AtomicFile> create(const std::filesystem::path& target);
+  static Result<AtomicFile> create(const std::filesystem::path& given);
 
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;

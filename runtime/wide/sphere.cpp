@@ -68,7 +68,8 @@ HWY_EXPORT(walk_sphere);
 }  // namespace
 
 Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk) {
-  if (tree.has_float_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), walk.shape.center)) {
+  if (tree.has_float_nodes() &&
+      PointFilter::is_near(reach_of(tree).maxCoeff(), walk.shape.center)) {
     return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

@@ -50,7 +50,7 @@ run_target() {
   mkdir -p "$work" "$found/findings"
   begin=$(date +%s)
   # Its own limit of 10 s is for what never ends; 100 ms are looked at in libfuzzer_main.cpp.
-  ASAN_OPTIONS=allocator_may_return_null=1 \
+  ASAN_OPTIONS=allocator_may_return_null=1 LSAN_OPTIONS=suppressions=tests/leaks.txt \
     "$build/tests/fuzz/fuzz_$name" -runs="$executions" -max_len=4096 -len_control=0 -timeout=10 \
     -rss_limit_mb=2048 -print_final_stats=1 -seed="$begin" \
     -artifact_prefix="$found/findings/$name-" \

@@ -81,7 +81,7 @@ def main():
     parser.add_argument("verdicts")
     parser.add_argument("golden")
     parser.add_argument("corpus")
-    parser.add_argument("--files", type=int, default=4000)
+    parser.add_argument("--files", type=int, default=20000)
     parser.add_argument("--seed", type=int, default=1)
     arguments = parser.parse_args()
     sys.path.insert(0, arguments.golden)

@@ -237,7 +237,7 @@ TEST_F(TextFormatTest, CarriageReturnsEndHeadersOfBinaryPly) {
       "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty uchar x\r"
       "property uchar y\rproperty uchar z\relement face 1\r"
       "property list uchar uchar vertex_indices\rend_header\r";
-  for (const char byte : {0, 0, 0, 1, 0, 0, 0, 1, 0, 3, 0, 1, 2}) ply += byte;
+  ply += std::string("\0\0\0\1\0\0\0\1\0\3\0\1\2", 13);
   expect_triangle("a.ply", ply, corners_);
 }
 

@@ -74,5 +74,17 @@ TEST(TomlChecks, OtherTextsAreLeftToTheParser) {
   }
 }
 
+// Found by fuzzing profiles: undefined behaviour in the tables of toml++.
+TEST(TomlChecks, CharactersBeyondAsciiStandInQuotesOrComments) {
+  EXPECT_FALSE(find_unreadable_toml("\xef\xbb\xbf# W\xc3\xbcrfel\n\"\xcd\xb8\" = '\xcd\xb8'\n"));
+  for (const std::string_view text :
+       {"a = 1\nrotati\xcd\xb8 = 1\n", "\n\xff", "a = 1\nb = \xc3\xbc\n"}) {
+    const auto found = find_unreadable_toml(text);
+    ASSERT_TRUE(found.has_value()) << text;
+    EXPECT_EQ(found->what, "characters beyond ASCII stand in quotes or comments");
+    EXPECT_EQ(found->line, text[0] == '\n' || text[0] == 'a' ? 2u : 1u);
+  }
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
