@@ -20,9 +20,8 @@ struct OpenedFile {
 Result<OpenedFile> open_file(const std::filesystem::path& path);
 
 /// How commands import meshes, which may come from anywhere: no file ends the command.
-[[nodiscard]] inline ImportOptions careful_import(Precision precision = Precision::kF32) {
+[[nodiscard]] inline ImportOptions careful_import() {
   ImportOptions options;
-  options.precision = precision;
   options.try_first = true;
   return options;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <exception>
 #include <memory>
 #include <new>
 #include <optional>
@@ -20,6 +19,8 @@
 
 #include <boxtree/cooker/import/binary_ply.h>
 #include <boxtree/cooker/import/binary_stl.h>
+#include <boxtree/cooker/import/exception_error.h>
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/flatten.h>
 #include <boxtree/cooker/import/gltf_nesting.h>
 #include <boxtree/cooker/import/header_checks.h>
@@ -142,10 +143,6 @@ Status take_over(const Request& request, aiScene& scene, SourceContext context,
   context.materials = materials;
   return has_graph ? take_scene(scene, placements, context, whole)
                    : take_whole(scene, placements, context, request.path.stem().string(), whole);
-}
-
-Error in_file(const fs::path& path, const Error& error) {
-  return Error{error.code, path.string() + ": " + error.detail};
 }
 
 // All that assimp is going to read, read in a copy of this process.
@@ -315,15 +312,10 @@ Result<ImportedFile> import_checked(const Request& request) {
 }
 
 Result<ImportedFile> import_guarded(const Request& request) {
-  const fs::path& path = request.path;
   try {
     return import_checked(request);
-  } catch (const std::bad_alloc&) {
-    return Error{Errc::kMeshTooLarge, path.string() + ": not enough memory to import it"};
-  } catch (const std::exception& error) {
-    return Error{Errc::kImportFailed, path.string() + ": " + error.what()};
   } catch (...) {
-    return Error{Errc::kImportFailed, path.string() + ": unknown exception while reading"};
+    return in_file(request.path, error_of_exception());
   }
 }
 

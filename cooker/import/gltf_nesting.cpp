@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/glb.h>
 #include <boxtree/cooker/import/gltf_nesting.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -127,8 +128,7 @@ Status check_gltf_nesting(const std::filesystem::path& path) {
   const Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
   const Status status = check_gltf_nesting(is_binary ? glb_json(*file) : std::string_view(*file));
-  if (status.ok()) return {};
-  return Error{status.code(), path.string() + ": " + status.error().detail};
+  return status.ok() ? Status() : in_file(path, status.error());
 }
 
 }  // namespace boxtree::cooker

@@ -139,8 +139,9 @@ class ObjReader {
 Result<std::string> ObjReader::run() {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (source_.starts_with(kByteOrderMark)) source_.remove_prefix(kByteOrderMark.size());
-  if (Status status = check_is_text(source_); !status.ok()) return status.error();
-  source_ = source_.substr(0, source_.find_last_not_of('\0') + 1);
+  const Result<std::string_view> text = text_of(source_);
+  if (!text.ok()) return text.error();
+  source_ = *text;
   if (source_.ends_with('\x1a')) source_.remove_suffix(1);  // how DOS ended a text
   // Assimp wants 16 bytes of any file, even of one that holds comments alone.
   constexpr std::string_view kStart = "# statements of an OBJ file\n";

@@ -50,8 +50,9 @@ std::optional<long long> to_integer(std::string_view token) {
 }
 
 Result<std::string> OffReader::run() {
-  if (Status status = check_is_text(rest_); !status.ok()) return status.error();
-  rest_ = rest_.substr(0, rest_.find_last_not_of('\0') + 1);
+  const Result<std::string_view> text = text_of(rest_);
+  if (!text.ok()) return text.error();
+  rest_ = *text;
   for (Status (OffReader::*step)() : {&OffReader::read_header, &OffReader::read_counts,
                                       &OffReader::read_vertices, &OffReader::read_faces}) {
     if (Status status = (this->*step)(); !status.ok()) return status.error();

@@ -14,16 +14,12 @@
 
 #include <boxtree/cooker/import/source_files.h>
 #include <boxtree/cooker/import/whole_file.h>
+#include <boxtree/cooker/system/file_handle.h>
 
 namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-};
-using FileHandle = std::unique_ptr<std::FILE, CloseFile>;
 
 Error unreadable(const fs::path& path, const std::string& why) {
   return Error{Errc::kFileUnreadable, path.string() + ": " + why};

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include <boxtree/cooker/system/file_handle.h>
 #include <boxtree/format/result.h>
 
 namespace boxtree::cooker {
@@ -56,9 +57,6 @@ class SourceStream {
   Result<std::uint64_t> finish();
 
  private:
-  struct CloseFile {
-    void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-  };
   struct Hash;
   struct FreeHash {
     void operator()(Hash* hash) const;
@@ -68,7 +66,7 @@ class SourceStream {
   bool refill(std::size_t count);
 
   std::filesystem::path path_;
-  std::unique_ptr<std::FILE, CloseFile> file_;
+  FileHandle file_;
   std::unique_ptr<Hash, FreeHash> hash_;
   std::vector<char> buffer_;
   const char* at_ = nullptr;

@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/ply_layout.h>
 #include <boxtree/cooker/import/ply_mesh.h>
 #include <boxtree/cooker/import/source_stream.h>
@@ -44,33 +45,30 @@ class Reader {
   Reader(const PlyLayout& layout, const std::string& file, PlyMesh<T>& mesh)
       : layout_(layout), file_(file), mesh_(mesh) {}
 
-  Status read(std::string_view text) {
-    if (Status status = check_is_text(text); !status.ok()) return in_file(status.error());
+  Status read(std::string_view file) {
+    const Result<std::string_view> text = text_of(file);
+    if (!text.ok()) return in_file(file_, text.error());
     // Each of them takes a line: counts beyond that are lies, and cost no memory.
-    if (layout_.vertex->count > text.size() || layout_.face->count > text.size()) {
+    if (layout_.vertex->count > text->size() || layout_.face->count > text->size()) {
       return Error{Errc::kImportFailed,
                    fmt::format("{}: {} vertices and {} faces cannot be in {} bytes", file_,
-                               layout_.vertex->count, layout_.face->count, text.size())};
+                               layout_.vertex->count, layout_.face->count, text->size())};
     }
     if (Status status = mesh_.begin_vertices(layout_.vertex->count); !status.ok()) return status;
     if (Status status = mesh_.begin_faces(layout_.face->count); !status.ok()) return status;
     Status taken;  // its errors name the file
     const Status rows = read_ply_rows(
-        layout_.header, text, [&](const PlyElement& element, const Tokens& row, std::size_t line) {
+        layout_.header, *text, [&](const PlyElement& element, const Tokens& row, std::size_t line) {
           if (&element == layout_.vertex) take_vertex(row);
           if (&element == layout_.face) taken = take_face(row, line);
           return taken;
         });
     if (!taken.ok()) return taken;
-    if (!rows.ok()) return in_file(rows.error());
+    if (!rows.ok()) return in_file(file_, rows.error());
     return mesh_.finish();
   }
 
  private:
-  [[nodiscard]] Error in_file(const Error& error) const {
-    return {error.code, file_ + ": " + error.detail};
-  }
-
   // Calls take(property, words) with the words of each property: one, or those of a list.
   template <class Take>
   static void for_each_property(const PlyElement& element, const Tokens& row, const Take& take) {

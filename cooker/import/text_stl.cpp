@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/source_stream.h>
 #include <boxtree/cooker/import/stl_mesh.h>
 #include <boxtree/cooker/import/text_stl.h>
@@ -26,10 +27,9 @@ class Reader {
       : rest_(text), file_(file), mesh_(mesh) {}
 
   Status read() {
-    if (Status status = check_is_text(rest_); !status.ok()) {
-      return Error{status.error().code, file_ + ": " + status.error().detail};
-    }
-    rest_ = rest_.substr(0, rest_.find_last_not_of('\0') + 1);
+    const Result<std::string_view> text = text_of(rest_);
+    if (!text.ok()) return in_file(file_, text.error());
+    rest_ = *text;
     while (!rest_.empty()) {
       split_tokens(take_line(rest_), words_);
       ++line_;

@@ -57,14 +57,14 @@ std::string in_lower_case(std::string_view word) {
   return lower;
 }
 
-Status check_is_text(std::string_view file) {
-  const std::size_t end = file.find_last_not_of('\0') + 1;  // 0 where there is none
-  const std::size_t zero = file.substr(0, end).find('\0');
-  if (zero == std::string_view::npos) return {};
-  const auto line =
-      std::count(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+Result<std::string_view> text_of(std::string_view file) {
+  const std::string_view text = file.substr(0, file.find_last_not_of('\0') + 1);
+  const std::size_t zero = text.find('\0');
+  if (zero == std::string_view::npos) return text;
+  const std::string_view before = text.substr(0, zero);
   return Error{Errc::kImportFailed,
-               fmt::format("line {}: a zero byte: no text, or one in UTF-16", line + 1)};
+               fmt::format("line {}: a zero byte: no text, or one in UTF-16",
+                           std::count(before.begin(), before.end(), '\n') + 1)};
 }
 
 std::string_view take_line(std::string_view& rest) {

@@ -20,9 +20,9 @@ namespace boxtree::cooker {
 
 using Tokens = std::vector<std::string_view>;
 
-/// Refuses bytes that are no text of a mesh: zeros, but for those that fill up the end of the file.
-/// kImportFailed, naming the line.
-Status check_is_text(std::string_view file);
+/// The text of a file: all but zeros that fill up its end. kImportFailed, naming the line, when
+/// there are zeros before.
+Result<std::string_view> text_of(std::string_view file);
 
 /// The words of `text`, between spaces, tabs and line ends.
 void split_tokens(std::string_view text, Tokens& tokens);

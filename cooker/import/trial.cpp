@@ -6,9 +6,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <exception>
 #include <fcntl.h>
-#include <new>
+#include <span>
 #include <string>
 #include <sys/prctl.h>
 #include <sys/resource.h>
@@ -19,23 +18,14 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/import/exception_error.h>
 #include <boxtree/cooker/import/trial.h>
+#include <boxtree/cooker/system/file_handle.h>
+#include <boxtree/cooker/system/write_all.h>
 #include <boxtree/format/bytes.h>
 
 namespace boxtree::cooker {
 namespace {
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-constexpr bool kHasShadowMemory = true;  // terabytes of address space: not to be limited
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
-constexpr bool kHasShadowMemory = true;
-#else
-constexpr bool kHasShadowMemory = false;
-#endif
-#else
-constexpr bool kHasShadowMemory = false;
-#endif
 
 constexpr std::uint64_t kMostDetail = 1u << 16;  // of a message
 
@@ -45,10 +35,8 @@ std::uint64_t page_bytes() {
 
 std::uint64_t address_space() {
   std::array<char, 64> line{};  // pages of it, and other figures
-  std::FILE* const file = std::fopen("/proc/self/statm", "r");
-  if (file == nullptr) return 0;
-  const bool is_read = std::fgets(line.data(), line.size(), file) != nullptr;
-  static_cast<void>(std::fclose(file));
+  const FileHandle file(std::fopen("/proc/self/statm", "r"));
+  const bool is_read = file && std::fgets(line.data(), line.size(), file.get()) != nullptr;
   return is_read ? std::strtoull(line.data(), nullptr, 10) * page_bytes() : 0;
 }
 
@@ -59,24 +47,13 @@ void limit(int resource, std::uint64_t most) {
   static_cast<void>(setrlimit(static_cast<__rlimit_resource>(resource), &now));
 }
 
-bool write_all(int to, const char* bytes, std::size_t count) {
-  while (count > 0) {
-    const ssize_t written = ::write(to, bytes, count);
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes += written;
-    count -= static_cast<std::size_t>(written);
-  }
-  return true;
-}
-
 // The copy's life. Ends without what exit() does: that is the parent's to do.
 [[noreturn]] void be_child(int to_parent, const TrialLimits& limits,
                            const std::function<Status()>& work) {
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
-  if (!kHasShadowMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
+  if (kLimitsMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
   static_cast<void>(std::signal(SIGALRM, SIG_DFL));
   static_cast<void>(
       alarm(static_cast<unsigned>(std::min<std::uint64_t>(10 * limits.cpu_seconds, 1u << 30))));
@@ -88,18 +65,13 @@ bool write_all(int to, const char* bytes, std::size_t count) {
   Status status;
   try {
     status = work();
-  } catch (const std::bad_alloc&) {
-    status = Error{Errc::kMeshTooLarge, "not enough memory to import it"};
-  } catch (const std::exception& error) {
-    status = Error{Errc::kImportFailed, error.what()};
   } catch (...) {
-    status = Error{Errc::kImportFailed, "unknown exception while reading"};
+    status = error_of_exception();
   }
   const auto code = static_cast<std::uint16_t>(status.ok() ? Errc::kOk : status.error().code);
-  const std::string detail = status.ok() ? std::string() : status.error().detail;
-  const bool is_told =
-      write_all(to_parent, reinterpret_cast<const char*>(&code), sizeof(code)) &&
-      write_all(to_parent, detail.data(), std::min<std::size_t>(detail.size(), kMostDetail));
+  const std::string detail = status.ok() ? "" : status.error().detail.substr(0, kMostDetail);
+  const bool is_told = write_all(to_parent, std::as_bytes(std::span(&code, 1))) &&
+                       write_all(to_parent, std::as_bytes(std::span(detail)));
   _exit(is_told ? 0 : 1);
 }
 

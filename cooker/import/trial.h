@@ -14,6 +14,16 @@ struct TrialLimits {
   std::uint64_t bytes;  // of address space, beside what this process has
 };
 
+/// Whether `bytes` are kept to: sanitizers take terabytes of address space for themselves.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+inline constexpr bool kLimitsMemory = false;
+#elif defined(__clang__)
+inline constexpr bool kLimitsMemory =
+    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#else
+inline constexpr bool kLimitsMemory = true;
+#endif
+
 /// What a file of so many bytes may take: half of the machine's memory, 30 s and another second for
 /// each 100 kB, a tenth of the pace of assimp's slowest readers.
 [[nodiscard]] TrialLimits trial_limits(std::uint64_t file_bytes);

@@ -2,22 +2,18 @@
 // Reads files by stdio, whose errors say why.
 #include <cerrno>
 #include <cstdio>
-#include <memory>
 #include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/whole_file.h>
+#include <boxtree/cooker/system/file_handle.h>
 
 namespace boxtree::cooker {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
-
-struct CloseFile {
-  void operator()(std::FILE* file) const { static_cast<void>(std::fclose(file)); }
-};
 
 Error unreadable(const std::filesystem::path& path, int error) {
   const Errc code = error == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable;
@@ -28,7 +24,7 @@ Error unreadable(const std::filesystem::path& path, int error) {
 
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
                    const std::function<void(const char* bytes, std::size_t count)>& sink) {
-  const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rb"));
+  const FileHandle file(std::fopen(path.c_str(), "rb"));
   if (!file) return unreadable(path, errno);
   std::vector<char> chunk(kChunkBytes);
   std::uint64_t left = most;

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <boxtree/cooker/report/scratch_file.h>
+#include <boxtree/cooker/system/write_all.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -36,12 +37,7 @@ Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   if (error) return Error{Errc::kWriteFailed, "no temporary folder: " + error.message()};
   ScratchFile scratch(create_unnamed(folder));
   if (scratch.descriptor_ < 0) return failure(folder);
-  while (!bytes.empty()) {
-    const ssize_t wrote = ::write(scratch.descriptor_, bytes.data(), bytes.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote < 0) return failure(folder);
-    bytes = bytes.subspan(static_cast<std::size_t>(wrote));
-  }
+  if (!write_all(scratch.descriptor_, bytes)) return failure(folder);
   // Pages that are not on disk cannot be dropped, and cold reads are what is measured.
   if (::fsync(scratch.descriptor_) != 0) return failure(folder);
   return scratch;

@@ -18,6 +18,7 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/cooker/system/write_all.h>
 #include <boxtree/cooker/write/atomic_file.h>
 
 namespace boxtree::cooker {
@@ -185,13 +186,7 @@ Status AtomicFile::create_named() {
 }
 
 Status AtomicFile::write(Bytes bytes) {
-  while (!bytes.empty()) {
-    const ssize_t wrote = ::write(descriptor_, bytes.data(), bytes.size());
-    if (wrote < 0 && errno == EINTR) continue;
-    if (wrote < 0) return failure(target_, "cannot write");
-    bytes = bytes.subspan(static_cast<std::size_t>(wrote));
-  }
-  return {};
+  return write_all(descriptor_, bytes) ? Status() : failure(target_, "cannot write");
 }
 
 // Gives the anonymous file its temporary name. Linking by descriptor needs a privilege or /proc.

@@ -35,8 +35,9 @@ class Question {
   std::array<std::byte, kQuestionBytes> bytes_{};
 };
 
-/// An input taken apart. The file lies at the end of memory of its own, at an offset of 0 to 7 from
-/// an aligned address, so that a read behind it is found and misaligned ones happen.
+/// An input, split into file and question. The file lies at the end of memory of its own, at an
+/// offset of 0 to 7 from an aligned address, so that a read behind it is found and misaligned ones
+/// happen.
 struct Input {
   explicit Input(Bytes bytes);
   [[nodiscard]] Bytes file() const { return Bytes(memory).subspan(shift); }

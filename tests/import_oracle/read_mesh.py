@@ -28,7 +28,7 @@ F32_OVERFLOW = Fraction(2) ** 128 - Fraction(2) ** 103
 
 
 class Refused(Exception):
-    """The file is not what its format asks for, or nothing can be made of it."""
+    """The file is not as its format wants it, or nothing can be made of it."""
 
     def __init__(self, reason, codes=(FAILED,), notes=()):
         super().__init__(reason)
@@ -620,17 +620,12 @@ def read_binary_stl(data, count):
     return mesh
 
 
-class StlText:
-    def __init__(self, data):
-        self.mesh = Mesh()
-        self.mesh.is_loose = True
-        if data[:1].isspace():
-            self.mesh.note("blanks before the text")
-        # Every line is its words; names, which may hold keywords, end with their line.
-        self.lines = [words_of(line) for line in texts_of_lines(data)]
+class Words:
+    """The words of lines one after the other, for formats where lines mean little."""
+
+    def __init__(self, lines):
+        self.lines = lines
         self.line = self.word = 0
-        while self.peek() is not None:
-            self.solid()
 
     def peek(self):
         while self.line < len(self.lines) and self.word >= len(self.lines[self.line]):
@@ -640,9 +635,21 @@ class StlText:
     def next(self):
         word = self.peek()
         if word is None:
-            raise Refused("the file ends within a solid")
+            raise Refused("the file ends early")
         self.word += 1
         return word
+
+
+class StlText(Words):
+    def __init__(self, data):
+        self.mesh = Mesh()
+        self.mesh.is_loose = True
+        if data[:1].isspace():
+            self.mesh.note("blanks before the text")
+        # Every line is its words; names, which may hold keywords, end with their line.
+        super().__init__([words_of(line) for line in texts_of_lines(data)])
+        while self.peek() is not None:
+            self.solid()
 
     def keyword(self, *keywords):
         for keyword in keywords:
@@ -705,15 +712,14 @@ def read_text_stl(data):
 OFF_HEADER = re.compile(r"(ST)?(C)?(N)?(4)?(n)?OFF\Z")
 
 
-class Off:
+class Off(Words):
     """Comments and line ends removed; lines matter for colours only."""
 
     def __init__(self, data):
         self.mesh = Mesh()
         self.mesh.has_open_end = has_open_end(data)
         lines = [words_of(line.partition("#")[0]) for line in texts_of_lines(data)]
-        self.lines = [line for line in lines if line]
-        self.line = self.word = 0
+        super().__init__([line for line in lines if line])
         try:
             self.header()
             self.counts()
@@ -726,18 +732,6 @@ class Off:
             raise
         if self.peek() is not None:
             self.mesh.note("more than the counts say")
-
-    def peek(self):
-        while self.line < len(self.lines) and self.word >= len(self.lines[self.line]):
-            self.line, self.word = self.line + 1, 0
-        return self.lines[self.line][self.word] if self.line < len(self.lines) else None
-
-    def next(self):
-        word = self.peek()
-        if word is None:
-            raise Refused("the file ends early")
-        self.word += 1
-        return word
 
     def rest(self):
         """Words of the line that were not taken."""
@@ -870,7 +864,7 @@ class Taken:
 
     def __init__(self, mesh, precision, skip_bad=False):
         to_bits = f32_bits if precision == "f32" else f64_bits
-        if mesh.is_loose:  # read as f32, whatever is asked for
+        if mesh.is_loose:  # read as f32, in either precision
             to_bits = f32_bits if precision == "f32" else lambda number: f64_bits(
                 f32_of_bits(f32_bits(number)))
         infinity = 0x7F800000 if precision == "f32" else 0x7FF0000000000000

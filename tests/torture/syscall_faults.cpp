@@ -46,7 +46,7 @@ constexpr const char* kUsage =
     "  --nth N           the call at which something happens, 1 is the first; and one of\n"
     "  --error ERRNO     it fails\n"
     "  --late-error E    it is done, and fails all the same\n"
-    "  --short           it reads or writes half of what it was asked to\n"
+    "  --short           it reads or writes half of the bytes\n"
     "  --signal S        the signal S (a number) comes instead of it\n"
     "  --signal-after S  the signal S comes after it\n"
     "  --run COMMAND     a shell runs COMMAND before it\n"
@@ -587,7 +587,7 @@ class Tracer {
     resume(pid, 0);
   }
 
-  // Whether half as many bytes can be asked for.
+  // Whether it can be made to take half as many bytes.
   static bool has_half(const user_regs_struct& regs, const Call& call) {
     const std::string_view family = call.family;
     if ((family != "read" && family != "write") || regs.rdx < 2) return false;

@@ -341,7 +341,7 @@ def make_writers(tools, folders):
         Writer("cook-blob", [*cook, "in.ply", "--codec", "blob-zstd"],
                {"in.ply": binary_ply(TETRAHEDRON)}, ["out.bxt"]),
         Writer("cook-scene", [*cook, "in.obj", "--scene", "--profile", "scene.toml"],
-               {"in.obj": cube, "scene.toml": b"# asks for everything\n"}, ["out.bxt"],
+               {"in.obj": cube, "scene.toml": b"# keeps everything\n"}, ["out.bxt"],
                by_assimp=True),
     ]
     for writer in made:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks a scene everything that scenes answer: on a runtime of one codec it has to link all the
+// Runs every query of a scene: on a runtime of one codec it has to link all the
 // same.
 #include <cstdio>
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: MIT
+// Bytes to a descriptor: the system may take fewer than it is given, or be interrupted.
+#pragma once
+
+#include <cerrno>
+#include <unistd.h>
+
+#include <boxtree/format/bytes.h>
+
+namespace boxtree::cooker {
+
+/// Writes all of them. False, with the reason in errno, when the system takes no more.
+[[nodiscard]] inline bool write_all(int descriptor, Bytes bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t wrote = ::write(descriptor, bytes.data(), bytes.size());
+    if (wrote < 0 && errno == EINTR) continue;
+    if (wrote < 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(wrote));
+  }
+  return true;
+}
+
+}  // namespace boxtree::cooker
