@@ -4,6 +4,8 @@
 # it refers to, recooks just that one, and a second build does nothing. Ninja and Make.
 set -euo pipefail
 build=$1 source=$2
+# Libraries with sanitizers want the compiler that made them.
+compiler=$(sed -n 's/^CMAKE_CXX_COMPILER:[A-Z]*=//p' "$build/CMakeCache.txt")
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 cmake --install "$build" --prefix "$work/prefix" >/dev/null
@@ -13,8 +15,8 @@ fail() { echo "$*"; exit 1; }
 for generator in Ninja "Unix Makefiles"; do
   game=$work/game
   rm -rf "$game"
-  cmake -S "$work/samples/game" -B "$game" -G "$generator" -DCMAKE_PREFIX_PATH="$work/prefix" \
-    -DCMAKE_BUILD_TYPE=Release >/dev/null
+  cmake -S "$work/samples/game" -B "$game" -G "$generator" -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$work/prefix" -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
   cmake --build "$game" >"$work/log" || { cat "$work/log"; fail "$generator: build failed"; }
   "$game/game" >"$work/said"
   grep -q 'height 0.5, face 2' "$work/said" || fail "wrong ground: $(cat "$work/said")"
@@ -47,7 +49,8 @@ cat >"$work/blob/main.cpp" <<'CODE'
 #include <boxtree/runtime/blob/blob.h>
 int main(int, char** argv) { return boxtree::open_blob(argv[1]).ok() ? 0 : 1; }
 CODE
-cmake -S "$work/blob" -B "$work/blob/build" -DCMAKE_PREFIX_PATH="$work/prefix" >/dev/null
+cmake -S "$work/blob" -B "$work/blob/build" -DCMAKE_PREFIX_PATH="$work/prefix" \
+  -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
 cmake --build "$work/blob/build" >"$work/log" || { cat "$work/log"; fail "blob: build failed"; }
 "$work/prefix/bin/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/level.bxt" \
   --codec blob-zstd -q

@@ -237,7 +237,7 @@ SourceMesh in_double(SourceMesh mesh, const char* name) {
 std::vector<SourceMesh> meshes() {
   std::vector<SourceMesh> meshes = test::all_kinds();
   meshes.push_back(
-      changed(test::torus(300, 220), "large_torus", [](float x, std::size_t) { return x; }));
+      changed(test::torus(160, 120), "large_torus", [](float x, std::size_t) { return x; }));
   meshes.push_back(changed(test::sphere(40, 60), "far_away", [](float x, std::size_t axis) {
     return x * 1e-4f + (axis == 0 ? 1.0f : -2.0f);
   }));
