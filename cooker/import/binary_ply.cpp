@@ -11,10 +11,6 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/binary_ply.h>
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/ply_layout.h>
-#include <boxtree/cooker/import/ply_mesh.h>
-#include <boxtree/cooker/import/source_stream.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -49,7 +45,8 @@ std::array<std::size_t, 3> find_offsets(const PlyLayout& layout) {
 template <class T>
 class Reader {
  public:
-  Reader(SourceStream& stream, const PlyLayout& layout, const std::string& file, PlyMesh<T>& mesh)
+  Reader(SourceStream& stream, const PlyLayout& layout, const std::string& file,
+         IndexedMesh<T>& mesh)
       : stream_(stream),
         layout_(layout),
         swapped_((layout.header.form == PlyHeader::Form::kBigEndian) ==
@@ -63,6 +60,7 @@ class Reader {
   Status read_element(const PlyElement& element);
   Status read_vertices();
   Status read_faces();
+  Status read_strips();
   Status read_record(const PlyElement& element, std::uint64_t number);
   Status read_list(const PlyElement& element, const PlyProperty& list, std::uint64_t number);
   [[nodiscard]] Error ended_in(const PlyElement& element, std::uint64_t number) const {
@@ -73,8 +71,8 @@ class Reader {
   const PlyLayout& layout_;
   const bool swapped_;
   const std::string& file_;
-  PlyMesh<T>& mesh_;
-  std::vector<std::uint32_t> corners_;  // of the face at hand
+  IndexedMesh<T>& mesh_;
+  std::vector<std::uint32_t> corners_;  // of the face or strip at hand
   std::array<double, 3> position_{};    // of the vertex at hand
 };
 
@@ -89,6 +87,7 @@ Status Reader<T>::read() {
                                element.name, stream_.left())};
     }
     if (Status status = read_element(element); !status.ok()) return status;
+    if (&element == layout_.vertex) mesh_.end_vertices();
   }
   return mesh_.finish();
 }
@@ -97,6 +96,7 @@ template <class T>
 Status Reader<T>::read_element(const PlyElement& element) {
   if (&element == layout_.vertex) return read_vertices();
   if (&element == layout_.face) return read_faces();
+  if (&element == layout_.tristrips) return read_strips();
   if (!element.has_lists()) {
     return stream_.skip(element.count * least_bytes(element)) ? Status()
                                                               : ended_in(element, element.count);
@@ -133,7 +133,7 @@ Status Reader<T>::read_vertices() {
 template <class T>
 Status Reader<T>::read_faces() {
   const std::uint64_t count = layout_.face->count;
-  if (Status status = mesh_.begin_faces(count); !status.ok()) return status;
+  if (Status status = mesh_.reserve_faces(count); !status.ok()) return status;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (Status status = read_record(*layout_.face, i); !status.ok()) return status;
     if (Status status = mesh_.add_face(corners_); !status.ok()) return status;
@@ -141,7 +141,17 @@ Status Reader<T>::read_faces() {
   return {};
 }
 
-// One record of an element with lists; of a face the corners are kept, of a vertex the position.
+template <class T>
+Status Reader<T>::read_strips() {
+  for (std::uint64_t i = 0; i < layout_.tristrips->count; ++i) {
+    if (Status status = read_record(*layout_.tristrips, i); !status.ok()) return status;
+    if (Status status = mesh_.add_strips(corners_); !status.ok()) return status;
+  }
+  return {};
+}
+
+// One record of an element with lists; of a face or strip the corners are kept, of a vertex the
+// position.
 template <class T>
 Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
   for (const PlyProperty& property : element.properties) {
@@ -171,7 +181,7 @@ Status Reader<T>::read_list(const PlyElement& element, const PlyProperty& list,
                              file_, element.name, number, stated, stream_.left())};
   }
   auto count = static_cast<std::size_t>(stated);
-  if (&list != layout_.corners) {
+  if (&list != layout_.corners && &list != layout_.strip) {
     return stream_.skip(std::uint64_t{count} * size) ? Status() : ended_in(element, number);
   }
   corners_.resize(count);
@@ -191,25 +201,16 @@ Status Reader<T>::read_list(const PlyElement& element, const PlyProperty& list,
 
 }  // namespace
 
-Result<bool> import_binary_ply(const std::filesystem::path& path, const ImportOptions& options,
-                               Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  if (!has_ply_header_end(stream->ahead())) {
-    return Error{Errc::kImportFailed, path.string() + ": a PLY file without an end of its header"};
-  }
-  std::optional<PlyHeader> header = read_ply_header(stream->ahead());
-  if (!header || header->form == PlyHeader::Form::kText) return false;
-  PlyLayout layout;
-  layout.header = std::move(*header);
-  if (!find_ply_parts(layout)) return false;
-  static_cast<void>(stream->take(layout.header.bytes));
-
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    PlyMesh<T> mesh(file, options, positions, out);
-    return Reader<T>(*stream, layout, file, mesh).read();
-  });
+template <class T>
+Status read_binary_ply(SourceStream& stream, const PlyLayout& layout, const std::string& file,
+                       IndexedMesh<T>& mesh) {
+  static_cast<void>(stream.take(layout.header.bytes));
+  return Reader<T>(stream, layout, file, mesh).read();
 }
+
+template Status read_binary_ply(SourceStream&, const PlyLayout&, const std::string&,
+                                IndexedMesh<float>&);
+template Status read_binary_ply(SourceStream&, const PlyLayout&, const std::string&,
+                                IndexedMesh<double>&);
 
 }  // namespace boxtree::cooker

@@ -10,10 +10,6 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/binary_stl.h>
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/source_stream.h>
-#include <boxtree/cooker/import/stl_mesh.h>
-#include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -36,6 +32,10 @@ std::uint32_t load_word(const char* at) {
          std::uint32_t{bytes[3]} << 24;
 }
 
+std::uint64_t bytes_of(std::uint32_t triangles) {
+  return kHeaderBytes + std::uint64_t{kTriangleBytes} * triangles;
+}
+
 template <class T>
 std::array<T, 3> load_corner(const char* triangle, std::size_t corner) {
   std::array<T, 3> position;
@@ -46,17 +46,23 @@ std::array<T, 3> load_corner(const char* triangle, std::size_t corner) {
   return position;
 }
 
-// Whether it is a text as far as the header of a binary file would go. Those may begin with
-// "solid", too, but no text holds a zero.
-bool is_text(std::string_view start) {
-  const std::string_view header = start.substr(0, kHeaderBytes);
-  const std::size_t word = header.find_first_not_of(" \t");
-  return word != std::string_view::npos && begins_with_solid(header.substr(word)) &&
-         header.find('\0') == std::string_view::npos;
+}  // namespace
+
+bool is_binary_stl(const SourceStream& stream) {
+  if (stream.ahead().size() < kHeaderBytes) return false;
+  return bytes_of(load_word(stream.ahead().data() + kCountOffset)) == stream.left();
 }
 
 template <class T>
-Status read_triangles(SourceStream& stream, std::uint32_t count, StlMesh<T>& mesh) {
+Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>& mesh) {
+  const char* const header = stream.take(kHeaderBytes);
+  if (header == nullptr) return stream.ended_in("its header");
+  const std::uint32_t count = load_word(header + kCountOffset);
+  if (bytes_of(count) != kHeaderBytes + stream.left()) {
+    return Error{Errc::kImportFailed,
+                 fmt::format("{}: {} triangles take {} bytes, but the file has {}", file, count,
+                             bytes_of(count), kHeaderBytes + stream.left())};
+  }
   if (Status status = mesh.begin(count); !status.ok()) return status;
   for (std::uint32_t id = 0; id < count;) {
     const auto step = std::min<std::size_t>(count - id, kTrianglesAtOnce);
@@ -75,29 +81,7 @@ Status read_triangles(SourceStream& stream, std::uint32_t count, StlMesh<T>& mes
   return mesh.finish();
 }
 
-}  // namespace
-
-Result<bool> import_binary_stl(const std::filesystem::path& path, const ImportOptions& options,
-                               Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  const std::string_view start = stream->ahead();
-  if (start.size() < kHeaderBytes) return false;
-  const std::uint32_t count = load_word(start.data() + kCountOffset);
-  const std::uint64_t bytes = kHeaderBytes + std::uint64_t{kTriangleBytes} * count;
-  if (bytes != stream->left()) {
-    if (is_text(start)) return false;
-    return Error{Errc::kImportFailed,
-                 fmt::format("{}: {} triangles take {} bytes, but the file has {}", path.string(),
-                             count, bytes, stream->left())};
-  }
-  if (count == 0) return false;
-  static_cast<void>(stream->take(kHeaderBytes));
-
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    StlMesh<T> mesh(path.string(), options, positions, out);
-    return read_triangles(*stream, count, mesh);
-  });
-}
+template Status read_binary_stl(SourceStream&, const std::string&, StlMesh<float>&);
+template Status read_binary_stl(SourceStream&, const std::string&, StlMesh<double>&);
 
 }  // namespace boxtree::cooker

@@ -3,16 +3,19 @@
 // them for normals and for vertices that are merged at once.
 #pragma once
 
-#include <filesystem>
+#include <string>
 
-#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/source_stream.h>
+#include <boxtree/cooker/import/stl_mesh.h>
 
 namespace boxtree::cooker {
 
-/// Reads `path`, an STL file, into `out`, all but the name, as import_mesh promises. False, with
-/// `out` untouched, for a file that is left to assimp: text, or no triangles at all. kImportFailed
-/// for a file that is no text and not as long as its number of triangles asks for.
-Result<bool> import_binary_stl(const std::filesystem::path& path, const ImportOptions& options,
-                               Imported& out);
+/// Whether the file is as long as the count in its header says. `stream` is at its start.
+[[nodiscard]] bool is_binary_stl(const SourceStream& stream);
+
+/// Reads the file named from `stream`, of which nothing has been taken yet, into `mesh`. Errors as
+/// for import_mesh.
+template <class T>
+Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>& mesh);
 
 }  // namespace boxtree::cooker

@@ -76,6 +76,7 @@ Status check_any_taken(const std::string& file, std::size_t faces, const ImportR
   add(report.points_skipped, "points");
   add(report.lines_skipped, "lines");
   add(report.empty_skipped, "faces without corners");
+  if (report.source_faces == 0) add(report.vertices_unused, "vertices that no face uses");
   if (!also.empty()) also += ")";
   return Error{Errc::kNoFaces, fmt::format("{}: {}{}", file, why, also)};
 }

@@ -18,12 +18,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMaxMarkers = std::size_t{1} << 24;  // integers that a float holds
-
 // What remap_ says of a vertex before it has a number.
 constexpr std::uint32_t kUnused = 0xffffffffu;
 constexpr std::uint32_t kNotFinite = 0xfffffffeu;
 constexpr std::uint32_t kUsed = 0xfffffffdu;
+
+Vector3d position_of(const aiVector3D& read) {
+  return {read.x, read.y, read.z};
+}
 
 // Normals, colours and the like can be larger than all that is kept.
 void free_attributes(aiMesh& mesh) {
@@ -45,8 +47,6 @@ class Flattener {
   Flattener(const SourceContext& context, std::vector<T>& positions, Imported& out)
       : options_(context.options),
         file_(context.file),
-        known_(context.known),
-        exact_(context.exact),
         positions_(positions),
         report_(out.report),
         welder_(positions),
@@ -69,8 +69,6 @@ class Flattener {
 
   const ImportOptions& options_;
   const std::string& file_;
-  const KnownFaults& known_;
-  const ExactPositions& exact_;
   std::vector<T>& positions_;
   ImportReport& report_;
   Welder<T> welder_;
@@ -108,7 +106,7 @@ Status Flattener<T>::add(const aiMesh& mesh, const Transform& transform) {
 
 template <class T>
 std::array<T, 3> Flattener<T>::place(unsigned vertex) const {
-  const Vector3d source = exact_[source_->mVertices[vertex]];
+  const Vector3d source = position_of(source_->mVertices[vertex]);
   const Vector3d placed = is_identity_ ? source : transform_ * source;
   return {static_cast<T>(placed[0]), static_cast<T>(placed[1]), static_cast<T>(placed[2])};
 }
@@ -157,8 +155,6 @@ std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
       return vertex_out_of_range(corner, name_of_vertex(vertex), source_->mNumVertices);
     }
     if (remap_[vertex] != kNotFinite) continue;
-    const aiVector3D& source = source_->mVertices[vertex];
-    if (const FaceFault* known = known_.find(source)) return *known;
     const std::array<T, 3> placed = place(vertex);
     return vertex_not_finite(name_of_vertex(vertex), {placed[0], placed[1], placed[2]});
   }
@@ -209,16 +205,13 @@ void Flattener<T>::add_face(const aiFace& face) {
   }
 }
 
-// A coordinate was rounded to f32 (or to what it was put aside in) when the file was written or
-// read, then carried through the transform, and rounded again to T. The arithmetic of the transform
-// adds four roundings.
+// A coordinate was rounded to f32 when the file was written or read, then carried through the
+// transform, and rounded again to T. The arithmetic of the transform adds four roundings.
 template <class T>
 RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
-  const Vector3d source = exact_[source_->mVertices[vertex]];
-  const bool was_f32 = exact_.empty() || exact_.precision() == Precision::kF32;
-  const auto rounding_when_read = was_f32 ? rounding_of<float> : rounding_of<double>;
-  const Vector3d before(rounding_when_read(source[0]), rounding_when_read(source[1]),
-                        rounding_when_read(source[2]));
+  const Vector3d source = position_of(source_->mVertices[vertex]);
+  const Vector3d before(rounding_of<float>(source[0]), rounding_of<float>(source[1]),
+                        rounding_of<float>(source[2]));
   const Vector3d after = intake_.position(remap_[vertex]);
   if (is_identity_) return {after, before};
   Vector3d rounding;
@@ -267,17 +260,6 @@ Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses
 }
 
 }  // namespace
-
-aiVector3D KnownFaults::marker(std::size_t fault) {
-  return {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
-          static_cast<float>(std::min(fault, kMaxMarkers))};
-}
-
-const FaceFault* KnownFaults::find(const aiVector3D& position) const {
-  if (faults.empty() || !std::isnan(position.x) || !std::isinf(position.y)) return nullptr;
-  if (!(position.z >= 0 && position.z <= static_cast<float>(kMaxMarkers))) return nullptr;
-  return &faults[std::min(static_cast<std::size_t>(position.z), faults.size() - 1)];
-}
 
 void free_attributes(aiScene& scene) {
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {

@@ -7,9 +7,6 @@
 #include <string>
 #include <vector>
 
-#include <assimp/vector3.h>
-
-#include <boxtree/cooker/import/exact_positions.h>
 #include <boxtree/cooker/import/face_intake.h>
 #include <boxtree/cooker/import/fbx_materials.h>
 #include <boxtree/cooker/import/import.h>
@@ -20,23 +17,10 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// Faults that were found before assimp saw the file, and how assimp was told: a face that has one
-/// refers to a vertex whose position is marker(number of the fault).
-struct KnownFaults {
-  std::vector<FaceFault> faults;
-
-  /// NaN, +infinity, number: no file holds that by chance, and if one did, the face would be
-  /// refused as well. 2^24 numbers are told apart; further faults share the last.
-  static aiVector3D marker(std::size_t fault);
-  [[nodiscard]] const FaceFault* find(const aiVector3D& position) const;
-};
-
 /// What is known of a file beside assimp's scene.
 struct SourceContext {
   const ImportOptions& options;
   std::string file;  // what errors call it
-  const KnownFaults& known;
-  const ExactPositions& exact;  // holds positions that assimp knows by number alone
   /// Of each mesh of aiScene::mMeshes; empty where each has one material, and assimp knows it.
   std::span<const MeshMaterials> materials = {};
 };

@@ -78,38 +78,6 @@ std::set<Counts> stated_counts(const Json& document) {
 
 }  // namespace
 
-Status check_ply_header(const std::filesystem::path& path) {
-  if (!has_extension(path, "ply")) return {};
-  std::ifstream file(path, std::ios::binary);
-  std::string start(kPlyHeaderBytes, '\0');
-  file.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(file.gcount()));
-  const std::size_t end = start.find("end_header");
-  if (end == std::string::npos) return {};
-  std::error_code error;
-  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
-  Tokens tokens;
-  split_tokens(std::string_view(start).substr(0, end), tokens);
-  for (std::size_t i = 0; i + 2 < tokens.size(); ++i) {
-    if (tokens[i] != "element") continue;
-    const std::string_view what = tokens[i + 1], number = tokens[i + 2];
-    std::uint64_t count = 0;
-    const auto [stop, failed] =
-        std::from_chars(number.data(), number.data() + number.size(), count);
-    if (failed == std::errc::invalid_argument) continue;  // a comment, or for assimp to refuse
-    // An element takes a byte at least, in text its line end.
-    if (failed != std::errc() || count > bytes) {
-      return Error{Errc::kImportFailed, fmt::format("{}: {} elements '{}' cannot be in {} bytes",
-                                                    path.string(), number, what, bytes)};
-    }
-    if (what == "tristrips" && count > 0) {
-      return Error{Errc::kImportFailed,
-                   path.string() + ": triangle strips in PLY files are not supported"};
-    }
-  }
-  return {};
-}
-
 Status check_gltf_faces(const std::filesystem::path& path, const aiScene& scene) {
   const bool is_binary = has_extension(path, "glb");
   if (!is_binary && !has_extension(path, "gltf")) return {};

@@ -10,10 +10,6 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// Refuses a PLY file whose counts cannot fit into the file (assimp would allocate them) or which
-/// holds triangle strips (assimp keeps one triangle of each). Other files pass.
-Status check_ply_header(const std::filesystem::path& path);
-
 /// Refuses a glTF file of which assimp has dropped faces: it does so when a vertex number is out of
 /// range. Compares the counts that the file states with those of `scene`. Other files pass.
 Status check_gltf_faces(const std::filesystem::path& path, const aiScene& scene);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Mesh files in: the only door through which source meshes enter. PLY and STL are read by our own
-// readers, positions and corners of OBJ and OFF too; everything else by assimp.
+// Mesh files in: the only door through which source meshes enter. OBJ, OFF, PLY and STL are read by
+// readers of our own, everything else by assimp.
 #pragma once
 
 #include <cstddef>
@@ -23,9 +23,8 @@ struct ImportOptions {
   Precision precision = Precision::kF32;
   /// [false] Let assimp read the file in a copy of this process first (trial.h), so that a file
   /// that crashes its reader, or that it never ends with, is an error: kImportFailed. Costs a
-  /// second reading. For formats that assimp alone understands, and glTF; of OBJ and OFF it sees
-  /// what we have written. The copy is made by fork(): not for programs whose other threads hold
-  /// locks that reading needs.
+  /// second reading. Means nothing to formats that assimp does not read. The copy is made by fork():
+  /// not for programs whose other threads hold locks that reading needs.
   bool try_first = false;
 };
 
@@ -80,15 +79,16 @@ struct Imported {
 /// faces, or out of memory). No exception leaves it, nothing is printed by it, it reads and writes
 /// no global state: safe to call from several threads, in any locale.
 ///
-/// Positions of OBJ, OFF and PLY files go past assimp: decimals are rounded once, to the nearest
-/// f32 or f64. What assimp decides: those of other formats have the digits of f32, and decimals
-/// among them can be a unit in the last place off the nearest. Where a reader of assimp repairs
-/// silently, we look first ourselves: OBJ, OFF, PLY, text STL and glTF. A file that was cut short
-/// is refused where its format states counts or an end (of the texts that assimp reads: AC3D, ASE,
-/// DXF, MD5 and those of its readers that look themselves); OBJ states none, and a last line
-/// without an end is reported. A glTF file with vertex numbers out of range is refused even with
-/// skip_bad, and named by its mesh: assimp has dropped the faces and their numbers with them. Its
-/// other readers (3DS, LWO, DXF, Unreal, ...) may still clamp a vertex number out of range.
+/// Decimals of OBJ, OFF, PLY and text STL are rounded once, to the nearest f32 or f64 (STL: f32).
+/// Vertices and faces of these four have the order of the file, whatever the groups of an OBJ. What
+/// assimp decides: positions of other formats have the digits of f32, and decimals among them can
+/// be a unit in the last place off the nearest. Where one of its readers repairs silently we look
+/// first ourselves: glTF. A file that was cut short is refused where its format states counts or an
+/// end (of the texts that assimp reads: AC3D, ASE, DXF, MD5 and those of its readers that look
+/// themselves); OBJ states none, and a last line without an end is reported. A glTF file with
+/// vertex numbers out of range is refused even with skip_bad, and named by its mesh: assimp has
+/// dropped the faces and their numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may
+/// still clamp a vertex number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace boxtree::cooker

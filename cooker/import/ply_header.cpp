@@ -4,6 +4,9 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <utility>
+
+#include <fmt/format.h>
 
 #include <boxtree/cooker/import/ply_header.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -38,36 +41,108 @@ std::optional<PlyHeader::Form> form_of(std::string_view name) {
   return std::nullopt;
 }
 
-// property TYPE NAME, or property list TYPE TYPE NAME
-void add_property(const Tokens& tokens, PlyElement& element) {
-  const bool is_list = tokens.size() > 1 && tokens[1] == "list";
-  const std::size_t at = is_list ? 3 : 1;
-  const std::optional<PlyType> type = tokens.size() > at + 1 ? type_of(tokens[at]) : std::nullopt;
-  const std::optional<PlyType> length = is_list && type ? type_of(tokens[2]) : std::nullopt;
-  if (!type || length.has_value() != is_list) {
-    element.is_understood = false;
-    return;
+class HeaderReader {
+ public:
+  explicit HeaderReader(std::string_view file) : file_(file) {}
+
+  Result<PlyHeader> read();
+
+ private:
+  bool next_line();
+  Status take_statement();
+  Status take_format();
+  Status take_element();
+  Status take_property();
+
+  [[nodiscard]] Error failure(std::string_view why) const {
+    return Error{Errc::kImportFailed, fmt::format("line {}: {}", header_.lines, why)};
   }
-  element.properties.push_back({std::string(tokens[at + 1]), *type, length});
+
+  std::string_view file_;
+  PlyHeader header_;
+  Tokens tokens_;  // of the line at hand
+  char line_end_ = '\n';
+  bool has_format_ = false;
+};
+
+Result<PlyHeader> HeaderReader::read() {
+  // Old Macintosh files end lines by a carriage return alone.
+  if (file_.starts_with("ply\r") && !file_.starts_with("ply\r\n")) line_end_ = '\r';
+  if (!next_line() || tokens_.size() != 1 || tokens_[0] != "ply") {
+    return Error{Errc::kImportFailed, "no PLY file: its first line is not 'ply'"};
+  }
+  while (next_line()) {
+    if (tokens_.size() == 1 && tokens_[0] == "end_header") {
+      if (!has_format_) return failure("the header ends without a 'format'");
+      return std::move(header_);
+    }
+    if (Status status = take_statement(); !status.ok()) return status.error();
+  }
+  return failure("the header has no 'end_header' behind it");
 }
 
-// One line of the header but the last. False if there is no going on. Lines that mean nothing to us
-// are comments, as they are to other readers.
-bool read_line(const Tokens& tokens, PlyHeader& header) {
-  if (tokens[0] == "format" && tokens.size() > 1) {
-    const std::optional<PlyHeader::Form> form = form_of(tokens[1]);
-    header.form = form.value_or(PlyHeader::Form::kText);
-    header.is_plain = header.is_plain && form.has_value();
-  } else if (tokens[0] == "element") {
-    const std::optional<std::uint64_t> count =
-        tokens.size() > 2 ? read_count(tokens[2]) : std::nullopt;
-    if (!count) return false;
-    header.elements.push_back({std::string(tokens[1]), *count, {}});
-  } else if (tokens[0] == "property") {
-    if (header.elements.empty()) return false;
-    add_property(tokens, header.elements.back());
-  }
+// False at the end of the file; a last line that does not end is none.
+bool HeaderReader::next_line() {
+  const std::size_t end = file_.find(line_end_, header_.bytes);
+  if (end == std::string_view::npos) return false;
+  split_tokens(file_.substr(header_.bytes, end - header_.bytes), tokens_);
+  header_.bytes = end + 1;
+  ++header_.lines;
   return true;
+}
+
+Status HeaderReader::take_statement() {
+  for (const std::string_view word : tokens_) {
+    if (word.find('\0') != std::string_view::npos) return failure("a zero byte");
+  }
+  if (tokens_.empty() || tokens_[0] == "comment" || tokens_[0] == "obj_info") return {};
+  if (tokens_[0] == "format") return take_format();
+  if (tokens_[0] == "element") return take_element();
+  if (tokens_[0] == "property") return take_property();
+  return failure(fmt::format("no statement of a PLY header begins with {:?}", tokens_[0]));
+}
+
+// format FORM VERSION
+Status HeaderReader::take_format() {
+  const std::optional<PlyHeader::Form> form =
+      tokens_.size() > 1 ? form_of(tokens_[1]) : std::nullopt;
+  if (!form || has_format_) {
+    return failure("one 'format' is expected: ascii, binary_little_endian or binary_big_endian");
+  }
+  has_format_ = true;
+  header_.form = *form;
+  return {};
+}
+
+// element NAME COUNT
+Status HeaderReader::take_element() {
+  const std::optional<std::uint64_t> count =
+      tokens_.size() == 3 ? read_count(tokens_[2]) : std::nullopt;
+  if (!count) return failure("'element' is to be followed by a name and a count");
+  header_.elements.push_back({std::string(tokens_[1]), *count, {}});
+  return {};
+}
+
+// property TYPE NAME, or property list TYPE TYPE NAME
+Status HeaderReader::take_property() {
+  if (header_.elements.empty()) return failure("a property before the first element");
+  const bool is_list = tokens_.size() > 1 && tokens_[1] == "list";
+  const std::size_t at = is_list ? 3 : 1;
+  if (tokens_.size() != at + 2) {
+    return failure(
+        "'property' is to be followed by a type and a name, or by 'list', two types and "
+        "a name");
+  }
+  const std::optional<PlyType> type = type_of(tokens_[at]);
+  const std::optional<PlyType> length = is_list ? type_of(tokens_[2]) : std::nullopt;
+  if (!type || length.has_value() != is_list) {
+    return failure(fmt::format("PLY has no type {:?}", tokens_[type ? 2 : at]));
+  }
+  if (length && !is_integer(*length)) {
+    return failure(fmt::format("the length of a list is to be an integer, not {:?}", tokens_[2]));
+  }
+  header_.elements.back().properties.push_back({std::string(tokens_[at + 1]), *type, length});
+  return {};
 }
 
 }  // namespace
@@ -122,37 +197,8 @@ bool PlyElement::has_lists() const {
                      [](const PlyProperty& property) { return property.length.has_value(); });
 }
 
-bool has_ply_header_end(std::string_view file) {
-  constexpr std::string_view kWord = "end_header";
-  for (std::size_t at = file.find(kWord); at != std::string_view::npos;
-       at = file.find(kWord, at + 1)) {
-    const std::size_t before = file.substr(0, at).find_last_not_of(" \t");
-    const std::size_t after = file.find_first_not_of(" \t", at + kWord.size());
-    const auto ends_line = [&](std::size_t i) {
-      return i != std::string_view::npos && (file[i] == '\n' || file[i] == '\r');
-    };
-    if (ends_line(before) && ends_line(after)) return true;
-  }
-  return false;
-}
-
-std::optional<PlyHeader> read_ply_header(std::string_view file) {
-  PlyHeader header;
-  Tokens tokens;
-  // Old Macintosh files end lines by a carriage return alone.
-  const bool has_returns = file.starts_with("ply\r") && !file.starts_with("ply\r\n");
-  for (std::size_t line = 0;; ++line) {
-    const std::size_t end = file.find(has_returns ? '\r' : '\n', header.bytes);
-    if (end == std::string_view::npos) return std::nullopt;
-    split_tokens(file.substr(header.bytes, end - header.bytes), tokens);
-    header.bytes = end + 1;
-    if (tokens.size() == 1 && tokens[0] == "end_header") return header;
-    // The format follows the magic word at once: readers look for it nowhere else.
-    const std::string_view expected = line == 0 ? "ply" : line == 1 ? "format" : "";
-    if (line < 2 && (tokens.empty() || tokens[0] != expected)) header.is_plain = false;
-    if (line == 0 || tokens.empty()) continue;
-    if (!read_line(tokens, header)) return std::nullopt;
-  }
+Result<PlyHeader> read_ply_header(std::string_view file) {
+  return HeaderReader(file).read();
 }
 
 }  // namespace boxtree::cooker

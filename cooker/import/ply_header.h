@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <boxtree/format/result.h>
+
 namespace boxtree::cooker {
 
 enum class PlyType : std::uint8_t {
@@ -40,7 +42,6 @@ struct PlyElement {
   std::string name;
   std::uint64_t count = 0;
   std::vector<PlyProperty> properties;
-  bool is_understood = true;  // no property of a type that we do not know
 
   [[nodiscard]] bool has_lists() const;
 };
@@ -48,15 +49,13 @@ struct PlyElement {
 struct PlyHeader {
   enum class Form { kText, kLittleEndian, kBigEndian } form = Form::kText;
   std::size_t bytes = 0;  // the body starts there
+  std::size_t lines = 0;  // of the header, its last one included
   std::vector<PlyElement> elements;
-  bool is_plain = true;  // it begins with the magic word and a format that we know
 };
 
-/// Whether a line of `file` is the last one of a header, and ends.
-[[nodiscard]] bool has_ply_header_end(std::string_view file);
-
-/// The header at the start of `file`; nothing if it does not end there, an element has no
-/// count, or a property no element.
-[[nodiscard]] std::optional<PlyHeader> read_ply_header(std::string_view file);
+/// The header at the start of `file`. kImportFailed, naming the line, for whatever is no header: a
+/// statement passed over could be a misspelt property, without which every value after it would be
+/// taken for another.
+[[nodiscard]] Result<PlyHeader> read_ply_header(std::string_view file);
 
 }  // namespace boxtree::cooker

@@ -1,51 +1,82 @@
 // SPDX-License-Identifier: MIT
 #include <string_view>
 
+#include <fmt/format.h>
+
 #include <boxtree/cooker/import/ply_layout.h>
 
 namespace boxtree::cooker {
 namespace {
 
-bool find_coordinates(PlyLayout& layout) {
-  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
-  for (const PlyProperty& property : layout.vertex->properties) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (property.name != kNames[k]) continue;
-      if (layout.xyz[k] != nullptr || property.length) return false;
-      layout.xyz[k] = &property;
-    }
-  }
-  return layout.xyz[0] != nullptr && layout.xyz[1] != nullptr && layout.xyz[2] != nullptr;
+Error failure(std::string_view why) {
+  return {Errc::kImportFailed, "the header: " + std::string(why)};
 }
 
-bool find_corners(PlyLayout& layout) {
-  for (const PlyProperty& property : layout.face->properties) {
-    if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
-    if (layout.corners != nullptr || !property.length || !is_integer(property.type)) return false;
-    layout.corners = &property;
+// The element of that name, if there is one, into `found`.
+Status find_element(const PlyHeader& header, std::string_view name, const PlyElement*& found) {
+  for (const PlyElement& element : header.elements) {
+    if (element.name != name) continue;
+    if (found != nullptr) return failure(fmt::format("two elements '{}'", name));
+    found = &element;
   }
-  return layout.corners != nullptr;
+  return {};
+}
+
+Status find_coordinates(PlyLayout& layout) {
+  constexpr std::array<std::string_view, 3> kNames = {"x", "y", "z"};
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const PlyProperty& property : layout.vertex->properties) {
+      if (property.name != kNames[k]) continue;
+      if (layout.xyz[k] != nullptr || property.length) {
+        return failure(fmt::format("vertices have '{}' twice, or as a list", kNames[k]));
+      }
+      layout.xyz[k] = &property;
+    }
+    if (layout.xyz[k] == nullptr) return failure(fmt::format("vertices have no '{}'", kNames[k]));
+  }
+  return {};
+}
+
+// The list of vertex numbers of `element`, if there is such an element.
+Status find_corners(const PlyElement* element, const PlyProperty*& found) {
+  if (element == nullptr) return {};
+  for (const PlyProperty& property : element->properties) {
+    if (property.name != "vertex_indices" && property.name != "vertex_index") continue;
+    if (found != nullptr || !property.length || !is_integer(property.type)) {
+      return failure(
+          fmt::format("'{}' of '{}' is to be one list of integers", property.name, element->name));
+    }
+    found = &property;
+  }
+  return found != nullptr ? Status()
+                          : failure(fmt::format("'{}' has no 'vertex_indices'", element->name));
 }
 
 }  // namespace
 
-bool find_ply_parts(PlyLayout& layout) {
-  if (!layout.header.is_plain) return false;
-  for (const PlyElement& element : layout.header.elements) {
-    if (!element.is_understood || element.name == "tristrips") return false;
-    for (const PlyProperty& property : element.properties) {
-      if (property.length && !is_integer(*property.length)) return false;
-    }
-    if (element.name == "vertex") {
-      if (layout.vertex != nullptr) return false;
-      layout.vertex = &element;
-    } else if (element.name == "face") {
-      if (layout.face != nullptr || layout.vertex == nullptr) return false;
-      layout.face = &element;
+Status find_ply_parts(PlyLayout& layout) {
+  const PlyHeader& header = layout.header;
+  for (const auto& [name, found] :
+       {std::pair("vertex", &layout.vertex), std::pair("face", &layout.face),
+        std::pair("tristrips", &layout.tristrips)}) {
+    if (Status status = find_element(header, name, *found); !status.ok()) return status;
+  }
+  const auto has_any = [](const PlyElement* element) {
+    return element != nullptr && element->count > 0;
+  };
+  if (!has_any(layout.face) && !has_any(layout.tristrips)) {
+    return Error{Errc::kNoFaces, "no faces: the header states neither 'face' nor 'tristrips'"};
+  }
+  if (layout.vertex == nullptr) return failure("no element 'vertex'");
+  for (const PlyElement* faces : {layout.face, layout.tristrips}) {
+    // Both are in one array, in the order of the file.
+    if (faces != nullptr && faces < layout.vertex) {
+      return failure(fmt::format("'{}' comes before 'vertex'", faces->name));
     }
   }
-  return layout.vertex != nullptr && layout.face != nullptr && layout.vertex->count > 0 &&
-         layout.face->count > 0 && find_coordinates(layout) && find_corners(layout);
+  if (Status status = find_coordinates(layout); !status.ok()) return status;
+  if (Status status = find_corners(layout.face, layout.corners); !status.ok()) return status;
+  return find_corners(layout.tristrips, layout.strip);
 }
 
 }  // namespace boxtree::cooker

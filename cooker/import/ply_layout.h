@@ -12,8 +12,10 @@ namespace boxtree::cooker {
 struct PlyLayout {
   PlyHeader header;
   const PlyElement* vertex = nullptr;
-  const PlyElement* face = nullptr;
-  const PlyProperty* corners = nullptr;  // of faces: which of their lists
+  const PlyElement* face = nullptr;       // one polygon each
+  const PlyElement* tristrips = nullptr;  // any number of triangles each, as Stanford's files have
+  const PlyProperty* corners = nullptr;   // of faces: which of their properties
+  const PlyProperty* strip = nullptr;     // of strips likewise
   std::array<const PlyProperty*, 3> xyz{};
 
   PlyLayout() = default;
@@ -21,9 +23,9 @@ struct PlyLayout {
   PlyLayout& operator=(const PlyLayout&) = delete;
 };
 
-/// Fills in all but the header, which is there. False if it is none of a mesh that we can read:
-/// faces before their vertices, triangle strips, types that are not known, or several of what there
-/// has to be one of.
-[[nodiscard]] bool find_ply_parts(PlyLayout& layout);
+/// Fills in all but the header, which is there. kImportFailed where there are several of what there
+/// has to be one of, or faces come before their vertices, which have to be known by then; kNoFaces
+/// where no element is to hold any.
+Status find_ply_parts(PlyLayout& layout);
 
 }  // namespace boxtree::cooker

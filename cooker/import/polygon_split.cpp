@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numeric>
 
+#include <boxtree/cooker/import/polygon_normal.h>
 #include <boxtree/cooker/import/polygon_split.h>
 #include <boxtree/runtime/primitive/orientation.h>
 #include <boxtree/runtime/primitive/vector3.h>
@@ -36,14 +37,6 @@ double largest_of(const Vector3d& a) {
 // Seen along `axis`, from its positive end.
 Vector2d flattened(const Vector3d& a, int axis) {
   return {a[(axis + 1) % 3], a[(axis + 2) % 3]};
-}
-
-int dominant_axis(const Vector3d& normal) {
-  int axis = 2;
-  for (int other = 0; other < 2; ++other) {
-    if (std::abs(normal[other]) > std::abs(normal[axis])) axis = other;
-  }
-  return axis;
 }
 
 // The determinant of three rows of non-negative numbers with every minus made a plus: an upper
@@ -89,7 +82,8 @@ bool is_convex(const std::array<RoundedCorner, 4>& corners) {
   const auto position = [&corners](std::size_t i) -> const Vector3d& {
     return corners[i % 4].position;
   };
-  const Vector3d normal = cross(position(2) - position(0), position(3) - position(1));
+  const Vector3d normal =
+      polygon_normal(std::array{position(0), position(1), position(2), position(3)});
   if (largest_of(normal) == 0) {
     // No area in sum: either no area at all, or two equal halves of a bow tie.
     return is_collinear(position(0), position(1), position(2)) &&
@@ -252,15 +246,13 @@ void PolygonSplitter::project(std::span<const Vector3d> corners) {
   double largest = 0;
   for (const Vector3d& corner : corners) largest = std::max(largest, largest_of(corner));
   const double scale = scale_for(largest);
-  Vector3d normal = Vector3d::Zero();  // Newell's: twice the area seen along each axis
-  const Vector3d origin = corners[0] * scale;
-  for (std::size_t i = 1; i + 1 < corners.size(); ++i) {
-    normal += cross(corners[i] * scale - origin, corners[i + 1] * scale - origin);
-  }
+  scaled_.clear();
+  for (const Vector3d& corner : corners) scaled_.push_back(corner * scale);
+  const Vector3d normal = polygon_normal(scaled_);
   const int axis = dominant_axis(normal);
   points_.clear();
-  for (const Vector3d& corner : corners) {
-    Vector2d point = flattened(corner * scale, axis);
+  for (const Vector3d& corner : scaled_) {
+    Vector2d point = flattened(corner, axis);
     if (normal[axis] < 0) std::swap(point[0], point[1]);
     points_.push_back(point);
   }

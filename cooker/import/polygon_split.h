@@ -103,7 +103,8 @@ class PolygonSplitter {
   void clip(std::uint32_t corner);
   void update(std::uint32_t corner);
 
-  std::vector<Eigen::Vector2d> points_;  // counter-clockwise
+  std::vector<Eigen::Vector3d> scaled_;  // corners
+  std::vector<Eigen::Vector2d> points_;  // of them, seen along an axis, counter-clockwise
   std::vector<std::uint32_t> next_, previous_;
   std::array<Candidates, 2> candidates_;  // of each EarKind
   CornerSet flat_;                        // corners without area

@@ -174,7 +174,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   const std::size_t skipped_before = imported.report.skipped.size();
   const SourceContext context{context_.options,
                               fmt::format("{}: mesh of '{}'", context_.file, placement.name),
-                              context_.known, context_.exact, context_.materials};
+                              context_.materials};
   std::vector<MeshInstance> parts;
   for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
   std::vector<MaterialRun> runs;
@@ -201,31 +201,6 @@ Status take_scene(aiScene& scene, const Placements& placements, const SourceCont
   free_attributes(scene);
   out.report.meshes_unplaced = placements.unplaced;
   return SceneIntake(scene, context, out).take(placements);
-}
-
-Status take_whole(aiScene& scene, const Placements& placements, const SourceContext& context,
-                  const std::string& name, SourceScene& out) {
-  Imported imported;
-  imported.report = std::move(out.report);
-  std::vector<MaterialRun> runs;
-  Status status = flatten_scene(scene, placements, context, imported, runs);
-  out = scene_of(std::move(imported), name);
-  if (!status.ok()) return status;
-  MaterialIntake materials(scene, out.materials);
-  out.meshes[0].materials = materials.take(runs);
-  if (!materials.are_known()) drop_materials(out);
-  return {};
-}
-
-SourceScene scene_of(Imported&& imported, const std::string& name) {
-  SourceScene scene;
-  scene.name = name;
-  scene.report = std::move(imported.report);
-  const auto source_faces = static_cast<std::uint32_t>(scene.report.source_faces);
-  scene.meshes.push_back({std::move(imported.mesh), source_faces, {}});
-  scene.meshes[0].mesh.name = name;
-  scene.instances.push_back({name, 0, 0, Pose::Identity()});
-  return scene;
 }
 
 }  // namespace boxtree::cooker

@@ -9,7 +9,6 @@
 #include <system_error>
 #include <type_traits>
 
-#include <assimp/MemoryIOWrapper.h>
 #include <xxhash.h>
 
 #include <boxtree/cooker/import/source_files.h>
@@ -65,38 +64,23 @@ Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
   return XXH3_64bits_digest(state.get());
 }
 
-void RecordingIo::replace(const std::string& name, const std::string& text, const fs::path& file) {
-  replaced_name_ = name;
-  replaced_file_ = file;
-  replacement_ = &text;
-}
-
 bool RecordingIo::Exists(const char* path) const {
-  if (replacement_ != nullptr && replaced_name_ == path) return true;
   std::error_code error;
   return fs::is_regular_file(path, error) && DefaultIOSystem::Exists(path);
 }
 
 Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
-  if (replacement_ != nullptr && replaced_name_ == path) {
-    note(replaced_file_);
-    return new Assimp::MemoryIOStream(reinterpret_cast<const std::uint8_t*>(replacement_->data()),
-                                      replacement_->size());
-  }
   // fopen opens directories too; a pipe would block.
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return nullptr;
   Assimp::IOStream* stream = DefaultIOSystem::Open(path, mode);
-  if (stream != nullptr) note(path);
-  return stream;
-}
-
-void RecordingIo::note(const fs::path& file) {
-  fs::path normal = file.lexically_normal();
+  if (stream == nullptr) return nullptr;
+  fs::path normal = fs::path(path).lexically_normal();
   if (std::find(files_.begin(), files_.end(), normal) == files_.end()) {
     files_.push_back(std::move(normal));
   }
+  return stream;
 }
 
 static_assert(std::is_pointer_v<locale_t>);

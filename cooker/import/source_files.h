@@ -28,10 +28,6 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   /// Notes go to `files`, which must outlive this object (assimp's Importer owns that).
   explicit RecordingIo(std::vector<std::filesystem::path>& files) : files_(files) {}
 
-  /// From now on `text`, which must outlive this object, is what assimp reads as `name`, and counts
-  /// as reading `file`.
-  void replace(const std::string& name, const std::string& text, const std::filesystem::path& file);
-
   bool Exists(const char* path) const override;
   Assimp::IOStream* Open(const char* path, const char* mode = "rb") override;
   bool CreateDirectory(const std::string&) override { return false; }
@@ -40,11 +36,6 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
 
  private:
   std::vector<std::filesystem::path>& files_;
-  void note(const std::filesystem::path& file);
-
-  std::string replaced_name_;
-  std::filesystem::path replaced_file_;
-  const std::string* replacement_ = nullptr;
 };
 
 /// While it lives, numbers are read in the "C" locale on this thread, whatever the process has set:

@@ -39,6 +39,7 @@ Result<SourceStream> SourceStream::open(const std::filesystem::path& path) {
   stream.buffer_.resize(kBufferBytes);
   stream.at_ = stream.end_ = stream.buffer_.data();
   stream.refill(static_cast<std::size_t>(std::min<std::uint64_t>(stream.unread_, kBufferBytes)));
+  if (stream.error_ != 0) return stream.ended_in("its first bytes");
   return stream;
 }
 

@@ -1,29 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Rows as text_checks has found them whole, word by word.
-#include <algorithm>
+// Row by row, without keeping any.
 #include <array>
 #include <charconv>
 #include <limits>
 #include <optional>
 #include <span>
-#include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/direct_import.h>
 #include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/ply_layout.h>
-#include <boxtree/cooker/import/ply_mesh.h>
-#include <boxtree/cooker/import/source_stream.h>
-#include <boxtree/cooker/import/text_checks.h>
 #include <boxtree/cooker/import/text_ply.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 namespace {
+
+using Words = std::span<const std::string_view>;
 
 // A vertex number as binary files have it: those below zero become large ones, out of range in any
 // case. Nothing for what is no whole number, or takes more than 32 bits.
@@ -42,101 +35,177 @@ std::optional<std::uint32_t> read_vertex_number(std::string_view word) {
 template <class T>
 class Reader {
  public:
-  Reader(const PlyLayout& layout, const std::string& file, PlyMesh<T>& mesh)
-      : layout_(layout), file_(file), mesh_(mesh) {}
+  Reader(std::string_view text, const PlyLayout& layout, const std::string& file,
+         IndexedMesh<T>& mesh)
+      : rest_(text.substr(layout.header.bytes)),
+        line_(layout.header.lines),
+        layout_(layout),
+        file_(file),
+        mesh_(mesh) {}
 
-  Status read(std::string_view file) {
-    const Result<std::string_view> text = text_of(file);
-    if (!text.ok()) return in_file(file_, text.error());
-    // Each of them takes a line: counts beyond that are lies, and cost no memory.
-    if (layout_.vertex->count > text->size() || layout_.face->count > text->size()) {
-      return Error{Errc::kImportFailed,
-                   fmt::format("{}: {} vertices and {} faces cannot be in {} bytes", file_,
-                               layout_.vertex->count, layout_.face->count, text->size())};
-    }
-    if (Status status = mesh_.begin_vertices(layout_.vertex->count); !status.ok()) return status;
-    if (Status status = mesh_.begin_faces(layout_.face->count); !status.ok()) return status;
-    Status taken;  // its errors name the file
-    const Status rows = read_ply_rows(
-        layout_.header, *text, [&](const PlyElement& element, const Tokens& row, std::size_t line) {
-          if (&element == layout_.vertex) take_vertex(row);
-          if (&element == layout_.face) taken = take_face(row, line);
-          return taken;
-        });
-    if (!taken.ok()) return taken;
-    if (!rows.ok()) return in_file(file_, rows.error());
-    return mesh_.finish();
-  }
+  Status read();
 
  private:
-  // Calls take(property, words) with the words of each property: one, or those of a list.
-  template <class Take>
-  static void for_each_property(const PlyElement& element, const Tokens& row, const Take& take) {
-    std::size_t at = 0;
-    for (const PlyProperty& property : element.properties) {
-      std::size_t count = 1;
-      if (property.length) count = static_cast<std::size_t>(*read_count(row[at++]));
-      take(property, std::span(row).subspan(at, count));
-      at += count;
-    }
+  Status check_counts() const;
+  bool next_row();
+  Status read_element(const PlyElement& element);
+  Status check_row(const PlyElement& element, std::uint64_t number) const;
+  Result<std::uint64_t> count_words(const PlyElement& element) const;
+  Status take_row(const PlyElement& element);
+  void take_coordinate(const PlyProperty& property, std::string_view word);
+  Status take_corners(Words words);
+
+  [[nodiscard]] Error failure(std::string_view why) const {
+    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, line_, why)};
   }
 
-  void take_vertex(const Tokens& row) {
-    std::array<double, 3> position{};
-    for_each_property(*layout_.vertex, row, [&](const PlyProperty& property, auto words) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        if (layout_.xyz[k] == &property) position[k] = double{*read_number<T>(words[0])};
-      }
-    });
-    for (const double x : position) mesh_.add_coordinate(x);
-  }
-
-  Status take_face(const Tokens& row, std::size_t line) {
-    Status status;
-    for_each_property(*layout_.face, row, [&](const PlyProperty& property, auto words) {
-      if (&property != layout_.corners) return;
-      corners_.clear();
-      for (const std::string_view word : words) {
-        const std::optional<std::uint32_t> number = read_vertex_number(word);
-        if (!number) {
-          status =
-              Error{Errc::kImportFailed,
-                    fmt::format("{}: line {}: '{}' is no number of a vertex", file_, line, word)};
-          return;
-        }
-        corners_.push_back(*number);
-      }
-      status = mesh_.add_face(corners_);
-    });
-    return status;
-  }
-
+  std::string_view rest_;
+  std::size_t line_;  // at hand, from 1
+  Tokens row_;        // its words
   const PlyLayout& layout_;
   const std::string& file_;
-  PlyMesh<T>& mesh_;
-  std::vector<std::uint32_t> corners_;  // of the face at hand
+  IndexedMesh<T>& mesh_;
+  std::array<double, 3> position_{};    // of the vertex at hand
+  std::vector<std::uint32_t> corners_;  // of the face or strip at hand
 };
+
+template <class T>
+Status Reader<T>::read() {
+  if (Status status = check_counts(); !status.ok()) return status;
+  if (Status status = mesh_.begin_vertices(layout_.vertex->count); !status.ok()) return status;
+  if (layout_.face != nullptr) {
+    if (Status status = mesh_.reserve_faces(layout_.face->count); !status.ok()) return status;
+  }
+  for (const PlyElement& element : layout_.header.elements) {
+    if (Status status = read_element(element); !status.ok()) return status;
+    if (&element == layout_.vertex) mesh_.end_vertices();
+  }
+  return mesh_.finish();
+}
+
+// Each of them takes a line: counts beyond that are lies, and cost no memory.
+template <class T>
+Status Reader<T>::check_counts() const {
+  for (const PlyElement& element : layout_.header.elements) {
+    if (element.count <= rest_.size() || element.properties.empty()) continue;
+    return Error{Errc::kImportFailed,
+                 fmt::format("{}: {} elements '{}' cannot be in {} bytes", file_, element.count,
+                             element.name, rest_.size())};
+  }
+  return {};
+}
+
+// Moves to the next line that holds a word; false at the end.
+template <class T>
+bool Reader<T>::next_row() {
+  while (!rest_.empty()) {
+    split_tokens(take_line(rest_), row_);
+    ++line_;
+    if (!row_.empty()) return true;
+  }
+  return false;
+}
+
+template <class T>
+Status Reader<T>::read_element(const PlyElement& element) {
+  if (element.properties.empty()) return {};
+  for (std::uint64_t i = 0; i < element.count; ++i) {
+    if (!next_row()) {
+      return failure(
+          fmt::format("the file ends after {} of {} '{}'", i, element.count, element.name));
+    }
+    if (Status status = check_row(element, i); !status.ok()) return status;
+    if (Status status = take_row(element); !status.ok()) return status;
+  }
+  return {};
+}
+
+template <class T>
+Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) const {
+  const Result<std::uint64_t> wanted = count_words(element);
+  if (!wanted.ok()) return wanted.error();
+  if (*wanted != row_.size()) {
+    return failure(fmt::format("'{}' {} has {} words; its properties take {}", element.name, number,
+                               row_.size(), *wanted));
+  }
+  const std::string_view no_number = find_no_number(row_);
+  return no_number.empty() ? Status() : failure(fmt::format("'{}' is no number", no_number));
+}
+
+// How many words an element takes by its properties and by the lengths of its lists.
+template <class T>
+Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
+  std::uint64_t wanted = 0;
+  for (const PlyProperty& property : element.properties) {
+    if (property.length && wanted < row_.size()) {
+      const std::optional<std::uint64_t> count = read_count(row_[wanted]);
+      if (!count || *count > row_.size()) {
+        return failure(fmt::format("a list of '{}' numbers, but the line has {} words",
+                                   row_[wanted], row_.size()));
+      }
+      wanted += *count;
+    }
+    ++wanted;
+  }
+  return wanted;
+}
+
+// Precondition: check_row() has found nothing.
+template <class T>
+Status Reader<T>::take_row(const PlyElement& element) {
+  std::size_t at = 0;
+  for (const PlyProperty& property : element.properties) {
+    std::size_t count = 1;
+    if (property.length) count = static_cast<std::size_t>(*read_count(row_[at++]));
+    const Words words = Words(row_).subspan(at, count);
+    at += count;
+    if (&property == layout_.corners || &property == layout_.strip) {
+      if (Status status = take_corners(words); !status.ok()) return status;
+    } else if (&element == layout_.vertex && !property.length) {
+      take_coordinate(property, words[0]);
+    }
+  }
+  if (&element == layout_.vertex) {
+    for (const double x : position_) mesh_.add_coordinate(x);
+  } else if (&element == layout_.face) {
+    return mesh_.add_face(corners_);
+  } else if (&element == layout_.tristrips) {
+    return mesh_.add_strips(corners_);
+  }
+  return {};
+}
+
+template <class T>
+void Reader<T>::take_coordinate(const PlyProperty& property, std::string_view word) {
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (layout_.xyz[k] == &property) position_[k] = double{*read_number<T>(word)};
+  }
+}
+
+template <class T>
+Status Reader<T>::take_corners(Words words) {
+  corners_.clear();
+  for (const std::string_view word : words) {
+    const std::optional<std::uint32_t> number = read_vertex_number(word);
+    if (!number) return failure(fmt::format("'{}' is no number of a vertex", word));
+    corners_.push_back(*number);
+  }
+  return {};
+}
 
 }  // namespace
 
-Result<bool> import_text_ply(const std::filesystem::path& path, const ImportOptions& options,
-                             Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  std::optional<PlyHeader> header = read_ply_header(stream->ahead());
-  if (!header || header->form != PlyHeader::Form::kText) return false;
-  PlyLayout layout;
-  layout.header = std::move(*header);
-  if (!find_ply_parts(layout)) return false;
-  const Result<std::string> text = stream->take_rest();
-  if (!text.ok()) return text.error();
-
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    out.report.has_open_end = has_open_end(*text);
-    PlyMesh<T> mesh(file, options, positions, out);
-    return Reader<T>(layout, file, mesh).read(*text);
-  });
+template <class T>
+Status read_text_ply(std::string_view text, const PlyLayout& layout, const std::string& file,
+                     IndexedMesh<T>& mesh) {
+  const Result<std::string_view> checked = text_of(text);
+  if (!checked.ok()) return in_file(file, checked.error());
+  return Reader<T>(*checked, layout, file, mesh).read();
 }
+
+template Status read_text_ply(std::string_view, const PlyLayout&, const std::string&,
+                              IndexedMesh<float>&);
+template Status read_text_ply(std::string_view, const PlyLayout&, const std::string&,
+                              IndexedMesh<double>&);
 
 }  // namespace boxtree::cooker

@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// PLY files of text: assimp takes comments for ends of elements, rows of elements that it does not
-// know for vertices, and rounds decimals more than once, to f32.
+// The body of a PLY file of text: each element a line, each property a word, or for a list its
+// length and so many words. Assimp takes comments for ends of elements, rows of elements that it
+// does not know for vertices, and rounds decimals more than once, to f32.
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
-#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/indexed_mesh.h>
+#include <boxtree/cooker/import/ply_layout.h>
 
 namespace boxtree::cooker {
 
-/// Reads `path` into `out` if it is a PLY file of text with the mesh that find_ply_parts() knows;
-/// false if it is another file, and nothing has changed. Errors as for import_mesh.
-Result<bool> import_text_ply(const std::filesystem::path& path, const ImportOptions& options,
-                             Imported& out);
+/// Reads `text`, all of the file named, into `mesh`. Every element that the header states has to be
+/// there, a line each, with as many words as its properties ask for, all of them numbers; what
+/// follows the last one is not looked at. Errors as for import_mesh, naming the line.
+template <class T>
+Status read_text_ply(std::string_view text, const PlyLayout& layout, const std::string& file,
+                     IndexedMesh<T>& mesh);
 
 }  // namespace boxtree::cooker

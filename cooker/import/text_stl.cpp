@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Word by word, in the precision of the binary files. Lines mean nothing but after "solid" and
-// "endsolid", where a name of any words follows; outside of facets other words are passed over.
+// "endsolid", where a name of any words follows.
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -9,15 +9,16 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/direct_import.h>
 #include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/source_stream.h>
-#include <boxtree/cooker/import/stl_mesh.h>
 #include <boxtree/cooker/import/text_stl.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 namespace {
+
+// Headers of binary files may begin with "solid", too, but no text holds a zero: so many bytes are
+// looked at as such a file has before its first triangle.
+constexpr std::size_t kShown = 84;
 
 // T is the type of the positions.
 template <class T>
@@ -50,7 +51,7 @@ class Reader {
     std::string word = (after_end_ ? "end" : "") + in_lower_case(given);  // some write "end facet"
     after_end_ = word == "end";
     if (after_end_) return {};
-    return is_in_facet_ ? take_inside(word, given) : take_outside(word);
+    return is_in_facet_ ? take_inside(word, given) : take_outside(word, given);
   }
 
   // Of a normal, or of a corner.
@@ -62,15 +63,17 @@ class Reader {
     return {};
   }
 
-  Status take_outside(std::string_view word) {
-    if (word == "solid" || word == "endsolid") {
-      is_open_ = word == "solid";
+  // A word passed over could be a misspelt facet.
+  Status take_outside(std::string_view word, std::string_view given) {
+    if (word == (is_open_ ? "endsolid" : "solid")) {
+      is_open_ = !is_open_;
       is_name_ = true;
-    } else if (word == "facet") {
+    } else if (is_open_ && word == "facet") {
       is_in_facet_ = true;
       corners_ = 0;
-    } else if (word == "outer" || word == "vertex" || word == "endloop" || word == "endfacet") {
-      return failure(fmt::format("'{}' outside of a facet", word));
+    } else {
+      return failure(
+          fmt::format("'{}' instead of {}", given, is_open_ ? "'facet' or 'endsolid'" : "'solid'"));
     }
     return {};
   }
@@ -111,21 +114,19 @@ class Reader {
 
 }  // namespace
 
-Result<bool> import_text_stl(const std::filesystem::path& path, const ImportOptions& options,
-                             Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  const std::string_view start = stream->ahead();
-  const std::size_t word = std::min(start.find_first_not_of(" \t\r\n"), start.size());
-  if (!begins_with_solid(start.substr(word))) return false;
-  const Result<std::string> text = stream->take_rest();
-  if (!text.ok()) return text.error();
-
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    StlMesh<T> mesh(file, options, positions, out);
-    return Reader<T>(*text, file, mesh).read();
-  });
+bool is_text_stl(std::string_view start) {
+  const std::string_view shown = start.substr(0, kShown);
+  const std::size_t word = shown.find_first_not_of(" \t\r\n");
+  return word != std::string_view::npos && begins_with_solid(shown.substr(word)) &&
+         shown.find('\0') == std::string_view::npos;
 }
+
+template <class T>
+Status read_text_stl(std::string_view text, const std::string& file, StlMesh<T>& mesh) {
+  return Reader<T>(text, file, mesh).read();
+}
+
+template Status read_text_stl(std::string_view, const std::string&, StlMesh<float>&);
+template Status read_text_stl(std::string_view, const std::string&, StlMesh<double>&);
 
 }  // namespace boxtree::cooker

@@ -3,16 +3,20 @@
 // passes over facets that lack their first line.
 #pragma once
 
-#include <filesystem>
+#include <string>
+#include <string_view>
 
-#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/stl_mesh.h>
 
 namespace boxtree::cooker {
 
-/// Reads `path` into `out` if it is a text that begins with "solid", in any case; false if not, and
-/// nothing has changed. Every facet has three corners of three numbers and is closed, and so is the
-/// last solid. Errors as for import_mesh.
-Result<bool> import_text_stl(const std::filesystem::path& path, const ImportOptions& options,
-                             Imported& out);
+/// Whether a file that begins with `start` is to be read as a text.
+[[nodiscard]] bool is_text_stl(std::string_view start);
+
+/// Reads `text`, all of the file named, into `mesh`. Every facet has three corners of three numbers
+/// and is closed, and so are the solids; between them is nothing else. Errors as for import_mesh,
+/// naming the line.
+template <class T>
+Status read_text_stl(std::string_view text, const std::string& file, StlMesh<T>& mesh);
 
 }  // namespace boxtree::cooker

@@ -6,7 +6,6 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/flatten.h>
 #include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
@@ -51,6 +50,12 @@ bool begins_with_solid(std::string_view text) {
   return in_lower_case(text.substr(0, 5)) == "solid";
 }
 
+std::string_view without_blanks(std::string_view text) {
+  const std::size_t first = text.find_first_not_of(" \t");
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(" \t") + 1 - first);
+}
+
 std::string in_lower_case(std::string_view word) {
   std::string lower(word);
   for (char& c : lower) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
@@ -65,6 +70,10 @@ Result<std::string_view> text_of(std::string_view file) {
   return Error{Errc::kImportFailed,
                fmt::format("line {}: a zero byte: no text, or one in UTF-16",
                            std::count(before.begin(), before.end(), '\n') + 1)};
+}
+
+bool has_open_end(std::string_view text) {
+  return !text.empty() && text.back() != '\n' && text.back() != '\r';
 }
 
 std::string_view take_line(std::string_view& rest) {
@@ -118,10 +127,6 @@ std::string_view find_no_number(std::span<const std::string_view> tokens) {
 
 std::optional<Eigen::Vector3d> read_position(const VertexWords& words, Precision precision) {
   return precision == Precision::kF32 ? position_as<float>(words) : position_as<double>(words);
-}
-
-std::string marker_line(std::size_t fault) {
-  return fmt::format("v nan inf {}\n", static_cast<long>(KnownFaults::marker(fault).z));
 }
 
 bool has_extension(const std::filesystem::path& path, std::string_view extension) {

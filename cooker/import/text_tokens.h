@@ -24,11 +24,17 @@ using Tokens = std::vector<std::string_view>;
 /// there are zeros before.
 Result<std::string_view> text_of(std::string_view file);
 
+/// Whether the last line of a text has no end: a file that was cut there looks the same.
+[[nodiscard]] bool has_open_end(std::string_view text);
+
 /// The words of `text`, between spaces, tabs and line ends.
 void split_tokens(std::string_view text, Tokens& tokens);
 
 /// Whether a text begins with the word of an STL file, in any case.
 [[nodiscard]] bool begins_with_solid(std::string_view text);
+
+/// `text` without blanks (spaces, tabs) before and behind.
+[[nodiscard]] std::string_view without_blanks(std::string_view text);
 
 /// `word` with letters A to Z in lower case.
 [[nodiscard]] std::string in_lower_case(std::string_view word);
@@ -55,9 +61,6 @@ inline constexpr VertexWords kOrigin = {"0", "0", "0", "1"};
 /// The position in numbers and arithmetic of `precision`; nothing if a word is no number.
 [[nodiscard]] std::optional<Eigen::Vector3d> read_position(const VertexWords& words,
                                                            Precision precision);
-
-/// The OBJ vertex that stands for a fault (flatten.h), as a line.
-[[nodiscard]] std::string marker_line(std::size_t fault);
 
 /// Whether `path` ends in a dot and `extension` (lower case), in any case.
 [[nodiscard]] bool has_extension(const std::filesystem::path& path, std::string_view extension);

@@ -3,7 +3,7 @@
 """Holds import against the second reader (read_mesh.py) on generated files and on those of a
 folder: faces in their order, positions to the bit, materials, counts, and what is refused.
 
-    import_oracle_test.py BOXTREE_IMPORT [FOLDER] [--files N] [--seed S] [--cuts SHARE] [--strict]
+    import_oracle_test.py BOXTREE_IMPORT [FOLDER] [--files N] [--seed S] [--cuts SHARE] [--notes]
 
 Exits with 1 on a difference; the files are kept then. A file on which the formats and import.h are
 silent (a note of the second reader) may be refused; read, it must be as the second reader says.
@@ -34,12 +34,6 @@ UNSPECIFIED = {
     "a weight other than 1",
     "f with fewer than three corners",
     "odd numbers behind a position",
-}
-
-# Defects of import that are known: differences of files with these notes are counted, and no more.
-KNOWN = {
-    "a vertex over several lines",  # OFF: each line is taken for a vertex
-    "several things in one line",  # OFF: likewise
 }
 
 
@@ -185,32 +179,15 @@ class Ours:
         return None if name is None or UNNAMED.match(name) else name
 
 
-def ulps_apart(a, b):
-    """Steps between two f32 of one sign."""
-    return abs((a & 0x7FFFFFFF) - (b & 0x7FFFFFFF)) if a >> 31 == b >> 31 else a | b
-
-
 class Comparison:
     def __init__(self, taken, ours, precision):
         self.taken, self.ours, self.precision = taken, ours, precision
-        self.is_loose = taken.mesh.is_loose
-
-    def same_corner(self, a, b):
-        if not self.is_loose or a == b:
-            return a == b
-        if self.precision == "f64":
-            a, b = ([read_mesh.f32_bits(read_mesh.f64_of_bits(x)) for x in p] for p in (a, b))
-        # Of a subnormal number the last place is larger than what it is rounded by before.
-        return all(ulps_apart(x, y) <= (1 if y & 0x7F800000 else 8) for x, y in zip(a, b))
-
-    def same_face(self, theirs, ours):
-        return len(theirs) == len(ours) and all(map(self.same_corner, theirs, ours))
 
     def polygon_difference(self, polygon, pieces):
         """Why pieces of one face id are not this polygon; None if they are."""
         corners = self.taken.corners(polygon)
         if len(corners) == 3 or len(pieces) == 1 and len(pieces[0]) == 4:
-            if len(pieces) != 1 or not self.same_face(corners, pieces[0]):
+            if len(pieces) != 1 or list(corners) != list(pieces[0]):
                 return "another face"
             if len(corners) == 4 and quad_kind(points_of(corners, self.precision)) == "split":
                 return "a quad that is not planar or not convex was kept"
@@ -234,37 +211,18 @@ class Comparison:
         return self.polygon_difference(polygon, pieces) is None
 
     def faces(self):
-        """Faces in source order; a file of several parts may have these one after the other, faces
-        of each in source order."""
+        """Faces in source order."""
         groups = self.ours.by_id()
         theirs = self.taken.polygons
         ids = [face_id for face_id, _ in groups]
         expect(ids == sorted(set(ids)), "face ids do not ascend")
         expect(len(groups) == len(theirs), f"{len(groups)} faces, not {len(theirs)}")
-        wrong = None
         for (our_id, pieces), (their_id, polygon) in zip(groups, theirs):
-            wrong = wrong or self.polygon_difference(polygon, pieces)
-            if our_id != their_id:
-                wrong = wrong or f"face id {our_id}, not {their_id}"
-            if wrong:
-                wrong += f", face {their_id}"
-                break
-        self.is_in_order = wrong is None
-        if wrong is None:
-            return [polygon for _, polygon in theirs]
-        parts = collections.OrderedDict()
-        for _, polygon in theirs:
-            parts.setdefault(polygon.part, collections.deque()).append(polygon)
-        expect(len(parts) > 1, wrong)
-        order, current = [], None
-        for face_id, pieces in groups:
-            candidates = [current] if current in parts else []
-            candidates += [part for part in parts if part != current]
-            current = next((part for part in candidates if parts[part] and self.same_polygon(
-                parts[part][0], pieces) and self.same_material(parts[part][0], face_id)), None)
-            expect(current is not None, f"{wrong}; nor is {face_id} the next face of any part")
-            order.append(parts[current].popleft())
-        return order
+            wrong = self.polygon_difference(polygon, pieces)
+            if wrong is None and our_id != their_id:
+                wrong = f"face id {our_id}, not {their_id}"
+            expect(wrong is None, f"{wrong}, face {their_id}")
+        return [polygon for _, polygon in theirs]
 
     def same_material(self, polygon, face_id):
         if {"a # in a name", "usemtl without a name"} & set(self.taken.notes):
@@ -275,17 +233,14 @@ class Comparison:
             theirs = None
         return ours == (None if theirs is None else theirs.encode("latin-1"))
 
-    def vertices(self, in_order):
+    def vertices(self):
+        """In the order of the file, each once, if a face uses them."""
         ours = self.ours.vertices
         expect(len(set(ours)) == len(ours), "vertices that are equal were not merged")
         used = {c for face in self.ours.faces for c in face[1:]}
         expect(used == set(range(len(ours))), "vertices that no face uses, or corners without one")
-        if self.is_loose or not in_order:
-            return
-        used_here = [c for _, polygon in self.taken.polygons for c in polygon.corners]
-        if self.ours.path.lower().endswith(".ply"):
-            used_here = sorted(set(used_here))
-        theirs = dict.fromkeys(self.taken.bits[c] for c in used_here)
+        used_here = {c for _, polygon in self.taken.polygons for c in polygon.corners}
+        theirs = dict.fromkeys(self.taken.bits[c] for c in sorted(used_here))
         expect(list(theirs) == ours, "vertices are not in their order")
 
     def counts(self, polygons):
@@ -294,11 +249,9 @@ class Comparison:
         kept = sum(len(face) == 5 for face in self.ours.faces)
         theirs = {"source_faces": len(mesh.polygons), "points_skipped": mesh.points,
                   "lines_skipped": mesh.lines, "empty_skipped": mesh.empty, "quads_kept": kept,
-                  "quads_split": sizes[4] - kept, "ngons_split": sizes[5]}
-        # Of OBJ and OFF assimp knows corners only; lines and points have some, too.
-        if not self.ours.path.lower().endswith((".obj", ".off")):
-            theirs["source_vertices"] = len(mesh.vertices)
-        if set(self.taken.notes) <= KNOWN:
+                  "quads_split": sizes[4] - kept, "ngons_split": sizes[5],
+                  "source_vertices": len(mesh.vertices)}
+        if not self.taken.notes:
             theirs["has_open_end"] = mesh.has_open_end
         for name, count in theirs.items():
             expect(ours[name] == count, f"{name}: {ours[name]}, not {count}")
@@ -311,13 +264,13 @@ class Comparison:
         for (face_id, _), polygon in zip(self.ours.by_id(), polygons):
             expect(self.same_material(polygon, face_id), f"face {face_id}: material "
                    f"{self.ours.material(face_id)}, not {polygon.material}")
-        self.vertices(self.is_in_order)
+        self.vertices()
         self.counts(polygons)
 
 
 AGREE, AGREE_REFUSED = "read alike", "refused"
 SILENT, SILENT_REFUSED = "read, noted", "refused, noted"
-DEFECT, DIFFERENT = "known defect", "DIFFERENT"
+DIFFERENT = "DIFFERENT"
 
 
 def compare(path, line, precision, skip_bad):
@@ -367,9 +320,6 @@ class Tally:
         if UNSPECIFIED & set(notes):
             self.add(path, SILENT, sorted(UNSPECIFIED & set(notes)))
             return
-        if KNOWN & set(notes):
-            self.add(path, DEFECT, sorted(KNOWN & set(notes)))
-            return
         self.add(path, DIFFERENT, ())
         self.differences.append((path, mode, what))
         if len(self.differences) <= 200 and path not in {at for at, _, _ in self.differences[:-1]}:
@@ -378,7 +328,7 @@ class Tally:
             shutil.copy(path, os.path.join(self.keep, "different"))
 
     def print(self, with_notes):
-        names = (AGREE, AGREE_REFUSED, SILENT, SILENT_REFUSED, DEFECT, DIFFERENT)
+        names = (AGREE, AGREE_REFUSED, SILENT, SILENT_REFUSED, DIFFERENT)
         print(f"{'':6}" + "".join(f"{name:>16}" for name in names))
         for extension, counts in sorted(self.outcomes.items()):
             print(f"{extension:6}" + "".join(f"{counts[name]:16}" for name in names))
@@ -541,10 +491,7 @@ def main():
     parser.add_argument("--seed", default="1")
     parser.add_argument("--cuts", type=float, default=0.2, help="share of all truncations [0.2]")
     parser.add_argument("--notes", action="store_true", help="print notes and how often")
-    parser.add_argument("--strict", action="store_true", help="known defects are differences, too")
     arguments = parser.parse_args()
-    if arguments.strict:
-        KNOWN.clear()
     keep = tempfile.mkdtemp(prefix="import_oracle")
     os.mkdir(os.path.join(keep, "different"))
     tally = Tally(keep)

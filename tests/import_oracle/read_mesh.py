@@ -122,10 +122,9 @@ class Polygon:
     """A face with three corners or more. Corners are vertex numbers from 0; out of range is said
     here, as a file may hold such a face and another code decides what becomes of it."""
 
-    def __init__(self, corners, material=None, part=None, is_malformed=False):
+    def __init__(self, corners, material=None, is_malformed=False):
         self.corners = corners
         self.material = material
-        self.part = part  # faces of one part keep their order; only OBJ has several
         self.is_malformed = is_malformed  # a corner is no number at all
 
 
@@ -137,8 +136,7 @@ class Mesh:
         self.polygons = []
         self.points = self.lines = self.empty = 0
         self.has_open_end = False
-        self.is_loose = False  # text STL: decimals may be a unit in the last place off
-        self.is_text_ply = False
+        self.is_single = False  # read as f32 in either precision: text STL
         self.notes = []
 
     def note(self, text):
@@ -191,7 +189,7 @@ def obj_statements(data, mesh):
     joined = ""
     lines = texts_of_lines(data)
     for at, line in enumerate(lines):
-        text, sharp, comment = line.partition("#")
+        text, sharp, _ = line.partition("#")
         if sharp and re.match(r"[ \t]*(%s)[ \t]" % "|".join(OBJ_NAMED), joined + text):
             mesh.note("a # in a name")
         if not sharp and text.endswith("\\"):
@@ -202,10 +200,10 @@ def obj_statements(data, mesh):
                 mesh.note("a backslash before the end of the file")
             joined += text[:-1] + " "
             continue
-        yield joined + text, sharp + comment
+        yield joined + text
         joined = ""
     if joined:
-        yield joined, ""
+        yield joined
 
 
 def obj_words(text, mesh):
@@ -221,9 +219,8 @@ class Obj:
     def __init__(self, data):
         self.mesh = Mesh()
         self.mesh.has_open_end = has_open_end(data)
-        self.texture_count = self.normal_count = 0
-        self.material = self.object = self.group = None
-        for text, self.comment in obj_statements(data, self.mesh):
+        self.material = None
+        for text in obj_statements(data, self.mesh):
             if text.strip(" \t"):
                 self.statement(text)
 
@@ -248,14 +245,6 @@ class Obj:
         elif keyword in OBJ_FREE_FORM or keyword in ("call", "csh"):
             mesh.note("free-form geometry or a call")
         elif keyword in OBJ_IGNORED:
-            self.texture_count += keyword == "vt"
-            self.normal_count += keyword == "vn"
-            if keyword == "o":
-                self.object, self.group = " ".join(values), None
-            elif keyword == "g":
-                self.group = " ".join(values)
-            if keyword not in OBJ_NAMED and self.comment:
-                mesh.note("a comment behind a statement that is not read")
             fewest = 3 if keyword == "vn" else 1
             if keyword in ("vt", "vn", "vp") and not (
                     fewest <= len(values) <= 3 and all(NUMBER.match(word) for word in values)):
@@ -285,37 +274,23 @@ class Obj:
             return word
         if parts[-1] == "" and len(parts) > 1:
             self.mesh.note("a slash at the end of a corner")
-        if any(part and part.lstrip("-") != str(abs(int(part))) for part in parts):
-            self.mesh.note("a vertex number of OBJ with a plus sign or leading zeros")
-        for part, count in zip(parts[1:], (self.texture_count, self.normal_count)):
-            if part and not (1 <= int(part) <= count or -count <= int(part) <= -1):
-                self.mesh.note("a normal or texture number out of range")
         number = int(parts[0])
         if number < 0:
             return number + len(self.mesh.vertices) if -number <= len(self.mesh.vertices) else -1
-        if number > len(self.mesh.vertices):
-            self.mesh.note("a face before its vertices, or out of range")
         return number - 1
 
     def face(self, values):
         corners = [self.reference(word) for word in values]
-        forms = {tuple(bool(part) for part in word.split("/")) for word in values}
-        if len(forms) > 1:
-            self.mesh.note("corners of several forms")
         if len(corners) < 3:
             self.mesh.note("f with fewer than three corners")
         malformed = any(isinstance(corner, str) for corner in corners)
         if malformed and len(corners) < 3:
             raise Refused(f"a face of {values}", (FAILED, OUT_OF_RANGE),
                           ["a damaged vertex or corner"])
-        self.mesh.add_face(corners, material=self.material, is_malformed=malformed,
-                           part=(self.object, self.group, self.material))
+        self.mesh.add_face(corners, material=self.material, is_malformed=malformed)
 
     def line_or_points(self, keyword, values):
         corners = [self.reference(word) for word in values]
-        if any(isinstance(corner, str) or not 0 <= corner < len(self.mesh.vertices)
-               for corner in corners) or len(corners) < (2 if keyword == "l" else 1):
-            self.mesh.note("an odd point or line")
         if keyword == "l":
             self.mesh.lines += max(0, len(corners) - 1)
         else:
@@ -323,16 +298,7 @@ class Obj:
 
 
 def read_obj(data):
-    mesh = Obj(data).mesh
-    late = "a face before its vertices, or out of range"
-    if late in mesh.notes and any(
-            isinstance(corner, int) and corner >= len(mesh.vertices)
-            for polygon in mesh.polygons for corner in polygon.corners):
-        mesh.notes.remove(late)
-    materials = [polygon.material for polygon in mesh.polygons]
-    if None in materials and (any(materials) or b"mtllib" in data):
-        mesh.note("a face before the first material")
-    return mesh
+    return Obj(data).mesh
 
 
 # --------------------------------------------------------------------------------------------------
@@ -371,9 +337,6 @@ class Ply:
             self.check_elements()
             if self.order is None:
                 self.mesh.has_open_end = has_open_end(data)
-                self.mesh.is_text_ply = True
-                if self.mesh.has_open_end:
-                    self.mesh.note("text of PLY without a last line end")
                 self.text_body()
             else:
                 self.binary_body()
@@ -399,29 +362,19 @@ class Ply:
         line, end = self.header_line(None)
         if line != "ply":
             raise Refused("no 'ply' at the start")
-        is_among = False  # a comment after an element or a property
         while True:
             line, _ = self.header_line(end)
             words = words_of(line)
+            if "\0" in line:
+                raise Refused("a zero byte in the header")
             if not words:
                 self.mesh.note("an empty line in the header")
-            elif words[0] == "end_header":
-                if words != ["end_header"] or line != "end_header":
-                    self.mesh.note("odd blanks in the header")
+            elif words == ["end_header"]:
                 break
-            elif words[0] in ("comment", "obj_info"):
-                is_among = bool(self.elements)
-            else:
-                if line != " ".join(words):
-                    self.mesh.note("odd blanks in the header")
-                if words[0] == "property" and is_among:
-                    self.mesh.note("a comment among properties")
-                is_among = False
+            elif words[0] not in ("comment", "obj_info"):
                 self.header_statement(words)
         if self.order == "?":
             raise Refused("no format in the header")
-        if self.order and end == b"\r":
-            self.mesh.note("a binary body after carriage returns")
 
     def header_statement(self, words):
         if words[0] == "format":
@@ -468,21 +421,11 @@ class Ply:
             self.mesh.note("two elements of one name")
         if not {"vertex", "face"} & set(names):
             raise Refused("neither vertices nor faces", (FAILED, NO_FACES))
-        if self.order is None and len(set(names) - {"vertex", "face"}) > 0:
-            self.mesh.note("text of an element besides vertices and faces")
         if "face" in names and "vertex" in names[names.index("face"):]:
             self.mesh.note("faces before vertices")
         if "tristrips" in names or "edge" in names or "material" in names:
             self.mesh.note("edges, strips or materials")
         for element in self.elements:
-            if self.order and element.name == "vertex" and any(
-                    p.count_kind for p in element.properties):
-                self.mesh.note("a binary body with lists in vertices")
-            if self.order is None and (
-                    any(p.count_kind for p in element.properties) and element.name != "face"
-                    or element.name == "vertex" and any(
-                        p.name in "xyz" and p.kind in "bBhH" for p in element.properties)):
-                self.mesh.note("text with lists or short coordinates in vertices")
             if element.name == "vertex":
                 self.axes = [element.find(axis) for axis in "xyz"]
                 if None in self.axes or any(
@@ -514,8 +457,6 @@ class Ply:
         for element in self.elements:
             for number in range(element.count if element.properties else 0):
                 while at < len(lines) and not words_of(lines[at]):
-                    if any(words_of(line) for line in lines[at:]):
-                        self.mesh.note("an empty line in the body")
                     at += 1
                 if at == len(lines):
                     raise Refused(f"the file ends at {element.name} {number} of {element.count}")
@@ -559,9 +500,6 @@ class Ply:
             self.mesh.note("a word where an integer is due")
             return word
         value = int(word)
-        limit = 1 << (8 * struct.calcsize("<" + p.kind))
-        if not (0 <= value < limit if p.kind.isupper() else -limit // 2 <= value < limit // 2):
-            self.mesh.note("an integer that its type cannot hold")
         if element.name == "face" and matters:
             return value
         return word  # -0 is an integer, too
@@ -643,9 +581,7 @@ class Words:
 class StlText(Words):
     def __init__(self, data):
         self.mesh = Mesh()
-        self.mesh.is_loose = True
-        if data[:1].isspace():
-            self.mesh.note("blanks before the text")
+        self.mesh.is_single = True
         # Every line is its words; names, which may hold keywords, end with their line.
         super().__init__([words_of(line) for line in texts_of_lines(data)])
         while self.peek() is not None:
@@ -660,8 +596,6 @@ class StlText(Words):
                 raise Refused(f"{word!r} instead of {keyword!r}", notes=[
                     "a word outside of facets" if keyword.endswith("solid") else
                     "a loop in an odd place" if is_loop else "a damaged facet"])
-            if word != keyword:
-                self.mesh.note("a keyword in capitals")
 
     def name(self):
         self.line, self.word = self.line + 1, 0
@@ -674,8 +608,6 @@ class StlText(Words):
             self.mesh.note("a word in a normal")
         elif not matters and not NUMBER.match(word):
             self.mesh.note("a normal that is not finite")
-        if re.search(r"\d{20}|\.\d{16}", word):
-            self.mesh.note("a number of many digits")
         return word
 
     def solid(self):
@@ -753,7 +685,6 @@ class Off(Words):
         if not found:
             if not re.match(r"\d+\Z", word, re.ASCII):
                 raise Refused(f"{word!r} is no header")
-            self.mesh.note("no header word")
             return
         self.next()
         self.has_texture, self.has_colour, self.has_normal, self.has_weight, any_dimension = (
@@ -771,17 +702,13 @@ class Off(Words):
         if re.match(r"[+-]?\d+\Z", (self.rest() or [""])[0], re.ASCII):
             self.next()
         else:
-            self.mesh.note("no count of edges in the line of counts")
             # By the format it may stand on the next line, alone.
             if self.peek() is not None and self.word == 0 and len(self.lines[self.line]) == 1 and (
                     INTEGER.match(self.peek())):
                 self.next()
-        if self.rest():
-            self.mesh.note("several things in one line")
 
     def vertex(self):
-        if self.peek() is not None and self.word != 0:
-            self.mesh.note("several things in one line")
+        self.peek()  # moves on to the line where it begins
         whole = 3 + self.has_weight + 3 * self.has_normal + 2 * self.has_texture
         is_alone = self.word == 0 and len(self.rest()) >= whole + 3 * self.has_colour
         words = [self.next() for _ in range(3 + self.has_weight)]
@@ -804,22 +731,16 @@ class Off(Words):
                 self.mesh.note("a word behind a vertex")
             self.word += len(rest)
         else:
-            self.mesh.note("a vertex over several lines")
             for _ in range(extra):
                 if not NUMBER.match(self.next()):
                     self.mesh.note("a word behind a vertex")
 
     def face(self):
-        if self.peek() is not None and self.word != 0:
-            self.mesh.note("several things in one line")
+        self.peek()
         count = self.count()
-        if count > len(self.rest()):
-            self.mesh.note("a face over several lines")
         corners = []
         for _ in range(count):
             word = self.next()
-            if word.startswith("+"):
-                self.mesh.note("a vertex number with a plus sign")
             corners.append(int(word) if INTEGER.match(word) else word)
         colour = self.rest() if self.word else []
         self.word += len(colour)
@@ -864,7 +785,7 @@ class Taken:
 
     def __init__(self, mesh, precision, skip_bad=False):
         to_bits = f32_bits if precision == "f32" else f64_bits
-        if mesh.is_loose:  # read as f32, in either precision
+        if mesh.is_single:
             to_bits = f32_bits if precision == "f32" else lambda number: f64_bits(
                 f32_of_bits(f32_bits(number)))
         infinity = 0x7F800000 if precision == "f32" else 0x7FF0000000000000
@@ -874,7 +795,6 @@ class Taken:
         is_finite = [all(bits & infinity != infinity for bits in vertex) for vertex in self.bits]
         self.polygons, self.skipped = [], []  # pairs of face id and polygon; face ids
         faults = set()
-        used = set()
         for face_id, polygon in enumerate(mesh.polygons):
             fault = self.fault(polygon, is_finite)
             faults |= fault
@@ -882,13 +802,8 @@ class Taken:
                 self.skipped.append(face_id)
             else:
                 self.polygons.append((face_id, polygon))
-            used.update(corner for corner in polygon.corners if isinstance(corner, int))
         if any(polygon.is_malformed for polygon in mesh.polygons):
             self.notes.append("a damaged vertex or corner")
-        if not all(is_finite[i] or i in used for i in range(len(is_finite))):
-            self.notes.append("a vertex that is not finite and belongs to no face")
-        if mesh.is_text_ply and not all(is_finite):
-            self.notes.append("text of PLY with a number that is not finite")
         if faults and not skip_bad:
             raise Refused("bad faces", faults, self.notes)
         if not self.polygons:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Our reader of binary PLY against assimp's, on the same bytes and on the same mesh as text.
+// Our reader of binary PLY against assimp's on the same bytes, and against the same mesh as text.
 #include <algorithm>
 #include <bit>
 #include <charconv>
@@ -7,6 +7,9 @@
 #include <functional>
 #include <limits>
 #include <random>
+
+#include <assimp/Importer.hpp>
+#include <assimp/scene.h>
 
 #include "temp_files.h"
 
@@ -22,8 +25,6 @@ struct PlyText {
   std::string length = "uchar";
   std::string index = "int";
   bool extras = false;  // other elements and properties around what we want
-  // Makes our reader leave the file to assimp, to which it means nothing.
-  bool for_assimp = false;
   std::vector<std::array<double, 3>> vertices;
   std::vector<std::vector<std::int64_t>> faces;
 
@@ -70,7 +71,6 @@ std::string PlyText::write() const {
   if (extras) out += "property float quality\nproperty list uchar short other\n";
   out += "property list " + length + " " + index + " vertex_indices\n";
   if (extras) out += "property uchar flags\nelement edge 1\nproperty list int double ends\n";
-  if (for_assimp) out += "element face 0\nproperty list uchar int vertex_indices\n";
   out += "end_header\n";
   const auto end_line = [&] { out += format == "ascii" ? "\n" : ""; };
   for (int i = 0; extras && i < 2; ++i) {
@@ -155,24 +155,87 @@ void expect_same(const Imported& got, const Imported& expected) {
   }
 }
 
+// Assimp's polygons, those of three corners and more, in their order.
+std::vector<std::vector<Eigen::Vector3d>> polygons_of_assimp(const std::filesystem::path& path) {
+  std::vector<std::vector<Eigen::Vector3d>> polygons;
+  Assimp::Importer importer;
+  const aiScene* const scene = importer.ReadFile(path.string(), 0);
+  if (scene == nullptr || scene->mNumMeshes != 1) return polygons;
+  const aiMesh& mesh = *scene->mMeshes[0];
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    std::vector<Eigen::Vector3d> polygon;
+    for (unsigned k = 0; k < mesh.mFaces[i].mNumIndices; ++k) {
+      const aiVector3D& at = mesh.mVertices[mesh.mFaces[i].mIndices[k]];
+      polygon.emplace_back(at.x, at.y, at.z);
+    }
+    if (polygon.size() >= 3) polygons.push_back(polygon);
+  }
+  return polygons;
+}
+
+// Triangles and quads corner by corner; what was split has corners of its polygon.
+void expect_faces(const SourceMesh& mesh,
+                  const std::vector<std::vector<Eigen::Vector3d>>& expected) {
+  std::vector<std::size_t> pieces(expected.size());
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    ASSERT_LT(mesh.face_id(i), expected.size());
+    const auto& polygon = expected[mesh.face_id(i)];
+    const std::size_t corners = mesh.faces[i].is_quad() ? 4 : 3;
+    const bool is_whole = corners == polygon.size();
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Eigen::Vector3d corner = mesh.positions[mesh.faces[i].corner[k]];
+      if (is_whole) {
+        ASSERT_EQ(corner, polygon[k]) << "face " << i;
+      } else {
+        ASSERT_NE(std::find(polygon.begin(), polygon.end(), corner), polygon.end()) << i;
+      }
+    }
+    pieces[mesh.face_id(i)] += is_whole ? polygon.size() - 2 : 1;
+  }
+  for (std::size_t id = 0; id < expected.size(); ++id) {
+    EXPECT_EQ(pieces[id], expected[id].size() - 2) << "face id " << id;
+  }
+}
+
 TEST_F(BinaryPlyTest, ReadsWhatAssimpReads) {
   for (unsigned seed = 0; seed < 24; ++seed) {
     SCOPED_TRACE(seed);
-    const ImportOptions options{.skip_bad = seed % 2 == 1};
-    PlyText ply = random_mesh(seed, seed % 2 == 1);
+    PlyText ply = random_mesh(seed, false);
     ply.extras = seed % 3 == 1;
     ply.format = seed % 4 < 2 ? "binary_little_endian" : "binary_big_endian";
     ply.coordinate = seed % 5 == 4 ? "double" : "float";
     ply.length = std::array{"uchar", "char", "short", "ushort", "int", "uint"}[seed % 6];
     ply.index = std::array{"int", "uint", "short", "ushort"}[seed / 6];
-    const Imported got = load("ours.ply", ply.write(), options);
+    const std::string file = ply.write();
+    const Imported got = load("a.ply", file);
     expect_invariants(got);
-    ply.for_assimp = true;
-    expect_same(got, load("assimp.ply", ply.write(), options));
-    if (options.skip_bad) continue;  // as text, -1 and infinities are spelled in many ways
-    ply.for_assimp = false;
+    expect_faces(got.mesh, polygons_of_assimp(write("a.ply", file)));
     ply.format = "ascii";
-    expect_same(got, load("text.ply", ply.write(), options));
+    expect_same(got, load("text.ply", ply.write()));
+  }
+}
+
+TEST_F(BinaryPlyTest, LeavesOutBadFaces) {
+  for (unsigned seed = 0; seed < 12; ++seed) {
+    SCOPED_TRACE(seed);
+    PlyText ply = random_mesh(seed, true);
+    ply.extras = seed % 3 == 1;
+    std::vector<std::uint32_t> bad;
+    std::uint32_t id = 0;
+    for (const auto& face : ply.faces) {
+      if (face.size() < 3) continue;
+      const bool is_bad = std::any_of(face.begin(), face.end(), [&](std::int64_t vertex) {
+        return vertex == 7 || vertex == 9 || vertex < 0 || vertex >= std::ssize(ply.vertices);
+      });
+      if (is_bad) bad.push_back(id);
+      ++id;
+    }
+    const Imported got = load("a.ply", ply.write(), {.skip_bad = true});
+    expect_invariants(got);
+    std::vector<std::uint32_t> skipped;
+    for (const SkippedFace& face : got.report.skipped) skipped.push_back(face.face_id);
+    EXPECT_EQ(skipped, bad);
+    EXPECT_EQ(got.report.source_faces, id);
   }
 }
 
@@ -183,11 +246,9 @@ TEST_F(BinaryPlyTest, AllTypesOfCoordinates) {
     ply.vertices = {{0, 0, 0}, {100, 0, 0}, {0, 50, 1}};
     ply.faces = {{0, 1, 2}};
     ply.coordinate = type;
-    const Imported got = load("ours.ply", ply.write());
+    const Imported got = load("a.ply", ply.write());
     EXPECT_EQ(got.mesh.positions[1], Eigen::Vector3d(100, 0, 0));
     EXPECT_EQ(got.mesh.positions[2], Eigen::Vector3d(0, 50, 1));
-    ply.for_assimp = true;
-    expect_same(got, load("assimp.ply", ply.write()));
   }
 }
 
@@ -275,19 +336,43 @@ TEST_F(BinaryPlyTest, CountsThatCannotBe) {
   }
 }
 
-TEST_F(BinaryPlyTest, WhatItLeavesToAssimp) {
-  PlyText ply;
-  ply.vertices = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
-  ply.faces = {{0, 1, 2}};
-  const std::string file = ply.write();
-  const auto with = [&](std::string_view from, std::string_view to) {
-    std::string changed = file;
-    changed.replace(changed.find(from), from.size(), to);
-    return changed;
+// Two strips of one list, the second of them open: as Stanford's files have them.
+TEST_F(BinaryPlyTest, Strips) {
+  const std::vector<std::int32_t> strips = {0, 1, 2, 3, 4, -1, -1, 4, 3, 1, -1, 2, 0};
+  std::string ply =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 5\nproperty float x\n"
+      "property float y\nproperty float z\nelement tristrips 1\n"
+      "property list int int vertex_indices\nend_header\n";
+  std::string text = ply;
+  text.replace(text.find("binary_little_endian"), 20, "ascii");
+  const auto put = [&](auto value) {
+    ply.append(reinterpret_cast<const char*>(&value), sizeof(value));
+    text += std::to_string(value) + " ";
   };
-  EXPECT_EQ(load("a.ply", with("ply", "PLY")).mesh.faces.size(), 1u);
-  EXPECT_EQ(fail("b.ply", with("binary_little_endian", "binary")).code, Errc::kImportFailed);
-  EXPECT_EQ(fail("c.ply", with("vertex_indices", "corners")).code, Errc::kNoFaces);
+  for (const std::array<float, 3>& v : std::initializer_list<std::array<float, 3>>{
+           {0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0, 2, 1}}) {
+    for (const float x : v) put(x);
+    text += '\n';
+  }
+  put(static_cast<std::int32_t>(strips.size()));
+  for (const std::int32_t vertex : strips) put(vertex);
+  text += '\n';
+  const Imported got = load("a.ply", ply);
+  expect_invariants(got);
+  expect_same(got, load("text.ply", text));
+  const std::vector<std::array<std::uint32_t, 3>> expected = {
+      {0, 1, 2}, {2, 1, 3}, {2, 3, 4}, {4, 3, 1}};
+  ASSERT_EQ(got.mesh.faces.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(got.mesh.faces[i].corner[k], expected[i][k]);
+  }
+  EXPECT_EQ(got.report.lines_skipped, 1u);
+  const std::size_t last = text.rfind("2 0 ");
+  const Error error = fail("b.ply", text.replace(last, 3, "2 9 0"));
+  EXPECT_TRUE(has(error.detail, "'tristrips' 0 has 15 words; its properties take 14"));
+  std::string wrong = ply;
+  wrong[wrong.size() - 4 * 4] = 77;
+  EXPECT_EQ(fail("c.ply", wrong).code, Errc::kMeshIndexOutOfRange);
 }
 
 }  // namespace

@@ -120,7 +120,7 @@ TEST_F(BinaryStlTest, LengthMustFitTheCount) {
   std::string huge = file;
   std::memset(huge.data() + 80, 0xff, 4);
   EXPECT_TRUE(has(fail("a.stl", huge).detail, "4294967295 triangles take 214748364834 bytes"));
-  EXPECT_EQ(fail("a.stl", binary({})).code, Errc::kImportFailed);
+  EXPECT_EQ(fail("a.stl", binary({})).code, Errc::kNoFaces);
 }
 
 }  // namespace

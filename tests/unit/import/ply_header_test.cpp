@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include <string>
+#include <utility>
+
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/ply_header.h>
+#include <boxtree/cooker/import/ply_layout.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -13,8 +16,8 @@ constexpr std::string_view kHeader =
 
 TEST(PlyHeader, ElementsAndProperties) {
   const auto header = read_ply_header(kHeader);
-  ASSERT_TRUE(header);
-  EXPECT_TRUE(header->is_plain);
+  ASSERT_TRUE(header.ok());
+  EXPECT_EQ(header->lines, 12u);
   EXPECT_EQ(header->form, PlyHeader::Form::kBigEndian);
   EXPECT_EQ(kHeader.substr(header->bytes), "body");
   ASSERT_EQ(header->elements.size(), 2u);
@@ -32,34 +35,96 @@ TEST(PlyHeader, ElementsAndProperties) {
   EXPECT_EQ(face.properties[0].type, PlyType::kInt32);
 }
 
-TEST(PlyHeader, WhatItDoesNotKnow) {
-  EXPECT_FALSE(read_ply_header("ply\nformat ascii 1.0\nelement vertex 3\n"));
-  EXPECT_FALSE(read_ply_header("ply\nformat ascii 1.0\nelement vertex\nend_header\n"));
-  EXPECT_FALSE(read_ply_header("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n"));
-  EXPECT_FALSE(read_ply_header(""));
-  EXPECT_FALSE(read_ply_header("ply\nend\nformat ascii 1.0\nend_header\n")->is_plain);
-  EXPECT_FALSE(read_ply_header("plz\nformat ascii 1.0\nend_header\n")->is_plain);
-  EXPECT_FALSE(read_ply_header("ply\nformat binary 1.0\nend_header\n")->is_plain);
-  const auto odd =
-      read_ply_header("ply\nformat ascii 1.0\nelement vertex 1\nproperty half x\nend_header\n");
-  ASSERT_TRUE(odd);
-  EXPECT_FALSE(odd->elements[0].is_understood);
-  for (const char* list : {"list", "list uchar", "list uchar int", "list uchar half x", "float"}) {
-    const auto cut = read_ply_header("ply\nformat ascii 1.0\nelement face 1\nproperty " +
-                                     std::string(list) + "\nend_header\n");
-    ASSERT_TRUE(cut);
-    EXPECT_FALSE(cut->elements[0].is_understood) << list;
+// What is wrong with a header that has `lines` behind the format.
+std::string wrong_with(const std::string& lines) {
+  const auto header = read_ply_header("ply\nformat ascii 1.0\n" + lines + "end_header\n");
+  return header.ok() ? "nothing" : header.error().detail;
+}
+
+TEST(PlyHeader, WhatIsNoHeader) {
+  for (const char* file : {"", "ply", "PLY\nformat ascii 1.0\nend_header\n", "end_header\n",
+                           "plz\nformat ascii 1.0\nend_header\n"}) {
+    const auto header = read_ply_header(file);
+    ASSERT_FALSE(header.ok()) << file;
+    EXPECT_EQ(header.error().code, Errc::kImportFailed);
+    EXPECT_EQ(header.error().detail, "no PLY file: its first line is not 'ply'") << file;
+  }
+  for (const char* file :
+       {"ply\n", "ply\nformat ascii 1.0\nend_header", "ply\ncomment end_header\n",
+        "ply\nformat ascii 1.0\nelement vertex 3\n"}) {
+    const auto header = read_ply_header(file);
+    ASSERT_FALSE(header.ok()) << file;
+    EXPECT_NE(header.error().detail.find("no 'end_header'"), std::string::npos) << file;
+  }
+  EXPECT_EQ(read_ply_header("ply\ncomment none\nend_header\n").error().detail,
+            "line 3: the header ends without a 'format'");
+  EXPECT_EQ(read_ply_header("ply\nformat binary 1.0\nend_header\n").error().detail,
+            "line 2: one 'format' is expected: ascii, binary_little_endian or binary_big_endian");
+  EXPECT_TRUE(read_ply_header("ply\n\ncomment first\nformat ascii 1.0\n end_header \nx").ok());
+}
+
+TEST(PlyHeader, StatementsThatCannotBeRead) {
+  EXPECT_EQ(wrong_with(""), "nothing");
+  EXPECT_EQ(wrong_with("format ascii 1.0\n").substr(0, 20), "line 3: one 'format'");
+  EXPECT_EQ(wrong_with("propetry float x\n"),
+            "line 3: no statement of a PLY header begins with \"propetry\"");
+  for (const char* element :
+       {"element", "element vertex", "element vertex -1", "element vertex 1.5",
+        "element vertex 3 4", "element vertex 99999999999999999999"}) {
+    EXPECT_EQ(wrong_with(std::string(element) + "\n"),
+              "line 3: 'element' is to be followed by a name and a count");
+  }
+  EXPECT_EQ(wrong_with("property float x\n"), "line 3: a property before the first element");
+  const auto property = [](const std::string& text) {
+    return wrong_with("element face 1\nproperty " + text + "\n");
+  };
+  EXPECT_EQ(property("float x"), "nothing");
+  EXPECT_EQ(property("half x"), "line 4: PLY has no type \"half\"");
+  EXPECT_EQ(property("list uchar half x"), "line 4: PLY has no type \"half\"");
+  EXPECT_EQ(property("list byte int x"), "line 4: PLY has no type \"byte\"");
+  EXPECT_EQ(property("list float int x"),
+            "line 4: the length of a list is to be an integer, not \"float\"");
+  for (const char* cut : {"", "float", "float x y", "list", "list uchar", "list uchar int"}) {
+    EXPECT_EQ(property(cut).substr(0, 25), "line 4: 'property' is to ") << cut;
   }
 }
 
-TEST(PlyHeader, HasAnEnd) {
-  EXPECT_TRUE(has_ply_header_end(kHeader));
-  EXPECT_TRUE(has_ply_header_end("ply\r\nend_header\r"));
-  EXPECT_TRUE(has_ply_header_end("ply\ncomment end_header of\n end_header \nbody"));
-  for (const char* file : {"", "ply\n", "ply\nend_header", "end_header\n", "ply\nend_headers\n",
-                           "ply\ncomment end_header\n"}) {
-    EXPECT_FALSE(has_ply_header_end(file)) << file;
-  }
+// What is wrong with a file of these elements.
+std::string wrong_parts(const std::string& elements) {
+  PlyLayout layout;
+  Result<PlyHeader> header = read_ply_header("ply\nformat ascii 1.0\n" + elements + "end_header\n");
+  EXPECT_TRUE(header.ok());
+  layout.header = std::move(*header);
+  const Status status = find_ply_parts(layout);
+  return status.ok() ? "nothing" : status.error().message();
+}
+
+TEST(PlyHeader, ElementsThatAreNoMesh) {
+  const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+  const std::string vertex = "element vertex 3\n" + xyz;
+  const std::string list = "property list uchar int vertex_indices\n";
+  const std::string face = "element face 1\n" + list;
+  const auto expect = [](const std::string& elements, std::string_view why) {
+    const std::string wrong = wrong_parts(elements);
+    EXPECT_NE(wrong.find(why), std::string::npos) << wrong;
+  };
+  expect(vertex + face, "nothing");
+  expect(vertex + "element tristrips 1\n" + list, "nothing");
+  expect(vertex + "element extra 1\nproperty int x\n" + face, "nothing");
+  expect(vertex, "no faces");
+  expect(vertex + "element face 0\n", "no faces");
+  expect(face, "no element 'vertex'");
+  expect(face + vertex, "'face' comes before 'vertex'");
+  expect(vertex + face + face, "two elements 'face'");
+  expect(vertex + vertex + face, "two elements 'vertex'");
+  expect(vertex + "element face 1\nproperty list uchar int corners\n", "no 'vertex_indices'");
+  expect(vertex + face + "property list uchar int vertex_index\n", "one list of integers");
+  expect(vertex + "element face 1\nproperty int vertex_index\n", "one list of integers");
+  expect(vertex + "element face 1\nproperty list int float vertex_index\n", "one list of integers");
+  expect(vertex + "property double y\n" + face, "'y' twice");
+  expect("element vertex 3\nproperty float x\nproperty float y\n" + face, "no 'z'");
+  expect("element vertex 3\nproperty list int float x\nproperty float y\nproperty float z\n" + face,
+         "as a list");
 }
 
 TEST(PlyHeader, Values) {

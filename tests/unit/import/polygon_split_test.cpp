@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <random>
@@ -8,7 +9,9 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include <boxtree/cooker/import/polygon_normal.h>
 #include <boxtree/cooker/import/polygon_split.h>
+#include <boxtree/runtime/primitive/orientation.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -284,6 +287,78 @@ TEST(PolygonSplit, LongLinesAreSplitToo) {
     }
     EXPECT_EQ(std::count(is_there.begin(), is_there.end(), false), 0);
   }
+}
+
+// Found by tests/import_oracle: two simple polygons that look along x; the sums of products along z
+// have terms of 1e72 and 1e65 that leave nothing of the rest.
+TEST(PolygonSplit, SizesOfAllFloatsBesideEachOther) {
+  const Polygon polygons[] = {
+      {{-1.761108664929747e+19, 9.999999680285692e+37, -4.86989118874583e+16},
+       {5.0, -7.698565607184826e-39, 1.0},
+       {-5.142526717195398e+34, 1.5046851810486649e+19, 0.0},
+       {1.9373735996430618e-39, 4.8939395983588495e-39, 9.688619621295715e-40},
+       {5.0, -3.42867206200026e-05, -0.0}},
+      {{1e+23, 1e+23, 9.486848911703125e+42},
+       {9.586399684720747e-07, 0.0, 1000.0},
+       {-6.012546416333867e-39, 6274184081.974787, -378549678822.0396},
+       {1.0, 3.4028235677973366e+38, -7.5},
+       {-0.0, 261.7002179325145, 25605695430.0}}};
+  for (const Polygon& polygon : polygons) {
+    EXPECT_EQ(dominant_axis(polygon_normal(polygon)), 0);
+    PolygonSplitter splitter;
+    const auto triangles = splitter.split(polygon);
+    expect_whole(polygon, triangles);
+    // Seen along x all turn as the polygon does: counter-clockwise.
+    for (const auto& t : triangles) {
+      const auto seen = [&](std::uint32_t i) {
+        return Eigen::Vector2d(polygon[i][1], polygon[i][2]);
+      };
+      EXPECT_GE(orient2d(seen(t[0]), seen(t[1]), seen(t[2])), 0);
+    }
+  }
+}
+
+// Against sums of 128 bits: coordinates are multiples of 2^-20 up to 2^33.
+TEST(PolygonNormal, AgainstLongIntegers) {
+  __extension__ using Long = __int128;
+  std::mt19937 random(5);
+  std::size_t misled = 0;  // polygons of which doubles alone say something else
+  for (int i = 0; i < 50'000; ++i) {
+    Polygon polygon(3 + random() % 6);
+    // Along a line, but for one unit here and there; every other one anywhere.
+    const auto long_number = [&random] {
+      return static_cast<double>((std::uint64_t{random()} << 17 | random() >> 15)) * 0x1p-20;
+    };
+    const Vector3d along(long_number(), long_number(), long_number());
+    for (Vector3d& corner : polygon) {
+      corner = along * static_cast<double>(random() % 15);
+      corner[static_cast<int>(random() % 3)] +=
+          (random() % 3 - 1.0) * (i % 2 == 0 ? 0x1p-20 : 0x1p20);
+    }
+    std::array<double, 3> exact{};
+    Vector3d plain = Vector3d::Zero();
+    for (int axis = 0; axis < 3; ++axis) {
+      const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+      const auto units = [](double x) { return static_cast<Long>(std::ldexp(x, 20)); };
+      Long sum = 0;
+      for (std::size_t k = 0; k < polygon.size(); ++k) {
+        const Vector3d &a = polygon[k], &b = polygon[(k + 1) % polygon.size()];
+        sum += units(a[u]) * units(b[v]) - units(a[v]) * units(b[u]);
+        plain[axis] += a[u] * b[v] - a[v] * b[u];
+      }
+      exact[static_cast<std::size_t>(axis)] = static_cast<double>(sum);
+    }
+    const double largest = std::max({std::abs(exact[0]), std::abs(exact[1]), std::abs(exact[2])});
+    const auto is_right = [&](const Vector3d& normal) {
+      const int axis = dominant_axis(normal);
+      const double there = exact[static_cast<std::size_t>(axis)];
+      return 2 * std::abs(there) >= largest && (normal[axis] > 0) == (there > 0) &&
+             (normal[axis] < 0) == (there < 0);
+    };
+    ASSERT_TRUE(is_right(polygon_normal(polygon))) << i;
+    misled += is_right(plain) ? 0u : 1u;
+  }
+  EXPECT_GT(misled, 10u);
 }
 
 TEST(CornerSet, FindsTheNextOneAround) {

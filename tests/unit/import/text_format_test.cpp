@@ -215,7 +215,20 @@ TEST_F(TextFormatTest, NumbersOfTextStlMayHaveAnyDigits) {
                             " 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
   expect_triangle("a.stl", facet + "endsolid x\n", corners_);
   EXPECT_TRUE(has(fail("b.stl", "solid x\nouter loop\nendloop\nendsolid\n").detail,
-                  "'outer' outside of a facet"));
+                  "line 2: 'outer' instead of 'facet' or 'endsolid'"));
+}
+
+TEST_F(TextFormatTest, NothingStandsBetweenFacetsOfStl) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+      "endfacet\n";
+  const auto refused = [&](const std::string& text, const char* why) {
+    EXPECT_TRUE(has(fail("a.stl", text).detail, why));
+  };
+  refused("solid x\n" + facet + "fcaet\nendsolid x\n", "'fcaet' instead of 'facet' or 'endsolid'");
+  refused("solid x\n" + facet + "solid y\n" + facet + "endsolid\n", "'solid' instead of 'facet'");
+  refused("solid x\nendsolid x\n" + facet, "'facet' instead of 'solid'");
+  expect_triangle("b.stl", " \nsolid\n" + facet + "end solid\nsolid facet\nendsolid\n", corners_);
 }
 
 TEST_F(TextFormatTest, ZeroBytesAreNoText) {
@@ -227,9 +240,45 @@ TEST_F(TextFormatTest, ZeroBytesAreNoText) {
 
 TEST_F(TextFormatTest, VerticesOfOffHaveAllTheirNumbers) {
   const std::string faces = "3 0 1 2\n";
+  // The second vertex takes its normal and texture from the lines that follow.
   EXPECT_TRUE(
       has(fail("a.off", "STNOFF\n3 1 0\n0 0 0 0 0 1 0 0\n1 0 0\n0 1 0 0 0 1 0 0\n" + faces).detail,
-          "line 4: a vertex of 3 numbers; it has 8"));
+          "the file ends within a vertex"));
+  EXPECT_TRUE(has(fail("b.off", "OFF\n3 1 0\n0 0 0 x\n1 0 0\n0 1 0\n" + faces).detail,
+                  "line 3: 'x' is no number"));
+}
+
+TEST_F(TextFormatTest, LinesOfOffMeanNothingButBehindColors) {
+  expect_triangle("a.off", "OFF 3\n1 0 0 0 0 1\n0 0 0 1 0\n3\n0 1\n2 0.5 0.5 0.5\n", corners_);
+  expect_triangle("b.off", "COFF\n3 1\n0 0 0 1 0 0\n1 0 0 1 0 0\n0 1 0 1 0 0\n3 0 1 2", corners_);
+  expect_triangle("c.off", "COFF\n3 1\n\n0 0 0 1 0\n0 1 1 0 0 1 0 0 1\n0 1 0 1 0 0 1\n3 0 1 2\n",
+                  corners_);
+  EXPECT_TRUE(has(fail("d.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 red\n").detail,
+                  "line 6: 'red' behind a face is no number of a color"));
+  const Error none = fail("e.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 1 1 1\n");
+  EXPECT_EQ(none.code, Errc::kNoFaces);
+  EXPECT_TRUE(has(none.detail, "1 faces without corners"));
+}
+
+TEST_F(TextFormatTest, CornersOfObjHaveThreeNumbersAtMost) {
+  for (const char* corner : {"1/1/1/1", "+-1", "1/x", "1//2/"}) {
+    const Error error = fail("a.obj", kVertices + "f " + corner + " 2 3\n");
+    EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange) << corner;
+    EXPECT_TRUE(has(error.detail, "corner 0 (line 4) names vertex '" + std::string(corner) + "'"));
+  }
+}
+
+// Objects and groups that are taken up again do not change the order of faces.
+TEST_F(TextFormatTest, FacesOfObjKeepTheirOrder) {
+  const Imported got = load("a.obj", kVertices + "v 0 0 1\no a\nf 1 2 3\no b\nf 1 2 4\no a\n" +
+                                         "usemtl x\nf 1 3 4\ng b\nf 4 3 2\n");
+  ASSERT_EQ(got.mesh.faces.size(), 4u);
+  const std::array<std::array<std::uint32_t, 3>, 4> expected = {
+      {{0, 1, 2}, {0, 1, 3}, {0, 2, 3}, {3, 2, 1}}};
+  for (std::size_t i = 0; i < 4; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) EXPECT_EQ(got.mesh.faces[i].corner[k], expected[i][k]);
+  }
+  EXPECT_EQ(got.report.meshes, 1u);
 }
 
 TEST_F(TextFormatTest, CarriageReturnsEndHeadersOfBinaryPly) {

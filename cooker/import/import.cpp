@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Which reader a file is for, by the ending of its name.
+#include <algorithm>
+#include <array>
+#include <utility>
+#include <variant>
+
+#include <boxtree/cooker/import/assimp_import.h>
+#include <boxtree/cooker/import/exception_error.h>
+#include <boxtree/cooker/import/face_materials.h>
+#include <boxtree/cooker/import/file_error.h>
+#include <boxtree/cooker/import/import.h>
+#include <boxtree/cooker/import/obj_import.h>
+#include <boxtree/cooker/import/off_import.h>
+#include <boxtree/cooker/import/ply_import.h>
+#include <boxtree/cooker/import/source_files.h>
+#include <boxtree/cooker/import/source_scene.h>
+#include <boxtree/cooker/import/stl_import.h>
+#include <boxtree/cooker/import/text_tokens.h>
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Request {
+  const fs::path& path;
+  const ImportOptions& options;
+  ImportWanted wanted;
+};
+
+// Formats of one mesh, without nodes. Only OBJ names materials.
+struct MeshReader {
+  const char* extension;
+  Status (*read)(const fs::path& path, const ImportOptions& options, Imported& out,
+                 FaceMaterials& materials);
+};
+
+template <Status (*read)(const fs::path&, const ImportOptions&, Imported&)>
+Status without_materials(const fs::path& path, const ImportOptions& options, Imported& out,
+                         FaceMaterials& /*materials*/) {
+  return read(path, options, out);
+}
+
+constexpr std::array kMeshReaders = {
+    MeshReader{"obj", import_obj},
+    MeshReader{"off", without_materials<import_off>},
+    MeshReader{"ply", without_materials<import_ply>},
+    MeshReader{"stl", without_materials<import_stl>},
+};
+
+SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
+  SourceScene scene;
+  scene.report = std::move(imported.report);
+  const auto source_faces = static_cast<std::uint32_t>(scene.report.source_faces);
+  scene.meshes.push_back({std::move(imported.mesh), source_faces, std::move(materials.runs)});
+  scene.meshes[0].mesh.name = name;
+  scene.materials = std::move(materials.names);
+  scene.instances.push_back({name, 0, 0, Pose::Identity()});
+  return scene;
+}
+
+Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile& out) {
+  Imported mesh;
+  FaceMaterials materials;
+  if (Status status = reader.read(request.path, request.options, mesh, materials); !status.ok()) {
+    return status;
+  }
+  if (request.wanted == ImportWanted::kScene) {
+    out = scene_of(std::move(mesh), std::move(materials), request.path.stem().string());
+  } else {
+    out = std::move(mesh);
+  }
+  return {};
+}
+
+Result<ImportedFile> import_checked(const Request& request) {
+  const fs::path& path = request.path;
+  if (Status status = check_source_file(path); !status.ok()) return status.error();
+  const auto* const reader =
+      std::find_if(kMeshReaders.begin(), kMeshReaders.end(),
+                   [&](const MeshReader& each) { return has_extension(path, each.extension); });
+  ImportedFile out;
+  const Status status = reader != kMeshReaders.end()
+                            ? read_mesh(*reader, request, out)
+                            : import_with_assimp(path, request.options, request.wanted, out);
+  if (!status.ok()) return status.error();
+  if (auto* mesh = std::get_if<Imported>(&out)) mesh->mesh.name = path.stem().string();
+  if (auto* scene = std::get_if<SourceScene>(&out)) scene->name = path.stem().string();
+  return out;
+}
+
+Result<ImportedFile> import_guarded(const Request& request) {
+  try {
+    return import_checked(request);
+  } catch (...) {
+    return in_file(request.path, error_of_exception());
+  }
+}
+
+// Imported or SourceScene, whichever was asked for.
+template <class T>
+Result<T> only(Result<ImportedFile>&& file) {
+  if (!file.ok()) return file.error();
+  return std::get<T>(std::move(*file));
+}
+
+}  // namespace
+
+Result<Imported> import_mesh(const fs::path& path, const ImportOptions& options) {
+  return only<Imported>(import_guarded({path, options, ImportWanted::kMesh}));
+}
+
+Result<SourceScene> import_scene(const fs::path& path, const ImportOptions& options) {
+  return only<SourceScene>(import_guarded({path, options, ImportWanted::kScene}));
+}
+
+Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& options) {
+  return import_guarded({path, options, ImportWanted::kFitting});
+}
+
+}  // namespace boxtree::cooker

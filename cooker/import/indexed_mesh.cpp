@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/indexed_mesh.h>
+#include <boxtree/cooker/import/weld.h>
+
+namespace boxtree::cooker {
+
+namespace {
+
+constexpr std::uint64_t kMostVertices = 0xfffffffeu;  // corners are 32 bits, one is special
+
+Status check_vertex_count(std::uint64_t count, const std::string& file) {
+  if (count <= kMostVertices) return {};
+  return Error{Errc::kMeshTooLarge,
+               fmt::format("{}: {} vertices, more than {}", file, count, kMostVertices)};
+}
+
+}  // namespace
+
+template <class T>
+Status IndexedMesh<T>::begin_vertices(std::uint64_t count) {
+  if (Status status = check_vertex_count(count, file_); !status.ok()) return status;
+  positions_.reserve(3 * count);
+  return {};
+}
+
+template <class T>
+Status IndexedMesh<T>::add_vertex(const Eigen::Vector3d& position, std::size_t line) {
+  const std::size_t number = vertices();
+  if (Status status = check_vertex_count(number + 1, file_); !status.ok()) return status;
+  for (const double x : position) add_coordinate(x);
+  if (!is_finite(number)) bad_lines_.emplace_back(static_cast<std::uint32_t>(number), line);
+  return {};
+}
+
+template <class T>
+void IndexedMesh<T>::end_vertices() {
+  out_.report.source_vertices = vertices();
+  numbers_.assign(vertices(), kWeldUnused);
+}
+
+template <class T>
+Status IndexedMesh<T>::reserve_faces(std::uint64_t count) {
+  if (Status status = check_face_count(count, file_); !status.ok()) return status;
+  out_.mesh.faces.reserve(count);
+  return {};
+}
+
+template <class T>
+Status IndexedMesh<T>::add_face(std::span<const std::uint32_t> corners) {
+  if (corners.size() < 3) {
+    count_no_face(corners.size(), out_.report);
+    return {};
+  }
+  if (std::optional<FaceFault> fault = fault_of(corners)) return add_bad_face(std::move(*fault));
+  const std::uint32_t face_id = next_face_id_++;
+  ++out_.report.source_faces;
+  for (const std::uint32_t corner : corners) numbers_[corner] = kWeldUsed;
+  if (corners.size() == 3) {
+    intake_.add_triangle(face_id, {corners[0], corners[1], corners[2]});
+  } else if (corners.size() == 4) {
+    intake_.add_quad(
+        face_id, {corners[0], corners[1], corners[2], corners[3]},
+        {rounded(corners[0]), rounded(corners[1]), rounded(corners[2]), rounded(corners[3])});
+  } else {
+    intake_.add_polygon(face_id, corners);
+  }
+  return {};
+}
+
+template <class T>
+Status IndexedMesh<T>::add_bad_face(FaceFault fault) {
+  ++out_.report.source_faces;
+  return report_fault(std::move(fault), next_face_id_++, file_, options_, out_.report);
+}
+
+template <class T>
+Status IndexedMesh<T>::add_strips(std::span<const std::uint32_t> vertices) {
+  constexpr std::uint32_t kEndOfStrip = 0xffffffffu;
+  if (Status status = check_face_count(next_face_id_ + std::uint64_t{vertices.size()}, file_);
+      !status.ok()) {
+    return status;
+  }
+  while (!vertices.empty()) {
+    const auto end = std::find(vertices.begin(), vertices.end(), kEndOfStrip);
+    const auto length = static_cast<std::size_t>(end - vertices.begin());
+    if (Status status = add_strip(vertices.first(length)); !status.ok()) return status;
+    vertices = vertices.subspan(std::min(length + 1, vertices.size()));
+  }
+  return {};
+}
+
+template <class T>
+Status IndexedMesh<T>::add_strip(std::span<const std::uint32_t> vertices) {
+  if (vertices.empty()) return {};  // the end of one behind the end of another
+  if (vertices.size() < 3) return add_face(vertices);
+  for (std::size_t i = 0; i + 2 < vertices.size(); ++i) {
+    const bool is_turned = i % 2 != 0;
+    const std::array<std::uint32_t, 3> corners = {vertices[is_turned ? i + 1 : i],
+                                                  vertices[is_turned ? i : i + 1], vertices[i + 2]};
+    if (Status status = add_face(corners); !status.ok()) return status;
+  }
+  return {};
+}
+
+template <class T>
+std::optional<FaceFault> IndexedMesh<T>::fault_of(std::span<const std::uint32_t> corners) const {
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    const std::uint32_t vertex = corners[i];
+    if (vertex >= numbers_.size()) {
+      return vertex_out_of_range(i, vertex_text(vertex), numbers_.size());
+    }
+    if (all_finite_ || is_finite(vertex)) continue;
+    const T* p = &positions_[std::size_t{3} * vertex];
+    return vertex_not_finite(name_of(vertex), {p[0], p[1], p[2]});
+  }
+  return std::nullopt;
+}
+
+template <class T>
+bool IndexedMesh<T>::is_finite(std::size_t vertex) const {
+  const T* p = &positions_[3 * vertex];
+  return std::isfinite(p[0]) && std::isfinite(p[1]) && std::isfinite(p[2]);
+}
+
+// Precondition: the vertex is not finite.
+template <class T>
+std::string IndexedMesh<T>::name_of(std::uint32_t vertex) const {
+  const auto at =
+      std::lower_bound(bad_lines_.begin(), bad_lines_.end(), std::pair(vertex, std::size_t{0}));
+  std::string name = fmt::format("vertex {}", std::uint64_t{vertex} + first_number_);
+  if (at != bad_lines_.end() && at->first == vertex) name += fmt::format(" (line {})", at->second);
+  return name;
+}
+
+// Rounded when the file was written, or now.
+template <class T>
+RoundedCorner IndexedMesh<T>::rounded(std::uint32_t vertex) const {
+  const Eigen::Vector3d at = intake_.position(vertex);
+  return {at, {rounding_of<T>(at[0]), rounding_of<T>(at[1]), rounding_of<T>(at[2])}};
+}
+
+template <class T>
+Status IndexedMesh<T>::finish() {
+  ImportReport& report = out_.report;
+  const auto used =
+      static_cast<std::size_t>(std::count(numbers_.begin(), numbers_.end(), kWeldUsed));
+  report.vertices_unused = numbers_.size() - used;
+  // Files without shared vertices hold three a face; a closed surface needs half of one.
+  weld_in_place(positions_, std::span(numbers_), std::min(used, out_.mesh.faces.size()));
+  report.vertices_welded = used - positions_.size() / 3;
+  for (Face& face : out_.mesh.faces) {
+    for (std::uint32_t& corner : face.corner) {
+      if (corner != kNoCorner) corner = numbers_[corner];
+    }
+  }
+  return check_taken(file_, out_);
+}
+
+template class IndexedMesh<float>;
+template class IndexedMesh<double>;
+
+}  // namespace boxtree::cooker

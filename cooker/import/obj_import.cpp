@@ -1,0 +1,253 @@
+// SPDX-License-Identifier: MIT
+// Twice over the text: vertices first, as a face may name one that comes after it.
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/file_error.h>
+#include <boxtree/cooker/import/indexed_mesh.h>
+#include <boxtree/cooker/import/obj_import.h>
+#include <boxtree/cooker/import/obj_statements.h>
+#include <boxtree/cooker/import/source_files.h>
+#include <boxtree/cooker/import/text_tokens.h>
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+
+// A keyword of the format, or of one that adds to it; not bytes that an editor does not show, and
+// not a vertex or a face in capitals, which would be passed over as unknown.
+bool is_known(std::string_view keyword) {
+  return keyword != "V" && keyword != "F" &&
+         std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; });
+}
+
+// Counted from 1, or backwards from -1; 0 for what is no number. Numbers of texture coordinates and
+// normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
+long long corner_number(std::string_view word) {
+  long long number = 0;
+  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  const char* const last = word.data() + word.size();
+  const char* const end = std::from_chars(word.data() + (has_plus ? 1 : 0), last, number).ptr;
+  const std::string_view rest(end, static_cast<std::size_t>(last - end));
+  if (rest.empty()) return number;
+  const bool is_corner = rest[0] == '/' && std::count(rest.begin(), rest.end(), '/') <= 2 &&
+                         rest.find_first_not_of("0123456789+-/") == std::string_view::npos;
+  return is_corner ? number : 0;
+}
+
+// T is the type of the positions.
+template <class T>
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file, const ImportOptions& options,
+         IndexedMesh<T>& mesh, ImportReport& report, FaceMaterials& materials)
+      : text_(text),
+        file_(file),
+        options_(options),
+        mesh_(mesh),
+        report_(report),
+        materials_(materials) {}
+
+  Status read();
+
+  /// What follows each `mtllib`: a name that may hold blanks, or several names.
+  [[nodiscard]] const std::vector<std::string>& libraries() const { return libraries_; }
+
+ private:
+  Status read_vertex();
+  Status read_statement();
+  Status read_element();
+  Status read_face();
+  [[nodiscard]] std::optional<std::uint32_t> vertex_of(std::string_view word) const;
+  [[nodiscard]] FaceFault fault_of(std::string_view word, std::size_t corner) const;
+
+  [[nodiscard]] Status failure(std::string_view why) const {
+    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, statement_.line, why)};
+  }
+
+  const std::string_view text_;
+  const std::string& file_;
+  const ImportOptions& options_;
+  IndexedMesh<T>& mesh_;
+  ImportReport& report_;
+  MaterialUse materials_;
+  std::vector<std::string> libraries_;
+  std::size_t vertices_so_far_ = 0;
+  ObjStatement statement_{};  // at hand
+  std::string joined_;        // its lines, if there are several
+  Tokens words_;              // behind its keyword
+  std::vector<std::uint32_t> corners_;
+};
+
+template <class T>
+Status Reader<T>::read() {
+  for (ObjStatements statements(text_); statements.next(statement_);) {
+    if (!statement_.is_vertex()) continue;
+    if (Status status = read_vertex(); !status.ok()) return status;
+  }
+  mesh_.end_vertices();
+  for (ObjStatements statements(text_); statements.next(statement_);) {
+    if (Status status = read_statement(); !status.ok()) return status;
+  }
+  materials_.finish();
+  return mesh_.finish();
+}
+
+template <class T>
+Status Reader<T>::read_vertex() {
+  split_tokens(joined_text(statement_, joined_), words_);
+  words_.erase(words_.begin());
+  // A fourth number alone is a weight; more are a colour.
+  const std::size_t used = words_.size() == 4 ? 4 : std::min<std::size_t>(words_.size(), 3);
+  VertexWords words = kOrigin;
+  std::copy_n(words_.begin(), used, words.begin());
+  const std::optional<Eigen::Vector3d> position = read_position(words, options_.precision);
+  // Words behind the position are looked at so that nothing else than numbers passes for a vertex.
+  const std::string_view no_number = find_no_number(std::span(words_).subspan(position ? used : 0));
+  if (!no_number.empty()) return failure(fmt::format("'{}' is no number", no_number));
+  if (used < 3) return failure(fmt::format("a vertex of {} numbers", used));
+  return mesh_.add_vertex(*position, statement_.line);
+}
+
+template <class T>
+Status Reader<T>::read_statement() {
+  if (statement_.text.empty()) return {};
+  if (statement_.is_vertex()) {
+    ++vertices_so_far_;
+    return {};
+  }
+  if (statement_.is_element()) return read_element();
+  const std::string_view text = joined_text(statement_, joined_);
+  const std::string_view keyword = text.substr(0, text.find_first_of(" \t"));
+  const std::string_view name = without_blanks(text.substr(keyword.size()));
+  if (!is_known(keyword)) {
+    return failure(fmt::format("no statement of OBJ begins with {:?}", keyword));
+  }
+  if (keyword == "usemtl") materials_.begin(name);
+  if (keyword == "mtllib" && !name.empty()) libraries_.emplace_back(name);
+  return {};
+}
+
+template <class T>
+Status Reader<T>::read_element() {
+  const bool is_face = statement_.text[0] == 'f';
+  split_tokens(joined_text(statement_, joined_), words_);
+  if (is_face) {
+    words_.erase(words_.begin());
+    return read_face();
+  }
+  const std::size_t vertices = words_.size() - 1;
+  if (words_[0] == "p") report_.points_skipped += vertices;
+  if (words_[0] == "l") report_.lines_skipped += vertices < 2 ? 0 : vertices - 1;
+  return {};
+}
+
+template <class T>
+Status Reader<T>::read_face() {
+  corners_.clear();
+  std::optional<FaceFault> fault;
+  for (std::size_t i = 0; i < words_.size() && !fault; ++i) {
+    const std::optional<std::uint32_t> vertex = vertex_of(words_[i]);
+    corners_.push_back(vertex.value_or(0));
+    if (!vertex) fault = fault_of(words_[i], i);
+  }
+  // With fewer corners it is no face, and its fault none that skip_bad could leave out.
+  if (fault && words_.size() < 3) return Error{fault->code, file_ + ": " + fault->reason};
+  if (words_.size() >= 3) materials_.add_face(mesh_.next_face_id());
+  return fault ? mesh_.add_bad_face(std::move(*fault)) : mesh_.add_face(corners_);
+}
+
+template <class T>
+std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
+  const long long number = corner_number(word);
+  const auto so_far = static_cast<long long>(vertices_so_far_);
+  if (number > 0 && number <= static_cast<long long>(mesh_.vertices())) {
+    return static_cast<std::uint32_t>(number - 1);
+  }
+  if (number < 0 && number >= -so_far) return static_cast<std::uint32_t>(so_far + number);
+  return std::nullopt;
+}
+
+// Why the corner names no vertex.
+template <class T>
+FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
+  const long long number = corner_number(word);
+  std::string why = fmt::format("corner {} (line {}) names ", corner, statement_.line);
+  if (number > 0) {
+    why += fmt::format("vertex {}, but there are {} vertices", number, mesh_.vertices());
+  } else if (number < 0) {
+    why += fmt::format("vertex {}, but {} vertices come before it", number, vertices_so_far_);
+  } else {
+    why += fmt::format("vertex '{}', but vertices are numbered from 1", word);
+  }
+  return {Errc::kMeshIndexOutOfRange, std::move(why)};
+}
+
+// All but what editors and systems put around a text.
+Result<std::string_view> statements_of(std::string_view file) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (file.starts_with(kByteOrderMark)) file.remove_prefix(kByteOrderMark.size());
+  Result<std::string_view> text = text_of(file);
+  if (text.ok() && text->ends_with('\x1a')) text->remove_suffix(1);  // how DOS ended a text
+  return text;
+}
+
+// Those libraries that are there and can be read, each once.
+void find_libraries(const fs::path& path, const std::vector<std::string>& names,
+                    std::vector<fs::path>& files) {
+  const auto add = [&](std::string_view name) {
+    const fs::path library = (path.parent_path() / fs::path(name)).lexically_normal();
+    std::error_code ignored;
+    if (!fs::is_regular_file(library, ignored) || !SourceStream::open(library).ok()) return false;
+    if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
+    return true;
+  };
+  Tokens words;
+  for (const std::string& name : names) {
+    if (add(name)) continue;
+    split_tokens(name, words);
+    for (const std::string_view word : words) add(word);
+  }
+}
+
+}  // namespace
+
+Status import_obj(const fs::path& path, const ImportOptions& options, Imported& out,
+                  FaceMaterials& materials) {
+  Result<SourceStream> stream = SourceStream::open(path);
+  if (!stream.ok()) return stream.error();
+  const Result<std::string> bytes = stream->take_rest();
+  if (!bytes.ok()) return bytes.error();
+  const Result<std::string_view> text = statements_of(*bytes);
+  if (!text.ok()) return in_file(path, text.error());
+
+  const std::string file = path.string();
+  std::vector<std::string> libraries;
+  const Status status =
+      read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+        IndexedMesh<T> mesh(file, options, positions, out, 1);
+        Reader<T> reader(*text, file, options, mesh, out.report, materials);
+        Status read = reader.read();
+        libraries = reader.libraries();
+        return read;
+      });
+  if (!status.ok()) return status;
+  out.report.has_open_end = has_open_end(*bytes);
+  find_libraries(path, libraries, out.report.files_read);
+  if (out.report.files_read.size() == 1) return {};
+  const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
+  if (!hash.ok()) return hash.error();
+  out.report.content_hash = hash.value();
+  return {};
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,264 @@
+// SPDX-License-Identifier: MIT
+// Word by word, as the format has it; lines tell how long a colour is.
+#include <algorithm>
+#include <charconv>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/file_error.h>
+#include <boxtree/cooker/import/indexed_mesh.h>
+#include <boxtree/cooker/import/off_import.h>
+#include <boxtree/cooker/import/text_tokens.h>
+
+namespace boxtree::cooker {
+namespace {
+
+using Words = std::span<const std::string_view>;
+
+std::optional<long long> to_integer(std::string_view word) {
+  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  const char* const last = word.data() + word.size();
+  long long number = 0;
+  const auto [end, error] = std::from_chars(word.data() + (has_plus ? 1 : 0), last, number);
+  if (error != std::errc() || end != last) return std::nullopt;
+  return number;
+}
+
+// However long: nobody wants to know how many edges there are.
+bool is_integer(std::string_view word) {
+  const std::string_view digits = word.substr(word.find_first_not_of("+-") == 1 ? 1 : 0);
+  return !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
+}
+
+// T is the type of the positions.
+template <class T>
+class Reader {
+ public:
+  Reader(std::string_view text, const std::string& file, const ImportOptions& options,
+         IndexedMesh<T>& mesh)
+      : rest_(text), file_(file), options_(options), mesh_(mesh) {}
+
+  Status read();
+
+ private:
+  bool find_word();
+  [[nodiscard]] Words rest_of_line() const { return Words(line_words_).subspan(word_); }
+  Status take_words(std::size_t count, const char* of);
+  Status read_header();
+  Status read_dimensions();
+  Status read_counts();
+  Status read_vertex();
+  Status read_face();
+  Result<std::optional<FaceFault>> read_corners();
+
+  [[nodiscard]] Error failure(std::string_view why) const {
+    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, line_, why)};
+  }
+
+  std::string_view rest_;  // behind the line at hand
+  std::size_t line_ = 0;   // at hand, from 1
+  Tokens line_words_;      // its words
+  std::size_t word_ = 0;   // of them, the next one
+  Tokens taken_;           // of what is being read
+  const std::string& file_;
+  const ImportOptions& options_;
+  IndexedMesh<T>& mesh_;
+  std::size_t dimensions_ = 3;
+  bool is_homogeneous_ = false;
+  bool has_colors_ = false;
+  std::size_t others_ = 0;  // numbers of normals and texture coordinates
+  std::uint64_t vertices_ = 0;
+  std::uint64_t faces_ = 0;
+  std::vector<std::uint32_t> corners_;
+};
+
+template <class T>
+Status Reader<T>::read() {
+  if (Status status = read_header(); !status.ok()) return status;
+  if (Status status = read_counts(); !status.ok()) return status;
+  if (Status status = mesh_.begin_vertices(vertices_); !status.ok()) return status;
+  for (std::uint64_t i = 0; i < vertices_; ++i) {
+    if (!find_word()) {
+      return failure(fmt::format("the file ends after {} of {} vertices", i, vertices_));
+    }
+    if (Status status = read_vertex(); !status.ok()) return status;
+  }
+  mesh_.end_vertices();
+  if (Status status = mesh_.reserve_faces(faces_); !status.ok()) return status;
+  for (std::uint64_t i = 0; i < faces_; ++i) {
+    if (!find_word()) {
+      return failure(fmt::format("the file ends after {} of {} faces", i, faces_));
+    }
+    if (Status status = read_face(); !status.ok()) return status;
+  }
+  return mesh_.finish();
+}
+
+// Moves to the next word that is no comment; false at the end.
+template <class T>
+bool Reader<T>::find_word() {
+  while (word_ == line_words_.size()) {
+    if (rest_.empty()) return false;
+    const std::string_view text = take_line(rest_);
+    ++line_;
+    split_tokens(text.substr(0, text.find('#')), line_words_);
+    word_ = 0;
+  }
+  return true;
+}
+
+// Appends the next words to `taken_`, over line ends.
+template <class T>
+Status Reader<T>::take_words(std::size_t count, const char* of) {
+  for (std::size_t i = 0; i < count; ++i) {
+    if (!find_word()) return failure(fmt::format("the file ends within {}", of));
+    taken_.push_back(line_words_[word_++]);
+  }
+  return {};
+}
+
+// [ST][C][N][4][n]OFF, or nothing: then the counts come first.
+template <class T>
+Status Reader<T>::read_header() {
+  if (!find_word()) return failure("no OFF header");
+  std::string_view key = line_words_[word_];
+  if (to_integer(key)) return {};
+  for (const std::string_view prefix : {"ST", "C", "N", "4", "n"}) {
+    if (!key.starts_with(prefix)) continue;
+    key.remove_prefix(prefix.size());
+    if (prefix == "4") is_homogeneous_ = true;
+    if (prefix == "ST") others_ += 2;
+    if (prefix == "C") has_colors_ = true;
+    if (prefix == "N") others_ += 3;
+    if (prefix == "n") dimensions_ = 0;
+  }
+  if (key != "OFF") return failure("no OFF header");
+  ++word_;
+  if (!rest_of_line().empty() && rest_of_line()[0] == "BINARY") {
+    return failure("binary OFF is not supported");
+  }
+  return dimensions_ == 0 ? read_dimensions() : Status();
+}
+
+template <class T>
+Status Reader<T>::read_dimensions() {
+  const std::optional<long long> dimensions =
+      find_word() ? to_integer(line_words_[word_]) : std::nullopt;
+  if (!dimensions || *dimensions < 1 || *dimensions > 3) {
+    return failure("vertices of 1, 2 or 3 coordinates are supported");
+  }
+  dimensions_ = static_cast<std::size_t>(*dimensions);
+  ++word_;
+  return {};
+}
+
+// Of vertices, faces and edges; the last one may be missing.
+template <class T>
+Status Reader<T>::read_counts() {
+  taken_.clear();
+  if (!take_words(2, "the counts").ok()) return failure("no counts of vertices and faces");
+  const std::optional<std::uint64_t> vertices = read_count(taken_[0]);
+  const std::optional<std::uint64_t> faces = read_count(taken_[1]);
+  // Each takes a word at least: a count beyond the bytes left is a lie, and costs no memory.
+  if (!vertices || !faces || *vertices > rest_.size() || *faces > rest_.size()) {
+    return failure(fmt::format("{} vertices and {} faces cannot be in a file of this size",
+                               taken_[0], taken_[1]));
+  }
+  vertices_ = *vertices;
+  faces_ = *faces;
+  if (!rest_of_line().empty()) {
+    if (is_integer(rest_of_line()[0])) ++word_;
+  } else if (find_word() && line_words_.size() == 1 && is_integer(line_words_[0])) {
+    ++word_;
+  }
+  return {};
+}
+
+// A line by itself, as nearly all files have it, or so many words. Only the line can tell whether a
+// color has three numbers or four.
+template <class T>
+Status Reader<T>::read_vertex() {
+  const std::size_t needed = dimensions_ + (is_homogeneous_ ? 1 : 0);
+  const bool is_line =
+      word_ == 0 && line_words_.size() >= needed + others_ + (has_colors_ ? 3u : 0u);
+  const std::size_t line = line_;
+  taken_.clear();
+  const std::size_t count =
+      is_line ? line_words_.size() : needed + others_ + (has_colors_ ? 4u : 0u);
+  if (Status status = take_words(count, "a vertex"); !status.ok()) return status;
+  if (const std::string_view wrong = find_no_number(taken_); !wrong.empty()) {
+    return failure(fmt::format("'{}' is no number", wrong));
+  }
+  VertexWords words = kOrigin;
+  for (std::size_t i = 0; i < dimensions_; ++i) words[i] = taken_[i];
+  if (is_homogeneous_) words[3] = taken_[dimensions_];
+  return mesh_.add_vertex(*read_position(words, options_.precision), line);
+}
+
+// The number of corners, and their vertices; what else is in the line is a color.
+template <class T>
+Status Reader<T>::read_face() {
+  const std::string_view stated = line_words_[word_++];
+  const std::optional<std::uint64_t> count = read_count(stated);
+  if (!count || *count > rest_.size() + line_words_.size()) {
+    return failure(fmt::format("a face of '{}' corners", stated));
+  }
+  taken_.clear();
+  if (Status status = take_words(static_cast<std::size_t>(*count), "a face"); !status.ok()) {
+    return status;
+  }
+  Result<std::optional<FaceFault>> fault = read_corners();
+  if (!fault.ok()) return fault.error();
+  if (const std::string_view wrong = find_no_number(rest_of_line()); !wrong.empty()) {
+    return failure(fmt::format("'{}' behind a face is no number of a color", wrong));
+  }
+  word_ = line_words_.size();
+  return fault->has_value() ? mesh_.add_bad_face(std::move(**fault)) : mesh_.add_face(corners_);
+}
+
+// Into `corners_`; the first that names no vertex is a fault of the face, if it is one.
+template <class T>
+Result<std::optional<FaceFault>> Reader<T>::read_corners() {
+  std::optional<FaceFault> fault;
+  corners_.clear();
+  for (const std::string_view word : taken_) {
+    const std::optional<long long> vertex = to_integer(word);
+    const bool is_good = vertex && *vertex >= 0 && *vertex < static_cast<long long>(vertices_);
+    if (!is_good && !fault) {
+      fault =
+          FaceFault{Errc::kMeshIndexOutOfRange,
+                    fmt::format("corner {} (line {}) names vertex {}, but there are {} vertices",
+                                corners_.size(), line_, word, vertices_)};
+    }
+    if (!vertex && taken_.size() < 3) return failure(fmt::format("'{}' is no vertex", word));
+    corners_.push_back(is_good ? static_cast<std::uint32_t>(*vertex) : 0);
+  }
+  if (taken_.size() < 3) fault.reset();
+  return fault;
+}
+
+}  // namespace
+
+Status import_off(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
+  Result<SourceStream> stream = SourceStream::open(path);
+  if (!stream.ok()) return stream.error();
+  const Result<std::string> bytes = stream->take_rest();
+  if (!bytes.ok()) return bytes.error();
+  const Result<std::string_view> text = text_of(*bytes);
+  if (!text.ok()) return in_file(path, text.error());
+
+  const std::string file = path.string();
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    out.report.has_open_end = has_open_end(*bytes);
+    IndexedMesh<T> mesh(file, options, positions, out);
+    return Reader<T>(*text, file, options, mesh).read();
+  });
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+#include <string>
+#include <vector>
+
+#include <boxtree/cooker/import/binary_stl.h>
+#include <boxtree/cooker/import/direct_import.h>
+#include <boxtree/cooker/import/stl_import.h>
+#include <boxtree/cooker/import/text_stl.h>
+
+namespace boxtree::cooker {
+
+Status import_stl(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
+  Result<SourceStream> stream = SourceStream::open(path);
+  if (!stream.ok()) return stream.error();
+  // A text is hardly ever as long as the count says that is in it by chance.
+  const bool is_text = !is_binary_stl(*stream) && is_text_stl(stream->ahead());
+
+  const std::string file = path.string();
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) -> Status {
+    StlMesh<T> mesh(file, options, positions, out);
+    if (!is_text) return read_binary_stl(*stream, file, mesh);
+    const Result<std::string> text = stream->take_rest();
+    if (!text.ok()) return text.error();
+    return read_text_stl(*text, file, mesh);
+  });
+}
+
+}  // namespace boxtree::cooker
