@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One assimp import without post-processing, checked before and after.
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -115,38 +116,45 @@ Status try_reading(const fs::path& path) {
 }
 
 // Texts of which assimp takes the beginning for the whole.
-struct TextCheck {
+struct TextFormat {
   const char* extension;
-  Status (*check)(std::string_view file);
+  Status (*check_end)(std::string_view file);  // null where the format states no end
 };
-constexpr std::array kTextChecks = {
-    TextCheck{"ac", check_ac_end},
-    TextCheck{"ase", check_blocks_end},
-    TextCheck{"dxf", check_dxf_end},
-    TextCheck{"md5mesh", check_blocks_end},
+constexpr std::array kTextFormats = {
+    TextFormat{"ac", check_ac_end},   TextFormat{"ase", check_blocks_end},
+    TextFormat{"dxf", check_dxf_end}, TextFormat{"md5mesh", check_blocks_end},
+    TextFormat{"nff", nullptr},       TextFormat{"raw", nullptr},
+    TextFormat{"smd", check_smd_end},
 };
 
-Status check_text(const fs::path& path) {
-  for (const TextCheck& format : kTextChecks) {
-    if (!has_extension(path, format.extension)) continue;
-    const Result<std::string> file = read_whole_file(path, kAnyBytes);
-    if (!file.ok()) return file.error();
-    if (Status status = format.check(*file); !status.ok()) return in_file(path, status.error());
-  }
-  return {};
+// Whether its last line has no end, for formats in which a file that was cut looks like a whole one
+// otherwise.
+Result<bool> check_text(const fs::path& path) {
+  const auto* const format =
+      std::find_if(kTextFormats.begin(), kTextFormats.end(),
+                   [&](const TextFormat& each) { return has_extension(path, each.extension); });
+  if (format == kTextFormats.end()) return false;
+  const Result<std::string> file = read_whole_file(path, kAnyBytes);
+  if (!file.ok()) return file.error();
+  if (format->check_end == nullptr) return has_open_end(*file);
+  const Status status = format->check_end(*file);
+  if (!status.ok()) return in_file(path, status.error());
+  return false;
 }
 
 }  // namespace
 
 Status import_with_assimp(const fs::path& path, const ImportOptions& options, ImportWanted wanted,
                           ImportedFile& out) {
-  if (Status status = check_text(path); !status.ok()) return status;
+  const Result<bool> is_open = check_text(path);
+  if (!is_open.ok()) return is_open.error();
   if (Status status = check_gltf_nesting(path); !status.ok()) return status;
   if (options.try_first) {
     const Status tried = try_reading(path);
     if (!tried.ok()) return in_file(path, tried.error());
   }
   ImportReport report;
+  report.has_open_end = *is_open;
   auto scene = read_scene(path, FaceOrder::kOfFile, report.files_read);
   if (!scene.ok()) return in_file(path, scene.error());
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;

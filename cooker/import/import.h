@@ -23,8 +23,8 @@ struct ImportOptions {
   Precision precision = Precision::kF32;
   /// [false] Let assimp read the file in a copy of this process first (trial.h), so that a file
   /// that crashes its reader, or that it never ends with, is an error: kImportFailed. Costs a
-  /// second reading. Means nothing to formats that assimp does not read. The copy is made by fork():
-  /// not for programs whose other threads hold locks that reading needs.
+  /// second reading. Means nothing to formats that assimp does not read. The copy is made by
+  /// fork(): not for programs whose other threads hold locks that reading needs.
   bool try_first = false;
 };
 
@@ -53,7 +53,7 @@ struct ImportReport {
   std::size_t vertices_unused = 0;   // belong to no face that was taken over; removed
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
-  bool has_open_end = false;         // OBJ, OFF, PLY: the last line has no end; cut short, perhaps
+  bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: no end of the last line; cut?
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   std::vector<std::filesystem::path> files_read;  // the file itself and every file it refers to
   std::uint64_t content_hash = 0;  // XXH3 over the bytes of files_read, in order of first read
@@ -84,11 +84,11 @@ struct Imported {
 /// assimp decides: positions of other formats have the digits of f32, and decimals among them can
 /// be a unit in the last place off the nearest. Where one of its readers repairs silently we look
 /// first ourselves: glTF. A file that was cut short is refused where its format states counts or an
-/// end (of the texts that assimp reads: AC3D, ASE, DXF, MD5 and those of its readers that look
-/// themselves); OBJ states none, and a last line without an end is reported. A glTF file with
-/// vertex numbers out of range is refused even with skip_bad, and named by its mesh: assimp has
-/// dropped the faces and their numbers with them. Its other readers (3DS, LWO, DXF, Unreal, ...) may
-/// still clamp a vertex number out of range.
+/// end (of the texts that assimp reads: AC3D, ASE, DXF, MD5, SMD and those of its readers that look
+/// themselves); OBJ, NFF and RAW state none, and a last line without an end is reported. A glTF
+/// file with vertex numbers out of range is refused even with skip_bad, and named by its mesh:
+/// assimp has dropped the faces and their numbers with them. Its other readers (3DS, LWO, DXF,
+/// Unreal, ...) may still clamp a vertex number out of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
 }  // namespace boxtree::cooker

@@ -65,4 +65,20 @@ Status check_dxf_end(std::string_view file) {
   return has_end ? Status() : Status(cut("the last entity is not EOF"));
 }
 
+Status check_smd_end(std::string_view file) {
+  bool is_open = false;
+  Tokens words;
+  while (!file.empty()) {
+    split_tokens(take_line(file), words);
+    if (words.size() != 1) continue;
+    if (words[0] == "end") {
+      is_open = false;
+    } else if (words[0] == "nodes" || words[0] == "skeleton" || words[0] == "triangles" ||
+               words[0] == "vertexanimation") {
+      is_open = true;
+    }
+  }
+  return is_open ? Status(cut("a block has no end")) : Status();
+}
+
 }  // namespace boxtree::cooker

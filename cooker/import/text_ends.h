@@ -19,4 +19,8 @@ Status check_blocks_end(std::string_view file);
 /// DXF as text: the last entity is EOF. kImportFailed; no error for binary files.
 Status check_dxf_end(std::string_view file);
 
+/// SMD: each block is closed by "end". A file that was cut between two blocks looks whole.
+/// kImportFailed.
+Status check_smd_end(std::string_view file);
+
 }  // namespace boxtree::cooker

@@ -52,6 +52,32 @@ TEST(TextEnds, EveryPrefixOfDxfIsRefused) {
   check_prefixes("two.dxf", kDxf);
 }
 
+constexpr std::string_view kSmd =
+    "version 1\nnodes\n0 \"end\" -1\nend\nskeleton\ntime 0\n0 0 0 0 0 0 "
+    "0\nend\ntriangles\nend.bmp\n"
+    "0 0 0 0 0 0 1 0 0\n0 1 0 0 0 0 1 0 0\n0 0 1 0 0 0 1 0 0\nskin.bmp\n"
+    "0 0 0 1 0 0 1 0 0\n0 1 0 1 0 0 1 0 0\n0 0 1 1 0 0 1 0 0\nend\n";
+
+TEST(TextEnds, EveryPrefixOfSmdIsRefused) {
+  check_prefixes("two.smd", kSmd);
+  EXPECT_TRUE(check_smd_end(kSmd).ok());
+  EXPECT_EQ(check_smd_end("triangles\nend.bmp\n").code(), Errc::kImportFailed);
+}
+
+// RAW states no end: a last line that does not end is told.
+TEST(TextEnds, OpenEndsAreTold) {
+  const test::TempFolder folder;
+  const std::string raw = "0 0 0 1 0 0 0 1 0\n0 0 1 1 0 1 0 1 1\n";
+  const auto is_open = [&](std::size_t bytes) {
+    const Result<Imported> got = import_mesh(folder.write("a.raw", raw.substr(0, bytes)));
+    EXPECT_TRUE(got.ok());
+    return got.ok() && got->report.has_open_end;
+  };
+  EXPECT_FALSE(is_open(raw.size()));
+  EXPECT_TRUE(is_open(raw.size() - 1));
+  EXPECT_TRUE(is_open(raw.size() - 5));
+}
+
 TEST(TextEnds, Ac3dObjectsFollowWhereTheyAreStated) {
   EXPECT_TRUE(check_ac_end(kAc).ok());
   EXPECT_TRUE(check_ac_end("AC3Db\nOBJECT world\nkids 0\nOBJECT world\nkids 0").ok());
