@@ -159,7 +159,7 @@ Status import_with_assimp(const fs::path& path, const ImportOptions& options, Im
   if (!scene.ok()) return in_file(path, scene.error());
   if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
   const std::vector<fs::path> files = report.files_read;
-  const Status status =
+  Status status =
       take_over(path, wanted, *scene.value(), {options, path.string()}, std::move(report), out);
   if (!status.ok()) return status;
   // Hashed only now, so that a refused file costs no second reading.

@@ -73,7 +73,7 @@ Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>
       for (std::size_t corner = 0; i + kAhead < step && corner < 3; ++corner) {
         mesh.prefetch(load_corner<T>(triangle + kTriangleBytes * kAhead, corner));
       }
-      const Status status = mesh.add(
+      Status status = mesh.add(
           {load_corner<T>(triangle, 0), load_corner<T>(triangle, 1), load_corner<T>(triangle, 2)});
       if (!status.ok()) return status;
     }

@@ -18,8 +18,7 @@ Status read_into(SourceStream& stream, const std::filesystem::path& path,
   out.report.files_read = {path.lexically_normal()};
   Positions& positions = out.mesh.positions;
   positions.precision = options.precision;
-  const Status status =
-      options.precision == Precision::kF32 ? read(positions.f32) : read(positions.f64);
+  Status status = options.precision == Precision::kF32 ? read(positions.f32) : read(positions.f64);
   if (!status.ok()) return status;
   const Result<std::uint64_t> hash = stream.finish();
   if (!hash.ok()) return hash.error();

@@ -232,14 +232,13 @@ Status import_obj(const fs::path& path, const ImportOptions& options, Imported& 
 
   const std::string file = path.string();
   std::vector<std::string> libraries;
-  const Status status =
-      read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-        IndexedMesh<T> mesh(file, options, positions, out, 1);
-        Reader<T> reader(*text, file, options, mesh, out.report, materials);
-        Status read = reader.read();
-        libraries = reader.libraries();
-        return read;
-      });
+  Status status = read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    IndexedMesh<T> mesh(file, options, positions, out, 1);
+    Reader<T> reader(*text, file, options, mesh, out.report, materials);
+    Status read = reader.read();
+    libraries = reader.libraries();
+    return read;
+  });
   if (!status.ok()) return status;
   out.report.has_open_end = has_open_end(*bytes);
   find_libraries(path, libraries, out.report.files_read);

@@ -15,11 +15,12 @@ struct TrialLimits {
 };
 
 /// Whether `bytes` are kept to: sanitizers take terabytes of address space for themselves.
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)  // GCC
 inline constexpr bool kLimitsMemory = false;
-#elif defined(__clang__)
-inline constexpr bool kLimitsMemory =
-    !__has_feature(address_sanitizer) && !__has_feature(thread_sanitizer);
+#elif !defined(__clang__)
+inline constexpr bool kLimitsMemory = true;
+#elif __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+inline constexpr bool kLimitsMemory = false;
 #else
 inline constexpr bool kLimitsMemory = true;
 #endif
