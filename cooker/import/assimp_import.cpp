@@ -18,8 +18,7 @@
 #include <boxtree/cooker/import/assimp_import.h>
 #include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/flatten.h>
-#include <boxtree/cooker/import/gltf_nesting.h>
-#include <boxtree/cooker/import/header_checks.h>
+#include <boxtree/cooker/import/gltf_faces.h>
 #include <boxtree/cooker/import/node_graph.h>
 #include <boxtree/cooker/import/scene_intake.h>
 #include <boxtree/cooker/import/source_files.h>
@@ -130,10 +129,8 @@ constexpr std::array kTextFormats = {
 // Whether its last line has no end, for formats in which a file that was cut looks like a whole one
 // otherwise.
 Result<bool> check_text(const fs::path& path) {
-  const auto* const format =
-      std::find_if(kTextFormats.begin(), kTextFormats.end(),
-                   [&](const TextFormat& each) { return has_extension(path, each.extension); });
-  if (format == kTextFormats.end()) return false;
+  const TextFormat* const format = find_extension(kTextFormats, path);
+  if (format == nullptr) return false;
   const Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
   if (format->check_end == nullptr) return has_open_end(*file);
@@ -148,7 +145,8 @@ Status import_with_assimp(const fs::path& path, const ImportOptions& options, Im
                           ImportedFile& out) {
   const Result<bool> is_open = check_text(path);
   if (!is_open.ok()) return is_open.error();
-  if (Status status = check_gltf_nesting(path); !status.ok()) return status;
+  const Result<StatedFaces> stated = read_stated_faces(path);
+  if (!stated.ok()) return stated.error();
   if (options.try_first) {
     const Status tried = try_reading(path);
     if (!tried.ok()) return in_file(path, tried.error());
@@ -157,7 +155,9 @@ Status import_with_assimp(const fs::path& path, const ImportOptions& options, Im
   report.has_open_end = *is_open;
   auto scene = read_scene(path, FaceOrder::kOfFile, report.files_read);
   if (!scene.ok()) return in_file(path, scene.error());
-  if (Status status = check_gltf_faces(path, *scene.value()); !status.ok()) return status;
+  if (Status status = check_stated_faces(*stated, *scene.value()); !status.ok()) {
+    return in_file(path, status.error());
+  }
   const std::vector<fs::path> files = report.files_read;
   Status status =
       take_over(path, wanted, *scene.value(), {options, path.string()}, std::move(report), out);

@@ -3,14 +3,19 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/import.h>
 #include <boxtree/cooker/import/source_stream.h>
+#include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 
-/// Calls `read` with the array of positions that has the precision asked for, to take the rest of
-/// `stream` into `out` and return a Status; fills in what the report says of the file.
+/// Calls `read` with the positions, those of `out` that have the precision of `options`, to take
+/// the rest of `stream` into `out` and return a Status; fills in what the report says of the file.
 template <class Read>
 Status read_into(SourceStream& stream, const std::filesystem::path& path,
                  const ImportOptions& options, Imported& out, const Read& read) {
@@ -24,6 +29,24 @@ Status read_into(SourceStream& stream, const std::filesystem::path& path,
   if (!hash.ok()) return hash.error();
   out.report.content_hash = hash.value();
   return {};
+}
+
+/// The same of a file that is a text: calls `read` with all of it, the file's name and the
+/// positions.
+template <class Read>
+Status read_text_into(const std::filesystem::path& path, const ImportOptions& options,
+                      Imported& out, const Read& read) {
+  Result<SourceStream> stream = SourceStream::open(path);
+  if (!stream.ok()) return stream.error();
+  const Result<std::string> bytes = stream->take_rest();
+  if (!bytes.ok()) return bytes.error();
+  const Result<std::string_view> text = text_of(*bytes);
+  if (!text.ok()) return in_file(path, text.error());
+  out.report.has_open_end = has_open_end(*bytes);
+  const std::string file = path.string();
+  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+    return read(*text, file, positions);
+  });
 }
 
 }  // namespace boxtree::cooker

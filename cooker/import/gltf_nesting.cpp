@@ -8,11 +8,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/glb.h>
 #include <boxtree/cooker/import/gltf_nesting.h>
-#include <boxtree/cooker/import/text_tokens.h>
-#include <boxtree/cooker/import/whole_file.h>
 
 namespace boxtree::cooker {
 namespace {
@@ -113,22 +109,16 @@ Status check_nodes(const Children& children) {
 
 }  // namespace
 
-Status check_gltf_nesting(std::string_view json) {
-  if (is_too_deep(json)) {
+Result<Json> parse_gltf(std::string_view text) {
+  if (is_too_deep(text)) {
     return fault(fmt::format("JSON values nest more than {} deep", kMaxJsonDepth));
   }
-  const Json document = Json::parse(json, nullptr, false);
+  Json document = Json::parse(text, nullptr, false);
   const auto nodes = document.is_object() ? document.find("nodes") : document.end();
-  return nodes == document.end() ? Status() : check_nodes(children_of(*nodes));
-}
-
-Status check_gltf_nesting(const std::filesystem::path& path) {
-  const bool is_binary = has_extension(path, "glb");
-  if (!is_binary && !has_extension(path, "gltf")) return {};
-  const Result<std::string> file = read_whole_file(path, kAnyBytes);
-  if (!file.ok()) return file.error();
-  const Status status = check_gltf_nesting(is_binary ? glb_json(*file) : std::string_view(*file));
-  return status.ok() ? Status() : in_file(path, status.error());
+  if (nodes == document.end()) return document;
+  const Status status = check_nodes(children_of(*nodes));
+  if (!status.ok()) return status.error();
+  return document;
 }
 
 }  // namespace boxtree::cooker

@@ -4,8 +4,9 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string_view>
+
+#include <nlohmann/json_fwd.hpp>
 
 #include <boxtree/format/result.h>
 
@@ -17,11 +18,9 @@ inline constexpr std::uint32_t kMaxJsonDepth = 256;
 inline constexpr std::uint32_t kMaxNodeDepth = 1024;
 inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 
-/// Refuses a JSON text, glTF 1 or 2, that nests deeper, or whose nodes are below themselves:
-/// kImportFailed. Other faults pass. O(bytes log bytes).
-Status check_gltf_nesting(std::string_view json);
-
-/// The same of a .gltf or .glb file; others pass.
-Status check_gltf_nesting(const std::filesystem::path& path);
+/// The document that a text, glTF 1 or 2, holds; a discarded value if it is no JSON, for the reader
+/// to refuse. kImportFailed if it nests deeper, or its nodes are below themselves. O(bytes log
+/// bytes).
+Result<nlohmann::json> parse_gltf(std::string_view text);
 
 }  // namespace boxtree::cooker

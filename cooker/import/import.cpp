@@ -77,11 +77,9 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
 Result<ImportedFile> import_checked(const Request& request) {
   const fs::path& path = request.path;
   if (Status status = check_source_file(path); !status.ok()) return status.error();
-  const auto* const reader =
-      std::find_if(kMeshReaders.begin(), kMeshReaders.end(),
-                   [&](const MeshReader& each) { return has_extension(path, each.extension); });
+  const MeshReader* const reader = find_extension(kMeshReaders, path);
   ImportedFile out;
-  const Status status = reader != kMeshReaders.end()
+  const Status status = reader != nullptr
                             ? read_mesh(*reader, request, out)
                             : import_with_assimp(path, request.options, request.wanted, out);
   if (!status.ok()) return status.error();
@@ -98,7 +96,7 @@ Result<ImportedFile> import_guarded(const Request& request) {
   }
 }
 
-// Imported or SourceScene, whichever was asked for.
+// T is Imported or SourceScene.
 template <class T>
 Result<T> only(Result<ImportedFile>&& file) {
   if (!file.ok()) return file.error();

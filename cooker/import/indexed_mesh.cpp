@@ -7,17 +7,16 @@
 
 #include <boxtree/cooker/import/indexed_mesh.h>
 #include <boxtree/cooker/import/weld.h>
+#include <boxtree/format/limits.h>
 
 namespace boxtree::cooker {
 
 namespace {
 
-constexpr std::uint64_t kMostVertices = 0xfffffffeu;  // corners are 32 bits, one is special
-
 Status check_vertex_count(std::uint64_t count, const std::string& file) {
-  if (count <= kMostVertices) return {};
+  if (count <= kMaxVertices) return {};
   return Error{Errc::kMeshTooLarge,
-               fmt::format("{}: {} vertices, more than {}", file, count, kMostVertices)};
+               fmt::format("{}: {} vertices, more than {}", file, count, kMaxVertices)};
 }
 
 }  // namespace

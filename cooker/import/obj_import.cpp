@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Twice over the text: vertices first, as a face may name one that comes after it.
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/indexed_mesh.h>
 #include <boxtree/cooker/import/obj_import.h>
 #include <boxtree/cooker/import/obj_statements.h>
@@ -32,16 +31,12 @@ bool is_known(std::string_view keyword) {
 
 // Counted from 1, or backwards from -1; 0 for what is no number. Numbers of texture coordinates and
 // normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
-long long corner_number(std::string_view word) {
-  long long number = 0;
-  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  const char* const last = word.data() + word.size();
-  const char* const end = std::from_chars(word.data() + (has_plus ? 1 : 0), last, number).ptr;
-  const std::string_view rest(end, static_cast<std::size_t>(last - end));
-  if (rest.empty()) return number;
-  const bool is_corner = rest[0] == '/' && std::count(rest.begin(), rest.end(), '/') <= 2 &&
+std::int64_t corner_number(std::string_view word) {
+  const std::size_t slash = std::min(word.find('/'), word.size());
+  const std::string_view rest = word.substr(slash);
+  const bool is_corner = std::count(rest.begin(), rest.end(), '/') <= 2 &&
                          rest.find_first_not_of("0123456789+-/") == std::string_view::npos;
-  return is_corner ? number : 0;
+  return is_corner ? read_integer(word.substr(0, slash)).value_or(0) : 0;
 }
 
 // T is the type of the positions.
@@ -168,9 +163,9 @@ Status Reader<T>::read_face() {
 
 template <class T>
 std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
-  const long long number = corner_number(word);
-  const auto so_far = static_cast<long long>(vertices_so_far_);
-  if (number > 0 && number <= static_cast<long long>(mesh_.vertices())) {
+  const std::int64_t number = corner_number(word);
+  const auto so_far = static_cast<std::int64_t>(vertices_so_far_);
+  if (number > 0 && number <= static_cast<std::int64_t>(mesh_.vertices())) {
     return static_cast<std::uint32_t>(number - 1);
   }
   if (number < 0 && number >= -so_far) return static_cast<std::uint32_t>(so_far + number);
@@ -180,7 +175,7 @@ std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
 // Why the corner names no vertex.
 template <class T>
 FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
-  const long long number = corner_number(word);
+  const std::int64_t number = corner_number(word);
   std::string why = fmt::format("corner {} (line {}) names ", corner, statement_.line);
   if (number > 0) {
     why += fmt::format("vertex {}, but there are {} vertices", number, mesh_.vertices());
@@ -193,11 +188,10 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
 }
 
 // All but what editors and systems put around a text.
-Result<std::string_view> statements_of(std::string_view file) {
+std::string_view statements_of(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (file.starts_with(kByteOrderMark)) file.remove_prefix(kByteOrderMark.size());
-  Result<std::string_view> text = text_of(file);
-  if (text.ok() && text->ends_with('\x1a')) text->remove_suffix(1);  // how DOS ended a text
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.ends_with('\x1a')) text.remove_suffix(1);  // how DOS ended a text
   return text;
 }
 
@@ -223,24 +217,16 @@ void find_libraries(const fs::path& path, const std::vector<std::string>& names,
 
 Status import_obj(const fs::path& path, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  const Result<std::string> bytes = stream->take_rest();
-  if (!bytes.ok()) return bytes.error();
-  const Result<std::string_view> text = statements_of(*bytes);
-  if (!text.ok()) return in_file(path, text.error());
-
-  const std::string file = path.string();
   std::vector<std::string> libraries;
-  Status status = read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
+  const auto read = [&]<class T>(std::string_view text, const std::string& file,
+                                 std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out, 1);
-    Reader<T> reader(*text, file, options, mesh, out.report, materials);
-    Status read = reader.read();
+    Reader<T> reader(statements_of(text), file, options, mesh, out.report, materials);
+    Status status = reader.read();
     libraries = reader.libraries();
-    return read;
-  });
-  if (!status.ok()) return status;
-  out.report.has_open_end = has_open_end(*bytes);
+    return status;
+  };
+  if (Status status = read_text_into(path, options, out, read); !status.ok()) return status;
   find_libraries(path, libraries, out.report.files_read);
   if (out.report.files_read.size() == 1) return {};
   const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);

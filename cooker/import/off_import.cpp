@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Word by word, as the format has it; lines tell how long a colour is.
 #include <algorithm>
-#include <charconv>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <string>
@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/indexed_mesh.h>
 #include <boxtree/cooker/import/off_import.h>
 #include <boxtree/cooker/import/text_tokens.h>
@@ -21,16 +20,7 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-std::optional<long long> to_integer(std::string_view word) {
-  const bool has_plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  const char* const last = word.data() + word.size();
-  long long number = 0;
-  const auto [end, error] = std::from_chars(word.data() + (has_plus ? 1 : 0), last, number);
-  if (error != std::errc() || end != last) return std::nullopt;
-  return number;
-}
-
-// However long: nobody wants to know how many edges there are.
+// However long: the number of edges is not used.
 bool is_integer(std::string_view word) {
   const std::string_view digits = word.substr(word.find_first_not_of("+-") == 1 ? 1 : 0);
   return !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
@@ -128,7 +118,7 @@ template <class T>
 Status Reader<T>::read_header() {
   if (!find_word()) return failure("no OFF header");
   std::string_view key = line_words_[word_];
-  if (to_integer(key)) return {};
+  if (read_integer(key)) return {};
   for (const std::string_view prefix : {"ST", "C", "N", "4", "n"}) {
     if (!key.starts_with(prefix)) continue;
     key.remove_prefix(prefix.size());
@@ -148,8 +138,8 @@ Status Reader<T>::read_header() {
 
 template <class T>
 Status Reader<T>::read_dimensions() {
-  const std::optional<long long> dimensions =
-      find_word() ? to_integer(line_words_[word_]) : std::nullopt;
+  const std::optional<std::int64_t> dimensions =
+      find_word() ? read_integer(line_words_[word_]) : std::nullopt;
   if (!dimensions || *dimensions < 1 || *dimensions > 3) {
     return failure("vertices of 1, 2 or 3 coordinates are supported");
   }
@@ -228,8 +218,8 @@ Result<std::optional<FaceFault>> Reader<T>::read_corners() {
   std::optional<FaceFault> fault;
   corners_.clear();
   for (const std::string_view word : taken_) {
-    const std::optional<long long> vertex = to_integer(word);
-    const bool is_good = vertex && *vertex >= 0 && *vertex < static_cast<long long>(vertices_);
+    const std::optional<std::int64_t> vertex = read_integer(word);
+    const bool is_good = vertex && *vertex >= 0 && *vertex < static_cast<std::int64_t>(vertices_);
     if (!is_good && !fault) {
       fault =
           FaceFault{Errc::kMeshIndexOutOfRange,
@@ -246,19 +236,12 @@ Result<std::optional<FaceFault>> Reader<T>::read_corners() {
 }  // namespace
 
 Status import_off(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
-  if (!stream.ok()) return stream.error();
-  const Result<std::string> bytes = stream->take_rest();
-  if (!bytes.ok()) return bytes.error();
-  const Result<std::string_view> text = text_of(*bytes);
-  if (!text.ok()) return in_file(path, text.error());
-
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    out.report.has_open_end = has_open_end(*bytes);
+  const auto read = [&]<class T>(std::string_view text, const std::string& file,
+                                 std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out);
-    return Reader<T>(*text, file, options, mesh).read();
-  });
+    return Reader<T>(text, file, options, mesh).read();
+  };
+  return read_text_into(path, options, out, read);
 }
 
 }  // namespace boxtree::cooker

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Row by row, without keeping any.
 #include <array>
-#include <charconv>
 #include <limits>
 #include <optional>
 #include <span>
@@ -21,14 +20,11 @@ using Words = std::span<const std::string_view>;
 // A vertex number as binary files have it: those below zero become large ones, out of range in any
 // case. Nothing for what is no whole number, or takes more than 32 bits.
 std::optional<std::uint32_t> read_vertex_number(std::string_view word) {
-  const char* const first = word.data() + (word.starts_with('+') ? 1 : 0);
-  const char* const last = word.data() + word.size();
-  std::int64_t number = 0;
-  const auto [end, error] = std::from_chars(first, last, number);
+  const std::optional<std::int64_t> number = read_integer(word);
   constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min();
   constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
-  if (error != std::errc() || end != last || number < kLeast || number > kMost) return std::nullopt;
-  return static_cast<std::uint32_t>(number);
+  if (!number || *number < kLeast || *number > kMost) return std::nullopt;
+  return static_cast<std::uint32_t>(*number);
 }
 
 // T is the type of the positions.

@@ -15,6 +15,21 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
+// `token` as from_chars reads it, which knows no plus sign.
+std::string_view without_plus(std::string_view token) {
+  const bool has_plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
+  return token.substr(has_plus ? 1 : 0);
+}
+
+template <class T>
+std::optional<T> read_whole(std::string_view digits) {
+  T number = 0;
+  const char* const last = digits.data() + digits.size();
+  const auto [end, error] = std::from_chars(digits.data(), last, number);
+  if (error != std::errc() || end != last) return std::nullopt;
+  return number;
+}
+
 // Whether a number, spelled as from_chars reads it, is nearer to zero than to infinity.
 bool is_below_one(std::string_view digits) {
   if (digits.starts_with('-')) digits.remove_prefix(1);
@@ -94,24 +109,22 @@ void split_tokens(std::string_view text, Tokens& tokens) {
   }
 }
 
+std::optional<std::int64_t> read_integer(std::string_view token) {
+  return read_whole<std::int64_t>(without_plus(token));
+}
+
 std::optional<std::uint64_t> read_count(std::string_view token) {
-  std::uint64_t count = 0;
-  const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), count);
-  if (error != std::errc() || end != token.data() + token.size()) return std::nullopt;
-  return count;
+  return read_whole<std::uint64_t>(token);
 }
 
 template <class T>
 std::optional<T> read_number(std::string_view token) {
-  // from_chars knows no plus sign.
-  const bool has_plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
-  const char* const first = token.data() + (has_plus ? 1 : 0);
-  const char* const last = token.data() + token.size();
+  const std::string_view digits = without_plus(token);
+  const char* const last = digits.data() + digits.size();
   T number = 0;
-  const auto [end, error] = std::from_chars(first, last, number);
+  const auto [end, error] = std::from_chars(digits.data(), last, number);
   if (end != last || error == std::errc::invalid_argument) return std::nullopt;
   if (error == std::errc()) return number;
-  const std::string_view digits(first, static_cast<std::size_t>(last - first));
   const T beyond = is_below_one(digits) ? T{0} : std::numeric_limits<T>::infinity();
   return digits.starts_with('-') ? -beyond : beyond;
 }

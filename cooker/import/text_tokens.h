@@ -2,7 +2,9 @@
 // Small pieces that the readers of text formats share.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -48,6 +50,10 @@ std::string_view take_line(std::string_view& rest);
 template <class T>
 [[nodiscard]] std::optional<T> read_number(std::string_view token);
 
+/// The whole number, with a sign or without, that all of `token` is; nothing for a fraction,
+/// another spelling, or more than 64 bits.
+[[nodiscard]] std::optional<std::int64_t> read_integer(std::string_view token);
+
 /// The whole number that all of `token` is; nothing for a sign, a fraction or another spelling.
 [[nodiscard]] std::optional<std::uint64_t> read_count(std::string_view token);
 
@@ -64,5 +70,15 @@ inline constexpr VertexWords kOrigin = {"0", "0", "0", "1"};
 
 /// Whether `path` ends in a dot and `extension` (lower case), in any case.
 [[nodiscard]] bool has_extension(const std::filesystem::path& path, std::string_view extension);
+
+/// The entry of `table` whose `extension` the path ends in, or nullptr.
+template <class Entry, std::size_t kEntries>
+[[nodiscard]] const Entry* find_extension(const std::array<Entry, kEntries>& table,
+                                          const std::filesystem::path& path) {
+  const auto found = std::find_if(table.begin(), table.end(), [&path](const Entry& each) {
+    return has_extension(path, each.extension);
+  });
+  return found == table.end() ? nullptr : &*found;
+}
 
 }  // namespace boxtree::cooker

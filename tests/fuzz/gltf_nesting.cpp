@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Any text as the JSON of a glTF file that is looked at before assimp reads it.
+// Any text as the JSON of a glTF file, looked at before assimp reads it: its nesting and its
+// counts.
 #include <string_view>
 
+#include <nlohmann/json.hpp>
+
+#include <boxtree/cooker/import/gltf_faces.h>
 #include <boxtree/cooker/import/gltf_nesting.h>
 
 #include "tests/fuzz/target.h"
@@ -10,7 +14,9 @@ namespace boxtree::fuzz {
 
 void run(Bytes input) {
   const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-  const Errc code = cooker::check_gltf_nesting(text).code();
+  const auto document = cooker::parse_gltf(text);
+  if (document.ok()) static_cast<void>(cooker::stated_faces(*document));
+  const Errc code = document.ok() ? Errc::kOk : document.error().code;
   if (code != Errc::kOk && code != Errc::kImportFailed) finding("an error of another kind");
 }
 

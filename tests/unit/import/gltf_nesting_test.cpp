@@ -3,6 +3,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include <boxtree/cooker/import/gltf_nesting.h>
 
@@ -10,8 +11,8 @@ namespace boxtree::cooker {
 namespace {
 
 std::string fault(const std::string& json) {
-  const Status status = check_gltf_nesting(std::string_view(json));
-  return status.ok() ? "" : status.error().detail;
+  const Result<nlohmann::json> document = parse_gltf(json);
+  return document.ok() ? "" : document.error().detail;
 }
 
 std::string nested(std::size_t depth) {

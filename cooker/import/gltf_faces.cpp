@@ -1,22 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Headers of PLY files, JSON of glTF files.
-#include <algorithm>
-#include <charconv>
+// Counts in the JSON of glTF files.
 #include <cstdint>
-#include <cstring>
-#include <fstream>
-#include <set>
 #include <string>
 #include <string_view>
-#include <utility>
 
 #include <assimp/scene.h>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <boxtree/cooker/import/file_error.h>
 #include <boxtree/cooker/import/glb.h>
-#include <boxtree/cooker/import/header_checks.h>
-#include <boxtree/cooker/import/source_files.h>
+#include <boxtree/cooker/import/gltf_faces.h>
+#include <boxtree/cooker/import/gltf_nesting.h>
 #include <boxtree/cooker/import/text_tokens.h>
 #include <boxtree/cooker/import/whole_file.h>
 
@@ -24,8 +19,6 @@ namespace boxtree::cooker {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::size_t kPlyHeaderBytes = std::size_t{1} << 16;  // longer headers are not looked at
 
 std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
   const auto found = object.find(key);
@@ -39,10 +32,7 @@ const Json& array_at(const Json& object, const char* key) {
   return found != object.end() && found->is_array() ? *found : kEmpty;
 }
 
-// Vertices and faces that a primitive has according to the file.
-using Counts = std::pair<std::uint64_t, std::uint64_t>;
-
-Counts counts_of(const Json& primitive, const Json& accessors) {
+StatedFaces::value_type counts_of(const Json& primitive, const Json& accessors) {
   const auto count_at = [&accessors](const Json& object, const char* key) -> std::uint64_t {
     const std::uint64_t accessor = number_at(object, key, accessors.size());
     return accessor < accessors.size() ? number_at(accessors[accessor], "count", 0) : 0;
@@ -63,40 +53,41 @@ Counts counts_of(const Json& primitive, const Json& accessors) {
   }
 }
 
-std::set<Counts> stated_counts(const Json& document) {
-  std::set<Counts> counts;
+}  // namespace
+
+StatedFaces stated_faces(const Json& document) {
+  StatedFaces stated;
   for (const Json& mesh : array_at(document, "meshes")) {
     if (!mesh.is_object()) continue;
     for (const Json& primitive : array_at(mesh, "primitives")) {
       if (primitive.is_object()) {
-        counts.insert(counts_of(primitive, array_at(document, "accessors")));
+        stated.insert(counts_of(primitive, array_at(document, "accessors")));
       }
     }
   }
-  return counts;
+  return stated;
 }
 
-}  // namespace
-
-Status check_gltf_faces(const std::filesystem::path& path, const aiScene& scene) {
+Result<StatedFaces> read_stated_faces(const std::filesystem::path& path) {
   const bool is_binary = has_extension(path, "glb");
-  if (!is_binary && !has_extension(path, "gltf")) return {};
+  if (!is_binary && !has_extension(path, "gltf")) return StatedFaces();
   const Result<std::string> file = read_whole_file(path, kAnyBytes);
   if (!file.ok()) return file.error();
-  const std::string_view text = is_binary ? glb_json(*file) : std::string_view(*file);
-  const Json document = Json::parse(text, nullptr, false);
-  // glTF 1 has no arrays of meshes; assimp's reader for it leaves bad numbers to us.
-  if (!document.is_object()) return {};
-  const std::set<Counts> counts = stated_counts(document);
-  if (counts.empty()) return {};
+  const Result<Json> document = parse_gltf(is_binary ? glb_json(*file) : std::string_view(*file));
+  if (!document.ok()) return in_file(path, document.error());
+  return stated_faces(*document);
+}
+
+Status check_stated_faces(const StatedFaces& stated, const aiScene& scene) {
+  if (stated.empty()) return {};
   for (unsigned i = 0; i < scene.mNumMeshes; ++i) {
     const aiMesh& mesh = *scene.mMeshes[i];
     if ((mesh.mPrimitiveTypes & aiPrimitiveType_TRIANGLE) == 0) continue;
-    if (counts.contains({mesh.mNumVertices, mesh.mNumFaces})) continue;
+    if (stated.contains({mesh.mNumVertices, mesh.mNumFaces})) continue;
     return Error{Errc::kMeshIndexOutOfRange,
-                 fmt::format("{}: mesh '{}': faces name vertices that are not there; {} faces with "
-                             "{} vertices are good",
-                             path.string(), mesh.mName.C_Str(), mesh.mNumFaces, mesh.mNumVertices)};
+                 fmt::format("mesh '{}': faces name vertices that are not there; {} faces with {} "
+                             "vertices are good",
+                             mesh.mName.C_Str(), mesh.mNumFaces, mesh.mNumVertices)};
   }
   return {};
 }
