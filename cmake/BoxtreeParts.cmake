@@ -1,6 +1,6 @@
-# What the runtime is built with: BOXTREE_CODECS, BOXTREE_QUERIES and others choose, and two
-# generated headers tell the sources and every program that includes them, installed or not, so that
-# all of them see one and the same build.
+# What the runtime is built with: BOXTREE_CODECS, BOXTREE_QUERIES and others choose, and a
+# generated header tells the sources and every program that includes it, installed or not, so that all
+# of them see one and the same build.
 set(BOXTREE_ALL_CODECS plain-f32 plain-f16 packed-f32 packed-f16 packed-f64 dedup wide8 wide4)
 set(BOXTREE_ALL_QUERIES ray box sphere point pair distance within scene)
 set(BOXTREE_CODECS all CACHE STRING "Codecs that the runtime reads: all, or some of ${BOXTREE_ALL_CODECS}")
@@ -66,25 +66,14 @@ endforeach()
 list(JOIN codec_ids ", " BOXTREE_CODEC_IDS)
 list(JOIN BOXTREE_BUILT_CODECS " " BOXTREE_CODEC_NAMES)
 
-set(BOXTREE_QUERY_CONSTANTS)
-set(BOXTREE_QUERY_HEADERS)
+set(BOXTREE_QUERY_MACROS)
 foreach(query IN LISTS BOXTREE_ALL_QUERIES)
-  set(header query/${query})
-  if(query STREQUAL within)
-    set(header query/overlap_within)
-  elseif(query STREQUAL scene)
-    set(header scene/scene_queries)
-  endif()
-  string(SUBSTRING ${query} 0 1 first)
-  string(SUBSTRING ${query} 1 -1 rest)
-  string(TOUPPER ${first} first)
-  set(is_built false)
+  string(TOUPPER ${query} name)
+  set(is_built 0)
   if(query IN_LIST BOXTREE_BUILT_QUERIES)
-    set(is_built true)
-    string(APPEND BOXTREE_QUERY_HEADERS "#include <boxtree/runtime/${header}.h>\n")
+    set(is_built 1)
   endif()
-  string(APPEND BOXTREE_QUERY_CONSTANTS
-         "inline constexpr bool kHas${first}${rest}Queries = ${is_built};\n")
+  string(APPEND BOXTREE_QUERY_MACROS "#define BOXTREE_HAS_${name}_QUERIES ${is_built}\n")
 endforeach()
 set(BOXTREE_WALKS_BY_VECTORS false)
 if(BOXTREE_HIGHWAY)
@@ -100,7 +89,5 @@ foreach(pair sse4:HWY_SSE4 avx2:HWY_AVX2 avx512:HWY_AVX3)
     string(APPEND BOXTREE_LEFT_OUT_TARGETS " | ${target}")
   endif()
 endforeach()
-foreach(header configuration queries)
-  configure_file(${CMAKE_CURRENT_LIST_DIR}/${header}.h.in
-                 ${BOXTREE_INCLUDE_DIR}/boxtree/${header}.h @ONLY)
-endforeach()
+configure_file(${CMAKE_CURRENT_LIST_DIR}/configuration.h.in
+               ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h @ONLY)

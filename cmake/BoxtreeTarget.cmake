@@ -1,15 +1,10 @@
 # boxtree_add_library(NAME SOURCES...) and boxtree_set_target(NAME): the settings every target of
 # this project shares, in one place, so that no target can miss the ones that the bytes depend on.
 
-# Sources are included as <boxtree/FOLDER/file.h>, in the tree as after installation. One link a
-# folder gives the tree that shape without a second copy of a header.
+# Public headers are included as <boxtree/NAME.h>, from runtime/include; all others by their path in
+# the tree, as "FOLDER/NAME.h".
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH BOXTREE_SOURCE_DIR)
-set(BOXTREE_INCLUDE_DIR ${CMAKE_CURRENT_BINARY_DIR}/include)
-file(MAKE_DIRECTORY ${BOXTREE_INCLUDE_DIR}/boxtree)
-foreach(folder format runtime cooker)
-  file(CREATE_LINK ${BOXTREE_SOURCE_DIR}/${folder} ${BOXTREE_INCLUDE_DIR}/boxtree/${folder}
-       SYMBOLIC)
-endforeach()
+set(BOXTREE_INCLUDE_DIR ${CMAKE_CURRENT_BINARY_DIR}/include)  # of the one header that is generated
 include(${CMAKE_CURRENT_LIST_DIR}/BoxtreeParts.cmake)
 
 function(boxtree_set_target target)
@@ -47,8 +42,12 @@ function(boxtree_add_library name)
   add_library(boxtree_${name} STATIC ${ARGN})
   add_library(boxtree::${name} ALIAS boxtree_${name})
   set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(boxtree_${name} PUBLIC $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
-                                                    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(boxtree_${name} PUBLIC
+    $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}/runtime/include>
+    $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
+    $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/boxtree/private>)
   boxtree_set_target(boxtree_${name})
 endfunction()
 

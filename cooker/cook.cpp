@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // One mesh through the stages in the order the data flows: build -> encode -> choose.
+#include "cooker/cook.h"
+
 #include <cstdint>
 #include <span>
 #include <utility>
-
-#include <boxtree/cooker/cook.h>
 
 namespace boxtree::cooker {
 

@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/choose/search.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/format/blob.h>
+#include "cooker/choose/search.h"
+#include "cooker/import/import.h"
+#include "cooker/write/file_writer.h"
+#include "format/blob.h"
 
 namespace boxtree::cooker {
 

@@ -4,12 +4,12 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/cook_record.h>
-#include <boxtree/cooker/write/blob_writer.h>
-#include <boxtree/cooker/write/outputs.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/float_state.h>
+#include "cooker/cook.h"
+#include "cooker/cook_record.h"
+#include "cooker/write/blob_writer.h"
+#include "cooker/write/outputs.h"
+#include "format/limits.h"
+#include "runtime/query/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

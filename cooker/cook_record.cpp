@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Options and sources as JSON, in one order.
+#include "cooker/cook_record.h"
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/cook_record.h>
-#include <boxtree/cooker/version.h>
+#include "cooker/version.h"
 
 namespace boxtree::cooker {
 namespace {

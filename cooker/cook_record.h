@@ -6,7 +6,7 @@
 #include <span>
 #include <string>
 
-#include <boxtree/cooker/cook.h>
+#include "cooker/cook.h"
 
 namespace boxtree::cooker {
 

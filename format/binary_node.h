@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/format/children.h>
+#include "format/children.h"
 
 namespace boxtree {
 

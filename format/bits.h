@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/format/bytes.h>
+#include "format/bytes.h"
 
 namespace boxtree {
 

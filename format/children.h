@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/format/box.h>
+#include "format/box.h"
 
 namespace boxtree {
 

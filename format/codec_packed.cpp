@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The check behind every packed tree: after it, sizes and places follow from the header.
+#include "format/codec_packed.h"
+
 #include <algorithm>
 #include <string>
-
-#include <boxtree/format/codec_packed.h>
 
 namespace boxtree {
 namespace {

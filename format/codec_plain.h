@@ -6,11 +6,11 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <boxtree/format/binary_node.h>
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/half.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/tree_record.h>
+#include "format/binary_node.h"
+#include "format/bytes.h"
+#include "format/half.h"
+#include "format/limits.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 

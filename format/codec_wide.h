@@ -11,10 +11,10 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/children.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/tree_record.h>
+#include "format/bytes.h"
+#include "format/children.h"
+#include "format/limits.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 

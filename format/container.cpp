@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Container checks. Every offset and size of a file passes through here before anything reads by
 // it.
+#include "format/container.h"
+
 #include <algorithm>
 #include <numeric>
 #include <string>
 #include <string_view>
 
-#include <boxtree/format/container.h>
-#include <boxtree/format/message.h>
+#include "format/message.h"
 
 namespace boxtree {
 namespace {

@@ -12,9 +12,9 @@
 #include <type_traits>
 #include <vector>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/result.h>
+#include "format/bytes.h"
+#include "format/limits.h"
+#include "format/result.h"
 
 namespace boxtree {
 

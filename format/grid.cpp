@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Decoding of one leaf of the grid store (encoder: cooker/encode/grid_geometry.cpp).
-#include <boxtree/format/bits.h>
-#include <boxtree/format/grid.h>
-#include <boxtree/format/grid_leaf.h>
+#include "format/grid.h"
+
+#include "format/bits.h"
+#include "format/grid_leaf.h"
 
 namespace boxtree {
 namespace {

@@ -10,8 +10,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/limits.h>
+#include "format/bytes.h"
+#include "format/limits.h"
 
 namespace boxtree {
 

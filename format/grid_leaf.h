@@ -10,8 +10,8 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/format/bits.h>
-#include <boxtree/format/grid.h>
+#include "format/bits.h"
+#include "format/grid.h"
 
 #define BOXTREE_ALWAYS_INLINE [[gnu::always_inline]] inline
 

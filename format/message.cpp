@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Puts numbers into the text of an error.
+#include "format/message.h"
+
 #include <string>
 #include <utility>
-
-#include <boxtree/format/message.h>
 
 namespace boxtree {
 

@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree {
 

@@ -7,7 +7,7 @@
 #include <utility>
 #include <variant>
 
-#include <boxtree/format/error.h>
+#include "format/error.h"
 
 namespace boxtree {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Checks of a scene's record: after them, counts and boxes may be used in arithmetic without care.
+#include "format/scene_record.h"
+
 #include <cmath>
 #include <string>
 
-#include <boxtree/format/limits.h>
-#include <boxtree/format/scene_record.h>
+#include "format/limits.h"
 
 namespace boxtree {
 namespace {

@@ -9,9 +9,9 @@
 #include <string_view>
 #include <type_traits>
 
-#include <boxtree/format/limits.h>
-#include <boxtree/format/result.h>
-#include <boxtree/format/tree_record.h>
+#include "format/limits.h"
+#include "format/result.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Checks of one tree record: after them, counts and boxes may be used in arithmetic without care.
+#include "format/tree_record.h"
+
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/tree_record.h>
+#include "format/codec_wide.h"
+#include "format/limits.h"
 
 namespace boxtree {
 namespace {

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <type_traits>
 
-#include <boxtree/format/codec.h>
-#include <boxtree/format/result.h>
+#include "format/codec.h"
+#include "format/result.h"
 
 namespace boxtree {
 

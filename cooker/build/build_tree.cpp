@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The recursion around a split rule: preorder nodes with one face a leaf, guards on depth.
+#include "cooker/build/build_tree.h"
+
 #include <algorithm>
 
 #include <oneapi/tbb/parallel_invoke.h>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/build/face_boxes.h>
-#include <boxtree/cooker/build/splitter.h>
+#include "cooker/build/face_boxes.h"
+#include "cooker/build/splitter.h"
 
 namespace boxtree::cooker {
 namespace {

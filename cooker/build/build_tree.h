@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/cooker/build/duplicates.h>
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/format/box.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/tree/frame.h>
+#include "cooker/build/duplicates.h"
+#include "cooker/import/source_mesh.h"
+#include "format/box.h"
+#include "format/limits.h"
+#include "runtime/tree/frame.h"
 
 namespace boxtree::cooker {
 

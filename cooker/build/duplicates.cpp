@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Groups of faces by a hash table of their corner positions.
+#include "cooker/build/duplicates.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -7,8 +9,7 @@
 #include <span>
 #include <tuple>
 
-#include <boxtree/cooker/build/duplicates.h>
-#include <boxtree/runtime/file/checksum.h>
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
 

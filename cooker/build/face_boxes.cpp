@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Frame from the bounds of positions; boxes rounded outward.
+#include "cooker/build/face_boxes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
-
-#include <boxtree/cooker/build/face_boxes.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
+#include "cooker/build/build_tree.h"
 
 namespace boxtree::cooker {
 

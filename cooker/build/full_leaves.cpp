@@ -5,10 +5,10 @@
 
 #include <oneapi/tbb/parallel_invoke.h>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/build/face_boxes.h>
-#include <boxtree/cooker/build/full_nodes.h>
-#include <boxtree/cooker/build/unit_sweep.h>
+#include "cooker/build/build_tree.h"
+#include "cooker/build/face_boxes.h"
+#include "cooker/build/full_nodes.h"
+#include "cooker/build/unit_sweep.h"
 
 namespace boxtree::cooker {
 namespace {

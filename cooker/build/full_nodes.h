@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include <boxtree/format/codec_wide.h>
+#include "format/codec_wide.h"
 
 namespace boxtree::cooker {
 

@@ -4,7 +4,7 @@
 // redrawn).
 #include <vector>
 
-#include <boxtree/cooker/build/splitter.h>
+#include "cooker/build/splitter.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -4,8 +4,8 @@
 #include <array>
 #include <cmath>
 
-#include <boxtree/cooker/build/full_nodes.h>
-#include <boxtree/cooker/build/splitter.h>
+#include "cooker/build/full_nodes.h"
+#include "cooker/build/splitter.h"
 
 namespace boxtree::cooker {
 namespace {

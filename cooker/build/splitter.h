@@ -9,7 +9,7 @@
 #include <optional>
 #include <span>
 
-#include <boxtree/cooker/build/build_tree.h>
+#include "cooker/build/build_tree.h"
 
 namespace boxtree::cooker {
 

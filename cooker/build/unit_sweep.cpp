@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A sweep over leaves; stable division of the two orders that were not swept.
+#include "cooker/build/unit_sweep.h"
+
 #include <algorithm>
 #include <cassert>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/build/full_nodes.h>
-#include <boxtree/cooker/build/unit_sweep.h>
+#include "cooker/build/build_tree.h"
+#include "cooker/build/full_nodes.h"
 
 namespace boxtree::cooker {
 namespace {

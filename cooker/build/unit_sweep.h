@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/cooker/build/splitter.h>
-#include <boxtree/format/codec_wide.h>
+#include "cooker/build/splitter.h"
+#include "format/codec_wide.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The same questions, counted and timed.
+#include "cooker/choose/calibrate.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/choose/calibrate.h>
-#include <boxtree/cooker/choose/search.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/choose/measure.h"
+#include "cooker/choose/search.h"
 
 namespace boxtree::cooker {
 namespace {

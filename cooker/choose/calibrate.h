@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/choose/cost.h>
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/choose/cost.h"
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
 

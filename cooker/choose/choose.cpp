@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // One number a candidate, the smallest wins. Sums, products and quotients alone: what a library's
 // logarithm or root says differs between machines.
+#include "cooker/choose/choose.h"
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/choose/choose.h>
 
 namespace boxtree::cooker {
 namespace {

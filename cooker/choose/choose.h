@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/choose/cost.h>
-#include <boxtree/cooker/proof/gates.h>
-#include <boxtree/format/scene_record.h>
+#include "cooker/choose/cost.h"
+#include "cooker/proof/gates.h"
+#include "format/scene_record.h"
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // A linear model, and the fit of its constants.
+#include "cooker/choose/cost.h"
+
 #include <algorithm>
 #include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
-
-#include <boxtree/cooker/choose/cost.h>
 
 namespace boxtree::cooker {
 

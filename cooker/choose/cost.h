@@ -5,8 +5,8 @@
 #include <array>
 #include <span>
 
-#include <boxtree/cooker/choose/work.h>
-#include <boxtree/format/tree_record.h>
+#include "cooker/choose/work.h"
+#include "format/tree_record.h"
 
 namespace boxtree::cooker {
 

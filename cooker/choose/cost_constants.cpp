@@ -6,7 +6,7 @@
 // 2.1 times there, between candidates of one mesh by far less.
 #include <array>
 
-#include <boxtree/cooker/choose/cost.h>
+#include "cooker/choose/cost.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // JSON in both directions; every number is checked on its way in.
+#include "cooker/choose/cost_file.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,8 +10,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/choose/cost_file.h>
-#include <boxtree/cooker/import/whole_file.h>
+#include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/choose/calibrate.h>
-#include <boxtree/format/result.h>
+#include "cooker/choose/calibrate.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Families of codecs, each over its own tree.
+#include "cooker/choose/search.h"
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -9,12 +11,11 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include <boxtree/cooker/build/face_boxes.h>
-#include <boxtree/cooker/choose/search.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/query/float_state.h>
+#include "cooker/build/face_boxes.h"
+#include "cooker/import/mesh_arrays.h"
+#include "format/limits.h"
+#include "runtime/primitive/triangle.h"
+#include "runtime/query/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

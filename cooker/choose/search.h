@@ -7,12 +7,12 @@
 #include <optional>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/choose/choose.h>
-#include <boxtree/cooker/encode/encoded_tree.h>
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/cooker/quantise/grid.h>
+#include "cooker/build/build_tree.h"
+#include "cooker/choose/choose.h"
+#include "cooker/encode/encoded_tree.h"
+#include "cooker/encode/encoders.h"
+#include "cooker/import/source_mesh.h"
+#include "cooker/quantise/grid.h"
 
 namespace boxtree::cooker {
 

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
 // The walks of the runtime, listened to. Any codec by the same walk: boxes of f32 codecs come and
 // go through double unchanged, so that it meets the nodes that a query meets.
+#include "cooker/choose/work.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
-#include <boxtree/cooker/choose/work.h>
-#include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/face_visit.h>
-#include <boxtree/runtime/query/pair_walk.h>
-#include <boxtree/runtime/query/point_query.h>
-#include <boxtree/runtime/query/ray_query.h>
-#include <boxtree/runtime/query/shape_query.h>
+#include "runtime/query/pair_walk.h"
+#include "runtime/query/point_query.h"
+#include "runtime/query/ray_query.h"
+#include "runtime/query/shape_query.h"
+#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/face_visit.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -6,9 +6,9 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/cooker/choose/workload.h>
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "cooker/choose/workload.h"
+#include "format/result.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

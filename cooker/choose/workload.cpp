@@ -2,13 +2,14 @@
 // Seeded questions. What the cooker chooses depends on them, so no library may have a say in their
 // last bits: sines, norms and products are made here, by the four operations and square roots in
 // one order (docs/ARCHITECTURE.md, "Same bytes everywhere").
+#include "cooker/choose/workload.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 
-#include <boxtree/cooker/choose/workload.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/runtime/query/ray.h>
+#include <boxtree/ray.h>
 
 namespace boxtree::cooker {
 

@@ -6,14 +6,15 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/choose/cost_file.h>
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/report/approximate.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/pages_json.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/choose/cost_file.h"
+#include "cooker/choose/measure.h"
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
+#include "cooker/import/import.h"
+#include "cooker/report/approximate.h"
+#include "cooker/report/pages_json.h"
 
 namespace boxtree::cooker {
 namespace {

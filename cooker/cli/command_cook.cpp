@@ -12,13 +12,13 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <boxtree/cooker/choose/cost_file.h>
-#include <boxtree/cooker/cli/cook_report.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/cli/step_printer.h>
-#include <boxtree/cooker/scene/cook_scene.h>
-#include <boxtree/cooker/write/outputs.h>
-#include <boxtree/format/grid.h>
+#include "cooker/choose/cost_file.h"
+#include "cooker/cli/cook_report.h"
+#include "cooker/cli/output.h"
+#include "cooker/cli/step_printer.h"
+#include "cooker/scene/cook_scene.h"
+#include "cooker/write/outputs.h"
+#include "format/grid.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -11,13 +11,13 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/export/export.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/import/source_scene.h>
-#include <boxtree/cooker/write/outputs.h>
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
+#include "cooker/export/export.h"
+#include "cooker/import/import.h"
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/import/source_scene.h"
+#include "cooker/write/outputs.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,10 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/cli/scene_info.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
+#include "cooker/cli/scene_info.h"
 
 namespace boxtree::cooker {
 namespace {

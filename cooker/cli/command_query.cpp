@@ -11,9 +11,9 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/question.h>
-#include <boxtree/cooker/cli/scene_question.h>
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/question.h"
+#include "cooker/cli/scene_question.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -7,15 +7,15 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/cli/peers.h>
-#include <boxtree/cooker/cli/step_printer.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/report/paper_tables.h>
-#include <boxtree/cooker/report/tradeoff_page.h>
-#include <boxtree/cooker/write/atomic_file.h>
-#include <boxtree/cooker/write/outputs.h>
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
+#include "cooker/cli/peers.h"
+#include "cooker/cli/step_printer.h"
+#include "cooker/import/import.h"
+#include "cooker/report/paper_tables.h"
+#include "cooker/report/tradeoff_page.h"
+#include "cooker/write/atomic_file.h"
+#include "cooker/write/outputs.h"
 
 namespace boxtree::cooker {
 namespace {

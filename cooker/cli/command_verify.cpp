@@ -8,12 +8,13 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
+#include "cooker/import/import.h"
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 namespace {

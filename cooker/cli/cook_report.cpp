@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Reports of cooking.
+#include "cooker/cli/cook_report.h"
+
 #include <algorithm>
 #include <cstdio>
 #include <string>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/cook_report.h>
-#include <boxtree/cooker/cli/output.h>
+#include "cooker/cli/output.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/scene/cook_scene.h>
+#include "cooker/cli/output.h"
+#include "cooker/scene/cook_scene.h"
 
 namespace boxtree::cooker {
 

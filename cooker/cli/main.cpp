@@ -10,8 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/version.h>
+#include "cooker/cli/output.h"
+#include "cooker/version.h"
 
 namespace {
 

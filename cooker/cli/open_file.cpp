@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Whether a file is a blob is known from its header alone.
+#include "cooker/cli/open_file.h"
+
 #include <charconv>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
 
 namespace boxtree::cooker {
 

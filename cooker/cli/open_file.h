@@ -6,8 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "cooker/import/import.h"
 
 namespace boxtree::cooker {
 

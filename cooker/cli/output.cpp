@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Output conventions of the command line.
+#include "cooker/cli/output.h"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -11,8 +13,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/text/utf8.h>
+#include "cooker/text/utf8.h"
 
 namespace boxtree::cooker {
 namespace {

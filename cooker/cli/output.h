@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/tree/geometry.h>
+#include "format/result.h"
+#include "runtime/tree/geometry.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A child process, its standard output read to the end.
+#include "cooker/cli/peers.h"
+
 #include <array>
 #include <cerrno>
 #include <fcntl.h>
@@ -9,8 +11,6 @@
 #include <unistd.h>
 
 #include <nlohmann/json.hpp>
-
-#include <boxtree/cooker/cli/peers.h>
 
 namespace boxtree::cooker {
 namespace {

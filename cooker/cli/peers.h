@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/report/paper_tables.h>
-#include <boxtree/format/result.h>
+#include "cooker/report/paper_tables.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Parsing, asking, and the JSON of answers.
+#include "cooker/cli/question.h"
+
 #include <algorithm>
 #include <charconv>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/question.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
+#include "cooker/cli/open_file.h"
+#include "cooker/import/import.h"
+#include "cooker/import/mesh_arrays.h"
 
 namespace boxtree::cooker {
 namespace {

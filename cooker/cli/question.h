@@ -12,9 +12,10 @@
 #include <utility>
 #include <variant>
 
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/cli/output.h"
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
 

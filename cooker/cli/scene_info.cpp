@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The scene of a file as JSON, and the JSON as text.
+#include "cooker/cli/scene_info.h"
+
 #include <map>
 #include <string>
 #include <utility>
@@ -7,9 +9,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/scene_info.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/runtime/scene/scene.h>
+#include "cooker/import/mesh_arrays.h"
+#include "runtime/scene/scene.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -2,8 +2,9 @@
 // What `boxtree info` says of a scene.
 #pragma once
 
-#include <boxtree/cooker/cli/output.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "cooker/cli/output.h"
 
 namespace boxtree::cooker {
 

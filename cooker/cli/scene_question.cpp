@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Moving, asking, and the JSON of answers.
+#include "cooker/cli/scene_question.h"
+
 #include <charconv>
 #include <vector>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/cli/scene_question.h>
 
 namespace boxtree::cooker {
 namespace {

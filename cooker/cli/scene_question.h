@@ -6,8 +6,8 @@
 #include <span>
 #include <string>
 
-#include <boxtree/cooker/cli/open_file.h>
-#include <boxtree/cooker/cli/question.h>
+#include "cooker/cli/open_file.h"
+#include "cooker/cli/question.h"
 
 namespace boxtree::cooker {
 

@@ -10,7 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cli/output.h>
+#include "cooker/cli/output.h"
 
 namespace boxtree::cooker {
 

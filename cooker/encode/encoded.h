@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/quantise/grid.h>
-#include <boxtree/format/binary_node.h>
-#include <boxtree/format/tree_record.h>
+#include "cooker/build/build_tree.h"
+#include "cooker/quantise/grid.h"
+#include "format/binary_node.h"
+#include "format/tree_record.h"
 
 namespace boxtree::cooker {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Records from encoded parts.
-#include <boxtree/cooker/encode/encoded_tree.h>
+#include "cooker/encode/encoded_tree.h"
 
 namespace boxtree::cooker {
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <string>
 
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "cooker/encode/encoded.h"
+#include "format/tree_record.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

@@ -4,8 +4,8 @@
 // as many ways as are wanted.
 #pragma once
 
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/cooker/encode/wide_layout.h>
+#include "cooker/encode/encoded.h"
+#include "cooker/encode/wide_layout.h"
 
 namespace boxtree::cooker {
 

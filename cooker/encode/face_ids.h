@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include "cooker/encode/encoded.h"
 
 namespace boxtree::cooker {
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstring>
 
-#include <boxtree/cooker/encode/face_ids.h>
-#include <boxtree/format/bytes.h>
+#include "cooker/encode/face_ids.h"
+#include "format/bytes.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -11,10 +11,10 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include <boxtree/cooker/encode/encoded.h>
-#include <boxtree/cooker/encode/face_ids.h>
-#include <boxtree/format/bits.h>
-#include <boxtree/format/grid.h>
+#include "cooker/encode/encoded.h"
+#include "cooker/encode/face_ids.h"
+#include "format/bits.h"
+#include "format/grid.h"
 
 namespace boxtree::cooker {
 namespace {

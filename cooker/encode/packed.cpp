@@ -5,9 +5,9 @@
 #include <cstring>
 #include <utility>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/encode/walked_nodes.h>
-#include <boxtree/format/codec_packed.h>
+#include "cooker/encode/encoders.h"
+#include "cooker/encode/walked_nodes.h"
+#include "format/codec_packed.h"
 
 namespace boxtree::cooker {
 namespace {

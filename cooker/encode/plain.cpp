@@ -8,10 +8,10 @@
 #include <cstring>
 #include <utility>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/encode/visit_cost.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/limits.h>
+#include "cooker/encode/encoders.h"
+#include "cooker/encode/visit_cost.h"
+#include "format/codec_plain.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 namespace {

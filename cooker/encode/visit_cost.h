@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include "cooker/encode/encoded.h"
 
 namespace boxtree::cooker {
 

@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/format/codec_plain.h>
+#include "format/codec_plain.h"
 
 namespace boxtree::cooker {
 

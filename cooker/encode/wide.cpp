@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/encode/visit_cost.h>
+#include "cooker/encode/encoders.h"
+#include "cooker/encode/visit_cost.h"
 
 namespace boxtree::cooker {
 namespace {

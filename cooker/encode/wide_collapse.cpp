@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Costs from the leaves up, choices from the root down.
+#include "cooker/encode/wide_collapse.h"
+
 #include <limits>
 
-#include <boxtree/cooker/build/splitter.h>
-#include <boxtree/cooker/encode/wide_collapse.h>
+#include "cooker/build/splitter.h"
 
 namespace boxtree::cooker {
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Numbers nodes, leaves and faces from the root down: first the top levels, then subtrees.
+#include "cooker/encode/wide_layout.h"
+
 #include <algorithm>
 #include <unordered_map>
 #include <utility>
 
-#include <boxtree/cooker/encode/wide_collapse.h>
-#include <boxtree/cooker/encode/wide_layout.h>
+#include "cooker/encode/wide_collapse.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/format/codec_wide.h>
+#include "cooker/build/build_tree.h"
+#include "format/codec_wide.h"
 
 namespace boxtree::cooker {
 

@@ -12,7 +12,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/write/atomic_file.h>
+#include "cooker/write/atomic_file.h"
 
 namespace boxtree::cooker {
 

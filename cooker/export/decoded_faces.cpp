@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Stored arrays are shown as they are; a grid is decoded leaf by leaf and welded.
+#include "cooker/export/decoded_faces.h"
+
 #include <algorithm>
 #include <numeric>
 #include <string>
@@ -7,10 +9,9 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/export/decoded_faces.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/import/weld.h>
-#include <boxtree/format/limits.h>
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/import/weld.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 namespace {

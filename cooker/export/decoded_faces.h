@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "cooker/import/source_mesh.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

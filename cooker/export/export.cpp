@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Choose and check all that is shown, then write it.
+#include "cooker/export/export.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,12 +9,11 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/export/byte_sink.h>
-#include <boxtree/cooker/export/export.h>
-#include <boxtree/cooker/export/glb_writer.h>
-#include <boxtree/cooker/export/obj_writer.h>
-#include <boxtree/cooker/export/placed_shape.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/export/byte_sink.h"
+#include "cooker/export/glb_writer.h"
+#include "cooker/export/obj_writer.h"
+#include "cooker/export/placed_shape.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -10,10 +10,10 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/cooker/export/decoded_faces.h>
-#include <boxtree/cooker/export/tree_boxes.h>
-#include <boxtree/runtime/scene/scene.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "cooker/export/decoded_faces.h"
+#include "cooker/export/tree_boxes.h"
+#include "runtime/scene/scene.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Planned first, as the JSON comes before the bytes that it describes; then streamed.
+#include "cooker/export/glb_writer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -8,10 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/export/byte_sink.h>
-#include <boxtree/cooker/export/glb_writer.h>
-#include <boxtree/cooker/export/placed_shape.h>
-#include <boxtree/cooker/version.h>
+#include "cooker/export/byte_sink.h"
+#include "cooker/export/placed_shape.h"
+#include "cooker/version.h"
 
 namespace boxtree::cooker {
 namespace {

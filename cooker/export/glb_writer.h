@@ -3,7 +3,7 @@
 // each level of its boxes, each level in a colour of its own; a node for each tree or instance.
 #pragma once
 
-#include <boxtree/cooker/export/shown_tree.h>
+#include "cooker/export/shown_tree.h"
 
 namespace boxtree::cooker {
 

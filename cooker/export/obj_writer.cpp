@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Text of one tree or instance after the other; vertices are numbered through the whole file,
 // from 1.
+#include "cooker/export/obj_writer.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <boxtree/cooker/export/byte_sink.h>
-#include <boxtree/cooker/export/obj_writer.h>
-#include <boxtree/cooker/export/placed_shape.h>
-#include <boxtree/cooker/version.h>
+#include "cooker/export/byte_sink.h"
+#include "cooker/export/placed_shape.h"
+#include "cooker/version.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include <boxtree/cooker/export/shown_tree.h>
+#include "cooker/export/shown_tree.h"
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Every linear map is a rotation, then a scale along the axes, then a rotation or reflection: two
 // nodes tell it.
+#include "cooker/export/placed_shape.h"
+
 #include <cmath>
 
 #include <Eigen/SVD>
 
-#include <boxtree/cooker/export/placed_shape.h>
-#include <boxtree/runtime/primitive/orientation.h>
+#include "runtime/primitive/orientation.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -4,8 +4,9 @@
 
 #include <vector>
 
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree::cooker {
 

@@ -9,9 +9,10 @@
 
 #include <Eigen/Geometry>
 
-#include <boxtree/cooker/export/decoded_faces.h>
-#include <boxtree/cooker/export/tree_boxes.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "cooker/export/decoded_faces.h"
+#include "cooker/export/tree_boxes.h"
 
 namespace boxtree::cooker {
 

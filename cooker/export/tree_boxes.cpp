@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Which levels a tree has, and rounding of boxes outward.
+#include "cooker/export/tree_boxes.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include <boxtree/cooker/export/tree_boxes.h>
 
 namespace boxtree::cooker {
 

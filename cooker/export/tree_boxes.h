@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/work.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "format/limits.h"
+#include "runtime/tree/tree.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One assimp import without post-processing, checked before and after.
+#include "cooker/import/assimp_import.h"
+
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -15,17 +17,16 @@
 #include <assimp/config.h>
 #include <assimp/scene.h>
 
-#include <boxtree/cooker/import/assimp_import.h>
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/flatten.h>
-#include <boxtree/cooker/import/gltf_faces.h>
-#include <boxtree/cooker/import/node_graph.h>
-#include <boxtree/cooker/import/scene_intake.h>
-#include <boxtree/cooker/import/source_files.h>
-#include <boxtree/cooker/import/text_ends.h>
-#include <boxtree/cooker/import/text_tokens.h>
-#include <boxtree/cooker/import/trial.h>
-#include <boxtree/cooker/import/whole_file.h>
+#include "cooker/import/file_error.h"
+#include "cooker/import/flatten.h"
+#include "cooker/import/gltf_faces.h"
+#include "cooker/import/node_graph.h"
+#include "cooker/import/scene_intake.h"
+#include "cooker/import/source_files.h"
+#include "cooker/import/text_ends.h"
+#include "cooker/import/text_tokens.h"
+#include "cooker/import/trial.h"
+#include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <filesystem>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/source_scene.h>
+#include "cooker/import/import.h"
+#include "cooker/import/source_scene.h"
 
 namespace boxtree::cooker {
 

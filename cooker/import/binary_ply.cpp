@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One walk over the elements of the file: vertices and faces into the mesh, everything else passed
 // over.
+#include "cooker/import/binary_ply.h"
+
 #include <array>
 #include <bit>
 #include <optional>
@@ -9,8 +11,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/import/binary_ply.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -6,9 +6,9 @@
 
 #include <string>
 
-#include <boxtree/cooker/import/indexed_mesh.h>
-#include <boxtree/cooker/import/ply_layout.h>
-#include <boxtree/cooker/import/source_stream.h>
+#include "cooker/import/indexed_mesh.h"
+#include "cooker/import/ply_layout.h"
+#include "cooker/import/source_stream.h"
 
 namespace boxtree::cooker {
 

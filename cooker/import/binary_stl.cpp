@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // 80 bytes of anything, the number of triangles, then 50 bytes each: normal, three corners, two
 // bytes of attributes. Always little-endian, whatever the machine.
+#include "cooker/import/binary_stl.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,8 +10,6 @@
 #include <string>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/import/binary_stl.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include <boxtree/cooker/import/source_stream.h>
-#include <boxtree/cooker/import/stl_mesh.h>
+#include "cooker/import/source_stream.h"
+#include "cooker/import/stl_mesh.h"
 
 namespace boxtree::cooker {
 

@@ -7,10 +7,10 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/source_stream.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/file_error.h"
+#include "cooker/import/import.h"
+#include "cooker/import/source_stream.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 

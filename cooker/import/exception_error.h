@@ -5,7 +5,7 @@
 #include <exception>
 #include <new>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

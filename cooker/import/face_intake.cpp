@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Which quads stay, triangles for the rest, face ids once they are needed.
+#include "cooker/import/face_intake.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -8,8 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/face_intake.h>
-#include <boxtree/format/limits.h>
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/polygon_split.h>
+#include "cooker/import/import.h"
+#include "cooker/import/polygon_split.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include <boxtree/cooker/import/face_materials.h>
+#include "cooker/import/face_materials.h"
 
 namespace boxtree::cooker {
 

@@ -8,7 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include <boxtree/format/scene_record.h>
+#include "format/scene_record.h"
 
 namespace boxtree::cooker {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Both readings walk the file alike: the meshes that one mesh was split into stand in a row, each
 // with its faces in the order of the file. So the faces of a mesh are a shuffle of theirs.
+#include "cooker/import/fbx_materials.h"
+
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -9,8 +11,6 @@
 
 #include <assimp/mesh.h>
 #include <assimp/scene.h>
-
-#include <boxtree/cooker/import/fbx_materials.h>
 
 namespace boxtree::cooker {
 namespace {

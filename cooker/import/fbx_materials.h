@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include <boxtree/format/scene_record.h>
+#include "format/scene_record.h"
 
 struct aiScene;
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

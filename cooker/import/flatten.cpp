@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Flattening: applies transforms in double, welds, counts.
+#include "cooker/import/flatten.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/flatten.h>
-#include <boxtree/cooker/import/weld.h>
+#include "cooker/import/weld.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/face_intake.h>
-#include <boxtree/cooker/import/fbx_materials.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/node_graph.h>
-#include <boxtree/format/scene_record.h>
+#include "cooker/import/face_intake.h"
+#include "cooker/import/fbx_materials.h"
+#include "cooker/import/import.h"
+#include "cooker/import/node_graph.h"
+#include "format/scene_record.h"
 
 struct aiScene;
 

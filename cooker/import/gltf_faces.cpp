@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Counts in the JSON of glTF files.
+#include "cooker/import/gltf_faces.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -8,12 +10,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/glb.h>
-#include <boxtree/cooker/import/gltf_faces.h>
-#include <boxtree/cooker/import/gltf_nesting.h>
-#include <boxtree/cooker/import/text_tokens.h>
-#include <boxtree/cooker/import/whole_file.h>
+#include "cooker/import/file_error.h"
+#include "cooker/import/glb.h"
+#include "cooker/import/gltf_nesting.h"
+#include "cooker/import/text_tokens.h"
+#include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 struct aiScene;
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Depths of JSON and of the graph of nodes, without recursion.
+#include "cooker/import/gltf_nesting.h"
+
 #include <algorithm>
 #include <map>
 #include <string>
@@ -7,8 +9,6 @@
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
-
-#include <boxtree/cooker/import/gltf_nesting.h>
 
 namespace boxtree::cooker {
 namespace {

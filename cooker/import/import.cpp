@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
 // Which reader a file is for, by the ending of its name.
+#include "cooker/import/import.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
 #include <variant>
 
-#include <boxtree/cooker/import/assimp_import.h>
-#include <boxtree/cooker/import/exception_error.h>
-#include <boxtree/cooker/import/face_materials.h>
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/obj_import.h>
-#include <boxtree/cooker/import/off_import.h>
-#include <boxtree/cooker/import/ply_import.h>
-#include <boxtree/cooker/import/source_files.h>
-#include <boxtree/cooker/import/source_scene.h>
-#include <boxtree/cooker/import/stl_import.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/assimp_import.h"
+#include "cooker/import/exception_error.h"
+#include "cooker/import/face_materials.h"
+#include "cooker/import/file_error.h"
+#include "cooker/import/obj_import.h"
+#include "cooker/import/off_import.h"
+#include "cooker/import/ply_import.h"
+#include "cooker/import/source_files.h"
+#include "cooker/import/source_scene.h"
+#include "cooker/import/stl_import.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

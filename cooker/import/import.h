@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/format/result.h>
+#include "cooker/import/source_mesh.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/indexed_mesh.h"
+
 #include <algorithm>
 #include <array>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/indexed_mesh.h>
-#include <boxtree/cooker/import/weld.h>
-#include <boxtree/format/limits.h>
+#include "cooker/import/weld.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include <boxtree/cooker/import/face_intake.h>
-#include <boxtree/cooker/import/import.h>
+#include "cooker/import/face_intake.h"
+#include "cooker/import/import.h"
 
 namespace boxtree::cooker {
 

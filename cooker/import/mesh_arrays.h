@@ -4,9 +4,9 @@
 
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/runtime/scene/scene.h>
-#include <boxtree/runtime/tree/geometry.h>
+#include "cooker/import/source_mesh.h"
+#include "runtime/scene/scene.h"
+#include "runtime/tree/geometry.h"
 
 namespace boxtree::cooker {
 

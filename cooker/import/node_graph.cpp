@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // One walk over the nodes, with an explicit stack: a file may nest as deep as it likes.
+#include "cooker/import/node_graph.h"
+
 #include <algorithm>
 
 #include <assimp/scene.h>
-
-#include <boxtree/cooker/import/node_graph.h>
 
 namespace boxtree::cooker {
 namespace {

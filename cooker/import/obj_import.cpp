@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Twice over the text: vertices first, as a face may name one that comes after it.
+#include "cooker/import/obj_import.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -10,12 +12,11 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/indexed_mesh.h>
-#include <boxtree/cooker/import/obj_import.h>
-#include <boxtree/cooker/import/obj_statements.h>
-#include <boxtree/cooker/import/source_files.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/direct_import.h"
+#include "cooker/import/indexed_mesh.h"
+#include "cooker/import/obj_statements.h"
+#include "cooker/import/source_files.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

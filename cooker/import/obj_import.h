@@ -6,8 +6,8 @@
 
 #include <filesystem>
 
-#include <boxtree/cooker/import/face_materials.h>
-#include <boxtree/cooker/import/import.h>
+#include "cooker/import/face_materials.h"
+#include "cooker/import/import.h"
 
 namespace boxtree::cooker {
 

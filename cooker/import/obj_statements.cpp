@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A line scanner: indentation, comments, line ends of all systems, lines joined by backslashes.
+#include "cooker/import/obj_statements.h"
+
 #include <algorithm>
 #include <array>
-
-#include <boxtree/cooker/import/obj_statements.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Word by word, as the format has it; lines tell how long a colour is.
+#include "cooker/import/off_import.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <optional>
@@ -10,10 +12,9 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/indexed_mesh.h>
-#include <boxtree/cooker/import/off_import.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/direct_import.h"
+#include "cooker/import/indexed_mesh.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Words of header lines, values of bodies.
+#include "cooker/import/ply_header.h"
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,8 +10,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/ply_header.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

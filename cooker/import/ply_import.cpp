@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/ply_import.h"
+
 #include <string>
 #include <utility>
 #include <vector>
 
-#include <boxtree/cooker/import/binary_ply.h>
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/ply_import.h>
-#include <boxtree/cooker/import/text_ply.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/binary_ply.h"
+#include "cooker/import/direct_import.h"
+#include "cooker/import/file_error.h"
+#include "cooker/import/text_ply.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/ply_layout.h"
+
 #include <string_view>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/import/ply_layout.h>
 
 namespace boxtree::cooker {
 namespace {

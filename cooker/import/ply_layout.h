@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include <boxtree/cooker/import/ply_header.h>
+#include "cooker/import/ply_header.h"
 
 namespace boxtree::cooker {
 

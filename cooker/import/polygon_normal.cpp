@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // In doubles where their error bound settles it, else as expansions.
+#include "cooker/import/polygon_normal.h"
+
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <vector>
 
-#include <boxtree/cooker/import/polygon_normal.h>
-#include <boxtree/runtime/primitive/expansion.h>
+#include "runtime/primitive/expansion.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Quad test and ear clipping (Meisters, "Polygons have ears", 1975) on exact orientation signs.
+#include "cooker/import/polygon_split.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
 #include <numeric>
 
-#include <boxtree/cooker/import/polygon_normal.h>
-#include <boxtree/cooker/import/polygon_split.h>
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "cooker/import/polygon_normal.h"
+#include "runtime/primitive/orientation.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Each list of meshes that nodes have is flattened once, in its own space; what is equal then is
 // merged by content.
+#include "cooker/import/scene_intake.h"
+
 #include <algorithm>
 #include <map>
 #include <optional>
@@ -13,8 +15,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/scene_intake.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree::cooker {
 namespace {

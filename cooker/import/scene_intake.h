@@ -2,9 +2,9 @@
 // An assimp scene becomes a SourceScene: meshes that differ, instances, materials.
 #pragma once
 
-#include <boxtree/cooker/import/flatten.h>
-#include <boxtree/cooker/import/node_graph.h>
-#include <boxtree/cooker/import/source_scene.h>
+#include "cooker/import/flatten.h"
+#include "cooker/import/node_graph.h"
+#include "cooker/import/source_scene.h"
 
 struct aiScene;
 

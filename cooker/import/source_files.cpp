@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Checking, recording and hashing of source files.
 #define XXH_INLINE_ALL
+#include "cooker/import/source_files.h"
+
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
@@ -11,9 +13,8 @@
 
 #include <xxhash.h>
 
-#include <boxtree/cooker/import/source_files.h>
-#include <boxtree/cooker/import/whole_file.h>
-#include <boxtree/cooker/system/file_handle.h>
+#include "cooker/import/whole_file.h"
+#include "cooker/system/file_handle.h"
 
 namespace boxtree::cooker {
 namespace {

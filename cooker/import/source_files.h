@@ -11,7 +11,7 @@
 
 #include <assimp/DefaultIOSystem.h>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

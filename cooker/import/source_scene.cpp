@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What makes two meshes of a scene equal.
 #define XXH_INLINE_ALL
+#include "cooker/import/source_scene.h"
+
 #include <algorithm>
 #include <array>
 #include <cstring>
@@ -8,8 +10,6 @@
 #include <utility>
 
 #include <xxhash.h>
-
-#include <boxtree/cooker/import/source_scene.h>
 
 namespace boxtree::cooker {
 namespace {

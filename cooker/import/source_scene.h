@@ -9,10 +9,11 @@
 #include <variant>
 #include <vector>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/format/scene_record.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "cooker/import/import.h"
+#include "cooker/import/source_mesh.h"
+#include "format/scene_record.h"
 
 namespace boxtree::cooker {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One buffer over stdio, which passes large reads on.
 #define XXH_INLINE_ALL
+#include "cooker/import/source_stream.h"
+
 #include <algorithm>
 #include <cassert>
 #include <cerrno>
@@ -10,8 +12,6 @@
 #include <utility>
 
 #include <xxhash.h>
-
-#include <boxtree/cooker/import/source_stream.h>
 
 namespace boxtree::cooker {
 

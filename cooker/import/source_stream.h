@@ -11,8 +11,8 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/system/file_handle.h>
-#include <boxtree/format/result.h>
+#include "cooker/system/file_handle.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

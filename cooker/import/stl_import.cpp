@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/stl_import.h"
+
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/binary_stl.h>
-#include <boxtree/cooker/import/direct_import.h>
-#include <boxtree/cooker/import/stl_import.h>
-#include <boxtree/cooker/import/text_stl.h>
+#include "cooker/import/binary_stl.h"
+#include "cooker/import/direct_import.h"
+#include "cooker/import/text_stl.h"
 
 namespace boxtree::cooker {
 

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include <boxtree/cooker/import/import.h>
+#include "cooker/import/import.h"
 
 namespace boxtree::cooker {
 

@@ -13,8 +13,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/face_intake.h>
-#include <boxtree/cooker/import/weld.h>
+#include "cooker/import/face_intake.h"
+#include "cooker/import/weld.h"
 
 namespace boxtree::cooker {
 

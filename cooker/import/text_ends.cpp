@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/text_ends.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <string>
 
-#include <boxtree/cooker/import/text_ends.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

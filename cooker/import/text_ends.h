@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

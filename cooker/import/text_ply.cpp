@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Row by row, without keeping any.
+#include "cooker/import/text_ply.h"
+
 #include <array>
 #include <limits>
 #include <optional>
@@ -8,9 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/text_ply.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/file_error.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include <boxtree/cooker/import/indexed_mesh.h>
-#include <boxtree/cooker/import/ply_layout.h>
+#include "cooker/import/indexed_mesh.h"
+#include "cooker/import/ply_layout.h"
 
 namespace boxtree::cooker {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Word by word, in the precision of the binary files. Lines mean nothing but after "solid" and
 // "endsolid", where a name of any words follows.
+#include "cooker/import/text_stl.h"
+
 #include <algorithm>
 #include <array>
 #include <optional>
@@ -9,9 +11,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/file_error.h>
-#include <boxtree/cooker/import/text_stl.h>
-#include <boxtree/cooker/import/text_tokens.h>
+#include "cooker/import/file_error.h"
+#include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {

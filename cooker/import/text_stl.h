@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include <boxtree/cooker/import/stl_mesh.h>
+#include "cooker/import/stl_mesh.h"
 
 namespace boxtree::cooker {
 

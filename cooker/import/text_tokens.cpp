@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/text_tokens.h"
+
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
 #include <limits>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/trial.h"
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -18,11 +20,10 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/exception_error.h>
-#include <boxtree/cooker/import/trial.h>
-#include <boxtree/cooker/system/file_handle.h>
-#include <boxtree/cooker/system/write_all.h>
-#include <boxtree/format/bytes.h>
+#include "cooker/import/exception_error.h"
+#include "cooker/system/file_handle.h"
+#include "cooker/system/write_all.h"
+#include "format/bytes.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

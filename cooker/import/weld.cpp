@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Welding by an open-addressing hash table (linear probing) over vertex numbers.
+#include "cooker/import/weld.h"
+
 #include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cstring>
 #include <type_traits>
-
-#include <boxtree/cooker/import/weld.h>
 
 namespace boxtree::cooker {
 namespace {

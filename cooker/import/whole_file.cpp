@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Reads files by stdio, whose errors say why.
+#include "cooker/import/whole_file.h"
+
 #include <cerrno>
 #include <cstdio>
 #include <system_error>
@@ -7,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/whole_file.h>
-#include <boxtree/cooker/system/file_handle.h>
+#include "cooker/system/file_handle.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Gates by the same walk that proves a written file.
-#include <boxtree/cooker/proof/gates.h>
-#include <boxtree/cooker/proof/proof.h>
+#include "cooker/proof/gates.h"
+
+#include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include <boxtree/cooker/encode/encoded_tree.h>
+#include "cooker/encode/encoded_tree.h"
 
 namespace boxtree::cooker {
 

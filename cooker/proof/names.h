@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <string>
 
-#include <boxtree/cooker/text/utf8.h>
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
+#include "cooker/text/utf8.h"
+#include "format/bytes.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Proof by walking the file that was written, not the tree that was meant.
+#include "cooker/proof/proof.h"
+
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -11,13 +13,12 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/proof/names.h>
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/cooker/proof/reserved.h>
-#include <boxtree/cooker/proof/scene_proof.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/proof/names.h"
+#include "cooker/proof/reserved.h"
+#include "cooker/proof/scene_proof.h"
+#include "format/limits.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -6,9 +6,10 @@
 #include <optional>
 #include <vector>
 
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/file/file.h>
-#include <boxtree/runtime/tree/tree.h>
+#include <boxtree/file.h>
+
+#include "format/tree_record.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

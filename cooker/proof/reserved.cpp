@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // What has to be zero in each codec and in the clusters of the grid.
+#include "cooker/proof/reserved.h"
+
 #include <algorithm>
 #include <string>
 
-#include <boxtree/cooker/proof/reserved.h>
-#include <boxtree/format/bits.h>
-#include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/grid_leaf.h>
+#include "format/bits.h"
+#include "format/codec_packed.h"
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
+#include "format/grid_leaf.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -3,7 +3,7 @@
 // them; `boxtree verify` does not, so that a later version of the format may give them a meaning.
 #pragma once
 
-#include <boxtree/cooker/proof/proof.h>
+#include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 

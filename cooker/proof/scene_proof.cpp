@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Proof by walking the top level that was written.
+#include "cooker/proof/scene_proof.h"
+
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/proof/names.h>
-#include <boxtree/cooker/proof/scene_proof.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/scene/scene.h>
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/proof/names.h"
+#include "runtime/scene/scene.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -3,7 +3,7 @@
 // one is a leaf exactly once, and all that the records refer to is there.
 #pragma once
 
-#include <boxtree/cooker/proof/proof.h>
+#include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 

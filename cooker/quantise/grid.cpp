@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Choice of a grid, and rounding to it: to nearest, halves up, on each axis for itself.
+#include "cooker/quantise/grid.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -7,9 +9,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/quantise/grid.h>
-#include <boxtree/format/grid.h>
-#include <boxtree/format/limits.h>
+#include "format/grid.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 namespace {

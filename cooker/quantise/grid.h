@@ -8,8 +8,8 @@
 
 #include <Eigen/Geometry>
 
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/format/result.h>
+#include "cooker/import/source_mesh.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

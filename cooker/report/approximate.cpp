@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Every question is asked in every setting; nodes and errors are of one run, times of several.
+#include "cooker/report/approximate.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
 #include <utility>
 
-#include <boxtree/cooker/report/approximate.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 namespace boxtree::cooker {
 namespace {

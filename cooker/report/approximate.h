@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/cooker/choose/workload.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/runtime/query/approximation.h>
+#include "cooker/choose/measure.h"
+#include "cooker/choose/workload.h"
+#include "runtime/query/approximation.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Every figure comes from the steps; captions say what is promised and what was only seen.
+#include "cooker/report/approximate_page.h"
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -7,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/report/approximate_page.h>
-#include <boxtree/cooker/report/tradeoff_advice.h>
+#include "cooker/report/tradeoff_advice.h"
 
 namespace boxtree::cooker {
 namespace {

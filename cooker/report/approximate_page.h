@@ -4,8 +4,8 @@
 
 #include <vector>
 
-#include <boxtree/cooker/report/page.h>
-#include <boxtree/cooker/report/tradeoff.h>
+#include "cooker/report/page.h"
+#include "cooker/report/tradeoff.h"
 
 namespace boxtree::cooker {
 

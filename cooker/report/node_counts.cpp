@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // One pass over plain nodes for each way to store them.
+#include "cooker/report/node_counts.h"
+
 #include <cmath>
 #include <vector>
 
-#include <boxtree/cooker/encode/walked_nodes.h>
-#include <boxtree/cooker/report/node_counts.h>
-#include <boxtree/format/bits.h>
+#include "cooker/encode/walked_nodes.h"
+#include "format/bits.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include <boxtree/cooker/encode/encoded.h>
+#include "cooker/encode/encoded.h"
 
 namespace boxtree::cooker {
 

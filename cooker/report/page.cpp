@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Text and HTML from the same data. The page follows the reader's light or dark setting, prints,
 // and lets wide tables scroll on narrow windows.
+#include "cooker/report/page.h"
+
 #include <algorithm>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/report/page.h>
 
 namespace boxtree::cooker {
 namespace {

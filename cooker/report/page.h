@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/report/plot.h>
+#include "cooker/report/plot.h"
 
 namespace boxtree::cooker {
 

@@ -2,6 +2,8 @@
 // Pages read, by protecting the mapped file: each first touch of a page raises a signal, whose
 // handler notes the page and lets it be read. Unlike counting faults or resident pages this does
 // not see what a kernel maps or reads ahead, and needs no rights.
+#include "cooker/report/pages.h"
+
 #include <algorithm>
 #include <cmath>
 #include <csignal>
@@ -12,11 +14,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <boxtree/cooker/choose/workload.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/pages.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/choose/measure.h"
+#include "cooker/choose/workload.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -9,9 +9,9 @@
 #include <functional>
 #include <vector>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "format/bytes.h"
+#include "format/result.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree::cooker {
 

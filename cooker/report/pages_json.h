@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/report/pages.h>
+#include "cooker/report/pages.h"
 
 namespace boxtree::cooker {
 

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
 // Encodes one mesh in every way the paper has.
+#include "cooker/report/paper_figures.h"
+
 #include <algorithm>
 #include <optional>
 #include <unistd.h>
 #include <utility>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/paper_figures.h>
-#include <boxtree/cooker/report/scratch_file.h>
-#include <boxtree/runtime/blob/blob.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/blob.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/choose/measure.h"
+#include "cooker/cook.h"
+#include "cooker/report/scratch_file.h"
 
 namespace boxtree::cooker {
 namespace {

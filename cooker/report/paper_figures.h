@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/report/node_counts.h>
-#include <boxtree/cooker/report/rounding.h>
-#include <boxtree/format/blob.h>
+#include "cooker/report/node_counts.h"
+#include "cooker/report/rounding.h"
+#include "format/blob.h"
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // One function a table of the paper, in the paper's order.
+#include "cooker/report/paper_tables.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/report/paper_tables.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/report/page.h>
-#include <boxtree/cooker/report/paper_figures.h>
+#include "cooker/report/page.h"
+#include "cooker/report/paper_figures.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Axes with steps that a person would choose, marks, curves, and labels where they find room.
+#include "cooker/report/plot.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/report/plot.h>
 
 namespace boxtree::cooker {
 namespace {

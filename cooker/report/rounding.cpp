@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Aligned contact, asked of trees that differ in the rounding of their cuts alone.
+#include "cooker/report/rounding.h"
+
 #include <array>
 #include <bit>
 #include <cstring>
 #include <utility>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/rounding.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/build/build_tree.h"
+#include "cooker/choose/measure.h"
+#include "cooker/cook.h"
+#include "cooker/import/mesh_arrays.h"
+#include "format/codec_plain.h"
 
 namespace boxtree::cooker {
 namespace {

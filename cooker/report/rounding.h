@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/cooker/proof/gates.h>
-#include <boxtree/format/result.h>
+#include "cooker/proof/gates.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

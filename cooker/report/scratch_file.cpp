@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A file without a name, found under the descriptor that holds it: whatever kills the process, the
 // system removes it, and no other process, of whatever namespace, comes upon it.
+#include "cooker/report/scratch_file.h"
+
 #include <cerrno>
 #include <cstdlib>
 #include <fcntl.h>
@@ -9,8 +11,7 @@
 #include <unistd.h>
 #include <utility>
 
-#include <boxtree/cooker/report/scratch_file.h>
-#include <boxtree/cooker/system/write_all.h>
+#include "cooker/system/write_all.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

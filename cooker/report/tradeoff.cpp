@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // One store of geometry after the other: its candidates are counted by the search of the cooker,
 // then asked here.
+#include "cooker/report/tradeoff.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -9,12 +11,12 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/choose/search.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/scratch_file.h>
-#include <boxtree/cooker/report/tradeoff.h>
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/choose/measure.h"
+#include "cooker/choose/search.h"
+#include "cooker/report/scratch_file.h"
+#include "cooker/write/file_writer.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/choose/cost.h>
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/cooker/proof/gates.h>
-#include <boxtree/cooker/report/approximate.h>
-#include <boxtree/cooker/report/pages.h>
+#include "cooker/choose/cost.h"
+#include "cooker/import/source_mesh.h"
+#include "cooker/proof/gates.h"
+#include "cooker/report/approximate.h"
+#include "cooker/report/pages.h"
 
 namespace boxtree::cooker {
 

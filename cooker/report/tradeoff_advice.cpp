@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Recommendations are minima over the points; words are filled in from the same figures.
+#include "cooker/report/tradeoff_advice.h"
+
 #include <algorithm>
 #include <array>
 #include <functional>
@@ -7,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/quantise/grid.h>
-#include <boxtree/cooker/report/tradeoff_advice.h>
+#include "cooker/quantise/grid.h"
 
 namespace boxtree::cooker {
 namespace {

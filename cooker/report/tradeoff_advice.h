@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/choose/choose.h>
-#include <boxtree/cooker/report/page.h>
-#include <boxtree/cooker/report/tradeoff.h>
+#include "cooker/choose/choose.h"
+#include "cooker/report/page.h"
+#include "cooker/report/tradeoff.h"
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Figures in, text out: no figure is made here.
+#include "cooker/report/tradeoff_data.h"
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -9,11 +11,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/whole_file.h>
-#include <boxtree/cooker/report/pages_json.h>
-#include <boxtree/cooker/report/tradeoff_advice.h>
-#include <boxtree/cooker/report/tradeoff_data.h>
-#include <boxtree/cooker/version.h>
+#include "cooker/import/whole_file.h"
+#include "cooker/report/pages_json.h"
+#include "cooker/report/tradeoff_advice.h"
+#include "cooker/version.h"
 
 namespace boxtree::cooker {
 namespace {

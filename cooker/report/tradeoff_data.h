@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/report/paper_tables.h>
-#include <boxtree/cooker/report/tradeoff.h>
+#include "cooker/report/paper_tables.h"
+#include "cooker/report/tradeoff.h"
 
 namespace boxtree::cooker {
 

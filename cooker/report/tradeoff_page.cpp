@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // First what to use, then why: plots, then the tables behind them, then how it was measured.
+#include "cooker/report/tradeoff_page.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,9 +10,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/report/approximate_page.h>
-#include <boxtree/cooker/report/tradeoff_advice.h>
-#include <boxtree/cooker/report/tradeoff_page.h>
+#include "cooker/report/approximate_page.h"
+#include "cooker/report/tradeoff_advice.h"
 
 namespace boxtree::cooker {
 namespace {

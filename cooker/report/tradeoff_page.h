@@ -2,8 +2,8 @@
 // A tradeoff report as a page that a newcomer can read from the top.
 #pragma once
 
-#include <boxtree/cooker/report/page.h>
-#include <boxtree/cooker/report/tradeoff_data.h>
+#include "cooker/report/page.h"
+#include "cooker/report/tradeoff_data.h"
 
 namespace boxtree::cooker {
 

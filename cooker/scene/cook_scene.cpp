@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // One scene through the stages, each a member of SceneCook in the order of the data.
+#include "cooker/scene/cook_scene.h"
+
 #include <algorithm>
 #include <iterator>
 #include <map>
@@ -7,15 +9,14 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cook_record.h>
-#include <boxtree/cooker/scene/cook_scene.h>
-#include <boxtree/cooker/scene/hidden_faces.h>
-#include <boxtree/cooker/scene/precision.h>
-#include <boxtree/cooker/scene/scene_account.h>
-#include <boxtree/cooker/scene/scene_grid.h>
-#include <boxtree/cooker/scene/scene_source.h>
-#include <boxtree/cooker/write/blob_writer.h>
-#include <boxtree/runtime/query/float_state.h>
+#include "cooker/cook_record.h"
+#include "cooker/scene/hidden_faces.h"
+#include "cooker/scene/precision.h"
+#include "cooker/scene/scene_account.h"
+#include "cooker/scene/scene_grid.h"
+#include "cooker/scene/scene_source.h"
+#include "cooker/write/blob_writer.h"
+#include "runtime/query/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -10,8 +10,8 @@
 #include <variant>
 #include <vector>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/scene/plan.h>
+#include "cooker/cook.h"
+#include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 

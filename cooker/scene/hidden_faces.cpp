@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // One number or range a line, so that tools write such lists as easily as people.
+#include "cooker/scene/hidden_faces.h"
+
 #include <algorithm>
 #include <charconv>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/scene/hidden_faces.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/scene/profile.h>
+#include "cooker/scene/profile.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Which instances and layers there are; what each mesh needs is in plan_meshes.cpp.
+#include "cooker/scene/plan.h"
+
 #include <algorithm>
 #include <array>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/scene/plan.h>
-#include <boxtree/cooker/scene/plan_meshes.h>
-#include <boxtree/runtime/query/float_state.h>
+#include "cooker/scene/plan_meshes.h"
+#include "runtime/query/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What each mesh needs: of all objects that use it, what the most demanding asks for.
+#include "cooker/scene/plan_meshes.h"
+
 #include <algorithm>
 #include <array>
 #include <map>
@@ -7,10 +9,9 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/scene/hidden_faces.h>
-#include <boxtree/cooker/scene/plan_meshes.h>
-#include <boxtree/cooker/scene/precision.h>
-#include <boxtree/cooker/scene/profile_fields.h>
+#include "cooker/scene/hidden_faces.h"
+#include "cooker/scene/precision.h"
+#include "cooker/scene/profile_fields.h"
 
 namespace boxtree::cooker {
 namespace {

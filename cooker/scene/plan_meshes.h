@@ -2,7 +2,7 @@
 // The part of a plan that is about meshes.
 #pragma once
 
-#include <boxtree/cooker/scene/plan.h>
+#include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 

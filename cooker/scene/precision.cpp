@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Bounds that decide how fine a grid is, so that their last bits must not depend on the machine.
+#include "cooker/scene/precision.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-
-#include <boxtree/cooker/scene/precision.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/cooker/scene/profile.h>
+#include "cooker/scene/profile.h"
 
 namespace boxtree::cooker {
 

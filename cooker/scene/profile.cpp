@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
 // The tables of a profile, read into values that are complete: what an object does not say is
 // taken from [scene] here, so that nothing later has to look in two places.
+#include "cooker/scene/profile.h"
+
 #include <algorithm>
 #include <map>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/whole_file.h>
-#include <boxtree/cooker/scene/hidden_faces.h>
-#include <boxtree/cooker/scene/profile.h>
-#include <boxtree/cooker/scene/profile_fields.h>
-#include <boxtree/cooker/scene/profile_pose.h>
-#include <boxtree/runtime/query/float_state.h>
+#include "cooker/import/whole_file.h"
+#include "cooker/scene/hidden_faces.h"
+#include "cooker/scene/profile_fields.h"
+#include "cooker/scene/profile_pose.h"
+#include "runtime/query/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -11,11 +11,12 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/choose/choose.h>
-#include <boxtree/format/codec.h>
-#include <boxtree/format/result.h>
-#include <boxtree/format/scene_record.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "cooker/choose/choose.h"
+#include "format/codec.h"
+#include "format/result.h"
+#include "format/scene_record.h"
 
 namespace boxtree::cooker {
 

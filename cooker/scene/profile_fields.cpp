@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Types, ranges, and messages that say what would be right.
+#include "cooker/scene/profile_fields.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/scene/profile_fields.h>
 
 namespace boxtree::cooker {
 namespace {

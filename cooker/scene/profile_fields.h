@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/scene/profile.h>
-#include <boxtree/cooker/scene/toml_tree.h>
+#include "cooker/scene/profile.h"
+#include "cooker/scene/toml_tree.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Poses go into files, whose bytes are the same on every machine: no sine or cosine of a library,
 // and no sums of Eigen, whose order follows the instruction set.
+#include "cooker/scene/profile_pose.h"
+
 #include <array>
 #include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/scene/profile_pose.h>
 
 namespace boxtree::cooker {
 namespace {

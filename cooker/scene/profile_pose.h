@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/cooker/scene/profile_fields.h>
+#include "cooker/scene/profile_fields.h"
 
 namespace boxtree::cooker {
 

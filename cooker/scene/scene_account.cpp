@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sections to lines of kept bytes, decisions to lines of what was left out.
+#include "cooker/scene/scene_account.h"
+
 #include <algorithm>
 #include <cstring>
 #include <filesystem>
@@ -7,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/scene/scene_account.h>
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/container.h>
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "format/bytes.h"
+#include "format/container.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {

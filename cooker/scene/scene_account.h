@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/cooker/scene/cook_scene.h>
-#include <boxtree/cooker/scene/encoded_scene.h>
+#include "cooker/encode/encoded_scene.h"
+#include "cooker/scene/cook_scene.h"
 
 namespace boxtree::cooker {
 

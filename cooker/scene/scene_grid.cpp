@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Steps of grids from the scene's extent, scales of instances and tolerances.
+#include "cooker/scene/scene_grid.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/cooker/scene/scene_grid.h>
-#include <boxtree/format/grid.h>
-#include <boxtree/runtime/query/relative_pose.h>
+#include "format/grid.h"
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree::cooker {
 namespace {

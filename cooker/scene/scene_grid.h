@@ -6,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include <boxtree/cooker/quantise/grid.h>
-#include <boxtree/cooker/scene/plan.h>
+#include "cooker/quantise/grid.h"
+#include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 

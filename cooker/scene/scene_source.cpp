@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Gathers meshes and instances; numbers of a later file follow those of the earlier ones.
+#include "cooker/scene/scene_source.h"
+
 #include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
-
-#include <boxtree/cooker/scene/scene_source.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/source_scene.h>
-#include <boxtree/cooker/scene/profile.h>
+#include "cooker/import/source_scene.h"
+#include "cooker/scene/profile.h"
 
 namespace boxtree::cooker {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Goes through a TOML text once: strings and comments are passed over, dots of keys counted.
+#include "cooker/scene/toml_checks.h"
+
 #include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
-
-#include <boxtree/cooker/scene/toml_checks.h>
 
 namespace boxtree::cooker {
 namespace {

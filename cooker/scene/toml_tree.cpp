@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <toml++/toml.h>
 
-#include <boxtree/cooker/scene/toml_checks.h>
-#include <boxtree/cooker/scene/toml_tree.h>
+#include "cooker/scene/toml_checks.h"
+#include "cooker/scene/toml_tree.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -5,7 +5,7 @@
 #include <cerrno>
 #include <unistd.h>
 
-#include <boxtree/format/bytes.h>
+#include "format/bytes.h"
 
 namespace boxtree::cooker {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include "cooker/text/utf8.h"
 
-#include <boxtree/cooker/text/utf8.h>
+#include <algorithm>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Write, fsync, rename, fsync of the directory; whatever can fail is tried before the rename.
+#include "cooker/write/atomic_file.h"
+
 #include <array>
 #include <cerrno>
 #include <cstdint>
@@ -18,8 +20,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/system/write_all.h>
-#include <boxtree/cooker/write/atomic_file.h>
+#include "cooker/system/write_all.h"
 
 namespace boxtree::cooker {
 namespace {

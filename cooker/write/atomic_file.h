@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
+#include "format/bytes.h"
+#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Serialize, compress, write, read back, compare, prove, rename.
+#include "cooker/write/blob_writer.h"
+
 #include <algorithm>
 #include <vector>
 
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/cooker/write/blob_writer.h>
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
+
+#include "cooker/proof/proof.h"
+#include "cooker/write/file_writer.h"
 
 namespace boxtree::cooker {
 

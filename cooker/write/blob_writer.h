@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/format/blob.h>
+#include "cooker/write/file_writer.h"
+#include "format/blob.h"
 
 namespace boxtree::cooker {
 

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Lays sections out one after the other and writes them with the header that describes them.
+#include "cooker/write/file_writer.h"
+
 #include <algorithm>
 #include <cstring>
 
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/cooker/text/utf8.h>
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/format/container.h>
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "cooker/proof/proof.h"
+#include "cooker/text/utf8.h"
+#include "format/container.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {

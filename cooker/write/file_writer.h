@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/encode/encoded_tree.h>
-#include <boxtree/cooker/scene/encoded_scene.h>
-#include <boxtree/cooker/write/atomic_file.h>
+#include "cooker/encode/encoded_scene.h"
+#include "cooker/encode/encoded_tree.h"
+#include "cooker/write/atomic_file.h"
 
 namespace boxtree::cooker {
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Files are the same that have one device and inode; files to come, those of one path.
+#include "cooker/write/outputs.h"
+
 #include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/write/atomic_file.h>
-#include <boxtree/cooker/write/outputs.h>
+#include "cooker/write/atomic_file.h"
 
 namespace boxtree::cooker {
 namespace {

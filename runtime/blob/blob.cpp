@@ -5,10 +5,11 @@
 #include <string>
 #include <utility>
 
-#include <boxtree/runtime/blob/blob.h>
-#include <boxtree/runtime/blob/compressor.h>
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/section.h>
+#include <boxtree/blob.h>
+
+#include "runtime/blob/compressor.h"
+#include "runtime/file/checksum.h"
+#include "runtime/file/section.h"
 
 namespace boxtree {
 namespace {

@@ -6,9 +6,9 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/format/blob.h>
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
+#include "format/blob.h"
+#include "format/bytes.h"
+#include "format/result.h"
 
 namespace boxtree {
 

@@ -3,7 +3,7 @@
 #include <lzma.h>
 #include <string>
 
-#include <boxtree/runtime/blob/compressor.h>
+#include "runtime/blob/compressor.h"
 
 namespace boxtree {
 namespace {

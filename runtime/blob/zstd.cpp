@@ -4,7 +4,7 @@
 #include <string>
 #include <zstd.h>
 
-#include <boxtree/runtime/blob/compressor.h>
+#include "runtime/blob/compressor.h"
 
 namespace boxtree {
 namespace {

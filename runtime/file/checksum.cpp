@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // XXH3-64, compiled in, once, so that the runtime needs no further library at link time.
+#include "runtime/file/checksum.h"
+
 #include <new>
 
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/checksum_stream.h>
+#include "runtime/file/checksum_stream.h"
 
 #define XXH_INLINE_ALL
 #include <xxhash.h>

@@ -5,7 +5,7 @@
 
 #include <cstdint>
 
-#include <boxtree/format/bytes.h>
+#include "format/bytes.h"
 
 namespace boxtree {
 

@@ -3,8 +3,9 @@
 #include <string>
 #include <utility>
 
-#include <boxtree/runtime/file/checksum.h>
-#include <boxtree/runtime/file/file.h>
+#include <boxtree/file.h>
+
+#include "runtime/file/checksum.h"
 
 namespace boxtree {
 Result<File> File::open(const std::filesystem::path& path, const OpenOptions& options) {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // File to memory by POSIX mmap. A copy is an anonymous mapping too, so that release is one path.
+#include "runtime/file/mapping.h"
+
 #include <cerrno>
 #include <fcntl.h>
 #include <string>
@@ -8,8 +10,6 @@
 #include <system_error>
 #include <unistd.h>
 #include <utility>
-
-#include <boxtree/runtime/file/mapping.h>
 
 namespace boxtree {
 namespace {

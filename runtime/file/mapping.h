@@ -6,8 +6,8 @@
 #include <span>
 #include <utility>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/result.h>
+#include "format/bytes.h"
+#include "format/result.h"
 
 namespace boxtree {
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/file/section.h>
+#include "runtime/file/section.h"
+
+#include "format/tree_record.h"
 
 namespace boxtree {
 

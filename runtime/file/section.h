@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/container.h>
-#include <boxtree/format/result.h>
+#include "format/bytes.h"
+#include "format/container.h"
+#include "format/result.h"
 
 namespace boxtree {
 

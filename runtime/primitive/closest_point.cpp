@@ -12,14 +12,15 @@
 // taken to be that lies within such a move of it, as all edges are looked at then. So the distance
 // is within a few units in the last place of the coordinates for every shape, needles and collinear
 // corners included; the largest error seen against exact arithmetic is 8 u.
+#include "runtime/primitive/closest_point.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <boxtree/runtime/primitive/closest_point.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 namespace {

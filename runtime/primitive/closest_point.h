@@ -2,7 +2,7 @@
 // The closest point of a triangle.
 #pragma once
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

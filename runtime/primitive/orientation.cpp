@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
 // The exact half of the orientation predicates: expansion arithmetic of fixed size on the stack.
+#include "runtime/primitive/orientation.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <boxtree/runtime/primitive/expansion.h>
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/wide_integer.h>
+#include "runtime/primitive/expansion.h"
+#include "runtime/primitive/wide_integer.h"
 
 namespace boxtree {
 namespace {

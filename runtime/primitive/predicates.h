@@ -4,10 +4,10 @@
 // finite and of magnitude at most 2^200, so that no product overflows.
 #pragma once
 
-#include <boxtree/runtime/primitive/closest_point.h>
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/primitive/triangle_box.h>
-#include <boxtree/runtime/primitive/triangle_distance.h>
-#include <boxtree/runtime/primitive/triangle_ray.h>
-#include <boxtree/runtime/primitive/triangle_triangle.h>
+#include "runtime/primitive/closest_point.h"
+#include "runtime/primitive/orientation.h"
+#include "runtime/primitive/triangle.h"
+#include "runtime/primitive/triangle_box.h"
+#include "runtime/primitive/triangle_distance.h"
+#include "runtime/primitive/triangle_ray.h"
+#include "runtime/primitive/triangle_triangle.h"

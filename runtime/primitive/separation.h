@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 

@@ -27,15 +27,16 @@
 // is at most 60 u L L M: 8 L L for |a|_1 is more than all of it, if L is no less than 2^-300, so
 // that nothing underflows. Up to M = 2^300 nothing overflows. What overlaps along all axes of the
 // theorem meets; a degenerate triangle has fewer of them.
+#include "runtime/primitive/triangle_box.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/triangle_box.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/orientation.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 namespace {

@@ -2,7 +2,7 @@
 // Overlap of a triangle and an axis-aligned box, exactly.
 #pragma once
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

@@ -4,16 +4,17 @@
 // either side (Larsen, Gottschalk, Lin, Manocha, "Fast Proximity Queries with Swept Sphere
 // Volumes", 1999): that ends the search early. No bound relies on it: the lower one is computed
 // anew from directions that the search suggests.
+#include "runtime/primitive/triangle_distance.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 
-#include <boxtree/runtime/primitive/closest_point.h>
-#include <boxtree/runtime/primitive/separation.h>
-#include <boxtree/runtime/primitive/triangle_distance.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include "runtime/primitive/closest_point.h"
+#include "runtime/primitive/separation.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 namespace {

@@ -2,7 +2,7 @@
 // Distance of two triangles, with bounds.
 #pragma once
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

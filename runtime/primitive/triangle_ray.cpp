@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The rare parts of the watertight ray test: setting up the ray, and areas that round to zero.
+#include "runtime/primitive/triangle_ray.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <boxtree/runtime/primitive/expansion.h>
-#include <boxtree/runtime/primitive/triangle_ray.h>
+#include "runtime/primitive/expansion.h"
 
 namespace boxtree {
 namespace {

@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

@@ -2,14 +2,15 @@
 // Overlap of two triangles by orientation signs (after Guigue and Devillers, "Fast and Robust
 // Triangle-Triangle Overlap Test Using Orientation Predicates", 2003). No point is constructed, so
 // nothing but the signs can be wrong, and they are exact.
+#include "runtime/primitive/triangle_triangle.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/triangle_triangle.h>
+#include "runtime/primitive/orientation.h"
 
 namespace boxtree {
 namespace {

@@ -2,7 +2,7 @@
 // Overlap of two triangles, decided by orientation signs alone.
 #pragma once
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

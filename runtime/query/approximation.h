@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <limits>
 
-#include <boxtree/runtime/query/work.h>
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Box queries over any codec.
-#include <boxtree/runtime/query/box.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/shape_query.h>
-#include <boxtree/runtime/wide/walks.h>
+#include <boxtree/overlap.h>
+
+#include "runtime/query/float_state.h"
+#include "runtime/query/shape_query.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,

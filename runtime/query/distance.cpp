@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Distance queries.
 
-#include <boxtree/runtime/query/distance.h>
-#include <boxtree/runtime/query/distance_walk.h>
-#include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/tree/dispatch.h>
+#include <boxtree/distance.h>
+
+#include "runtime/query/distance_walk.h"
+#include "runtime/query/float_state.h"
+#include "runtime/tree/dispatch.h"
+#include "runtime/walk/erased_codec.h"
 
 namespace boxtree {
 namespace {

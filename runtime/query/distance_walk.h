@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The search for the distance of two trees, over any pair of codecs. Behind
-// runtime/query/distance.h.
+// boxtree/distance.h.
 //
 // Every pair of nodes has a key, the squared lower bound of its boxes' distance, never above that
 // of anything inside. Pairs are taken apart in the order of their keys, so a walk that may err more
@@ -15,12 +15,12 @@
 #include <limits>
 #include <optional>
 
-#include <boxtree/runtime/query/frontier.h>
-#include <boxtree/runtime/query/nearest_triangles.h>
-#include <boxtree/runtime/query/pair_walk.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/query/world_metric.h>
+#include "runtime/query/nearest_triangles.h"
+#include "runtime/query/pair_walk.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/world_metric.h"
+#include "runtime/walk/frontier.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The triangles of two leaves: bounds first, then the exact predicate.
+#include "runtime/query/leaf_pairs.h"
+
 #include <cstddef>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/leaf_pairs.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/primitive/predicates.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 

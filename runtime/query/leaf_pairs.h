@@ -4,12 +4,13 @@
 
 #include <cstdint>
 
-#include <boxtree/format/box.h>
-#include <boxtree/format/children.h>
-#include <boxtree/runtime/query/leaf_reading.h>
-#include <boxtree/runtime/query/pair_work.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "format/box.h"
+#include "format/children.h"
+#include "runtime/query/leaf_reading.h"
+#include "runtime/query/pair_work.h"
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree {
 

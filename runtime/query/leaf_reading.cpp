@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Reading, moving and bounding the triangles of two leaves.
+#include "runtime/query/leaf_reading.h"
+
 #include <cstddef>
 
-#include <boxtree/runtime/query/leaf_reading.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 

@@ -5,12 +5,13 @@
 #include <array>
 #include <cstdint>
 
-#include <boxtree/format/box.h>
-#include <boxtree/format/children.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "format/box.h"
+#include "format/children.h"
+#include "format/limits.h"
+#include "runtime/primitive/triangle.h"
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree {
 

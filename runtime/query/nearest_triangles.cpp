@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Triangles of two leaves, compared where their bounds do not tell that they are too far.
+#include "runtime/query/nearest_triangles.h"
+
 #include <cmath>
 #include <cstddef>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/separation.h>
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/nearest_triangles.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/separation.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {

@@ -8,13 +8,14 @@
 #include <cstdint>
 #include <limits>
 
-#include <boxtree/format/children.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/runtime/query/approximation.h>
-#include <boxtree/runtime/query/leaf_reading.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/types.h>
-#include <boxtree/runtime/query/world_metric.h>
+#include <boxtree/query.h>
+
+#include "format/children.h"
+#include "format/limits.h"
+#include "runtime/query/approximation.h"
+#include "runtime/query/leaf_reading.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/world_metric.h"
 
 namespace boxtree {
 

@@ -8,14 +8,15 @@
 #include <limits>
 #include <type_traits>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/overlap_within.h>
-#include <boxtree/runtime/query/pair_walk.h>
-#include <boxtree/runtime/query/scaled_length.h>
-#include <boxtree/runtime/query/shape_query.h>
-#include <boxtree/runtime/query/world_metric.h>
+#include <boxtree/overlap.h>
+
+#include "runtime/primitive/predicates.h"
+#include "runtime/query/float_state.h"
+#include "runtime/query/pair_walk.h"
+#include "runtime/query/scaled_length.h"
+#include "runtime/query/shape_query.h"
+#include "runtime/query/world_metric.h"
+#include "runtime/walk/erased_codec.h"
 
 namespace boxtree {
 namespace {

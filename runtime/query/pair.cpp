@@ -2,11 +2,11 @@
 // Pair queries: one instance of the walk for each codec, and one for pairs of different codecs.
 #include <variant>
 
-#include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/pair_query.h>
-#include <boxtree/runtime/query/pair_walk.h>
-#include <boxtree/runtime/wide/pair_walks.h>
+#include "runtime/query/float_state.h"
+#include "runtime/query/pair_query.h"
+#include "runtime/query/pair_walk.h"
+#include "runtime/query/pair_walks.h"
+#include "runtime/walk/erased_codec.h"
 
 namespace boxtree {
 

@@ -2,7 +2,7 @@
 // Pair queries for callers that have seen to the floating-point state and share a limit.
 #pragma once
 
-#include <boxtree/runtime/query/pair.h>
+#include <boxtree/contact.h>
 
 namespace boxtree {
 

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
 // Simultaneous descent of two trees (Zachmann, "The BoxTree", 1995; paper section 1.1), over any
-// pair of codecs. Behind runtime/query/pair.h; measurements use it directly, to listen.
+// pair of codecs. Behind <boxtree/contact.h>; measurements use it directly, to listen.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/runtime/query/leaf_pairs.h>
-#include <boxtree/runtime/query/pair_work.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/query/leaf_pairs.h"
+#include "runtime/query/pair_work.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 

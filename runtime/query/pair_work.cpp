@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Bounds of walks of two trees.
-#include <boxtree/runtime/query/pair_work.h>
+#include "runtime/query/pair_work.h"
 
 namespace boxtree {
 

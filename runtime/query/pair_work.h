@@ -10,13 +10,14 @@
 #include <algorithm>
 #include <cstdint>
 
-#include <boxtree/format/children.h>
-#include <boxtree/format/codec.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/query/face_copies.h>
-#include <boxtree/runtime/query/types.h>
-#include <boxtree/runtime/query/work.h>
+#include <boxtree/query.h>
+
+#include "format/children.h"
+#include "format/codec.h"
+#include "format/limits.h"
+#include "format/tree_record.h"
+#include "runtime/walk/face_copies.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 

@@ -5,14 +5,15 @@
 #include <cmath>
 #include <limits>
 
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/erased_codec.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/frontier.h>
-#include <boxtree/runtime/query/point.h>
-#include <boxtree/runtime/query/point_query.h>
-#include <boxtree/runtime/query/scaled_length.h>
-#include <boxtree/runtime/wide/walks.h>
+#include <boxtree/closest.h>
+
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/float_state.h"
+#include "runtime/query/point_query.h"
+#include "runtime/query/scaled_length.h"
+#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/frontier.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 namespace {

@@ -9,13 +9,14 @@
 #include <limits>
 #include <optional>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/separation.h>
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/point.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/scaled_length.h>
-#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/closest.h>
+
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/separation.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/scaled_length.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 
@@ -128,6 +129,9 @@ struct PointQuery {
     tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };
+
+/// By vectors; see walk_tree.h.
+Errc walk_wide(const Tree& tree, PointQuery& query);
 
 /// closest_point for callers that have made the query themselves: the first error met, if any.
 Errc find_nearest(const Tree& tree, PointQuery& query);

@@ -5,9 +5,9 @@
 #include <cstdint>
 #include <limits>
 
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/ray_query.h>
-#include <boxtree/runtime/wide/walks.h>
+#include "runtime/query/float_state.h"
+#include "runtime/query/ray_query.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 

@@ -9,10 +9,11 @@
 #include <limits>
 #include <optional>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/ray.h>
-#include <boxtree/runtime/query/ray_slab.h>
-#include <boxtree/runtime/query/traversal.h>
+#include <boxtree/ray.h>
+
+#include "runtime/primitive/predicates.h"
+#include "runtime/query/ray_slab.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 
@@ -90,6 +91,9 @@ struct RayQuery {
   Errc error = Errc::kOk;
   TriangleBatch batch;
 };
+
+/// By vectors; see walk_tree.h.
+Errc walk_wide(const Tree& tree, RayQuery& query);
 
 /// A parameter of the query in those of the ray. Kept within the ray's own interval, as conversion
 /// may underflow: for a subnormal direction, say.

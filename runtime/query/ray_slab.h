@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/format/box.h>
+#include "format/box.h"
 
 namespace boxtree {
 

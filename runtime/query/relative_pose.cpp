@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Composition of two poses and two frames into one affine map and its inverse, with an error bound.
+#include "runtime/query/relative_pose.h"
+
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/primitive/vector3.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {

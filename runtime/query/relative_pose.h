@@ -13,9 +13,10 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include <boxtree/format/box.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "format/box.h"
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree {
 

@@ -3,10 +3,11 @@
 // triangles, both in tree space; and what receives the faces.
 #pragma once
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/walk/face_visit.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 
@@ -62,6 +63,10 @@ struct SphereQuery {
     return squared_length(closest_point_on_triangle(center, triangle) - center) <= squared_radius;
   }
 };
+
+/// By vectors; see walk_tree.h.
+Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk);
+Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk);
 
 /// overlap_sphere for callers that have made the shape themselves.
 Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor,

@@ -3,10 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/shape_query.h>
-#include <boxtree/runtime/query/sphere.h>
-#include <boxtree/runtime/wide/walks.h>
+#include <boxtree/overlap.h>
+
+#include "runtime/query/float_state.h"
+#include "runtime/query/shape_query.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 

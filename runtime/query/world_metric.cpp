@@ -3,13 +3,14 @@
 //
 // Let u = 2^-53 and gamma_n = n u / (1 - n u) (Higham, "Accuracy and Stability", lemma 3.1). A sum
 // of three products is off by gamma_3 of the sum of their magnitudes.
+#include "runtime/query/world_metric.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <boxtree/runtime/query/scaled_length.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/query/world_metric.h>
+#include "runtime/query/scaled_length.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {

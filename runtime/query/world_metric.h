@@ -22,9 +22,9 @@
 #include <cstddef>
 #include <optional>
 
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/scaled_length.h>
+#include "runtime/primitive/triangle.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/scaled_length.h"
 
 namespace boxtree {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Builds and refits the tree over moving instances.
+#include "runtime/scene/moving_tree.h"
+
 #include <algorithm>
 #include <numeric>
-
-#include <boxtree/runtime/scene/moving_tree.h>
 
 namespace boxtree {
 namespace {

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include <boxtree/format/children.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/tree/codecs.h>
+#include "format/children.h"
+#include "format/tree_record.h"
+#include "runtime/tree/codecs.h"
 
 namespace boxtree {
 

@@ -2,10 +2,12 @@
 // A box asked of an instance of a scene: a shape like those of query/shape_query.h.
 #pragma once
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/scene/scene_queries.h>
+#include <boxtree/scene.h>
+
+#include "runtime/primitive/predicates.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/walk/face_visit.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 
@@ -35,5 +37,8 @@ struct PlacedBoxQuery {
                                    {box.high[0], box.high[1], box.high[2]});
   }
 };
+
+/// By vectors; see walk_tree.h.
+Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk);
 
 }  // namespace boxtree

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Maps of placed trees and their error bounds.
+#include "runtime/scene/placement.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/scaled_length.h>
-#include <boxtree/runtime/scene/placement.h>
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/scaled_length.h"
 
 namespace boxtree {
 namespace {

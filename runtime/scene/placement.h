@@ -8,11 +8,12 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/format/box.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/query/ray.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+#include <boxtree/ray.h>
+
+#include "format/box.h"
+#include "runtime/primitive/triangle.h"
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree {
 

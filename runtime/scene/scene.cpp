@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // What a scene says of its instances, and moving them.
+#include "runtime/scene/scene.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/scene/scene.h>
-#include <boxtree/runtime/tree/dispatch.h>
+#include "runtime/query/float_state.h"
+#include "runtime/tree/dispatch.h"
 
 namespace boxtree {
 namespace {

@@ -10,13 +10,14 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/format/scene_record.h>
-#include <boxtree/runtime/query/types.h>
-#include <boxtree/runtime/scene/largest.h>
-#include <boxtree/runtime/scene/moving_tree.h>
-#include <boxtree/runtime/scene/placement.h>
-#include <boxtree/runtime/scene/top_level.h>
-#include <boxtree/runtime/tree/tree.h>
+#include <boxtree/query.h>
+
+#include "format/scene_record.h"
+#include "runtime/scene/largest.h"
+#include "runtime/scene/moving_tree.h"
+#include "runtime/scene/placement.h"
+#include "runtime/scene/top_level.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <utility>
 
-#include <boxtree/runtime/file/section.h>
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/scene/scene.h>
+#include "runtime/file/section.h"
+#include "runtime/query/float_state.h"
+#include "runtime/scene/scene.h"
 
 namespace boxtree {
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Contacts in a scene: candidates by their boxes in the world, then tree against tree.
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/pair_query.h>
-#include <boxtree/runtime/scene/scene_queries.h>
-#include <boxtree/runtime/scene/scene_walk.h>
+#include <boxtree/scene.h>
+
+#include "runtime/query/float_state.h"
+#include "runtime/query/pair_query.h"
+#include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
 namespace {

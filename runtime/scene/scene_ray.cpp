@@ -2,10 +2,11 @@
 // Rays through a scene.
 #include <cmath>
 
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/ray_query.h>
-#include <boxtree/runtime/scene/scene_queries.h>
-#include <boxtree/runtime/scene/scene_walk.h>
+#include <boxtree/scene.h>
+
+#include "runtime/query/float_state.h"
+#include "runtime/query/ray_query.h"
+#include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
 namespace {

@@ -2,13 +2,14 @@
 // Boxes, spheres and points in a scene.
 #include <cmath>
 
-#include <boxtree/runtime/query/float_state.h>
-#include <boxtree/runtime/query/point_query.h>
-#include <boxtree/runtime/query/shape_query.h>
-#include <boxtree/runtime/scene/placed_box.h>
-#include <boxtree/runtime/scene/scene_queries.h>
-#include <boxtree/runtime/scene/scene_walk.h>
-#include <boxtree/runtime/wide/walks.h>
+#include <boxtree/scene.h>
+
+#include "runtime/query/float_state.h"
+#include "runtime/query/point_query.h"
+#include "runtime/query/shape_query.h"
+#include "runtime/scene/placed_box.h"
+#include "runtime/scene/scene_walk.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 namespace {

@@ -2,10 +2,10 @@
 // How every query walks a scene: the top level of the file, then the tree over moving instances.
 #pragma once
 
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/query/work.h>
-#include <boxtree/runtime/scene/scene.h>
-#include <boxtree/runtime/scene/top_level_walk.h>
+#include "runtime/scene/scene.h"
+#include "runtime/scene/top_level_walk.h"
+#include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -25,7 +25,7 @@ struct Admission {
 // query.visit(instance, const Scene::Placed&) -> bool: whether to go on.
 // query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about.
 // query.admission; and query.error, which is set when an instance is corrupt.
-// What the templates of query/traversal.h ask of boxes, in the scene's frame.
+// What the templates of walk/traversal.h ask of boxes, in the scene's frame.
 
 /// Counts an instance and visits it; whether to go on.
 template <class Query>
@@ -35,7 +35,7 @@ template <class Query>
   return query.error == Errc::kOk && query.visit(instance, placed);
 }
 
-/// The query of query/traversal.h over moving instances.
+/// The query of walk/traversal.h over moving instances.
 template <class Query>
 struct MovingInstances {
   MovingInstances(Query& asked, const MovingTree& tree) noexcept

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Walks of the top level of a scene, one child at a time.
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/scene/top_level_walk.h>
+#include "runtime/query/relative_pose.h"
+#include "runtime/scene/top_level_walk.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {
 
-// Queries of query/traversal.h whose leaves are instances.
+// Queries of walk/traversal.h whose leaves are instances.
 struct Instances {
   Instances(const TopLevel& level, InstanceVisitor visitor)
       : top(level), visit(visitor), nodes(level.scene.node_count) {}

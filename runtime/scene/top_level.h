@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The tree over the static instances of a scene, read from the mapped bytes: nodes of wide8 whose
-// leaf n is instance n. Has what the templates of query/traversal.h ask of a tree.
+// leaf n is instance n. Has what the templates of walk/traversal.h ask of a tree.
 #pragma once
 
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/scene_record.h>
-#include <boxtree/runtime/tree/float_range.h>
+#include "format/codec_wide.h"
+#include "format/scene_record.h"
+#include "runtime/tree/float_range.h"
 
 namespace boxtree {
 

@@ -6,10 +6,11 @@
 #include <cstdint>
 
 #include <boxtree/configuration.h>
-#include <boxtree/format/error.h>
-#include <boxtree/runtime/query/ray_slab.h>
-#include <boxtree/runtime/query/types.h>
-#include <boxtree/runtime/scene/top_level.h>
+#include <boxtree/query.h>
+
+#include "format/error.h"
+#include "runtime/query/ray_slab.h"
+#include "runtime/scene/top_level.h"
 
 namespace boxtree {
 

@@ -3,10 +3,10 @@
 #include <cmath>
 #include <string>
 
-#include <boxtree/format/message.h>
-#include <boxtree/runtime/file/section.h>
-#include <boxtree/runtime/tree/float_range.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "format/message.h"
+#include "runtime/file/section.h"
+#include "runtime/tree/float_range.h"
+#include "runtime/tree/tree.h"
 
 namespace boxtree {
 namespace {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // From a codec's number to its type.
-#include <string>
+#include "runtime/tree/codecs.h"
 
-#include <boxtree/runtime/tree/codecs.h>
+#include <string>
 
 namespace boxtree {
 namespace {

@@ -8,10 +8,11 @@
 #include <variant>
 
 #include <boxtree/configuration.h>
-#include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/tree_record.h>
+
+#include "format/codec_packed.h"
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 

@@ -8,7 +8,7 @@
 #include <utility>
 #include <variant>
 
-#include <boxtree/runtime/tree/tree.h>
+#include "runtime/tree/tree.h"
 
 namespace boxtree {
 

@@ -17,8 +17,8 @@
 
 #include <algorithm>
 
-#include <boxtree/format/box.h>
-#include <boxtree/runtime/tree/frame.h>
+#include "format/box.h"
+#include "runtime/tree/frame.h"
 
 namespace boxtree {
 

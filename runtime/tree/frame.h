@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
-#include <boxtree/format/box.h>
-#include <boxtree/format/tree_record.h>
+#include "format/box.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Leaf geometry: corner numbers to positions to tree space, every number checked before it is used.
-#include <boxtree/runtime/tree/geometry.h>
+#include "runtime/tree/geometry.h"
 
 namespace boxtree {
 

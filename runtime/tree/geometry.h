@@ -6,12 +6,12 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/format/bytes.h>
-#include <boxtree/format/grid.h>
-#include <boxtree/format/limits.h>
-#include <boxtree/format/result.h>
-#include <boxtree/runtime/primitive/triangle.h>
-#include <boxtree/runtime/tree/frame.h>
+#include "format/bytes.h"
+#include "format/grid.h"
+#include "format/limits.h"
+#include "format/result.h"
+#include "runtime/primitive/triangle.h"
+#include "runtime/tree/frame.h"
 
 namespace boxtree {
 

@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include <boxtree/runtime/file/checksum_stream.h>
-#include <boxtree/runtime/tree/geometry.h>
+#include "runtime/file/checksum_stream.h"
+#include "runtime/tree/geometry.h"
 
 namespace boxtree {
 

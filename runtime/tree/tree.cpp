@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A bound tree: its root, and what lies below a node.
+#include "runtime/tree/tree.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <variant>
 
-#include <boxtree/runtime/tree/dispatch.h>
-#include <boxtree/runtime/tree/tree.h>
+#include "runtime/tree/dispatch.h"
 
 namespace boxtree {
 

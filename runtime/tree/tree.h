@@ -11,11 +11,12 @@
 
 #include <Eigen/Geometry>
 
-#include <boxtree/format/children.h>
-#include <boxtree/format/tree_record.h>
-#include <boxtree/runtime/file/file.h>
-#include <boxtree/runtime/tree/codecs.h>
-#include <boxtree/runtime/tree/geometry.h>
+#include <boxtree/file.h>
+
+#include "format/children.h"
+#include "format/tree_record.h"
+#include "runtime/tree/codecs.h"
+#include "runtime/tree/geometry.h"
 
 namespace boxtree {
 

@@ -7,8 +7,7 @@
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <filesystem>
 
-#include <boxtree/cooker/cook.h>
-
+#include "cooker/cook.h"
 #include "samples/bullet_drop/drop.h"
 
 namespace bullet_drop {

@@ -5,7 +5,7 @@
 #include <BulletCollision/CollisionShapes/btConcaveShape.h>
 #include <vector>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 namespace bullet_drop {
 

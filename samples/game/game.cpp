@@ -2,7 +2,7 @@
 // Maps the cooked level and crate: where is the ground, and does the crate touch the stairs?
 #include <cstdio>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include <boxtree/cooker/scene/cook_scene.h>
+#include "cooker/scene/cook_scene.h"
 
 namespace cooker = boxtree::cooker;
 

@@ -6,7 +6,7 @@
 #include <set>
 #include <string>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 int main(int argument_count, char** arguments) {
   if (argument_count != 2) {

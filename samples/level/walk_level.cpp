@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <string>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 namespace {
 

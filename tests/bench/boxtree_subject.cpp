@@ -2,13 +2,13 @@
 // All our codecs under measurement, through the public queries.
 #include <stdexcept>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/scratch_file.h>
-#include <boxtree/runtime/blob/blob.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/query/pair_walk.h>
+#include <boxtree/blob.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/choose/measure.h"
+#include "cooker/cook.h"
+#include "cooker/report/scratch_file.h"
+#include "runtime/query/pair_walk.h"
 #include "tests/bench/subject.h"
 #include "tests/support/require.h"
 

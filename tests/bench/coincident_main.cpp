@@ -14,9 +14,9 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
 #include "tests/support/coincident.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

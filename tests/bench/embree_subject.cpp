@@ -5,8 +5,7 @@
 #include <embree3/rtcore.h>
 #include <limits>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/bench/subject.h"
 
 namespace boxtree::bench {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <span>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/triangle_distance.h>
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/triangle_distance.h"
 
 namespace boxtree::bench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::bench {
 

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/import.h>
-
+#include "cooker/import/import.h"
 #include "tests/bench/mesh_files.h"
 #include "tests/support/temp_folder.h"
 

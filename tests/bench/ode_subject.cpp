@@ -3,8 +3,7 @@
 #include <limits>
 #include <ode/ode.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/bench/subject.h"
 
 namespace boxtree::bench {

@@ -8,8 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/bench/original_tree.h"
 
 namespace boxtree::bench {

@@ -4,10 +4,9 @@
 #include <cmath>
 #include <vector>
 
-#include <boxtree/runtime/query/ray_slab.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
-
+#include "runtime/query/ray_slab.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/walk/traversal.h"
 #include "tests/bench/original_pairs.h"
 #include "tests/bench/subject.h"
 

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/format/binary_node.h>
-#include <boxtree/format/limits.h>
+#include "cooker/encode/encoders.h"
+#include "format/binary_node.h"
+#include "format/limits.h"
 
 namespace boxtree::bench {
 namespace {

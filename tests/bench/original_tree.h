@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/runtime/query/types.h>
+#include <boxtree/query.h>
+
+#include "cooker/build/build_tree.h"
 
 namespace boxtree::bench {
 

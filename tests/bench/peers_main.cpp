@@ -13,9 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/report/measure.h>
-
+#include "cooker/choose/measure.h"
+#include "cooker/import/import.h"
 #include "tests/bench/exact_answers.h"
 #include "tests/bench/libraries.h"
 

@@ -13,11 +13,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/report/measure.h>
-#include <boxtree/cooker/report/page.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/choose/measure.h"
+#include "cooker/cook.h"
+#include "cooker/report/page.h"
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/require.h"
 

@@ -13,8 +13,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/report/measure.h>
-
+#include "cooker/choose/measure.h"
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

@@ -12,9 +12,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/build/build_tree.h>
-#include <boxtree/cooker/choose/workload.h>
-
+#include "cooker/build/build_tree.h"
+#include "cooker/choose/workload.h"
 #include "tests/bench/cache_model.h"
 #include "tests/bench/triangle_mesh.h"
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
-#include <boxtree/runtime/primitive/triangle.h>
+#include "cooker/import/source_mesh.h"
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::bench {
 

@@ -46,7 +46,7 @@ add_executable(blob_user main.cpp)
 target_link_libraries(blob_user PRIVATE boxtree::blob)
 CMAKE
 cat >"$work/blob/main.cpp" <<'CODE'
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
 int main(int, char** argv) { return boxtree::open_blob(argv[1]).ok() ? 0 : 1; }
 CODE
 cmake -S "$work/blob" -B "$work/blob/build" -DCMAKE_PREFIX_PATH="$work/prefix" \

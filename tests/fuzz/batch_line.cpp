@@ -2,8 +2,7 @@
 // Any text as a line of a batch, answered by a small tree.
 #include <string_view>
 
-#include <boxtree/cooker/cli/question.h>
-
+#include "cooker/cli/question.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

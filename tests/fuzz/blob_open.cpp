@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Any bytes as a blob; what comes out is opened and bound.
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
 
 #include "tests/fuzz/question.h"
 #include "tests/fuzz/target.h"

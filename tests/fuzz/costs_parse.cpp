@@ -3,8 +3,7 @@
 #include <cmath>
 #include <string_view>
 
-#include <boxtree/cooker/choose/cost_file.h>
-
+#include "cooker/choose/cost_file.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree verify` of any file: the proof of each tree and of the scene.
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/fuzz/question.h"
 #include "tests/fuzz/target.h"
 

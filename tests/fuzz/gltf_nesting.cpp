@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Any text as the JSON of a glTF file, looked at before assimp reads it: its nesting and its
 // counts.
+#include "cooker/import/gltf_nesting.h"
+
 #include <string_view>
 
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/gltf_faces.h>
-#include <boxtree/cooker/import/gltf_nesting.h>
-
+#include "cooker/import/gltf_faces.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {

@@ -5,8 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include <boxtree/cooker/import/import.h>
-
+#include "cooker/import/import.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/temp_folder.h"
 

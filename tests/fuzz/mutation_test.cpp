@@ -3,8 +3,7 @@
 // answered, with checksums repaired too, so that the checks behind them are reached.
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -3,8 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include <boxtree/cooker/scene/profile.h>
-
+#include "cooker/scene/profile.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/temp_folder.h"
 

@@ -7,8 +7,7 @@
 #include <limits>
 #include <string>
 
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {

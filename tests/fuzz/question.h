@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 namespace boxtree::fuzz {
 

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
 
 #include "tests/fuzz/question.h"
 #include "tests/support/cooked.h"

@@ -7,7 +7,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include <boxtree/format/bytes.h>
+#include "format/bytes.h"
 
 namespace boxtree::fuzz {
 

@@ -6,7 +6,7 @@
 #include <cstdio>
 #include <vector>
 
-#include <boxtree/cooker/proof/proof.h>
+#include "cooker/proof/proof.h"
 
 namespace {
 

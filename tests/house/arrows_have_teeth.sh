@@ -1,17 +1,36 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# A check that cannot fail proves nothing: plants an include against the arrows and expects a no.
+# A check that cannot fail proves nothing: plants includes against the arrows and expects a no.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
-mkdir -p "$work/format" "$work/runtime"
-echo '#include <cstdint>' >"$work/format/good.h"
-echo '#include <Eigen/Core>' >"$work/runtime/good.h"
-bash "$here/check_arrows.sh" "$work"
-echo '#include <boxtree/runtime/boxtree.h>' >"$work/format/bad.h"
-if bash "$here/check_arrows.sh" "$work"; then echo "the check missed format -> runtime"; exit 1; fi
-rm "$work/format/bad.h"
-echo '#include <boxtree/cooker/cook.h>' >"$work/runtime/bad.h"
-if bash "$here/check_arrows.sh" "$work"; then echo "the check missed runtime -> cooker"; exit 1; fi
+mkdir -p "$work/format" "$work/runtime/query" "$work/runtime/include/boxtree" "$work/cooker/write"
+check() { python3 "$here/check_arrows.py" "$work"; }
+
+# refused FILE INCLUDE WHY: the check must say WHY of that one line.
+refused() {
+  local said
+  printf '%s\n' "#include $2" >"$work/$1"
+  if said=$(check); then echo "the check missed $2 in $1"; exit 1; fi
+  [[ $said == "$1: "*": $3" ]] || { echo "of $2 in $1 the check says: $said"; exit 1; }
+  rm "$work/$1"
+}
+
+printf '%s\n' '#include <cstdint>' '#include "format/error.h"' >"$work/format/good.h"
+printf '%s\n' '#include <Eigen/Core>' '#include "runtime/walk/work.h"' '#include <boxtree/ray.h>' \
+  >"$work/runtime/query/good.h"
+check
+refused format/bad.h '<boxtree/boxtree.h>' 'format knows nothing of the runtime'
+refused format/bad.h '"runtime/file/mapping.h"' 'format comes before runtime'
+refused format/bad.h '<Eigen/Core>' 'format does not use Eigen/Core'
+refused format/bad.h '<iostream>' 'format prints nothing'
+refused runtime/query/bad.h '"cooker/cook.h"' 'runtime comes before cooker'
+refused runtime/query/bad.h '"runtime/scene/scene.h"' 'runtime/query comes before runtime/scene'
+refused runtime/query/bad.h '"runtime/wide/ray.h"' \
+  "runtime/wide has no place in the order of runtime's folders"
+refused runtime/query/bad.h '<runtime/walk/work.h>' \
+  'a private header is included by its path in quotes: "runtime/walk/work.h"'
+refused cooker/write/bad.cpp '"cooker/scene/profile.h"' 'cooker/write comes before cooker/scene'
+refused cooker/write/bad.cpp '"work.h"' 'only a header of the project is included in quotes'
 echo "teeth shown"

@@ -13,8 +13,8 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/source_scene.h>
+#include "cooker/import/import.h"
+#include "cooker/import/source_scene.h"
 
 namespace boxtree::cooker {
 namespace {

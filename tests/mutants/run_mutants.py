@@ -43,7 +43,7 @@ SLOW = [
     ("tests/fuzz/mutation_test", 600),
     ("tests/unit/query/distance_test", 600),
     ("tests/robustness/robustness_test", 600),
-    ("tests/unit/wide/wide_walks_test", 600),
+    ("tests/unit/walk/wide_walks_test", 600),
 ]
 
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Ours: the predicate, and pair queries of two trees of one triangle each.
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/primitive/predicates.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
+#include "runtime/primitive/predicates.h"
 #include "tests/oracle/pair_tester.h"
 #include "tests/support/require.h"
 

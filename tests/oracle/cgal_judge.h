@@ -9,7 +9,7 @@
 #include <array>
 #include <variant>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::test {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::test {
 

@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/oracle/cgal_judge.h"
 
 namespace boxtree {

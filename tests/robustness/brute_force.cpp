@@ -8,10 +8,10 @@
 #include <optional>
 #include <stdexcept>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/vector3.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/walk/traversal.h"
 
 namespace boxtree::robustness {
 namespace {

@@ -5,8 +5,7 @@
 #include <limits>
 #include <random>
 
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/support/coincident.h"

@@ -8,8 +8,7 @@
 
 #include <Eigen/Geometry>
 
-#include <boxtree/cooker/quantise/grid.h>
-
+#include "cooker/quantise/grid.h"
 #include "tests/robustness/subjects.h"
 #include "tests/support/meshes.h"
 

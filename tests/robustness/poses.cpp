@@ -5,8 +5,7 @@
 
 #include <Eigen/LU>
 
-#include <boxtree/runtime/query/relative_pose.h>
-
+#include "runtime/query/relative_pose.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include <boxtree/runtime/query/pair_walk.h>
-
+#include "runtime/query/pair_walk.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/support/float_state.h"

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <map>
 
-#include <boxtree/cooker/quantise/grid.h>
-
+#include "cooker/quantise/grid.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/robustness/run.h"
 #include "tests/support/require.h"

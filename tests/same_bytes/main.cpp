@@ -24,9 +24,8 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/file/checksum.h>
-
+#include "cooker/cook.h"
+#include "runtime/file/checksum.h"
 #include "tests/same_bytes/meshes.h"
 
 namespace boxtree::same_bytes {

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::same_bytes {
 

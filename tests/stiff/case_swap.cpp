@@ -7,9 +7,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/cooker/quantise/grid.h>
-#include <boxtree/format/half.h>
-
+#include "cooker/quantise/grid.h"
+#include "format/half.h"
 #include "tests/stiff/cases.h"
 #include "tests/stiff/meshes.h"
 #include "tests/stiff/world.h"

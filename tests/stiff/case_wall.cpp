@@ -9,8 +9,7 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/runtime/file/checksum.h>
-
+#include "runtime/file/checksum.h"
 #include "tests/stiff/cases.h"
 #include "tests/stiff/meshes.h"
 #include "tests/stiff/world.h"

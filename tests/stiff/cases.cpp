@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include <boxtree/format/codec.h>
-#include <boxtree/runtime/file/checksum.h>
+#include "format/codec.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::stiff {
 

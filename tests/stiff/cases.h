@@ -10,8 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/cooker/report/plot.h>
-
+#include "cooker/report/plot.h"
 #include "tests/stiff/shape.h"
 
 namespace boxtree::stiff {

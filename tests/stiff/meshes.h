@@ -2,7 +2,7 @@
 // The surfaces that stiff contact is measured on. Units are metres, z is up, centred on the origin.
 #pragma once
 
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::stiff {
 

@@ -6,9 +6,8 @@
 #include <cstring>
 #include <limits>
 
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/half.h>
-
+#include "format/codec_plain.h"
+#include "format/half.h"
 #include "tests/support/require.h"
 
 namespace boxtree::stiff {

@@ -8,9 +8,10 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/primitive/triangle.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/cook.h"
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::stiff {
 

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include <boxtree/runtime/file/checksum.h>
-
+#include "runtime/file/checksum.h"
 #include "tests/stiff/corner_contact.h"
 
 namespace boxtree::stiff {

@@ -6,8 +6,7 @@
 #include <cstring>
 #include <stdexcept>
 
-#include <boxtree/runtime/file/checksum.h>
-
+#include "runtime/file/checksum.h"
 #include "tests/support/require.h"
 
 namespace boxtree::test {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/cooker/import/source_mesh.h>
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::test {
 

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <boxtree/format/result.h>
+#include "format/result.h"
 
 namespace boxtree::test {
 

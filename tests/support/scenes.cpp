@@ -3,8 +3,7 @@
 
 #include <utility>
 
-#include <boxtree/cooker/cook.h>
-
+#include "cooker/cook.h"
 #include "tests/support/require.h"
 
 namespace boxtree::test {

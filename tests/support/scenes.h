@@ -6,9 +6,10 @@
 #include <random>
 #include <vector>
 
-#include <boxtree/cooker/scene/encoded_scene.h>
-#include <boxtree/cooker/write/file_writer.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
+
+#include "cooker/encode/encoded_scene.h"
+#include "cooker/write/file_writer.h"
 
 namespace boxtree::test {
 

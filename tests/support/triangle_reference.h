@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::test {
 

@@ -2,8 +2,7 @@
 // Meshes of the exact oracle, from one triangle to some hundred.
 #pragma once
 
-#include <boxtree/cooker/import/source_mesh.h>
-
+#include "cooker/import/source_mesh.h"
 #include "tests/oracle/exact/draw.h"
 
 namespace boxtree::oracle {

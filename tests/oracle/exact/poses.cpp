@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include <boxtree/runtime/query/relative_pose.h>
+#include "runtime/query/relative_pose.h"
 
 namespace boxtree::oracle {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <optional>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 #include "tests/oracle/exact/draw.h"
 #include "tests/oracle/exact/geometry.h"

@@ -2,7 +2,7 @@
 // Positions, boxes and lengths near the features of a mesh.
 #pragma once
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 #include "tests/oracle/exact/draw.h"
 #include "tests/oracle/exact/subject.h"

@@ -7,8 +7,7 @@
 #include <tuple>
 #include <utility>
 
-#include <boxtree/cooker/cook.h>
-
+#include "cooker/cook.h"
 #include "tests/support/require.h"
 
 namespace boxtree::oracle {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 #include "tests/oracle/exact/geometry.h"
 #include "tests/oracle/exact/meshes.h"

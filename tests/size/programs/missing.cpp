@@ -1,4 +1,4 @@
 // SPDX-License-Identifier: MIT
 // Must not compile where pair queries were left out.
-#include <boxtree/runtime/query/pair.h>
+#include <boxtree/contact.h>
 int main() {}

@@ -2,7 +2,7 @@
 // Asks a file for the closest hit of a ray that falls from above the origin.
 #include <cstdio>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 int main(int, char** argv) {
   const auto file = boxtree::File::open(argv[1]);

@@ -3,7 +3,7 @@
 // same.
 #include <cstdio>
 
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
 int main(int, char** argv) {
   using namespace boxtree;

@@ -2,8 +2,8 @@
 // Asks every query there is of a file, mapped or compressed, and of its scene if it has one.
 #include <cstdio>
 
-#include <boxtree/runtime/blob/blob.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/blob.h>
+#include <boxtree/boxtree.h>
 
 namespace {
 

@@ -9,10 +9,10 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
+#include "cooker/encode/encoders.h"
 #include "tests/support/meshes.h"
 
 namespace boxtree::cooker {

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Divisions against sorting each part anew and looking at every face.
+#include "cooker/build/unit_sweep.h"
+
 #include <algorithm>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/build/full_nodes.h>
-#include <boxtree/cooker/build/unit_sweep.h>
+#include "cooker/build/full_nodes.h"
 
 namespace boxtree::cooker {
 namespace {

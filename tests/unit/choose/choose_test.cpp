@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
+#include "cooker/choose/choose.h"
 
-#include <boxtree/cooker/choose/choose.h>
+#include <gtest/gtest.h>
 
 #include "tests/support/require.h"
 

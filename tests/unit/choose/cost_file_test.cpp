@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Constants survive their file, and decide; what is missing or makes no sense is refused by name.
+#include "cooker/choose/cost_file.h"
+
 #include <functional>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/choose/cost_file.h>
-#include <boxtree/cooker/cook.h>
-
+#include "cooker/cook.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <gtest/gtest.h>
+#include "cooker/choose/cost.h"
 
-#include <boxtree/cooker/choose/cost.h>
+#include <gtest/gtest.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/choose/search.h"
+
 #include <algorithm>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/choose/search.h>
 
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/choose/work.h"
+
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/choose/work.h>
-#include <boxtree/cooker/cook.h>
-
+#include "cooker/cook.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 

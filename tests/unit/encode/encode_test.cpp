@@ -5,10 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/format/codec_plain.h>
-
+#include "cooker/encode/encoders.h"
+#include "cooker/proof/proof.h"
+#include "format/codec_plain.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The grid store against rounding done here, vertex by vertex: what is decoded is the source on the
 // grid, face by face and corner by corner, in every codec.
+#include "cooker/quantise/grid.h"
+
 #include <cmath>
 #include <limits>
 #include <map>
@@ -9,9 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/cooker/quantise/grid.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

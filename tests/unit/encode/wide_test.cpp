@@ -6,9 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/encode/encoders.h>
-#include <boxtree/cooker/encode/wide_collapse.h>
-
+#include "cooker/encode/encoders.h"
+#include "cooker/encode/wide_collapse.h"
 #include "tests/support/meshes.h"
 
 namespace boxtree::cooker {

@@ -7,8 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/mesh_arrays.h>
-
+#include "cooker/import/mesh_arrays.h"
 #include "exported.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

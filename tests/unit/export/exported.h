@@ -11,10 +11,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/export/export.h>
-#include <boxtree/cooker/import/import.h>
-
+#include "cooker/cook.h"
+#include "cooker/export/export.h"
+#include "cooker/import/import.h"
 #include "tests/support/require.h"
 #include "tests/support/temp_folder.h"
 

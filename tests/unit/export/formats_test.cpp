@@ -10,8 +10,7 @@
 #include <assimp/fast_atof.h>
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/export/obj_writer.h>
-
+#include "cooker/export/obj_writer.h"
 #include "exported.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

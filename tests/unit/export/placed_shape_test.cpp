@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Poses taken apart for glTF, and which of them mirror.
+#include "cooker/export/placed_shape.h"
+
 #include <cmath>
 #include <random>
 
 #include <Eigen/LU>
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/export/placed_shape.h>
 
 #include "tests/support/scenes.h"
 

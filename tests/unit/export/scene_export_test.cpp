@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/source_scene.h>
-
+#include "cooker/import/source_scene.h"
 #include "exported.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/blob/blob.h>
+#include <boxtree/blob.h>
 
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
+#include "runtime/file/section.h"
+
 #include <array>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/file/section.h>
 
 namespace boxtree {
 namespace {

@@ -8,9 +8,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
+#include "format/codec_packed.h"
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
 
 namespace boxtree {
 namespace {

@@ -5,8 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The pinned error table, as literals: a change here is a change of the interface.
-#include <gtest/gtest.h>
+#include "format/error.h"
 
-#include <boxtree/format/error.h>
+#include <gtest/gtest.h>
 
 namespace boxtree {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // f16 by bit operations against the definition of binary16, over every pattern.
+#include "format/half.h"
+
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/format/half.h>
 
 namespace boxtree {
 namespace {

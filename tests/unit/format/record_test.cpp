@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/format/limits.h>
-#include <boxtree/format/scene_record.h>
-#include <boxtree/format/tree_record.h>
+#include "format/limits.h"
+#include "format/scene_record.h"
+#include "format/tree_record.h"
 
 namespace boxtree {
 namespace {

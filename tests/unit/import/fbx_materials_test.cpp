@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Materials of FBX files: faces in the order of the file, whatever assimp does to tell materials.
+#include "cooker/import/fbx_materials.h"
+
 #include <array>
 #include <memory>
 #include <string>
@@ -8,9 +10,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include <boxtree/cooker/import/fbx_materials.h>
-#include <boxtree/cooker/import/source_scene.h>
-
+#include "cooker/import/source_scene.h"
 #include "placed_triangles.h"
 #include "temp_files.h"
 

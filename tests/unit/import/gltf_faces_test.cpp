@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a document of glTF states, and documents that lie about their own shape.
+#include "cooker/import/gltf_faces.h"
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <boxtree/cooker/import/gltf_faces.h>
 
 namespace boxtree::cooker {
 namespace {

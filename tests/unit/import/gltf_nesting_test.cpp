@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // glTF files that nest without end are refused before assimp sees them, and no others.
+#include "cooker/import/gltf_nesting.h"
+
 #include <string>
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
-
-#include <boxtree/cooker/import/gltf_nesting.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -2,8 +2,7 @@
 // Scenes of real files: what is placed is what import_mesh flattens.
 #include <map>
 
-#include <boxtree/cooker/import/source_scene.h>
-
+#include "cooker/import/source_scene.h"
 #include "placed_triangles.h"
 #include "temp_files.h"
 

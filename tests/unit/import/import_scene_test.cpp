@@ -3,11 +3,10 @@
 #include <cmath>
 #include <limits>
 
-#include <boxtree/cooker/import/source_scene.h>
-#include <boxtree/runtime/query/relative_pose.h>
-
+#include "cooker/import/source_scene.h"
 #include "gltf_text.h"
 #include "placed_triangles.h"
+#include "runtime/query/relative_pose.h"
 #include "temp_files.h"
 #include "tests/support/cooked.h"
 

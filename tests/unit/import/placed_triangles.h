@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-#include <boxtree/cooker/import/source_scene.h>
+#include "cooker/import/source_scene.h"
 
 namespace boxtree::cooker {
 

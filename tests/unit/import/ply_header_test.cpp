@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/ply_layout.h>
+#include "cooker/import/ply_layout.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/polygon_split.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,9 +11,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/polygon_normal.h>
-#include <boxtree/cooker/import/polygon_split.h>
-#include <boxtree/runtime/primitive/orientation.h>
+#include "cooker/import/polygon_normal.h"
+#include "runtime/primitive/orientation.h"
 
 namespace boxtree::cooker {
 namespace {

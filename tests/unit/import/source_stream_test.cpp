@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <boxtree/cooker/import/source_files.h>
-#include <boxtree/cooker/import/source_stream.h>
+#include "cooker/import/source_stream.h"
 
+#include "cooker/import/source_files.h"
 #include "temp_files.h"
 
 namespace boxtree::cooker {

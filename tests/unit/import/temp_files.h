@@ -14,7 +14,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/import.h>
+#include "cooker/import/import.h"
 
 namespace boxtree::cooker {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Texts of formats that assimp reads: whole, and cut short at every byte.
+#include "cooker/import/text_ends.h"
+
 #include <string>
 #include <string_view>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/text_ends.h>
-
+#include "cooker/import/import.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {

@@ -2,8 +2,7 @@
 // Spellings of text formats behind which readers lose statements, and texts that were cut short.
 #include <string>
 
-#include <boxtree/cooker/import/source_scene.h>
-
+#include "cooker/import/source_scene.h"
 #include "temp_files.h"
 
 namespace boxtree::cooker {

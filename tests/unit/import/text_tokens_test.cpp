@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Words and numbers as the readers of text formats take them: all of a word, or nothing of it.
+#include "cooker/import/text_tokens.h"
+
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string_view>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/import/text_tokens.h>
 
 namespace boxtree::cooker {
 namespace {

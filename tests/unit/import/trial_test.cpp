@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Work in a copy of the process: its result comes back, its end does not hurt, its limits hold; and
 // files that crash assimp's readers are errors.
+#include "cooker/import/trial.h"
+
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -9,9 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/import.h>
-#include <boxtree/cooker/import/trial.h>
-
+#include "cooker/import/import.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/import/weld.h"
+
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -7,8 +9,6 @@
 #include <span>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/import/weld.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <vector>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::test {
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // closest_point_on_triangle against extended precision, against sampling, and on degenerate
 // triangles (R13, R16) against the segment that is left.
+#include "runtime/primitive/closest_point.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,8 +12,6 @@
 #include <tests/unit/primitive/triangle_cases.h>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/primitive/closest_point.h>
 
 namespace boxtree {
 namespace {

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // orient3d and orient2d against 128-bit integers, on points that lie on or next to the plane.
+#include "runtime/primitive/orientation.h"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -11,9 +13,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/expansion.h>
-#include <boxtree/runtime/primitive/orientation.h>
-#include <boxtree/runtime/primitive/wide_integer.h>
+#include "runtime/primitive/expansion.h"
+#include "runtime/primitive/wide_integer.h"
 
 namespace boxtree {
 namespace {

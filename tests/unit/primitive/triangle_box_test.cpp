@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // triangle_intersects_box: exact, touching included, for shapes of any size and place.
+#include "runtime/primitive/triangle_box.h"
+
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -10,8 +12,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/primitive/triangle_box.h>
 
 namespace boxtree {
 namespace {

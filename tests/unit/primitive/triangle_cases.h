@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include <boxtree/runtime/primitive/triangle.h>
+#include "runtime/primitive/triangle.h"
 
 namespace boxtree::test {
 

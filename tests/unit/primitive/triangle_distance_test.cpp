@@ -11,8 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/support/triangle_reference.h"
 
 namespace boxtree {

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // intersect_ray_triangle: no leak through edges and corners of closed meshes (R11), values against
 // extended precision, degenerate triangles (R13), the triangle of bepuphysics2 #143 (R30).
+#include "runtime/primitive/triangle_ray.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -12,8 +14,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/primitive/triangle_ray.h>
 
 namespace boxtree {
 namespace {

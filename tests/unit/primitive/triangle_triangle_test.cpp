@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
+#include "runtime/primitive/predicates.h"
 
 namespace boxtree {
 namespace {

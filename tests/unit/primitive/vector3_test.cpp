@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Sums come in the order in which they are written, in every build: the numbers are chosen so that
 // any other order, or a fused product, rounds otherwise.
+#include "runtime/primitive/vector3.h"
+
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/primitive/vector3.h>
 
 namespace boxtree {
 namespace {

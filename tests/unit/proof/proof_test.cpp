@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // What verify says of hostile trees, and that it ends: work and memory are bounded by the bytes.
+#include "cooker/proof/proof.h"
+
 #include <algorithm>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
-
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

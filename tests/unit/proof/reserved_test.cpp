@@ -5,13 +5,12 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/grid.h>
-#include <boxtree/format/grid_leaf.h>
-
+#include "cooker/proof/proof.h"
+#include "format/codec_packed.h"
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
+#include "format/grid.h"
+#include "format/grid_leaf.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

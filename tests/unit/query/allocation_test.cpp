@@ -6,9 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/runtime/boxtree.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
 #include "tests/support/meshes.h"
 
 namespace {

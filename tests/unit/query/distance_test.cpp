@@ -9,9 +9,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/relative_pose.h>
-
+#include "runtime/primitive/predicates.h"
+#include "runtime/query/relative_pose.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_reference.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/query/float_state.h>
+#include "runtime/query/float_state.h"
 
 namespace boxtree {
 namespace {

@@ -9,10 +9,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/query/pair_walk.h>
-#include <boxtree/runtime/query/relative_pose.h>
-
+#include "runtime/primitive/predicates.h"
+#include "runtime/query/pair_walk.h"
+#include "runtime/query/relative_pose.h"
 #include "tests/support/cooked.h"
 #include "tests/support/require.h"
 

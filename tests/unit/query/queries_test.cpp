@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-
+#include "runtime/primitive/predicates.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -5,10 +5,9 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/format/codec_plain.h>
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/runtime/query/pair_work.h>
-
+#include "format/codec_plain.h"
+#include "format/codec_wide.h"
+#include "runtime/query/pair_work.h"
 #include "tests/support/coincident.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

@@ -8,9 +8,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/report/approximate_page.h>
-#include <boxtree/cooker/report/tradeoff_page.h>
-
+#include "cooker/report/approximate_page.h"
+#include "cooker/report/tradeoff_page.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -2,10 +2,9 @@
 // Counted sizes against sizes that were really written, and against a tree small enough for a pen.
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/report/paper_figures.h>
-#include <boxtree/format/codec_packed.h>
-#include <boxtree/format/codec_plain.h>
-
+#include "cooker/report/paper_figures.h"
+#include "format/codec_packed.h"
+#include "format/codec_plain.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

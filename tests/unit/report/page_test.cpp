@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The page: every cell is there, nothing of a mesh's name is markup, plots stay in their frame.
+#include "cooker/report/page.h"
+
 #include <regex>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/report/page.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The counter counts what is read, and local questions read little of a large file.
+#include "cooker/report/pages.h"
+
 #include <string>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/report/pages.h>
 
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Plots: lines through all their points and inside the frame, files that need no page around them.
+#include "cooker/report/plot.h"
+
 #include <algorithm>
 #include <iterator>
 #include <regex>
@@ -8,8 +10,6 @@
 #include <utility>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/report/plot.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What rounding f16 cuts to nearest loses, and that rounding outward loses nothing.
+#include "cooker/report/rounding.h"
+
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/report/rounding.h>
-
+#include "cooker/cook.h"
 #include "tests/support/meshes.h"
 
 namespace boxtree::cooker {

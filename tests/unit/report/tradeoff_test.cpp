@@ -10,9 +10,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include <boxtree/cooker/report/tradeoff_advice.h>
-#include <boxtree/cooker/report/tradeoff_page.h>
-
+#include "cooker/report/tradeoff_advice.h"
+#include "cooker/report/tradeoff_page.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Files to scenes: answers against brute force over all placed triangles of the source, what
 // leaving out does not change, and the account of the bytes.
+#include "cooker/scene/cook_scene.h"
+
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -9,13 +11,12 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/import/mesh_arrays.h>
-#include <boxtree/cooker/proof/proof.h>
-#include <boxtree/cooker/scene/cook_scene.h>
-#include <boxtree/runtime/boxtree.h>
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/vector3.h>
+#include <boxtree/boxtree.h>
 
+#include "cooker/import/mesh_arrays.h"
+#include "cooker/proof/proof.h"
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Lists of faces to drop: what is read, and what is refused.
-#include <gtest/gtest.h>
+#include "cooker/scene/hidden_faces.h"
 
-#include <boxtree/cooker/scene/hidden_faces.h>
+#include <gtest/gtest.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -4,8 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/proof/scene_proof.h>
-
+#include "cooker/proof/scene_proof.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"

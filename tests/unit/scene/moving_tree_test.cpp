@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // The tree over moving instances: every inner box is the union of what is below, always.
+#include "runtime/scene/moving_tree.h"
+
 #include <random>
 #include <set>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/scene/moving_tree.h>
+#include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Bounds of placements against long double and against singular values.
+#include "runtime/scene/placement.h"
+
 #include <random>
 
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
-
-#include <boxtree/runtime/scene/placement.h>
 
 #include "tests/support/scenes.h"
 

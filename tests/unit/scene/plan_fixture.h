@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include <boxtree/cooker/scene/plan.h>
+#include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Bounds of stretch against a singular value decomposition, rule S3 against figures worked out by
 // hand.
+#include "cooker/scene/precision.h"
+
 #include <cmath>
 #include <random>
 
 #include <Eigen/Geometry>
 #include <Eigen/SVD>
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/scene/precision.h>
 
 namespace boxtree::cooker {
 namespace {

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/scene/profile.h>
+#include "cooker/scene/profile.h"
 
 namespace boxtree::cooker {
 

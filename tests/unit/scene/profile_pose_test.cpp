@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
 // Poses of profiles against Eigen's, and every way to write them wrong.
+#include "cooker/scene/profile_pose.h"
+
 #include <tests/unit/scene/profile_files.h>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/scene/profile_pose.h>
 
 namespace boxtree::cooker {
 namespace {

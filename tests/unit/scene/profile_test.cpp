@@ -8,7 +8,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/scene/profile_pose.h>
+#include "cooker/scene/profile_pose.h"
 
 namespace boxtree::cooker {
 namespace {

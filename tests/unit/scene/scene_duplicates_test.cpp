@@ -5,9 +5,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/vector3.h>
-
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
 #include "tests/support/coincident.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

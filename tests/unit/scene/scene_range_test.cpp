@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/primitive/predicates.h>
-#include <boxtree/runtime/primitive/vector3.h>
-
+#include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Texts that toml++ crashes on are refused before it sees them, and no others.
+#include "cooker/scene/toml_checks.h"
+
 #include <functional>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/scene/toml_checks.h>
-#include <boxtree/cooker/scene/toml_tree.h>
+#include "cooker/scene/toml_tree.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -8,12 +8,11 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/runtime/query/ray_query.h>
-#include <boxtree/runtime/query/relative_pose.h>
-#include <boxtree/runtime/query/traversal.h>
-#include <boxtree/runtime/scene/top_level_walk.h>
-#include <boxtree/runtime/tree/dispatch.h>
-
+#include "runtime/query/ray_query.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/scene/top_level_walk.h"
+#include "runtime/tree/dispatch.h"
+#include "runtime/walk/traversal.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"

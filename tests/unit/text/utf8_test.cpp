@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
+#include "cooker/text/utf8.h"
+
 #include <string>
 #include <string_view>
 
 #include <gtest/gtest.h>
-
-#include <boxtree/cooker/text/utf8.h>
 
 namespace boxtree::cooker {
 namespace {

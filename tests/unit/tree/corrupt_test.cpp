@@ -11,9 +11,8 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/format/codec_wide.h>
-#include <boxtree/format/grid.h>
-
+#include "format/codec_wide.h"
+#include "format/grid.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

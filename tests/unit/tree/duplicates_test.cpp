@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Duplicates: which faces are grouped, what a file says of them, and what bytes that lie about them
 // come to.
+#include "cooker/build/duplicates.h"
+
 #include <algorithm>
 #include <cstring>
 #include <functional>
@@ -8,9 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/build/duplicates.h>
-#include <boxtree/cooker/proof/proof.h>
-
+#include "cooker/proof/proof.h"
 #include "tests/support/coincident.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

@@ -10,8 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/write/file_writer.h>
-
+#include "cooker/write/file_writer.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"

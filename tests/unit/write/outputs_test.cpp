@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Whatever it is called: what is read is not written over.
+#include "cooker/write/outputs.h"
+
 #include <array>
 #include <filesystem>
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include <boxtree/cooker/cook.h>
-#include <boxtree/cooker/write/outputs.h>
-
+#include "cooker/cook.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: MIT
+// Medians over whole workloads: single queries are shorter than a clock can tell.
+#include "cooker/choose/measure.h"
+
+#include <ctime>
+#include <sys/resource.h>
+
+#include <boxtree/boxtree.h>
+
+namespace boxtree::cooker {
+namespace {
+
+// Seconds a question, and the first error that any gave.
+template <class Questions, class Ask>
+double per_question(const Questions& questions, std::size_t runs, Status& status, Ask ask) {
+  if (questions.empty()) return 0;
+  const double seconds = median_seconds(runs, [&] {
+    for (const auto& question : questions) {
+      if (const Errc error = ask(question); error != Errc::kOk && status.ok()) status = error;
+    }
+  });
+  return seconds / static_cast<double>(questions.size());
+}
+
+}  // namespace
+
+double clock_cost_ns() {
+  using Clock = std::chrono::steady_clock;
+  double least = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < 1000; ++i) {
+    const Clock::time_point start = Clock::now();
+    const std::chrono::duration<double, std::nano> taken = Clock::now() - start;
+    least = std::min(least, taken.count());
+  }
+  return least;
+}
+
+double thread_seconds() noexcept {
+  timespec time{};
+  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs) {
+  QueryFigures figures;
+  Status status;
+  const std::uint64_t rounds = runs + 1;  // every round adds the same to the counts
+  figures.ray_ns = 1e9 * per_question(workload.rays, runs, status, [&](const Ray& ray) {
+                     const auto hit = closest_hit(tree, ray);
+                     if (hit) figures.ray_hits += hit->has_value() ? 1u : 0u;
+                     return hit.code();
+                   });
+  figures.box_ns =
+      1e9 * per_question(workload.boxes, runs, status, [&](const Eigen::AlignedBox3d& box) {
+        return overlap_box(tree, box,
+                           [&](const FaceRef&) {
+                             ++figures.box_faces;
+                             return true;
+                           })
+            .code();
+      });
+  figures.point_ns =
+      1e9 * per_question(workload.points, runs, status, [&](const Eigen::Vector3d& point) {
+        const auto closest = closest_point(tree, point);
+        if (closest && *closest) figures.point_distance += (*closest)->distance;
+        return closest.code();
+      });
+  const Pose here = Pose::Identity();
+  figures.pair_first_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
+                            const auto contact = first_contact(tree, here, tree, pose);
+                            if (contact) figures.pair_hits += contact->has_value() ? 1u : 0u;
+                            return contact.code();
+                          });
+  figures.pair_all_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
+                          return overlap_pairs(tree, here, tree, pose,
+                                               [&](const FacePair&) {
+                                                 ++figures.pair_pairs;
+                                                 return true;
+                                               })
+                              .code();
+                        });
+  if (!status) return status.error();
+  figures.ray_hits /= rounds;
+  figures.box_faces /= rounds;
+  figures.point_distance /= static_cast<double>(rounds);
+  figures.pair_hits /= rounds;
+  figures.pair_pairs /= rounds;
+  return figures;
+}
+
+Status ask_first(const Tree& tree) {
+  const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
+  const Eigen::Vector3d along(0.1, 0.2, -1);
+  const auto hit = closest_hit(tree, {bounds.center() - bounds.sizes().norm() * along, along});
+  return hit ? Status() : Status(hit.error());
+}
+
+Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_t tree,
+                                 std::size_t runs) {
+  OpenFigures figures;
+  std::vector<double> open_us;
+  std::vector<double> answer_us;
+  for (std::size_t i = 0; i <= runs; ++i) {
+    rusage before{};
+    rusage after{};
+    ::getrusage(RUSAGE_SELF, &before);
+    const double start = thread_seconds();
+    const Result<File> file = File::open(path);
+    if (!file) return file.error();
+    const Result<Tree> bound = Tree::bind(*file, tree);
+    if (!bound) return bound.error();
+    const double opened = thread_seconds();
+    const Status asked = ask_first(*bound);
+    const double answered = thread_seconds();
+    if (!asked) return asked.error();
+    ::getrusage(RUSAGE_SELF, &after);
+    if (i == 0) continue;
+    open_us.push_back(1e6 * (opened - start));
+    answer_us.push_back(1e6 * (answered - start));
+    figures.page_faults = static_cast<std::uint64_t>(after.ru_minflt - before.ru_minflt);
+  }
+  figures.open_us = median(open_us);
+  figures.first_answer_us = median(answer_us);
+  return figures;
+}
+
+Eigen::AlignedBox3d bounds_in_object_space(const Tree& tree) {
+  if (tree.empty()) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
+  return tree.to_object(tree.root().box);
+}
+
+}  // namespace boxtree::cooker

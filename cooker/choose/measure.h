@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Times of queries, always beside the counts of their answers.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include "cooker/choose/workload.h"
+#include "format/result.h"
+
+namespace boxtree::cooker {
+
+/// The upper median. Precondition: values is not empty.
+[[nodiscard]] inline double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Processor time of this thread in seconds, kernel included: other work on the machine is not in
+/// it.
+[[nodiscard]] double thread_seconds() noexcept;
+
+/// Processor time of one call in seconds.
+template <class Body>
+[[nodiscard]] double seconds_taken(Body body) {
+  const double start = thread_seconds();
+  body();
+  return thread_seconds() - start;
+}
+
+/// The median of `runs` calls in seconds, after one call that is not counted.
+template <class Body>
+[[nodiscard]] double median_seconds(std::size_t runs, Body body) {
+  body();
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < runs; ++i) seconds.push_back(seconds_taken(body));
+  return median(std::move(seconds));
+}
+
+/// Of one kind of questions. A question's time is the least of several runs: other work on the
+/// machine can only add to it.
+struct KindTimes {
+  double median_ns = 0;
+  double p99_ns = 0;
+  double mean_ns = 0;
+};
+
+/// What reading the clock twice takes: it is in every time of a single question.
+[[nodiscard]] double clock_cost_ns();
+
+/// Times each question on its own. `ask` returns an Errc; `status` gets the first that is not kOk.
+template <class Question, class Ask>
+[[nodiscard]] KindTimes time_each(const std::vector<Question>& questions, std::size_t runs,
+                                  Status& status, Ask ask) {
+  using Clock = std::chrono::steady_clock;
+  if (questions.empty()) return {};
+  const double clock = clock_cost_ns();
+  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
+  for (std::size_t run = 0; run < runs; ++run) {
+    for (std::size_t i = 0; i < questions.size(); ++i) {
+      const Clock::time_point start = Clock::now();
+      const Errc error = ask(questions[i]);
+      const std::chrono::duration<double, std::nano> taken = Clock::now() - start;
+      least[i] = std::min(least[i], std::max(0.0, taken.count() - clock));
+      if (error != Errc::kOk && status.ok()) status = error;
+    }
+  }
+  std::sort(least.begin(), least.end());
+  return {least[least.size() / 2], least[(least.size() - 1) * 99 / 100],
+          std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size())};
+}
+
+/// Times of one query each, and what was answered in all of them.
+struct QueryFigures {
+  double ray_ns = 0;
+  double box_ns = 0;
+  double point_ns = 0;
+  double pair_first_us = 0;
+  double pair_all_us = 0;
+  std::uint64_t ray_hits = 0;
+  std::uint64_t box_faces = 0;
+  double point_distance = 0;  // sum
+  std::uint64_t pair_hits = 0;
+  std::uint64_t pair_pairs = 0;
+};
+
+/// Asks one tree everything, single-threaded; pairs are the tree against itself. Errors: those of
+/// the queries.
+Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs);
+
+/// One ray across the middle: the first answer in all times to it.
+Status ask_first(const Tree& tree);
+
+/// From a closed file in the page cache to answers.
+struct OpenFigures {
+  double open_us = 0;             // open and bind
+  double first_answer_us = 0;     // open, bind and one ray
+  std::uint64_t page_faults = 0;  // of all of it: what the ray touched, not what the file holds
+};
+Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_t tree,
+                                 std::size_t runs);
+
+/// Bounds of a tree in object space; a point at the origin if it is empty.
+[[nodiscard]] Eigen::AlignedBox3d bounds_in_object_space(const Tree& tree);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,207 @@
+// SPDX-License-Identifier: MIT
+// Records and sections of a scene.
+#include "cooker/encode/encoded_scene.h"
+
+#include <algorithm>
+#include <cstring>
+#include <limits>
+#include <unordered_map>
+
+#include <fmt/format.h>
+
+#include "cooker/text/utf8.h"
+#include "format/container.h"
+#include "runtime/scene/placement.h"
+
+namespace boxtree::cooker {
+namespace {
+
+template <class T>
+void append(std::vector<std::byte>& bytes, const T& value) {
+  const auto* const from = reinterpret_cast<const std::byte*>(&value);
+  bytes.insert(bytes.end(), from, from + sizeof(T));
+}
+
+class SceneEncoder {
+ public:
+  SceneEncoder(std::span<const EncodedTree> trees, const SceneParts& parts, std::string& names)
+      : trees_(trees), parts_(parts), names_(names) {}
+
+  Result<EncodedScene> run() {
+    if (parts_.instances.size() > kMaxInstances) {
+      return Error{Errc::kMeshTooLarge,
+                   fmt::format("{} instances, limit {}", parts_.instances.size(), kMaxInstances)};
+    }
+    if (Status status = order_instances(); !status) return status.error();
+    write_instances();
+    write_layers();
+    write_materials();
+    write_left_out();
+    write_record();
+    if (names_.size() > std::numeric_limits<std::uint32_t>::max()) {
+      return Error{Errc::kMeshTooLarge, "names take more than 4 GiB"};
+    }
+    return std::move(out_);
+  }
+
+ private:
+  // Leaves of the top level first, then what moves.
+  Status order_instances() {
+    std::vector<std::uint32_t> resting;
+    std::vector<Box<double>> boxes, moving_boxes;
+    for (std::uint32_t i = 0; i < parts_.instances.size(); ++i) {
+      const PlacedTree& instance = parts_.instances[i];
+      const EncodedTree& tree = trees_[instance.tree];
+      const Frame frame(Eigen::Vector3d(tree.origin[0], tree.origin[1], tree.origin[2]),
+                        tree.scale_exponent);
+      const std::optional<Placement> placed = Placement::make(frame, instance.pose);
+      const auto bounds = placed ? placed->bounds(tree.nodes.root_box) : std::nullopt;
+      if (!bounds) {
+        return Error{
+            Errc::kInvalidPose,
+            fmt::format("instance {} '{}': its transform is not finite, or cannot be undone",
+                        instance.id, instance.name)};
+      }
+      if (instance.moves) {
+        order_.push_back(i);
+        moving_boxes.push_back(bounds->world);
+      } else {
+        resting.push_back(i);
+        boxes.push_back(bounds->world);
+        condition_ = std::max(condition_, bounds->condition);
+      }
+    }
+    std::sort(order_.begin(), order_.end(), [this](std::uint32_t a, std::uint32_t b) {
+      return parts_.instances[a].id < parts_.instances[b].id;
+    });
+    top_ = build_top_level(boxes, moving_boxes);
+    std::vector<std::uint32_t> leaves;
+    leaves.reserve(parts_.instances.size());
+    for (const std::uint32_t leaf : top_.order) leaves.push_back(resting[leaf]);
+    order_.insert(order_.begin(), leaves.begin(), leaves.end());
+    return {};
+  }
+
+  struct Name {
+    std::uint32_t offset;
+    std::uint32_t bytes;
+  };
+
+  // Equal names share their bytes: rows of props, and lines of a profile. Longer names than `most`
+  // bytes are cut: names serve people.
+  Name add_name(const std::string& given,
+                std::size_t most = std::numeric_limits<std::uint32_t>::max()) {
+    const std::string name = to_utf8(given, most);
+    if (name.empty()) return {0, 0};
+    const auto [known, is_new] =
+        offsets_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
+    if (is_new) names_ += name;
+    return {known->second, static_cast<std::uint32_t>(name.size())};
+  }
+
+  void write_instances() {
+    const auto fits_f32 = [](const PlacedTree& instance) {
+      const auto numbers = instance.pose.matrix().topRows<3>();
+      return (numbers.cast<float>().cast<double>().array() == numbers.array()).all();
+    };
+    has_f32_poses_ = std::all_of(parts_.instances.begin(), parts_.instances.end(), fits_f32);
+    for (const std::uint32_t i : order_) {
+      const PlacedTree& instance = parts_.instances[i];
+      const Name name = add_name(instance.name, std::numeric_limits<std::uint16_t>::max());
+      append(out_.instances, InstanceRecord{instance.tree, instance.id, name.offset,
+                                            static_cast<std::uint16_t>(name.bytes),
+                                            static_cast<std::uint8_t>(instance.layer),
+                                            instance.moves ? kInstanceMoves : std::uint8_t{0}});
+      for (Eigen::Index row = 0; row < 3; ++row) {
+        for (Eigen::Index column = 0; column < 4; ++column) {
+          const double number = instance.pose.matrix()(row, column);
+          if (has_f32_poses_) {
+            append(out_.poses, static_cast<float>(number));
+          } else {
+            append(out_.poses, number);
+          }
+        }
+      }
+    }
+  }
+
+  void write_layers() {
+    for (const SceneLayer& layer : parts_.layers) {
+      const Name name = add_name(layer.name);
+      append(out_.layers,
+             LayerRecord{layer.meets, static_cast<QueryKinds>(layer.queries & parts_.queries),
+                         name.offset, name.bytes});
+    }
+  }
+
+  void write_materials() {
+    for (const std::string& material : parts_.materials) {
+      const Name name = add_name(material);
+      append(out_.materials, MaterialRecord{name.offset, name.bytes});
+    }
+    const std::uint8_t number_bytes =
+        material_number_bytes(static_cast<std::uint32_t>(parts_.materials.size()));
+    for (const TreeMaterials& materials : parts_.tree_materials) {
+      std::vector<std::byte> runs, faces;
+      for (const MaterialRun& run : materials.runs) append(runs, run);
+      for (const std::uint32_t material : materials.faces) {
+        if (number_bytes == 1) {
+          append(faces, static_cast<std::uint8_t>(material));
+        } else if (number_bytes == 2) {
+          append(faces, static_cast<std::uint16_t>(material));
+        } else {
+          append(faces, material);
+        }
+      }
+      out_.material_runs.push_back(std::move(runs));
+      out_.face_materials.push_back(std::move(faces));
+    }
+  }
+
+  void write_left_out() {
+    for (const LeftOutPart& part : parts_.left_out) {
+      const Name text = add_name(part.text);
+      append(out_.left_out,
+             LeftOutRecord{part.part, 0, part.owner, part.line, text.offset, text.bytes, 0});
+    }
+  }
+
+  void write_record() {
+    SceneRecord record{};
+    record.instance_count = static_cast<std::uint32_t>(parts_.instances.size());
+    record.static_count = static_cast<std::uint32_t>(top_.order.size());
+    record.node_count = top_.nodes.node_count;
+    record.root = top_.nodes.root;
+    record.depth = top_.nodes.depth;
+    record.pose_bytes = has_f32_poses_ ? sizeof(float) : sizeof(double);
+    record.layer_count = static_cast<std::uint8_t>(parts_.layers.size());
+    record.query_kinds = parts_.queries;
+    record.scale_exponent = top_.scale_exponent;
+    record.material_count = static_cast<std::uint32_t>(parts_.materials.size());
+    record.origin = top_.origin;
+    record.root_low = top_.nodes.root_box.low;
+    record.root_high = top_.nodes.root_box.high;
+    record.condition = condition_;
+    append(out_.scene, record);
+    out_.nodes = std::move(top_.nodes.bytes);
+  }
+
+  std::span<const EncodedTree> trees_;
+  const SceneParts& parts_;
+  std::string& names_;
+  std::unordered_map<std::string, std::uint32_t> offsets_;
+  EncodedTopLevel top_;
+  std::vector<std::uint32_t> order_;
+  double condition_ = 0;
+  bool has_f32_poses_ = true;
+  EncodedScene out_;
+};
+
+}  // namespace
+
+Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
+                                  std::string& names) {
+  return SceneEncoder(trees, parts, names).run();
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// A scene ready to be proven and written: encoded trees, where they are placed, what is known of
+// their faces, and what was left out.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <boxtree/query.h>
+
+#include "cooker/encode/encoded_tree.h"
+#include "cooker/encode/top_level.h"
+#include "format/scene_record.h"
+
+namespace boxtree::cooker {
+
+/// One instance, in whatever order the source has it.
+struct PlacedTree {
+  std::uint32_t tree = 0;
+  std::uint32_t id = 0;
+  std::uint32_t layer = 0;
+  bool moves = false;
+  std::string name;  // empty when names are left out
+  Pose pose = Pose::Identity();
+};
+
+struct SceneLayer {
+  std::string name;
+  std::uint32_t meets = ~0u;  // layers; symmetric
+  QueryKinds queries = kAllQueries;
+};
+
+/// Materials of one tree's faces: by runs of source faces, or for each face in tree order; one of
+/// the two, or neither.
+struct TreeMaterials {
+  std::vector<MaterialRun> runs;
+  std::vector<std::uint32_t> faces;
+};
+
+struct LeftOutPart {
+  Part part{};
+  std::uint32_t owner = 0xffffffffu;  // tree, or the whole scene
+  std::uint32_t line = 0;
+  std::string text;
+};
+
+struct SceneParts {
+  QueryKinds queries = kAllQueries;
+  std::vector<PlacedTree> instances;
+  std::vector<SceneLayer> layers;
+  std::vector<std::string> materials;
+  std::vector<TreeMaterials> tree_materials;  // one a tree, or none at all
+  std::vector<LeftOutPart> left_out;
+};
+
+/// The sections of a scene. Names refer to the section that all names of a file share.
+struct EncodedScene {
+  std::vector<std::byte> scene;  // SceneRecord
+  std::vector<std::byte> nodes;
+  std::vector<std::byte> instances;
+  std::vector<std::byte> poses;
+  std::vector<std::byte> layers;
+  std::vector<std::byte> materials;
+  std::vector<std::byte> left_out;
+  std::vector<std::vector<std::byte>> material_runs;   // of each tree
+  std::vector<std::vector<std::byte>> face_materials;  // of each tree
+};
+
+/// Builds the top level and lays the sections out; names are appended to `names`. Instances are
+/// ordered as leaves of the top level, then the moving ones by id. Poses are f32 if that keeps
+/// every number of each. Deterministic. Errors: kInvalidPose, naming the instance; kMeshTooLarge
+/// for names of more than 4 GiB or more than kMaxInstances.
+/// Precondition: trees have faces; trees, layers and materials that are referred to are there.
+Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
+                                  std::string& names);
+
+}  // namespace boxtree::cooker

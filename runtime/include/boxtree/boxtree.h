@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: MIT
+// Everything an application needs: open a file, bind a tree or a scene, query it.
+#pragma once
+
+#include <boxtree/configuration.h>
+#include <boxtree/file.h>
+#if BOXTREE_HAS_RAY_QUERIES
+#include <boxtree/ray.h>
+#endif
+#if BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_WITHIN_QUERIES
+#include <boxtree/overlap.h>
+#endif
+#if BOXTREE_HAS_POINT_QUERIES
+#include <boxtree/closest.h>
+#endif
+#if BOXTREE_HAS_PAIR_QUERIES
+#include <boxtree/contact.h>
+#endif
+#if BOXTREE_HAS_DISTANCE_QUERIES
+#include <boxtree/distance.h>
+#endif
+#if BOXTREE_HAS_SCENE_QUERIES
+#include <boxtree/scene.h>
+#endif
+
+#include "runtime/tree/tree.h"

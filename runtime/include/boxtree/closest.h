@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Closest point: the point of the surface nearest to a given one.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include <boxtree/configuration.h>
+#include <boxtree/query.h>
+
+#include "runtime/query/approximation.h"
+
+namespace boxtree {
+
+static_assert(BOXTREE_HAS_POINT_QUERIES,
+              "BOXTREE_QUERIES left point queries out of this build of boxtree");
+
+struct ClosestPoint {
+  Eigen::Vector3d point;  // object space
+  double distance;        // object space
+  FaceRef face;
+  std::uint32_t triangle;  // 0, or 1 for the second half (0,2,3) of a quad
+};
+
+/// The nearest point of the tree's surface within `max_distance` of `point` (object space), or
+/// nothing. Of several faces at the same distance the one with the smallest id (order, if the file
+/// has no ids). Errors: kInvalidQuery (NaN or infinite point, NaN or negative distance) and the
+/// codes of corrupt bytes and limits as for closest_hit. Never allocates.
+Result<std::optional<ClosestPoint>> closest_point(
+    const Tree& tree, const Eigen::Vector3d& point,
+    double max_distance = std::numeric_limits<double>::infinity(), const QueryLimits& limits = {});
+
+using PointOptions = Approximation;
+
+struct ApproximatePoint {
+  /// The surface is at least `lower` and at most `upper` away, in object space. Always, with all
+  /// rounding included, whatever was allowed and however the query ended.
+  double lower = 0;
+  double upper = std::numeric_limits<double>::infinity();
+  /// A point of the surface that is `upper` away; nothing if none was met within the maximal
+  /// distance. Its `distance` is computed as in the exact query, so it may differ from `upper`, and
+  /// from the truth, by rounding.
+  std::optional<ClosestPoint> witness;
+  /// Whether the bounds are as near to each other as was asked, or as rounding lets them be: some
+  /// 2^-44 of the tree's extent and the distance. Otherwise the budget ran out.
+  bool is_near_enough = true;
+  /// Nodes taken apart and leaves read: what the budget counts.
+  std::uint64_t nodes_expanded = 0;
+};
+
+/// The nearest point, as nearly as is asked. With zero errors and no budget the witness is that of
+/// the exact query to the last bit. With a budget the walk is best-first and may stop anywhere;
+/// without one it is that of the exact query, leaving out what cannot improve the answer by more
+/// than the error. Errors as above; kInvalidQuery also for options that are NaN or negative.
+Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
+                                       const PointOptions& options);
+
+}  // namespace boxtree

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Distance of two trees' surfaces, exactly or as nearly as is asked, each tree with a pose.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include <boxtree/configuration.h>
+#include <boxtree/query.h>
+
+#include "runtime/query/approximation.h"
+
+namespace boxtree {
+
+static_assert(BOXTREE_HAS_DISTANCE_QUERIES,
+              "BOXTREE_QUERIES left distance queries out of this build of boxtree");
+
+using DistanceOptions = Approximation;
+
+/// Two faces, and a point of each.
+struct DistanceWitness {
+  FacePair faces;
+  Eigen::Vector3d first;  // world
+  Eigen::Vector3d second;
+};
+
+struct Distance {
+  /// The surfaces are at least `lower` and at most `upper` apart, lengths of the world. Always,
+  /// with all rounding included, whatever was allowed and however the query ended.
+  double lower = 0;
+  double upper = std::numeric_limits<double>::infinity();
+  /// What is `upper` apart; nothing if no triangles were met, or if all are known to be beyond the
+  /// maximal distance. Points far from the world's origin are rounded more coarsely than `upper`
+  /// is.
+  std::optional<DistanceWitness> witness;
+  /// Whether the bounds are as near to each other as was asked, or as rounding lets them be: some
+  /// 2^-44 of the triangles' size and distance. Otherwise the budget ran out.
+  bool is_near_enough = true;
+  /// Pairs of nodes taken apart and pairs of leaves compared: what the budget counts.
+  std::uint64_t nodes_expanded = 0;
+};
+
+/// The distance of two surfaces in the world. Poses may be any invertible affine map, as for
+/// overlap_pairs, and like there the second tree's triangles count as they are after being brought
+/// into the first one's space in double precision. Whether a pair of faces touches is for exact
+/// predicates: if one was found both bounds are zero, and with no error allowed and no budget one
+/// is found if there is any. Empty trees are infinitely far from anything.
+///
+/// The walk is best-first: with a budget it may be stopped anywhere and has then made the best of
+/// it. Nodes visited do not grow with the error that is allowed, as long as its queue (of 2048
+/// pairs) suffices; when it is full, part of the walk is depth-first and the bounds stay true.
+///
+/// Errors: kInvalidPose, kInvalidQuery (options that are NaN or negative) and the codes of corrupt
+/// bytes as for closest_hit. Never allocates; takes half a megabyte of stack.
+Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
+                          const Pose& second_pose, const DistanceOptions& options = {});
+
+}  // namespace boxtree

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+// What touches a shape: the faces that share a point with a box or a sphere, and overlap as far as
+// it matters (hit, free, or too close to be worth telling). Queries that BOXTREE_QUERIES left out
+// of this build are not declared.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include <boxtree/configuration.h>
+#include <boxtree/query.h>
+
+#include "runtime/query/approximation.h"
+#include "runtime/walk/work.h"
+
+namespace boxtree {
+
+static_assert(BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_WITHIN_QUERIES,
+              "BOXTREE_QUERIES left box, sphere and within queries out of this build of boxtree");
+
+#if BOXTREE_HAS_BOX_QUERIES
+/// Visits every face that touches the closed box `box` (object space), each once, in no promised
+/// order. Touching counts. Errors: kInvalidQuery (NaN, infinite or empty box) and the codes of
+/// corrupt bytes and limits as for closest_hit. Never allocates.
+Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
+                          const QueryLimits& limits = {});
+#endif
+
+#if BOXTREE_HAS_SPHERE_QUERIES
+/// Visits every face whose distance from `center` is at most `radius` (object space), each once, in
+/// no promised order. Errors: kInvalidQuery (NaN, infinite, negative radius) and the codes of
+/// corrupt bytes and limits as for closest_hit. Never allocates.
+Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
+                             FaceVisitor visitor, const QueryLimits& limits = {});
+#endif
+
+#if BOXTREE_HAS_WITHIN_QUERIES
+enum class Overlap : std::uint8_t {
+  kHit,          // some face touches
+  kFree,         // none does
+  kUndecided,    // not told apart, and closer to each other than the distance asked with
+  kBudgetSpent,  // the budget ran out before anything was known
+};
+
+struct PairOverlap {
+  Overlap overlap = Overlap::kFree;
+  std::optional<FacePair> contact;   // of a hit
+  std::uint64_t nodes_expanded = 0;  // pairs of nodes taken apart and of leaves compared
+};
+
+/// Whether two surfaces touch. Hits and frees are certain: exact predicates decide, as for
+/// overlap_pairs. Where the walk comes upon parts of both that are closer than `distance` (in the
+/// world) it may end with kUndecided: the larger the distance, the earlier; never if it is 0. The
+/// walk ends with kBudgetSpent rather than visit more than `node_budget` pairs. Poses as for
+/// overlap_pairs. Errors: kInvalidPose, kInvalidQuery (distance NaN or negative) and those of
+/// corrupt bytes. Never allocates.
+Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
+                                   const Pose& second_pose, double distance,
+                                   std::uint64_t node_budget = kUnlimitedNodes);
+
+struct BoxOverlap {
+  Overlap overlap = Overlap::kFree;
+  std::optional<FaceRef> face;       // of a hit
+  std::uint64_t nodes_expanded = 0;  // nodes taken apart and leaves read
+};
+
+/// The same for a closed box in object space and the surface. Certain here means exact, where
+/// overlap_box may report a face that misses the box by a rounding.
+Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
+                                      double distance, std::uint64_t node_budget = kUnlimitedNodes);
+#endif
+
+}  // namespace boxtree

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// Rays: the closest hit, and whether there is any.
+#pragma once
+
+#include <limits>
+#include <optional>
+
+#include <boxtree/configuration.h>
+#include <boxtree/query.h>
+
+#include "runtime/walk/work.h"
+
+namespace boxtree {
+
+static_assert(BOXTREE_HAS_RAY_QUERIES,
+              "BOXTREE_QUERIES left ray queries out of this build of boxtree");
+
+/// A ray or segment in object space: all points origin + t * direction with t_min <= t <= t_max.
+struct Ray {
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;  // any length but zero; t counts in its units
+  double t_min = 0;           // >= 0
+  double t_max = std::numeric_limits<double>::infinity();
+};
+
+struct RayHit {
+  double t;
+  FaceRef face;
+  std::uint32_t triangle;  // 0, or 1 for the second half (0,2,3) of a quad
+  double u, v;             // weights of the triangle's corners 1 and 2; corner 0 has 1 - u - v
+};
+
+/// The hit with the smallest t; of several at the same t the one with the smallest face id (order,
+/// if the file has no ids), so that all codecs and brute force agree. Both sides of a face count,
+/// edges and corners are part of it and no gap lies between faces that share them; a ray in the
+/// plane of a face does not hit it, nor does any ray hit a face without area, but for rounding.
+/// Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
+/// interval, an origin more than 2^180 mesh extents away), and
+/// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
+/// bytes; kWorkLimit when `limits` do not suffice. Never allocates.
+Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray,
+                                          const QueryLimits& limits = {});
+
+/// Some hit, or nothing: cheaper than closest_hit when only the fact matters. Errors as there.
+Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray,
+                                      const QueryLimits& limits = {});
+
+}  // namespace boxtree

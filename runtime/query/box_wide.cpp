@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Boxes over the wide codecs.
+#include "runtime/query/shape_query.h"
+#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/targets.h"
+#include "runtime/walk/walk_tree.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/query/box_wide.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/walk/box_bounds-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_box(const Tree& tree, FaceWalk<BoxQuery>& faces) {
+  return traverse_overlap(tree, ErasedCodec{&tree}, faces);
+}
+#else
+class BoxFilter {
+ public:
+  // Decoded boxes are exact; triangles were rounded to float.
+  BoxFilter(const Tree& tree, const BoxQuery& query) {
+    const double error = reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
+                         double{std::numeric_limits<float>::min()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto axis = static_cast<Eigen::Index>(k);
+      bounds_.set(k, query.low[axis], query.high[axis], error);
+    }
+  }
+
+  HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(box); }
+  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
+    return judge_corners(bounds_, triangle);
+  }
+
+ private:
+  BoxBounds bounds_;
+};
+
+Errc walk_box(const Tree& tree, FaceWalk<BoxQuery>& faces) {
+  return with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return walk<BoxFilter>(tree, codec, faces); });
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_box);
+
+}  // namespace
+
+Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk) {
+  if (tree.has_float_nodes()) {
+    return HWY_DYNAMIC_DISPATCH(walk_box)(tree, walk);
+  }
+  return traverse_overlap(tree, ErasedCodec{&tree}, walk);
+}
+
+}  // namespace boxtree
+#endif

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: MIT
+// A point in single precision: bounds of its squared distance to boxes and triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <limits>
+
+#include "runtime/walk/rounding.h"
+#include "runtime/walk/traversal.h"
+
+namespace boxtree {
+
+/// `error` bounds, on every axis, how far a distance can be off: the point and a corner rounded to
+/// float, and their difference; with u = 2^-24 below 4u (|point| + reach). The point is spread to a
+/// small box of that size, so that differences are bounds; what squares and sums lose after that is
+/// in above().
+struct PointFilter {
+  /// `reach`: the largest magnitude of any coordinate of the tree's boxes.
+  PointFilter(double reach, const Eigen::Vector3d& point) noexcept {
+    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
+    const double bound = 4 * kUnit * (point.cwiseAbs().maxCoeff() + reach) +
+                         double{std::numeric_limits<float>::min()};
+    error = float_above(bound);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double p = point[static_cast<Eigen::Index>(k)];
+      center[k] = static_cast<float>(p);
+      low[k] = float_below(p - bound);
+      high[k] = float_above(p + bound);
+    }
+  }
+
+  /// Whether single precision tells the parts of a tree apart from there: not from far away.
+  [[nodiscard]] static bool is_near(double reach, const Eigen::Vector3d& point) noexcept {
+    return point.cwiseAbs().maxCoeff() <= 64 * reach;
+  }
+
+  /// A float that a computed lower bound of a squared distance does not exceed if the squared
+  /// distance does not exceed `squared`; three products and two sums lose less than 8u of it.
+  [[nodiscard]] static float above(double squared) noexcept {
+    return float_above(squared) * (1 + 8 * std::numeric_limits<float>::epsilon()) +
+           std::numeric_limits<float>::min();
+  }
+  /// The same for upper bounds.
+  [[nodiscard]] static float below(double squared) noexcept {
+    return float_below(squared) * (1 - 8 * std::numeric_limits<float>::epsilon()) -
+           std::numeric_limits<float>::min();
+  }
+
+  float error;
+  std::array<float, 3> center;
+  std::array<float, 3> low;
+  std::array<float, 3> high;
+};
+
+}  // namespace boxtree

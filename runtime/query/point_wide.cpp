@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: MIT
+// The closest point over the wide codecs.
+#include "runtime/query/point_filter.h"
+#include "runtime/query/point_query.h"
+#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/targets.h"
+#include "runtime/walk/walk_tree.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/query/point_wide.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/query/triangle_distance-inl.h"
+#include "runtime/walk/nearest-inl.h"
+#include "runtime/walk/prefetch-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_point(const Tree& tree, PointQuery& query) {
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+#else
+// The query of NearestWalk over the faces of one tree.
+template <class Node>
+class PointFaces {
+ public:
+  PointFaces(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query)
+      : codec_(codec),
+        query_(query),
+        filter_(reach_of(tree).maxCoeff(), query.point),
+        prefetch_(tree, codec),
+        leaf_(tree) {
+    set_bound();
+  }
+
+  [[nodiscard]] float bound() const { return bound_; }
+  [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
+
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+    key = nearest_squared(filter_, boxes);
+    return bits_of(hn::Le(key, hn::Set(Floats(), bound_)));
+  }
+
+  HWY_INLINE void expanding(const WideLinks& links, std::uint32_t passing) {
+    ++query_.nodes_expanded;
+    prefetch_.leaves(links, passing & ~links.inner_mask);
+    prefetch_.nodes(links, passing & links.inner_mask);
+  }
+
+  bool leaf(std::uint32_t number) {
+    ++query_.nodes_expanded;
+    const std::uint32_t first = number * kLeafFaces;
+    if (!leaf_.load(first, std::min(kLeafFaces, codec_.face_count - first))) {
+      query_.error = leaf_.error();
+      return false;
+    }
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      HWY_ALIGN float distance[kWideChildren];
+      std::uint32_t near = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const FloatVector bound = triangle_distance(filter_, leaf_, group, part);
+        hn::Store(bound, Floats(), distance + part * kLanes);
+        near |= bits_of(hn::Not(hn::Gt(bound, hn::Set(Floats(), distance_)))) << (part * kLanes);
+      }
+      near &= leaf_.lanes(group);
+      while (near != 0) {
+        const std::uint32_t i = take_smallest(near, distance);
+        if (distance[i] > distance_) break;
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+        const bool read = leaf_.with_triangle(
+            lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+              query_.test(triangle, face, half);
+            });
+        if (!read) {
+          query_.error = leaf_.error();
+          return false;
+        }
+        set_bound();
+      }
+    }
+    return true;
+  }
+
+ private:
+  void set_bound() {
+    bound_ = PointFilter::above(query_.best);
+    distance_ = float_above(std::sqrt(query_.best)) * (1 + std::numeric_limits<float>::epsilon());
+  }
+
+  const WideCodec<Node>& codec_;
+  PointQuery& query_;
+  const PointFilter filter_;
+  const Prefetch<Node> prefetch_;
+  float bound_;     // of squared distances
+  float distance_;  // of distances
+  LeafFloats leaf_;
+};
+
+template <class Node>
+Errc walk(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query) {
+  const Box<float> root = root_box<float>(tree);
+  if (query.key(root) > query.bound()) return Errc::kOk;
+  PointFaces<Node> faces(tree, codec, query);
+  return NearestWalk<Node, PointFaces<Node>>(codec, faces).run(root);
+}
+Errc walk_point(const Tree& tree, PointQuery& query) {
+  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_point);
+
+}  // namespace
+
+Errc walk_wide(const Tree& tree, PointQuery& query) {
+  if (tree.has_float_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), query.point)) {
+    return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
+  }
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+
+}  // namespace boxtree
+#endif

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// A ray in single precision: rejects boxes and triangles that the ray misses beyond doubt, so that
+// the exact tests in double see few. What it lets pass decides nothing.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "runtime/query/ray_query.h"
+#include "runtime/walk/rounding.h"
+
+namespace boxtree {
+
+/// A ray against boxes. It starts anew where it enters the root box, so that errors grow with the
+/// tree and not with the distance it comes from: a parameter s of the filter is a parameter start +
+/// s of the query. Boxes are widened by `error` on every side, which bounds, on every axis, how far
+/// a coordinate relative to the ray can be off.
+struct RayBoxFilter {
+  /// `slab` of the same ray; its direction was scaled as RayQuery has it. `bound`: of the error.
+  RayBoxFilter(const RaySlab& slab, const Eigen::Vector3d& query_origin,
+               const Eigen::Vector3d& direction, double query_start, double bound) noexcept
+      : start(query_start), error(float_above(bound)) {
+    const Eigen::Vector3d from = query_origin + start * direction;
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Not so large that a plane's parameter overflows, and large enough that a ray which is
+      // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
+      constexpr double kLargest = 0x1p60;
+      near_high[k] = static_cast<std::uint32_t>(slab.near_side(k));
+      inverse[k] = static_cast<float>(std::clamp(slab.inverse(k), -kLargest, kLargest));
+      margin[k] = error * std::abs(inverse[k]);
+      origin[k] = static_cast<float>(from[static_cast<Eigen::Index>(k)]);
+    }
+  }
+
+  /// What a ray that starts anew, and planes at most `reach` away, lose in single precision: with u
+  /// = 2^-24 and M = 2 reach no extent and no distance of two points in the root box is larger, and
+  /// where the ray enters lies in it but for what the query's own tests give away. 16u M for origin
+  /// and direction (moved, rounded to float), for the distance of a plane or corner from the
+  /// origin, its product with a reciprocal that was rounded twice, and the sums after it.
+  [[nodiscard]] static double rounding(double reach) noexcept {
+    return 16 * kUnit * (2 * reach) + double{std::numeric_limits<float>::min()};
+  }
+  /// What the query's own tests give away, see RaySlab: eight times what its margin is.
+  [[nodiscard]] static double given_away(const Eigen::Vector3d& origin, double reach) noexcept {
+    constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
+    return 128 * kUnitDouble * (origin.cwiseAbs().maxCoeff() + reach);
+  }
+
+  /// The largest parameter of the filter that a hit not beyond `t` can have.
+  [[nodiscard]] float bound(double t) const noexcept {
+    return float_above(std::max(0.0, t - start)) * (1 + 4 * std::numeric_limits<float>::epsilon()) +
+           4 * error;
+  }
+
+  static constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
+
+  double start;
+  float error;
+  std::array<std::uint32_t, 3> near_high;  // 1 where the ray comes from the high side, else 0
+  std::array<float, 3> inverse;
+  std::array<float, 3> margin;  // of a plane's parameter
+  std::array<float, 3> origin;
+};
+
+/// A ray against one tree: also against boxes whose planes are computed from those of their parents
+/// along the ray, as the reader does in space, each way with four roundings, three of the extent
+/// and one of the distance, 8u M a level; and against triangles.
+struct RayFilter : RayBoxFilter {
+  /// Whether single precision tells the parts of a tree apart for a ray from there: not from so far
+  /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
+  /// and no parameter overflows.
+  [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
+    return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach_of(query.tree).maxCoeff();
+  }
+
+  /// `enter`: where the query's slab test enters the root box. Precondition: is_near(query).
+  RayFilter(const RayQuery& query, double enter) noexcept
+      : RayFilter(query, enter, reach_of(query.tree).maxCoeff()) {}
+
+  std::array<float, 3> margins;  // of both planes of an axis
+  std::size_t axis_x, axis_y, axis_z;
+  float shear_x, shear_y, shear_z;
+
+ private:
+  RayFilter(const RayQuery& query, double enter, double reach) noexcept
+      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(enter, query.t_min),
+                     rounding(reach) + 8.0 * query.tree.record().depth * kUnit * (2 * reach) +
+                         given_away(query.origin, reach)) {
+    for (std::size_t k = 0; k < 3; ++k) margins[k] = 2 * margin[k];
+    axis_x = static_cast<std::size_t>(query.shear.axis_x);
+    axis_y = static_cast<std::size_t>(query.shear.axis_y);
+    axis_z = static_cast<std::size_t>(query.shear.axis_z);
+    shear_x = static_cast<float>(query.shear.shear_x);
+    shear_y = static_cast<float>(query.shear.shear_y);
+    shear_z = static_cast<float>(query.shear.shear_z);  // at most 2: the direction was scaled
+  }
+};
+
+}  // namespace boxtree

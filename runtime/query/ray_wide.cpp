@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: MIT
+// Rays through the wide codecs.
+#include "runtime/query/ray_filter.h"
+#include "runtime/query/ray_query.h"
+#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/targets.h"
+#include "runtime/walk/walk_tree.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/query/ray_wide.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/walk/leaf-inl.h"
+#include "runtime/walk/prefetch-inl.h"
+#include "runtime/walk/waiting-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_ray(const Tree& tree, RayQuery& query) {
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+#else
+// The children of an open node as the ray sees them: the parameters of their planes. They follow
+// from those of their parent as its planes do, so no box is ever decoded.
+struct RayChildren {
+  HWY_ALIGN float near[3][kWideChildren];
+  HWY_ALIGN float far[3][kWideChildren];
+  WideLinks links;
+};
+
+template <class Node>
+class RayWalk {
+ public:
+  RayWalk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query, const RayFilter& filter)
+      : codec_(codec), query_(query), filter_(filter), prefetch_(tree, codec), leaf_(tree) {
+    bound_ = filter.bound(query.t_max);
+  }
+
+  // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
+  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
+  Errc run(const Box<float>& root) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<float, 2> side = {root.low[k], root.high[k]};
+      const std::uint32_t near_high = filter_.near_high[k];
+      open_[0].near[k][0] =
+          (side[near_high] - filter_.origin[k]) * filter_.inverse[k] - filter_.margin[k];
+      open_[0].far[k][0] =
+          (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
+    }
+    typename decltype(waiting_)::Child at{0, 0};
+    std::uint32_t number = 0;
+    HWY_ALIGN float enter[kWideChildren];
+    for (;;) {
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      if (!query_.nodes.take_one()) return query_.nodes.error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
+      RayChildren& children = open_[at.depth + 1];
+      const std::uint32_t passing =
+          meet(node, open_[at.depth], at.number, children, enter) & ((1u << links.child_count) - 1);
+      children.links = links;
+      prefetch_.leaves(links, passing & ~links.inner_mask);
+      prefetch_.nodes(links, passing & links.inner_mask);
+      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
+        const std::uint32_t i = take_smallest(leaves, enter);
+        if (enter[i] > bound_) break;
+        const std::uint32_t face = first_face(links, i);
+        if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
+      }
+      waiting_.push(passing & links.inner_mask, enter, at.depth + 1);
+      if (!waiting_.pop(bound_, at)) return Errc::kOk;
+      number = node_number(open_[at.depth].links, at.number);
+    }
+  }
+
+ private:
+  // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
+  // widened by the margins; the steps between its planes are those of the box itself.
+  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const RayChildren& parent,
+                                std::uint32_t child, RayChildren& out, float* enters) const {
+    const Floats d;
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      FloatVector enter = hn::Zero(d);
+      FloatVector leave = hn::Set(d, bound_);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const FloatVector near_of_box = hn::Set(d, parent.near[k][child]);
+        const FloatVector far_of_box = hn::Set(d, parent.far[k][child]);
+        const FloatVector step =
+            hn::Mul(hn::Sub(hn::Sub(far_of_box, near_of_box), hn::Set(d, filter_.margins[k])),
+                    hn::Set(d, 1 / Node::kStepsOfExtent));
+        const std::uint32_t near_high = filter_.near_high[k];
+        const FloatVector near = hn::MulAdd(node.steps(near_high, k, part), step, near_of_box);
+        const FloatVector far = hn::NegMulAdd(node.steps(1 - near_high, k, part), step, far_of_box);
+        hn::Store(near, d, out.near[k] + part * kLanes);
+        hn::Store(far, d, out.far[k] + part * kLanes);
+        enter = hn::Max(enter, near);
+        leave = hn::Min(leave, far);
+      }
+      hn::Store(enter, d, enters + part * kLanes);
+      passing |= bits_of(hn::Le(enter, leave)) << (part * kLanes);
+    }
+    return passing;
+  }
+
+  HWY_INLINE bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
+      query_.error = leaf_.error();
+      return false;
+    }
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      std::uint32_t near = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        near |= ~missed(group, part) << (part * kLanes);
+      }
+      near &= leaf_.lanes(group);
+      for (; near != 0; near &= near - 1) {
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) +
+                          static_cast<std::uint32_t>(std::countr_zero(near));
+        if (!leaf_.with_triangle(
+                lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+                  query_.test(triangle, face, half);
+                })) {
+          query_.error = leaf_.error();
+          return false;
+        }
+      }
+    }
+    bound_ = filter_.bound(query_.t_max);
+    return !query_.is_done();
+  }
+
+  // Bit i: the ray misses triangle i beyond doubt. The test of triangle_ray.h in float: an area of
+  // corners at most `size` from the ray, each coordinate off by at most 3 error, is off by less
+  // than 8 (size + 3 error) 3 error.
+  HWY_INLINE std::uint32_t missed(std::size_t group, std::size_t part) const {
+    const Floats d;
+    FloatVector x[3], y[3];
+    FloatVector size = hn::Zero(d);
+    FloatVector first = hn::Zero(d), last = hn::Zero(d);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const FloatVector z = hn::Sub(leaf_.at(c, filter_.axis_z, group, part),
+                                    hn::Set(d, filter_.origin[filter_.axis_z]));
+      x[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_x), z,
+                           hn::Sub(leaf_.at(c, filter_.axis_x, group, part),
+                                   hn::Set(d, filter_.origin[filter_.axis_x])));
+      y[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_y), z,
+                           hn::Sub(leaf_.at(c, filter_.axis_y, group, part),
+                                   hn::Set(d, filter_.origin[filter_.axis_y])));
+      size = hn::Max(size, hn::Max(hn::Abs(x[c]), hn::Abs(y[c])));
+      const FloatVector depth = hn::Mul(z, hn::Set(d, filter_.shear_z));
+      first = c == 0 ? depth : hn::Min(first, depth);
+      last = c == 0 ? depth : hn::Max(last, depth);
+    }
+    const auto area = [&](std::size_t from, std::size_t to) {
+      return hn::MulSub(x[from], y[to], hn::Mul(y[from], x[to]));
+    };
+    const FloatVector a = area(2, 1), b = area(0, 2), c = area(1, 0);
+    const FloatVector error = hn::Set(d, 3 * filter_.error);
+    const FloatVector doubt = hn::Mul(hn::Mul(hn::Set(d, 8.0f), error), hn::Add(size, error));
+    const FloatVector smallest = hn::Min(a, hn::Min(b, c));
+    const FloatVector largest = hn::Max(a, hn::Max(b, c));
+    const auto apart = hn::And(hn::Gt(largest, doubt), hn::Lt(smallest, hn::Neg(doubt)));
+    const auto beyond = hn::Or(hn::Gt(first, hn::Add(hn::Set(d, bound_), error)),
+                               hn::Lt(last, hn::Neg(hn::Add(error, error))));
+    return bits_of(hn::Or(apart, beyond));
+  }
+
+  const WideCodec<Node>& codec_;
+  RayQuery& query_;
+  const RayFilter& filter_;
+  const Prefetch<Node> prefetch_;
+  float bound_;
+  LeafFloats leaf_;
+  Waiting<WideCodec<Node>::kDepthLimit + 1> waiting_;
+  std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
+};
+
+template <class Node>
+Errc walk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
+  const Box<float> root = root_box<float>(tree);
+  const SlabInterval at = query.slab.intersect(root);
+  if (!(at.enter <= at.leave && at.leave >= query.t_min && at.enter <= query.t_max)) {
+    return Errc::kOk;
+  }
+  return RayWalk<Node>(tree, codec, query, RayFilter(query, at.enter)).run(root);
+}
+
+Errc walk_ray(const Tree& tree, RayQuery& query) {
+  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_ray);
+
+}  // namespace
+
+Errc walk_wide(const Tree& tree, RayQuery& query) {
+  if (tree.has_float_nodes() && RayFilter::is_near(query))
+    return HWY_DYNAMIC_DISPATCH(walk_ray)(tree, query);
+  return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+
+}  // namespace boxtree
+#endif

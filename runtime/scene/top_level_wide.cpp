@@ -1,0 +1,183 @@
+// SPDX-License-Identifier: MIT
+// The top level of a scene by vectors: which instances a box, a point or a ray may meet.
+#include <algorithm>
+
+#include "runtime/query/point_filter.h"
+#include "runtime/query/ray_filter.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/scene/top_level_walk.h"
+#include "runtime/walk/targets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/scene/top_level_wide.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/query/distance-inl.h"
+#include "runtime/walk/box_bounds-inl.h"
+#include "runtime/walk/nearest-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  return walk_top_level_plainly(top, box, visit);
+}
+Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                InstanceVisitor visit) {
+  return walk_top_level_plainly(top, point, bound, visit);
+}
+Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, const double& bound,
+              InstanceVisitor visit) {
+  return walk_top_level_plainly(top, ray, bound, visit);
+}
+#else
+// What is asked about, against boxes: the query of NearestWalk below says what `meet` answers.
+// `limit_of(bound)` is a float that no key is above unless it is above the bound.
+struct AskedBox {
+  BoxBounds bounds;
+
+  // All keys are alike: in no promised order.
+  [[nodiscard]] static float limit_of(double /*bound*/) { return 0; }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float /*limit*/, FloatVector& key) const {
+    key = hn::Zero(Floats());
+    return bounds.judge(boxes).touched;
+  }
+};
+
+struct AskedPoint {
+  PointFilter point;
+
+  [[nodiscard]] static float limit_of(double bound) { return PointFilter::above(bound); }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
+    key = nearest_squared(point, boxes);
+    return bits_of(hn::Le(key, hn::Set(Floats(), limit)));
+  }
+};
+
+struct AskedRay {
+  RayBoxFilter ray;
+
+  [[nodiscard]] float limit_of(double bound) const { return ray.bound(bound); }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
+    const Floats d;
+    FloatVector leave = hn::Set(d, limit);
+    key = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const bool from_high = ray.near_high[k] != 0;
+      const FloatVector origin = hn::Set(d, ray.origin[k]);
+      const FloatVector inverse = hn::Set(d, ray.inverse[k]);
+      const FloatVector margin = hn::Set(d, ray.margin[k]);
+      const FloatVector near = hn::Sub(from_high ? boxes.high[k] : boxes.low[k], origin);
+      const FloatVector far = hn::Sub(from_high ? boxes.low[k] : boxes.high[k], origin);
+      key = hn::Max(key, hn::MulSub(near, inverse, margin));
+      leave = hn::Min(leave, hn::MulAdd(far, inverse, margin));
+    }
+    return bits_of(hn::Le(key, leave));
+  }
+};
+
+// The query of NearestWalk whose leaves are instances.
+template <class Asked>
+class Instances {
+ public:
+  Instances(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit)
+      : asked_(asked),
+        best_(bound),
+        limit_(asked.limit_of(bound)),
+        visit_(visit),
+        nodes_(top.scene.node_count) {}
+
+  [[nodiscard]] float bound() const { return limit_; }
+  [[nodiscard]] WalkBound& nodes() { return nodes_; }
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+    return asked_.meet(boxes, limit_, key);
+  }
+  void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
+  bool leaf(std::uint32_t number) {
+    const bool go_on = visit_(number);
+    limit_ = asked_.limit_of(best_);
+    return go_on;
+  }
+
+ private:
+  const Asked& asked_;
+  const double& best_;  // a visit may lower it
+  float limit_;         // of keys
+  InstanceVisitor visit_;
+  WalkBound nodes_;
+};
+
+template <class Asked>
+Errc walk(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit) {
+  Instances<Asked> instances(top, asked, bound, visit);
+  return NearestWalk<Wide8Node, Instances<Asked>>(top.codec, instances).run(root_box<float>(top));
+}
+
+Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  AskedBox asked;
+  for (std::size_t k = 0; k < 3; ++k) asked.bounds.set(k, box.low[k], box.high[k], 0);
+  return walk(top, asked, 0, visit);
+}
+
+Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                InstanceVisitor visit) {
+  return walk(top, AskedPoint{PointFilter(reach_of(top), point)}, bound, visit);
+}
+
+Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
+              InstanceVisitor visit) {
+  const RayBoxFilter filter(
+      ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
+      RayBoxFilter::rounding(reach_of(top)) + RayBoxFilter::given_away(ray.origin, ray.reach));
+  return walk(top, AskedRay{filter}, bound, visit);
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(walk_box);
+HWY_EXPORT(walk_point);
+HWY_EXPORT(walk_ray);
+
+}  // namespace
+
+Errc walk_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  if (!top.has_float_nodes()) return walk_top_level_plainly(top, box, visit);
+  if (!boxes_overlap(root_box<float>(top), box)) return Errc::kOk;
+  return HWY_DYNAMIC_DISPATCH(walk_box)(top, box, visit);
+}
+
+Errc walk_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+               InstanceVisitor visit) {
+  if (!top.has_float_nodes() || !PointFilter::is_near(reach_of(top), point)) {
+    return walk_top_level_plainly(top, point, bound, visit);
+  }
+  if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
+  return HWY_DYNAMIC_DISPATCH(walk_point)(top, point, bound, visit);
+}
+
+Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+               InstanceVisitor visit) {
+  const double reach = reach_of(top);
+  // Where a map that is hard to undo makes the query give away more, its margin alone is what
+  // decides.
+  const bool is_near = ray.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach &&
+                       RayBoxFilter::given_away(ray.origin, ray.reach) <= reach;
+  if (!top.has_float_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
+  const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
+  if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;
+  return HWY_DYNAMIC_DISPATCH(walk_ray)(top, ray, enter, bound, visit);
+}
+
+}  // namespace boxtree
+#endif

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// How answers name faces, and the copies of a face: leaves hold the first of several alike, and
+// visitors are told of all of them.
+#pragma once
+
+#include <cstdint>
+
+#include <boxtree/query.h>
+
+namespace boxtree {
+
+/// How an answer names the face at position `order` of the tree. Precondition: it is there.
+[[nodiscard]] inline FaceRef face_ref(const Tree& tree, std::uint32_t order) noexcept {
+  return {tree.face_id(order), order};
+}
+
+/// A face that a leaf holds, and then all that are copies of it.
+class FaceWithCopies {
+ public:
+  FaceWithCopies(const Tree& tree, std::uint32_t face) noexcept
+      : tree_(tree), face_(face), copies_(tree.duplicates_of(face)) {}
+
+  [[nodiscard]] std::uint32_t count() const noexcept { return 1 + copies_.last - copies_.first; }
+  /// Precondition: i < count().
+  [[nodiscard]] FaceRef face(std::uint32_t i) const noexcept {
+    return face_ref(tree_, i == 0 ? face_ : copies_.first + i - 1);
+  }
+
+ private:
+  const Tree& tree_;
+  std::uint32_t face_;
+  FaceRange copies_;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: MIT
+// What box and sphere queries share: walk the boxes that overlap, report each face that touches.
+#pragma once
+
+#include "runtime/walk/traversal.h"
+
+namespace boxtree {
+
+/// The query of traverse_overlap for a shape.
+/// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap asks.
+/// Shape::Visitor: what is called with each face, FaceVisitor or another one; whether to go on.
+/// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
+template <class Shape>
+struct FaceWalk {
+  const Tree& tree;
+  const Shape& shape;
+  typename Shape::Visitor visitor;
+  WalkBound& nodes;
+  Errc error = Errc::kOk;
+  bool stopped = false;
+  // An honest walk tells of each copy once; in corrupt files many faces may have the same ones.
+  std::uint32_t copies_left = tree.record().duplicate_count;
+  TriangleBatch batch;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return shape.overlaps(box);
+  }
+
+  [[nodiscard]] bool leaf(NodeRef ref) {
+    error = tree.leaves().read(ref.first, ref.second, batch);
+    if (error != Errc::kOk) return false;
+    std::uint32_t reported = kNoFaceId;
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      if (batch.face[i] == reported) continue;  // the other half of the quad has touched already
+      const Triangle triangle = batch.triangle(i);
+      if (!shape.overlaps(bounds_of(triangle)) || !shape.touches(triangle)) continue;
+      reported = batch.face[i];
+      if (!report(reported)) return false;
+    }
+    return true;
+  }
+
+  /// Tells the visitor of a face and of its copies. Whether to go on.
+  [[nodiscard]] [[gnu::always_inline]] bool report(std::uint32_t face) {
+    stopped = !visitor(face_ref(tree, face));
+    return !stopped && (!tree.has_duplicates() || report_copies(face));
+  }
+
+ private:
+  [[nodiscard]] bool report_copies(std::uint32_t face) {
+    const FaceWithCopies faces(tree, face);
+    if (faces.count() - 1 > copies_left) {
+      error = Errc::kNodeCorrupt;
+      return false;
+    }
+    copies_left -= faces.count() - 1;
+    for (std::uint32_t i = 1; i < faces.count() && !stopped; ++i) stopped = !visitor(faces.face(i));
+    return !stopped;
+  }
+};
+
+}  // namespace boxtree

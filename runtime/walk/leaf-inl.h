@@ -1,0 +1,283 @@
+// SPDX-License-Identifier: MIT
+// The triangles of a leaf in single precision, side by side, for filters.
+#if defined(BOXTREE_RUNTIME_WALK_LEAF_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_LEAF_INL_H
+#undef BOXTREE_RUNTIME_WALK_LEAF_INL_H
+#else
+#define BOXTREE_RUNTIME_WALK_LEAF_INL_H
+#endif
+
+#include "format/grid_leaf.h"
+#include "runtime/tree/tree.h"
+#include "runtime/walk/decode-inl.h"
+#include "runtime/walk/rounding.h"
+#include "runtime/walk/traversal.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR  // where there are no vectors, the walks of every codec are taken
+
+/// Reads leaves of one tree, one at a time. Coordinates are the exact ones or those rounded to
+/// nearest, see corner_error(). Exact triangles come from with_triangle().
+class LeafFloats {
+ public:
+  explicit LeafFloats(const Tree& tree) : reader_(tree.leaves()), mesh_(reader_.mesh()) {
+    const Frame& frame = reader_.frame();
+    scale_ = static_cast<float>(frame.inverse_scale);
+    const bool is_exact =
+        double{scale_} == frame.inverse_scale && std::isnormal(scale_) && frame.origin.isZero(0);
+    rounding_ = float_above(reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
+                            double{std::numeric_limits<float>::min()});
+    direct_ = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
+              mesh_.position_stride == kStride && reader_.is_in_tree_order() &&
+              mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxDirectVertices;
+    if (reader_.is_grid()) {
+      scale_ = static_cast<float>(reader_.grid_step());
+      direct_ = mesh_.corners_per_face == 3;
+    }
+  }
+
+  /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
+  /// error().
+  bool load(std::uint32_t first, std::uint32_t count) {
+    first_ = first;
+    count_ = count;
+    is_direct_ =
+        direct_ && count == kLeafFaces && in_range(first, count, mesh_.face_count) && gather();
+    return is_direct_ || convert();
+  }
+
+  /// Bounds how far the coordinates of a leaf are off: nothing when they were gathered, but for
+  /// what underflows; half an ulp of the largest otherwise.
+  [[nodiscard]] float corner_error() const {
+    const bool is_exact = is_direct_ && !reader_.is_grid();
+    return is_exact ? std::numeric_limits<float>::min() : rounding_;
+  }
+
+  /// Triangles of the leaf; lanes from there on are unspecified.
+  [[nodiscard]] std::uint32_t count() const { return count_; }
+  [[nodiscard]] std::size_t groups() const { return count_ > kWideChildren ? 2 : 1; }
+  /// Bit i: lane i of a group is a triangle.
+  [[nodiscard]] std::uint32_t lanes(std::size_t group) const {
+    return (((1u << count_) - 1) >> (group * kWideChildren)) & 0xffu;
+  }
+  /// Coordinates of the triangles of a group and part.
+  [[nodiscard]] FloatVector at(std::size_t corner, std::size_t axis, std::size_t group,
+                               std::size_t part) const {
+    return hn::Load(Floats(), &coordinate_[corner][axis][group * kWideChildren + part * kLanes]);
+  }
+
+  [[nodiscard]] VectorTriangle triangles(std::size_t group, std::size_t part) const {
+    VectorTriangle triangle;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) triangle.corner[c].axis[k] = at(c, k, group, part);
+    }
+    return triangle;
+  }
+  /// Their bounds.
+  [[nodiscard]] VectorBox bounds(std::size_t group, std::size_t part) const {
+    return bounds_of(triangles(group, part));
+  }
+
+  /// The face that a lane belongs to, in the tree's order.
+  [[nodiscard]] std::uint32_t face(std::uint32_t lane) const {
+    return is_direct_ ? first_ + lane : batch_.face[lane];
+  }
+
+  /// Calls visit(triangle, face, half) with the exact triangle of a lane. False when its bytes are
+  /// corrupt.
+  template <class Visitor>
+  bool with_triangle(std::uint32_t lane, Visitor&& visit) {
+    if (!is_direct_) {
+      visit(batch_.triangle(lane), batch_.face[lane], half_of_face(batch_, lane));
+      return true;
+    }
+    Triangle triangle;
+    if (reader_.is_grid()) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::int32_t* const p = grid_point_ + grid_start(lane, c);
+        for (std::size_t k = 0; k < 3; ++k) {
+          triangle.corner[c][static_cast<Eigen::Index>(k)] =
+              static_cast<double>(p[k]) * reader_.grid_step();
+        }
+      }
+      visit(triangle, first_ + lane, 0u);
+      return true;
+    }
+    const double scale = reader_.frame().inverse_scale;
+    bool is_finite = true;
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto p = boxtree::load<std::array<float, 3>>(
+          mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
+      triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
+      is_finite &= is_within_reach(triangle.corner[c]);
+    }
+    if (!is_finite) {
+      error_ = Errc::kVertexNotFinite;
+      return false;
+    }
+    visit(triangle, first_ + lane, 0u);
+    return true;
+  }
+
+  [[nodiscard]] Errc error() const { return error_; }
+
+ private:
+  static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
+  static constexpr std::size_t kStride = 3 * sizeof(float);
+  // Three times the number of a vertex fits into 32 bits.
+  static constexpr std::uint32_t kMaxDirectVertices = 1u << 30;
+
+  HWY_INLINE bool gather() {
+    if (reader_.is_grid()) return gather_grid();
+    return mesh_.corner_bytes == 2 ? gather_mesh<std::uint16_t>() : gather_mesh<std::uint32_t>();
+  }
+
+  // Floats from one vertex of a decoded leaf to the next.
+  static constexpr std::uint32_t kRow = 4;
+
+  HWY_INLINE bool gather_grid() {
+    GridOffsets offsets;
+    if (first_ % kLeafFaces != 0 ||
+        !read_grid_faces<false>(reader_.grid(), first_ / kLeafFaces, grid_faces_, offsets)) {
+      return false;
+    }
+    read_grid_points(offsets);
+    for (std::size_t c = 0; c < 3; ++c) {
+      transpose(
+          grid_point_, [&](std::size_t face) { return grid_start(face, c); }, c);
+    }
+    return true;
+  }
+
+  // Where a corner of a face begins in grid_point_.
+  HWY_INLINE std::size_t grid_start(std::size_t face, std::size_t corner) const {
+    return std::size_t{kRow} * grid_faces_.corner[face][corner];
+  }
+
+  HWY_INLINE void read_grid_points(const GridOffsets& offsets) {
+    const std::byte* const bytes = reader_.grid().bytes.data();
+    const auto [x_width, y_width, z_width] = offsets.width;
+    for (std::uint32_t i = 0; i < grid_faces_.vertex_count; ++i) {
+      const std::uint64_t at =
+          offsets.start + std::uint64_t{grid_faces_.vertex[i]} * offsets.stride;
+      const std::uint64_t offset[3] = {read_bits(bytes, at, x_width),
+                                       read_bits(bytes, at + x_width, y_width),
+                                       read_bits(bytes, at + x_width + y_width, z_width)};
+      // Unsigned, so that corrupt sums wrap.
+      for (std::size_t k = 0; k < 3; ++k) {
+        grid_point_[std::size_t{kRow} * i + k] = static_cast<std::int32_t>(
+            static_cast<std::uint32_t>(offsets.origin[k]) + static_cast<std::uint32_t>(offset[k]));
+      }
+      grid_point_[kRow * i + 3] = 0;
+    }
+  }
+
+  // Three corners a face, in floats, in the tree's order, and scaled without rounding: the common
+  // case. Four floats are read at once, so a leaf with the last vertex goes the other way.
+  template <class Corner>
+  HWY_INLINE bool gather_mesh() {
+    const hn::Repartition<std::uint32_t, Floats> words;
+    const hn::Rebind<Corner, decltype(words)> stored;
+    const auto* corners = reinterpret_cast<const Corner*>(mesh_.corners) + std::size_t{first_} * 3;
+    auto largest = hn::Zero(words);
+    for (std::size_t i = 0; i < kCorners; i += kLanes) {
+      const auto vertex = widen(words, hn::LoadU(stored, corners + i));
+      largest = hn::Max(largest, vertex);
+      hn::Store(hn::Add(vertex, hn::ShiftLeft<1>(vertex)), words, start_ + i);
+    }
+    if (!hn::AllTrue(words, hn::Lt(largest, hn::Set(words, mesh_.vertex_count - 1)))) return false;
+    const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
+    for (std::size_t c = 0; c < 3; ++c) {
+      transpose(
+          positions, [&](std::size_t face) { return start_[3 * face + c]; }, c);
+    }
+    return true;
+  }
+  template <class D, class V>
+  static HWY_INLINE hn::Vec<D> widen(D words, V stored) {
+    if constexpr (sizeof(hn::TFromV<V>) == sizeof(hn::TFromD<D>)) {
+      return stored;
+    } else {
+      return hn::PromoteTo(words, stored);
+    }
+  }
+
+  // Corner `corner` of all faces; that of face i is start(i) numbers after `rows`: floats, or whole
+  // numbers that become floats here.
+  template <class Number, class Start>
+  HWY_INLINE void transpose(const Number* rows, const Start& start, std::size_t corner) {
+    const hn::Rebind<Number, Floats> d;
+    const FloatVector scale = hn::Set(Floats(), scale_);
+    const hn::Repartition<std::uint64_t, Floats> pairs;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const std::size_t face = part * kLanes;
+      // Of each block of four rows: x0 x1 y0 y1, z0 z1 - -, and so on, to x0 x1 x2 x3.
+      const auto r0 = blocks(rows, start, face), r1 = blocks(rows, start, face + 1);
+      const auto r2 = blocks(rows, start, face + 2), r3 = blocks(rows, start, face + 3);
+      const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
+      const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
+      const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
+      const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
+      const auto store = [&](std::size_t axis, auto values) {
+        hn::Store(hn::Mul(to_floats(hn::BitCast(d, values)), scale), Floats(),
+                  &coordinate_[corner][axis][face]);
+      };
+      store(0, hn::InterleaveLower(pairs, xy01, xy23));
+      store(1, hn::InterleaveUpper(pairs, xy01, xy23));
+      store(2, hn::InterleaveLower(pairs, z01, z23));
+    }
+  }
+  static HWY_INLINE FloatVector to_floats(FloatVector values) { return values; }
+  static HWY_INLINE FloatVector to_floats(hn::Vec<hn::Rebind<std::int32_t, Floats>> values) {
+    return hn::ConvertTo(Floats(), values);
+  }
+
+  // The row of a face and, in the next block, of the one four faces on.
+  template <class Number, class Start>
+  static HWY_INLINE hn::Vec<hn::Rebind<Number, Floats>> blocks(const Number* rows,
+                                                               const Start& start,
+                                                               std::size_t face) {
+    const hn::CappedTag<Number, 4> four;
+    const auto row = hn::LoadU(four, rows + start(face));
+#if HWY_MAX_BYTES >= 32
+    return hn::Combine(hn::Rebind<Number, Floats>(), hn::LoadU(four, rows + start(face + 4)), row);
+#else
+    return row;
+#endif
+  }
+
+  bool convert() {
+    error_ = reader_.read(first_, count_, batch_);
+    count_ = batch_.count;
+    if (error_ != Errc::kOk) return false;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::uint32_t i = 0; i < count_; ++i) {
+          coordinate_[c][k][i] = static_cast<float>(batch_.coordinate[c][k][i]);
+        }
+      }
+    }
+    return true;
+  }
+
+  const LeafReader& reader_;
+  const MeshArrays& mesh_;
+  float scale_;
+  float rounding_;
+  bool direct_;     // leaves that do not hold the last vertex can be gathered
+  bool is_direct_;  // this one was
+  std::uint32_t first_ = 0;
+  std::uint32_t count_ = 0;
+  Errc error_ = Errc::kOk;
+  HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
+  HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
+  TriangleBatch batch_;
+  GridLeafFaces grid_faces_;
+  HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and nothing
+};
+
+#endif
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+// One walk from near to far over nodes of a wide codec, in which leaves wait among the nodes: for
+// queries whose leaves cost as much as a node or more.
+#if defined(BOXTREE_RUNTIME_WALK_NEAREST_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_NEAREST_INL_H
+#undef BOXTREE_RUNTIME_WALK_NEAREST_INL_H
+#else
+#define BOXTREE_RUNTIME_WALK_NEAREST_INL_H
+#endif
+
+#include <array>
+
+#include "runtime/walk/decode-inl.h"
+#include "runtime/walk/waiting-inl.h"
+#include "runtime/walk/work.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR
+
+/// What the walk asks of `Query`:
+/// query.meet(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and their
+///   keys, which are not negative.
+/// query.bound() -> float: keys above it cannot improve the answer.
+/// query.expanding(const WideLinks&, std::uint32_t passing): a node was taken apart, whose children
+///   `passing` will wait.
+/// query.nodes() -> WalkBound&: of as many nodes as the codec has.
+/// query.leaf(number) -> bool: whether to go on; the query keeps its own error.
+template <class Node, class Query>
+class NearestWalk {
+ public:
+  NearestWalk(const WideCodec<Node>& codec, Query& query) : codec_(codec), query_(query) {}
+
+  /// `root`: the box of node 0. Returns kNodeCorrupt or kDepthExceeded for corrupt nodes;
+  /// kWorkLimit.
+  Errc run(const Box<float>& root) {
+    // The children of a node at depth n are in open_[n].
+    Box<float> box = root;
+    std::size_t depth = 0;
+    std::uint32_t number = 0;
+    for (;;) {
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      if (!query_.nodes().take_one()) return query_.nodes().error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      if (depth == open_.size()) return Errc::kDepthExceeded;
+      open_[depth].links = links;
+      query_.expanding(links,
+                       meet(node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1));
+      for (;;) {
+        typename decltype(waiting_)::Child at;
+        if (!waiting_.pop(query_.bound(), at)) return Errc::kOk;
+        const Children& of = open_[at.depth];
+        if (((of.links.inner_mask >> at.number) & 1u) != 0) {
+          box = of.boxes.box(at.number);
+          number = node_number(of.links, at.number);
+          depth = at.depth + 1;
+          break;
+        }
+        if (!query_.leaf(leaf_number(of.links, at.number))) return Errc::kOk;
+      }
+    }
+  }
+
+ private:
+  struct Children {
+    ChildBoxes boxes;
+    WideLinks links;
+  };
+
+  // Lets those of a node's children wait that can matter; bit i is child i.
+  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const Box<float>& box,
+                                ChildBoxes& children, std::size_t depth, std::uint32_t all) {
+    HWY_ALIGN float keys[kWideChildren];
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      FloatVector key;
+      passing |= query_.meet(decode(node, box, part, children), key) << (part * kLanes);
+      hn::Store(key, Floats(), keys + part * kLanes);
+    }
+    passing &= all;
+    waiting_.push(passing, keys, depth);
+    return passing;
+  }
+
+  const WideCodec<Node>& codec_;
+  Query& query_;
+  Waiting<WideCodec<Node>::kDepthLimit> waiting_;
+  std::array<Children, WideCodec<Node>::kDepthLimit> open_;
+};
+
+#endif
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

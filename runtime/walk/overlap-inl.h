@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// The faces that touch a shape, over the wide codecs. What is inside the shape as a whole is
+// reported without another test: neither its boxes nor its triangles are read.
+#if defined(BOXTREE_RUNTIME_WALK_OVERLAP_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
+#undef BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
+#else
+#define BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
+#endif
+
+#include "runtime/walk/face_visit.h"
+#include "runtime/walk/leaf-inl.h"
+#include "runtime/walk/prefetch-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+#if HWY_TARGET != HWY_SCALAR
+
+/// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
+/// only when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the
+/// shape beyond doubt.
+struct Verdict {
+  std::uint32_t touched;
+  std::uint32_t inside;
+};
+
+/// The verdict of a shape on triangles, by their bounds and corners; `inside`: they touch it beyond
+/// doubt. shape.judge(const VectorBox&) and shape.contained(const VectorPoint&), a bit set only for
+/// a point that lies in the shape beyond doubt.
+template <class Shape>
+HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& triangle) {
+  Verdict verdict = shape.judge(bounds_of(triangle));
+  for (const VectorPoint& corner : triangle.corner) verdict.inside |= shape.contained(corner);
+  return verdict;
+}
+
+template <class Node, class Shape, class Filter>
+class OverlapWalk {
+ public:
+  OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
+      : codec_(codec),
+        walk_(walk),
+        filter_(tree, walk.shape),
+        prefetch_(tree, codec),
+        leaf_(tree) {}
+
+  Errc run(const Box<float>& root) {
+    Box<float> box = root;
+    std::uint32_t number = 0;
+    bool inside = false;
+    std::size_t depth = 0;
+    for (;;) {
+      const NodeView<Node> node(codec_, number);
+      if (depth == open_.size()) return Errc::kDepthExceeded;
+      Children& children = open_[depth];
+      const WideLinks links = children.links = node.links();
+      if (!walk_.nodes.take_one()) return walk_.nodes.error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Verdict verdict = judge(node, links, box, inside, children.boxes);
+      prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
+      prefetch_.nodes(links, verdict.touched & links.inner_mask);
+      const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
+        const std::uint32_t first = first_face(links, i);
+        const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
+        return ((verdict.inside >> i) & 1u) != 0 ? report_all(first, count)
+                                                 : visit_leaf(first, count);
+      });
+      if (!go_on) return Errc::kOk;
+      children.waiting = verdict.touched & links.inner_mask;
+      children.inside = verdict.inside;
+      depth += children.waiting != 0 ? 1 : 0;
+      if (depth == 0) return Errc::kOk;
+      // The place of a node whose last child is taken is free for that child's own children.
+      Children& last = open_[depth - 1];
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(last.waiting));
+      box = last.boxes.box(i);
+      number = node_number(last.links, i);
+      inside = ((last.inside >> i) & 1u) != 0;
+      last.waiting &= last.waiting - 1;
+      depth -= last.waiting == 0 ? 1 : 0;
+    }
+  }
+
+ private:
+  // The children of an open node; those that wait are nodes.
+  struct Children {
+    ChildBoxes boxes;  // unspecified when the node is inside the shape
+    WideLinks links;
+    std::uint32_t waiting;
+    std::uint32_t inside;
+  };
+
+  HWY_INLINE Verdict judge(const NodeView<Node>& node, const WideLinks& links,
+                           const Box<float>& box, bool inside, ChildBoxes& children) const {
+    const std::uint32_t all = (1u << links.child_count) - 1;
+    if (inside) return {all, all};
+    Verdict verdict{0, 0};
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const Verdict of_part = filter_.judge(decode(node, box, part, children));
+      verdict.touched |= of_part.touched << (part * kLanes);
+      verdict.inside |= of_part.inside << (part * kLanes);
+    }
+    verdict.touched &= all;
+    return verdict;
+  }
+
+  bool report_all(std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t face = first; face < first + count; ++face) {
+      if (!walk_.report(face)) return false;
+    }
+    return true;
+  }
+
+  bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
+      walk_.error = leaf_.error();
+      return false;
+    }
+    std::uint32_t reported = kNoFaceId;  // halves of a quad stand side by side
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      std::uint32_t touched = 0, certain = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const Verdict verdict = filter_.judge(leaf_.triangles(group, part));
+        touched |= verdict.touched << (part * kLanes);
+        certain |= verdict.inside << (part * kLanes);
+      }
+      const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+        if (leaf_.face(lane) == reported) return true;
+        if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
+        reported = leaf_.face(lane);
+        return walk_.report(reported);
+      });
+      if (!go_on) return false;
+    }
+    return true;
+  }
+
+  bool touches(std::uint32_t lane) {
+    bool touched = false;
+    const bool read = leaf_.with_triangle(
+        lane, [&](const Triangle& triangle, std::uint32_t /*face*/, std::uint32_t /*half*/) {
+          touched = walk_.shape.overlaps(bounds_of(triangle)) && walk_.shape.touches(triangle);
+        });
+    if (!read) walk_.error = leaf_.error();
+    return touched;
+  }
+
+  const WideCodec<Node>& codec_;
+  FaceWalk<Shape>& walk_;
+  const Filter filter_;
+  const Prefetch<Node> prefetch_;
+  LeafFloats leaf_;
+  std::array<Children, WideCodec<Node>::kDepthLimit> open_;
+};
+
+template <class Filter, class Node, class Shape>
+Errc walk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& faces) {
+  const Box<float> root = root_box<float>(tree);
+  if (!faces.overlaps(root)) return Errc::kOk;
+  return OverlapWalk<Node, Shape, Filter>(tree, codec, faces).run(root);
+}
+
+#endif
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: MIT
+// Asks for what a walk will read soon, all of it at once: in a large tree each node and leaf is a
+// cache miss, and those of one node's children need not wait for each other.
+#if defined(BOXTREE_RUNTIME_WALK_PREFETCH_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_PREFETCH_INL_H
+#undef BOXTREE_RUNTIME_WALK_PREFETCH_INL_H
+#else
+#define BOXTREE_RUNTIME_WALK_PREFETCH_INL_H
+#endif
+
+#include <hwy/cache_control.h>
+
+#include "runtime/tree/tree.h"
+#include "runtime/walk/node-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+/// Only ever touches addresses of the tree's arrays, and those as hints.
+template <class Node>
+class Prefetch {
+ public:
+  Prefetch(const Tree& tree, const WideCodec<Node>& codec)
+      : nodes_(codec.nodes),
+        corners_(tree.leaves().mesh().corners),
+        clusters_(tree.leaves().grid().clusters) {
+    const MeshArrays& mesh = tree.leaves().mesh();
+    if (corners_ != nullptr) {
+      face_bytes_ = std::size_t{mesh.corners_per_face} * mesh.corner_bytes;
+    }
+  }
+
+  /// Children of a node that are nodes or leaves: bit i is child i. Precondition: the node is
+  /// sound.
+  HWY_INLINE void nodes(const WideLinks& links, std::uint32_t children) const {
+    for (; children != 0; children &= children - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+      hwy::Prefetch(nodes_ + std::size_t{node_number(links, child)} * sizeof(Node));
+    }
+  }
+  HWY_INLINE void leaves(const WideLinks& links, std::uint32_t children) const {
+    constexpr std::size_t kLine = 64;
+    for (; children != 0; children &= children - 1) {
+      const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
+      const std::size_t face = first_face(links, child);
+      if (clusters_ != nullptr) {
+        hwy::Prefetch(clusters_ + face / kClusterFaces * sizeof(ClusterRecord));
+      } else {
+        hwy::Prefetch(corners_ + face * face_bytes_);
+        hwy::Prefetch(corners_ + face * face_bytes_ + kLine);
+      }
+    }
+  }
+
+ private:
+  const std::byte* nodes_;
+  const std::byte* corners_;
+  const std::byte* clusters_;  // or null: no grid
+  std::size_t face_bytes_ = 0;
+};
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: MIT
+// The stack of a walk from near to far: children that wait for their turn, as one word each.
+#if defined(BOXTREE_RUNTIME_WALK_WAITING_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_WAITING_INL_H
+#undef BOXTREE_RUNTIME_WALK_WAITING_INL_H
+#else
+#define BOXTREE_RUNTIME_WALK_WAITING_INL_H
+#endif
+
+#include <bit>
+#include <cstdint>
+
+#include "runtime/walk/node-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+
+/// Children of the nodes on one path, all of one depth together. A word is the bits of the child's
+/// key, a float that is not negative, so that words compare as keys do; the lowest bits name the
+/// child instead. Room for the children of `kDepths` nodes.
+template <std::size_t kDepths>
+class Waiting {
+ public:
+  struct Child {
+    std::size_t depth;
+    std::uint32_t number;  // 0 to 7, in its node
+  };
+
+  /// Adds those of eight children that `children` names, the nearest on top. Precondition: those of
+  /// `depth` and below have left.
+  HWY_INLINE void push(std::uint32_t children, const float* key, std::size_t depth) {
+    const Floats d;
+    const hn::Rebind<std::int32_t, Floats> words;
+    HWY_ALIGN std::int32_t word[kWideChildren];
+    hn::Vec<decltype(words)> part[kParts];
+    for (std::size_t p = 0; p < kParts; ++p) {
+      const auto bits = hn::BitCast(words, hn::Load(d, key + p * kLanes));
+      const auto child = hn::Iota(words, static_cast<std::int32_t>(p * kLanes));
+      part[p] = hn::Or(hn::AndNot(hn::Set(words, kChildBits), bits), child);
+      hn::Store(part[p], words, word + p * kLanes);
+    }
+    const auto count = static_cast<std::size_t>(std::popcount(children));
+    // Each finds its place by itself: how many are nearer. No two words are equal, and no branch
+    // depends on their order.
+    for (std::uint32_t rest = children; rest != 0; rest &= rest - 1) {
+      const std::int32_t at = word[std::countr_zero(rest)];
+      std::uint32_t nearer = 0;
+      for (std::size_t p = 0; p < kParts; ++p) {
+        const auto less = hn::RebindMask(Floats(), hn::Lt(part[p], hn::Set(words, at)));
+        nearer |= bits_of(less) << (p * kLanes);
+      }
+      const auto above = static_cast<std::size_t>(std::popcount(nearer & children));
+      word_[size_ + count - 1 - above] = at;
+      depth_[size_ + count - 1 - above] = static_cast<std::uint8_t>(depth);
+    }
+    size_ += count;
+  }
+
+  /// Takes the next child whose key is not above `bound`; keys are compared less their lowest bits,
+  /// which makes them smaller at most. False when there is none.
+  HWY_INLINE bool pop(float bound, Child& child) {
+    std::int32_t word = 0;
+    do {
+      if (size_ == 0) return false;
+      word = word_[--size_];
+    } while (std::bit_cast<float>(word & ~kChildBits) > bound);
+    child = {depth_[size_], static_cast<std::uint32_t>(word & kChildBits)};
+    return true;
+  }
+
+ private:
+  static constexpr std::int32_t kChildBits = kWideChildren - 1;
+  static constexpr std::size_t kMost = kDepths * kWideChildren;
+  static_assert(kDepths <= 256);
+
+  std::size_t size_ = 0;
+  std::int32_t word_[kMost];
+  std::uint8_t depth_[kMost];  // the depth of each
+};
+
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+#endif

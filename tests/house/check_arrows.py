@@ -1,0 +1,112 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""Dependencies point one way: cooker -> runtime -> format, and inside each of them no folder includes
+one that comes after it. Looks at what sources include and, given a build, at what the libraries ask
+the linker for.
+
+    check_arrows.py SOURCE_DIR [BUILD_DIR]       exit 1 and a line for each include that is against it
+"""
+import pathlib
+import re
+import subprocess
+import sys
+
+# Each folder may include itself and those before it. "." is what lies in the part's own folder.
+ORDER = {
+    "format": ["."],
+    "runtime": ["file", "primitive", "tree", "walk", "query", "scene", "blob"],
+    "cooker": ["text", "system", "import", "quantise", "build", "encode", "proof", "choose", "write",
+               ".", "scene", "export", "report", "cli"],
+}
+PARTS = list(ORDER)
+# Other people's headers that a part may include, beside those of the C++ standard library.
+LIBRARIES = {
+    "format": (),
+    "runtime": ("Eigen/", "hwy/", "xxhash.h", "lzma.h", "zstd.h", "xmmintrin.h",
+                "sys/", "fcntl.h", "unistd.h"),
+}
+PRINTS = ("iostream", "cstdio", "stdio.h", "print")
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+PUBLIC = "boxtree/"
+
+
+def folder_of(path):
+    """('runtime', 'query') of runtime/query/ray.cpp; '.' for files of the part's own folder."""
+    names = path.split("/")
+    return names[0], names[1] if len(names) > 2 else "."
+
+
+def fault_of(source, folder, name, quoted):
+    """Why a source in that folder must not include that name; None if it may."""
+    part = source.split("/")[0]
+    if name.startswith(PUBLIC):
+        return "format knows nothing of the runtime" if part == "format" else None
+    if quoted or name.split("/")[0] in PARTS:
+        if not quoted:
+            return 'a private header is included by its path in quotes: "%s"' % name
+        other, other_folder = folder_of(name)
+        if other not in PARTS:
+            return "only a header of the project is included in quotes"
+        if PARTS.index(other) > PARTS.index(part):
+            return f"{part} comes before {other}"
+        if other != part or folder == "include":
+            return None
+        order = ORDER[part]
+        for each in (folder, other_folder):
+            if each not in order:
+                return f"{part}/{each} has no place in the order of {part}'s folders"
+        if order.index(other_folder) > order.index(folder):
+            return f"{part}/{folder} comes before {part}/{other_folder}"
+        return None
+    if part in LIBRARIES and ("/" in name or name.endswith(".h")):
+        if not name.startswith(LIBRARIES[part]):
+            return f"{part} does not use {name}"
+    if part in LIBRARIES and name in PRINTS:
+        return f"{part} prints nothing"
+    return None
+
+
+def check_includes(source_dir):
+    faults = []
+    for part in PARTS:
+        for path in sorted((source_dir / part).rglob("*")):
+            if path.suffix not in (".h", ".cpp"):
+                continue
+            source = path.relative_to(source_dir).as_posix()
+            for bracket, name in INCLUDE.findall(path.read_text(encoding="utf-8")):
+                fault = fault_of(source, folder_of(source)[1], name, bracket == '"')
+                if fault:
+                    faults.append(f"{source}: {name}: {fault}")
+    return faults
+
+
+OUTPUT = r"\b(printf|puts|abort|exit|std::cout|std::cerr)\b|Assimp|tbb::|XXH"
+SYMBOLS = {
+    "format/libboxtree_format.a": OUTPUT,
+    "runtime/libboxtree_runtime.a": OUTPUT + r"|fmt::|nlohmann|boxtree::cooker",
+}
+
+
+def check_symbols(build_dir):
+    faults = []
+    for library, forbidden in SYMBOLS.items():
+        names = subprocess.run(["nm", "-uC", str(build_dir / library)], check=True, text=True,
+                               capture_output=True).stdout
+        faults += [f"{library}: {line.strip()}: prints, ends the program or links what it must not"
+                   for line in names.splitlines() if re.search(forbidden, line)]
+    return faults
+
+
+def main():
+    faults = check_includes(pathlib.Path(sys.argv[1]))
+    if len(sys.argv) > 2:
+        faults += check_symbols(pathlib.Path(sys.argv[2]))
+    for fault in faults:
+        print(fault)
+    if faults:
+        sys.exit(1)
+    print("arrows point one way")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: MIT
+// The walks of wide8 and wide4, in every instruction set that this machine has, against plain-f32,
+// whose scalar walk shares nothing with them but the leaf predicates: the same faces and the same
+// numbers to the bit, over a million random and degenerate questions in all.
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <set>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+
+#ifdef BOXTREE_TEST_TARGETS
+#include <boxtree/configuration.h>
+
+#include "runtime/walk/targets.h"
+// Its macros follow those of targets.h.
+#include <hwy/targets.h>
+#endif
+
+namespace boxtree {
+namespace {
+
+using cooker::SourceMesh;
+
+// Calls body(name) once for each instruction set that the walks were compiled for and the machine
+// has; the scalar build has one.
+template <class Body>
+void for_each_target(Body body) {
+#ifdef BOXTREE_TEST_TARGETS
+  const std::int64_t supported = hwy::SupportedTargets();
+  for (std::int64_t left = supported & HWY_TARGETS; left != 0; left &= left - 1) {
+    const std::int64_t target = left & -left;
+    hwy::SetSupportedTargetsForTest(target);
+    body(hwy::TargetName(target));
+  }
+  hwy::SetSupportedTargetsForTest(0);
+#else
+  body("scalar");
+#endif
+}
+
+// Questions about one mesh. A part of each kind is degenerate on purpose: along axes, in planes of
+// the root box, through vertices, from far away, of no size.
+class Questions {
+ public:
+  Questions(const SourceMesh& mesh, const Tree& tree, std::uint64_t seed)
+      : mesh_(mesh), box_(tree.to_object(tree.root().box)), random_(seed) {}
+
+  std::vector<Ray> rays(int count) {
+    std::vector<Ray> rays;
+    for (int i = 0; i < count; ++i) {
+      Ray ray{point(), point() - point()};
+      if (i % 7 == 0) ray.direction = axis();
+      if (i % 11 == 0) ray.direction = vertex() - ray.origin;
+      if (i % 13 == 0) ray.origin = corner();
+      if (i % 17 == 0) ray.origin -= 1e5 * ray.direction;
+      if (i % 19 == 0) ray.direction *= std::ldexp(1.0, -300);
+      if (i % 23 == 0) ray.t_max = unit();
+      if (i % 29 == 0) ray.t_min = unit() * std::min(1.0, ray.t_max);
+      if (i % 31 == 0) {
+        ray.direction = axis();
+        ray.origin = point() - std::ldexp(box_.diagonal().norm(), i % 150) * ray.direction;
+      }
+      if (ray.direction.isZero(0)) ray.direction = {1, 0, 0};
+      rays.push_back(ray);
+    }
+    return rays;
+  }
+
+  std::vector<Eigen::AlignedBox3d> boxes(int count) {
+    std::vector<Eigen::AlignedBox3d> boxes;
+    for (int i = 0; i < count; ++i) {
+      const double size = std::pow(unit(), 4);
+      const Eigen::Vector3d a = point();
+      Eigen::Vector3d b = a + size * (point() - a);
+      if (i % 7 == 0) b[i % 3] = a[i % 3];
+      Eigen::AlignedBox3d box(a.cwiseMin(b), a.cwiseMax(b));
+      if (i % 11 == 0) box = Eigen::AlignedBox3d(vertex());
+      if (i % 13 == 0) box = Eigen::AlignedBox3d(box_.min(), box_.max());
+      boxes.push_back(box);
+    }
+    return boxes;
+  }
+
+  std::vector<std::pair<Eigen::Vector3d, double>> spheres(int count) {
+    std::vector<std::pair<Eigen::Vector3d, double>> spheres;
+    const double size = box_.diagonal().norm();
+    for (int i = 0; i < count; ++i) {
+      Eigen::Vector3d center = point();
+      double radius = size * std::pow(unit(), 4);
+      if (i % 7 == 0) center = vertex();
+      if (i % 14 == 0) radius = 0;
+      if (i % 11 == 0) {
+        center += Eigen::Vector3d::Constant(1e4 * size);
+        radius = 1.7320508 * 1e4 * size;
+      }
+      spheres.emplace_back(center, radius);
+    }
+    return spheres;
+  }
+
+  Pose pose() {
+    Pose pose = Pose::Identity();
+    const double size = box_.diagonal().maxCoeff();
+    pose.translate(size * 0.5 * Eigen::Vector3d(unit() - 0.5, unit() - 0.5, unit() - 0.5));
+    pose.rotate(
+        Eigen::Quaterniond(unit() - 0.5, unit() - 0.5, unit() - 0.5, unit() - 0.5).normalized());
+    if (unit() < 0.3) pose.scale(Eigen::Vector3d(0.5 + unit(), -0.5 - unit(), 0.5 + unit()));
+    return pose;
+  }
+
+ private:
+  double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+  Eigen::Vector3d point() {
+    Eigen::Vector3d p;
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      p[k] = box_.min()[k] + (unit() * 1.4 - 0.2) * (box_.max()[k] - box_.min()[k]);
+    }
+    return p;
+  }
+  Eigen::Vector3d axis() {
+    Eigen::Vector3d d = Eigen::Vector3d::Zero();
+    d[static_cast<Eigen::Index>(3 * unit())] = unit() < 0.5 ? 1 : -1;
+    return d;
+  }
+  Eigen::Vector3d corner() {
+    return {unit() < 0.5 ? box_.min()[0] : box_.max()[0],
+            unit() < 0.5 ? box_.min()[1] : box_.max()[1], point()[2]};
+  }
+  Eigen::Vector3d vertex() {
+    return mesh_
+        .positions[static_cast<std::size_t>(unit() * static_cast<double>(mesh_.positions.size()))];
+  }
+
+  const SourceMesh& mesh_;
+  Eigen::AlignedBox3d box_;
+  std::mt19937_64 random_;
+};
+
+using Faces = std::multiset<std::uint32_t>;
+using FacePairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
+
+// All that a ray's answer says; without a hit the face is the last value.
+using RayAnswer = std::tuple<double, std::uint32_t, std::uint32_t, double, double>;
+RayAnswer ask_ray(const Tree& tree, const Ray& ray) {
+  const auto hit = closest_hit(tree, ray);
+  const auto any = any_hit(tree, ray);
+  EXPECT_TRUE(hit.ok() && any.ok());
+  EXPECT_EQ((*any).has_value(), (*hit).has_value());
+  if (!*hit) return {0, kNoFaceId, 0, 0, 0};
+  return {(*hit)->t, (*hit)->face.id, (*hit)->triangle, (*hit)->u, (*hit)->v};
+}
+
+using PointAnswer = std::tuple<double, std::uint32_t, double, double, double>;
+PointAnswer ask_point(const Tree& tree, const Eigen::Vector3d& point) {
+  const auto closest = closest_point(tree, point);
+  EXPECT_TRUE(closest.ok() && (*closest).has_value());
+  const Eigen::Vector3d& at = (*closest)->point;
+  return {(*closest)->distance, (*closest)->face.id, at[0], at[1], at[2]};
+}
+
+Faces ask_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
+  Faces faces;
+  EXPECT_TRUE(overlap_box(tree, box, [&](const FaceRef& face) {
+                faces.insert(face.id);
+                return true;
+              }).ok());
+  return faces;
+}
+
+Faces ask_sphere(const Tree& tree, const std::pair<Eigen::Vector3d, double>& sphere) {
+  Faces faces;
+  EXPECT_TRUE(overlap_sphere(tree, sphere.first, sphere.second, [&](const FaceRef& face) {
+                faces.insert(face.id);
+                return true;
+              }).ok());
+  return faces;
+}
+
+FacePairs ask_pairs(const Tree& tree, const Pose& pose) {
+  FacePairs pairs;
+  EXPECT_TRUE(overlap_pairs(tree, Pose::Identity(), tree, pose, [&](const FacePair& pair) {
+                pairs.insert({pair.first.id, pair.second.id});
+                return true;
+              }).ok());
+  const auto first = first_contact(tree, Pose::Identity(), tree, pose);
+  EXPECT_TRUE(first.ok());
+  EXPECT_EQ((*first).has_value(), !pairs.empty());
+  if (*first) {
+    EXPECT_TRUE(pairs.contains({(*first)->first.id, (*first)->second.id}));
+  }
+  return pairs;
+}
+
+// Asks all trees all questions; answers[i] are plain-f32's.
+template <class Question, class Ask>
+void expect_same(const std::vector<Question>& questions, const Tree& plain,
+                 const std::vector<const Tree*>& trees, Ask ask) {
+  using Answer = std::invoke_result_t<Ask, const Tree&, const Question&>;
+  std::vector<Answer> answers;
+  for (const Question& question : questions) answers.push_back(ask(plain, question));
+  for (const Tree* tree : trees) {
+    for_each_target([&](const char* target) {
+      for (std::size_t i = 0; i < questions.size(); ++i) {
+        ASSERT_EQ(ask(*tree, questions[i]), answers[i])
+            << codec_name(tree->codec()) << ", " << target << ", question " << i;
+      }
+    });
+  }
+}
+
+// Applies change(coordinate, axis) to all positions.
+template <class Change>
+SourceMesh changed(SourceMesh mesh, const char* name, Change change) {
+  mesh.name = name;
+  for (std::size_t i = 0; i < mesh.positions.f32.size(); ++i) {
+    mesh.positions.f32[i] = change(mesh.positions.f32[i], i % 3);
+  }
+  return mesh;
+}
+
+SourceMesh in_double(SourceMesh mesh, const char* name) {
+  mesh.name = name;
+  mesh.positions.precision = cooker::Precision::kF64;
+  for (const float x : mesh.positions.f32) {
+    mesh.positions.f64.push_back(std::sqrt(2.0) * double{x});
+  }
+  mesh.positions.f32.clear();
+  return mesh;
+}
+
+// Small meshes of every kind, one with more vertices than 16 bits can name, a small one far from
+// the origin, one in double precision.
+std::vector<SourceMesh> meshes() {
+  std::vector<SourceMesh> meshes = test::all_kinds();
+  meshes.push_back(
+      changed(test::torus(160, 120), "large_torus", [](float x, std::size_t) { return x; }));
+  meshes.push_back(changed(test::sphere(40, 60), "far_away", [](float x, std::size_t axis) {
+    return x * 1e-4f + (axis == 0 ? 1.0f : -2.0f);
+  }));
+  meshes.push_back(in_double(test::torus(30, 20), "in_double"));
+  return meshes;
+}
+
+#if defined(BOXTREE_TEST_TARGETS) && defined(__x86_64__)
+TEST(WideTargets, HoldPlainCodeAndEveryInstructionSetOfMachineAndBuild) {
+  // Whether the build has an instruction set at all.
+  const auto is_in = [](std::int64_t target) { return (BOXTREE_LEFT_OUT_TARGETS & target) == 0; };
+  std::set<std::string> names;
+  for_each_target([&](const char* name) { names.insert(name); });
+  EXPECT_TRUE(names.contains("SCALAR") || names.contains("EMU128"));
+  EXPECT_EQ(names.contains("SSE4"), is_in(HWY_SSE4) && __builtin_cpu_supports("sse4.2") != 0);
+  EXPECT_EQ(names.contains("AVX2"), is_in(HWY_AVX2) && __builtin_cpu_supports("avx2") != 0);
+  EXPECT_EQ(names.contains("AVX3"), is_in(HWY_AVX3) && __builtin_cpu_supports("avx512dq") != 0);
+}
+#endif
+
+// Asks all three codecs of one mesh all kinds of questions.
+void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, std::uint64_t seed) {
+  SCOPED_TRACE(mesh.name);
+  const test::CookedTree plain = test::cook_tree(mesh, CodecId::kPlainF32, options);
+  const test::CookedTree wide8 = test::cook_tree(mesh, CodecId::kWide8, options);
+  const test::CookedTree wide4 = test::cook_tree(mesh, CodecId::kWide4, options);
+  const std::vector<const Tree*> trees = {&wide8.tree, &wide4.tree};
+  Questions questions(mesh, plain.tree, seed);
+  // Answers of thousands of faces cost more than the queries do.
+  const bool is_large = mesh.faces.size() > 10'000;
+  expect_same(questions.rays(is_large ? 1500 : 6000), plain.tree, trees, ask_ray);
+  expect_same(questions.boxes(is_large ? 50 : 1500), plain.tree, trees, ask_box);
+  const auto spheres = questions.spheres(is_large ? 50 : 1500);
+  expect_same(spheres, plain.tree, trees, ask_sphere);
+  std::vector<Eigen::Vector3d> points;
+  for (const auto& sphere : spheres) points.push_back(sphere.first);
+  expect_same(points, plain.tree, trees, ask_point);
+  std::vector<Pose> poses;
+  for (int i = 0; i < (is_large ? 10 : 40); ++i) poses.push_back(questions.pose());
+  expect_same(poses, plain.tree, trees, ask_pairs);
+}
+
+class WideWalks : public testing::TestWithParam<std::size_t> {};
+
+TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodes) {
+  expect_equal(meshes()[GetParam()], {}, GetParam());
+}
+
+TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodesOnAGrid) {
+  for (const int bits : {14, 30}) {  // exact in single precision, and not
+    cooker::CookOptions options;
+    options.geometry = GeometryId::kGrid;
+    options.grid.bits = bits;
+    expect_equal(meshes()[GetParam()], options, GetParam());
+  }
+}
+
+std::string mesh_name(const testing::TestParamInfo<std::size_t>& mesh) {
+  return meshes()[mesh.param].name + "_" + std::to_string(mesh.param);
+}
+
+INSTANTIATE_TEST_SUITE_P(Meshes, WideWalks, testing::Range<std::size_t>(0, meshes().size()),
+                         mesh_name);
+
+}  // namespace
+}  // namespace boxtree
