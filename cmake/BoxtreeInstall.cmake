@@ -12,16 +12,10 @@ if(BOXTREE_BLOB)
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT boxtreeBlobTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
 endif()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/runtime/include/boxtree/
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/format/include/boxtree/ ${PROJECT_SOURCE_DIR}/runtime/include/boxtree/
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree)
 install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h
         DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree)
-# What the public headers still need of the others.
-foreach(folder format runtime)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/${folder}/
-          DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree/private/${folder}
-          FILES_MATCHING PATTERN "*.h" PATTERN "include" EXCLUDE)
-endforeach()
 if(BOXTREE_BUILD_COOKER)
   install(TARGETS boxtree_cli EXPORT boxtreeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()

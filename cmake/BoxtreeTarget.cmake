@@ -1,8 +1,8 @@
 # boxtree_add_library(NAME SOURCES...) and boxtree_set_target(NAME): the settings every target of
 # this project shares, in one place, so that no target can miss the ones that the bytes depend on.
 
-# Public headers are included as <boxtree/NAME.h>, from runtime/include; all others by their path in
-# the tree, as "FOLDER/NAME.h".
+# Public headers are included as <boxtree/NAME.h>, from runtime/include and, what format shares with
+# applications, format/include; all others by their path in the tree, as "FOLDER/NAME.h".
 cmake_path(GET CMAKE_CURRENT_LIST_DIR PARENT_PATH BOXTREE_SOURCE_DIR)
 set(BOXTREE_INCLUDE_DIR ${CMAKE_CURRENT_BINARY_DIR}/include)  # of the one header that is generated
 include(${CMAKE_CURRENT_LIST_DIR}/BoxtreeParts.cmake)
@@ -43,11 +43,11 @@ function(boxtree_add_library name)
   add_library(boxtree::${name} ALIAS boxtree_${name})
   set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
   target_include_directories(boxtree_${name} PUBLIC
+    $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}/format/include>
     $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}/runtime/include>
     $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
     $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/boxtree/private>)
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   boxtree_set_target(boxtree_${name})
 endfunction()
 

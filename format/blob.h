@@ -7,16 +7,12 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <boxtree/kinds.h>
+
 namespace boxtree {
 
 /// FileHeader::incompatible_features of a blob: it has one section, kBlob, and no trees.
 inline constexpr std::uint64_t kFeatureBlob = 1u;
-
-/// How the file inside is compressed. Numbers are pinned.
-enum class BlobMethod : std::uint32_t {
-  kLzma = 1,  // an .xz stream
-  kZstd = 2,  // a zstd frame
-};
 
 /// First bytes of the section; the compressed stream follows up to its end.
 struct BlobHeader {

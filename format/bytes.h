@@ -7,15 +7,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <span>
 #include <type_traits>
+
+#include <boxtree/kinds.h>
 
 namespace boxtree {
 
 // Records are mapped, not parsed: the bytes of the file are the values of this machine.
 static_assert(std::endian::native == std::endian::little, "boxtree reads .bxt files in place");
-
-using Bytes = std::span<const std::byte>;
 
 /// Whether [offset, offset + length) lies in [0, size). Subtracts, so that nothing can wrap.
 [[nodiscard]] constexpr bool in_range(std::uint64_t offset, std::uint64_t length,

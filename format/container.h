@@ -12,9 +12,10 @@
 #include <type_traits>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "format/bytes.h"
 #include "format/limits.h"
-#include "format/result.h"
 
 namespace boxtree {
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // The error table: one row a code, so that names, meanings and exit statuses cannot drift apart.
-#include "format/error.h"
-
 #include <algorithm>
 #include <array>
+
+#include <boxtree/error.h>
 
 namespace boxtree {
 namespace {

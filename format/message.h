@@ -7,7 +7,7 @@
 #include <initializer_list>
 #include <string_view>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree {
 

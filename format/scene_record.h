@@ -9,19 +9,13 @@
 #include <string_view>
 #include <type_traits>
 
+#include <boxtree/error.h>
+#include <boxtree/kinds.h>
+
 #include "format/limits.h"
-#include "format/result.h"
 #include "format/tree_record.h"
 
 namespace boxtree {
-
-/// Kinds of queries, as bits: what a scene is asked, what an object answers. Pinned.
-using QueryKinds = std::uint8_t;
-inline constexpr QueryKinds kRayQueries = 1;
-inline constexpr QueryKinds kBoxQueries = 2;    // boxes and spheres
-inline constexpr QueryKinds kPointQueries = 4;  // closest points
-inline constexpr QueryKinds kPairQueries = 8;   // contacts
-inline constexpr QueryKinds kAllQueries = 15;
 
 /// Layers of one scene: instances of a layer answer the same queries and meet the same layers.
 inline constexpr std::uint32_t kMaxLayers = 32;
@@ -101,9 +95,6 @@ static_assert(sizeof(MaterialRun) == 8 && std::is_trivially_copyable_v<MaterialR
   if (material_count <= 1u << 8) return 1;
   return material_count <= 1u << 16 ? 2 : 4;
 }
-
-/// Stands for the material of a face in files or trees without materials.
-inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
 
 /// Parts that a profile can leave out. Numbers are pinned.
 enum class Part : std::uint16_t {

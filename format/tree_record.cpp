@@ -8,6 +8,7 @@
 
 #include "format/codec_wide.h"
 #include "format/limits.h"
+#include "format/message.h"
 
 namespace boxtree {
 namespace {
@@ -86,7 +87,7 @@ bool geometry_fits(const TreeRecord& record) {
 
 bool reserve_is_zero(const TreeRecord& record) {
   const bool has_grid = record.geometry == GeometryId::kGrid;
-  return (record.flags & ~kTreeKnownFlags) == 0 && (has_grid || record.grid_exponent == 0) &&
+  return (has_grid || record.grid_exponent == 0) &&
          std::all_of(record.reserved2.begin(), record.reserved2.end(),
                      [](std::uint64_t word) { return word == 0; });
 }
@@ -96,12 +97,17 @@ bool reserve_is_zero(const TreeRecord& record) {
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   const std::string place = "tree " + std::to_string(tree) + ": ";
   if (codec_name(record.codec) == "unknown") {
-    return Error{Errc::kCodecUnsupported,
-                 place + "codec " + std::to_string(static_cast<unsigned>(record.codec))};
+    return error_with(Errc::kCodecUnsupported, place, "codec #",
+                      {static_cast<std::uint64_t>(record.codec)});
   }
   if (geometry_name(record.geometry) == "unknown") {
-    return Error{Errc::kGeometryUnsupported,
-                 place + "geometry " + std::to_string(static_cast<unsigned>(record.geometry))};
+    return error_with(Errc::kGeometryUnsupported, place, "geometry #",
+                      {static_cast<std::uint64_t>(record.geometry)});
+  }
+  // What they mean may change what the numbers below may be.
+  if ((record.flags & ~kTreeKnownFlags) != 0) {
+    return error_with(Errc::kFeatureUnsupported, place, "flags #; this reader knows those of #",
+                      {record.flags, kTreeKnownFlags});
   }
   const auto invalid = [&](const char* what) { return Error{Errc::kRecordInvalid, place + what}; };
   if (!counts_fit(record) || !leaves_fit(record) || !duplicates_fit(record)) {

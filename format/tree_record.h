@@ -7,8 +7,9 @@
 #include <cstdint>
 #include <type_traits>
 
+#include <boxtree/error.h>
+
 #include "format/codec.h"
-#include "format/result.h"
 
 namespace boxtree {
 
@@ -78,8 +79,8 @@ struct CertificateRecord {
 static_assert(sizeof(CertificateRecord) == 64 && std::is_trivially_copyable_v<CertificateRecord>);
 static_assert(offsetof(CertificateRecord, degenerate_count) == 28);
 
-/// Checks everything about a record that can be checked without its sections: known codec and
-/// geometry, counts within limits, finite ordered root box, consistent root kind, zero reserve.
+/// Checks everything about a record that can be checked without its sections: known codec, geometry
+/// and flags, counts within limits, finite ordered root box, consistent root kind, zero reserve.
 /// `tree` is the record's number, for the message.
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree);
 

@@ -8,8 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/choose/calibrate.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

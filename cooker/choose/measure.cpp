@@ -7,6 +7,8 @@
 
 #include <boxtree/boxtree.h>
 
+#include "runtime/tree/bound_tree.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -47,7 +49,7 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   const std::uint64_t rounds = runs + 1;  // every round adds the same to the counts
   figures.ray_ns = 1e9 * per_question(workload.rays, runs, status, [&](const Ray& ray) {
                      const auto hit = closest_hit(tree, ray);
-                     if (hit) figures.ray_hits += hit->has_value() ? 1u : 0u;
+                     if (hit) ++figures.ray_hits;
                      return hit.code();
                    });
   figures.box_ns =
@@ -62,13 +64,13 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   figures.point_ns =
       1e9 * per_question(workload.points, runs, status, [&](const Eigen::Vector3d& point) {
         const auto closest = closest_point(tree, point);
-        if (closest && *closest) figures.point_distance += (*closest)->distance;
+        if (closest) figures.point_distance += closest->distance;
         return closest.code();
       });
   const Pose here = Pose::Identity();
   figures.pair_first_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
                             const auto contact = first_contact(tree, here, tree, pose);
-                            if (contact) figures.pair_hits += contact->has_value() ? 1u : 0u;
+                            if (contact) ++figures.pair_hits;
                             return contact.code();
                           });
   figures.pair_all_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
@@ -92,7 +94,7 @@ Status ask_first(const Tree& tree) {
   const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
   const Eigen::Vector3d along(0.1, 0.2, -1);
   const auto hit = closest_hit(tree, {bounds.center() - bounds.sizes().norm() * along, along});
-  return hit ? Status() : Status(hit.error());
+  return hit.ok() ? Status() : Status(hit.error());
 }
 
 Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_t tree,
@@ -126,7 +128,7 @@ Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_
 
 Eigen::AlignedBox3d bounds_in_object_space(const Tree& tree) {
   if (tree.empty()) return {Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
-  return tree.to_object(tree.root().box);
+  return BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
 }
 
 }  // namespace boxtree::cooker

@@ -11,8 +11,9 @@
 #include <utility>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/choose/workload.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -16,6 +16,7 @@
 #include "format/limits.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/query/float_state.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -186,7 +187,7 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
   if (!candidate.gates.pass()) return candidate;
   BindOptions bind;
   bind.mesh = arrays_of(mesh);
-  const Result<Tree> bound = Tree::bind(parts_of(tree), 0, bind);
+  const Result<Tree> bound = bind_parts(parts_of(tree), bind);
   if (!bound) return bound.error();
   const Result<WorkOfKinds> work = count_work(*bound, questions);
   if (!work) return work.error();

@@ -61,16 +61,17 @@ struct LeafPairCounter {
   void leaf_pair(NodeRef, NodeRef) const noexcept { ++counts->leaves; }
 };
 
-Errc ask(const Tree& tree, const Ray& ray, Counts& counts) {
+Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
   int exponent = 0;
   static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
   WalkBound nodes(tree.record().node_count);
-  Listening query{RayQuery(tree, nodes, ray, exponent, false), &counts};
+  RayCandidate hit;
+  Listening query{RayQuery(tree, nodes, RayInTree(tree, ray, exponent), false, hit), &counts};
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const Tree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
+Errc ask(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
   WalkBound nodes(tree.record().node_count);
@@ -79,7 +80,7 @@ Errc ask(const Tree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const Tree& tree, const Eigen::Vector3d& point, Counts& counts) {
+Errc ask(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   WalkBound nodes(tree.record().node_count);
   Listening query{
@@ -88,7 +89,7 @@ Errc ask(const Tree& tree, const Eigen::Vector3d& point, Counts& counts) {
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const Tree& tree, const Pose& pose, Counts& counts) {
+Errc ask(const BoundTree& tree, const Pose& pose, Counts& counts) {
   const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
   // Where bounds reach as far as doubles, a copy beside them lies beyond: nothing to count.
   if (!relative) return Errc::kOk;
@@ -105,7 +106,7 @@ Result<Work> mean_work(const Tree& tree, const std::vector<Question>& questions)
   Counts counts;
   std::size_t asked = 0;
   for (const Question& question : questions) {
-    const Errc error = ask(tree, question, counts);
+    const Errc error = ask(BoundTree::of(tree), question, counts);
     ++asked;
     if (counts.are_enough()) break;  // and so ended the question, whatever it says
     if (error != Errc::kOk) return error;

@@ -6,9 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <boxtree/error.h>
+
 #include "cooker/choose/workload.h"
-#include "format/result.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 

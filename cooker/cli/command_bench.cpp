@@ -15,6 +15,7 @@
 #include "cooker/import/import.h"
 #include "cooker/report/approximate.h"
 #include "cooker/report/pages_json.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -42,8 +43,8 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
   if (!open) return open.error();
   return Json{{"file", path.string()},
               {"tree", tree.name()},
-              {"codec", codec_name(tree.codec())},
-              {"triangles", tree.record().triangle_count},
+              {"codec", codec_name(BoundTree::of(tree).codec())},
+              {"triangles", BoundTree::of(tree).record().triangle_count},
               {"ray_ns", figures->ray_ns},
               {"box_ns", figures->box_ns},
               {"point_ns", figures->point_ns},
@@ -87,8 +88,8 @@ Result<Json> bench_approximate(const std::filesystem::path& path, const Tree& tr
   if (!figures) return figures.error();
   Json json = {{"file", path.string()},
                {"tree", tree.name()},
-               {"codec", codec_name(tree.codec())},
-               {"triangles", tree.record().triangle_count}};
+               {"codec", codec_name(BoundTree::of(tree).codec())},
+               {"triangles", BoundTree::of(tree).record().triangle_count}};
   for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
     json["approximate"][kApproximateNames[kind]] = {
         {"by_error", to_json((*figures)[kind].by_error)},
@@ -177,8 +178,8 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   if (!figures) return figures.error();
   if (!arguments.json) {
     fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", shown(path.string()),
-               shown(tree.name()), codec_name(tree.codec()), tree.record().triangle_count,
-               figures->file_pages);
+               shown(tree.name()), codec_name(BoundTree::of(tree).codec()),
+               BoundTree::of(tree).record().triangle_count, figures->file_pages);
     fmt::print("  open  {:5} pages\n", figures->open);
     print_row("ray", figures->ray);
     print_row("box", figures->box);
@@ -186,8 +187,8 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   }
   return Json{{"file", path.string()},
               {"tree", tree.name()},
-              {"codec", codec_name(tree.codec())},
-              {"triangles", tree.record().triangle_count},
+              {"codec", codec_name(BoundTree::of(tree).codec())},
+              {"triangles", BoundTree::of(tree).record().triangle_count},
               {"pages", to_json(*figures)}};
 }
 

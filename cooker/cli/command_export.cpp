@@ -18,6 +18,7 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/import/source_scene.h"
 #include "cooker/write/outputs.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -100,7 +101,8 @@ class SourceMeshes {
     ImportOptions options = careful_import();
     for (const std::uint32_t i : trees) {
       if (i >= file.tree_count()) continue;
-      if ((file.tree_record(i).flags & kTreePositionsF64) != 0) options.precision = Precision::kF64;
+      if ((OpenFile::of(file).tree_record(i).flags & kTreePositionsF64) != 0)
+        options.precision = Precision::kF64;
     }
     SourceMeshes meshes;
     Result<Imported> whole = import_mesh(path, options);
@@ -149,10 +151,10 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
   for (const std::uint32_t i : *numbers) {
     BindOptions options;
     if (i < file.tree_count() && meshes) {
-      options.mesh = meshes->find(file.tree_record(i));
+      options.mesh = meshes->find(OpenFile::of(file).tree_record(i));
       options.verify_mesh = true;
     } else if (i < file.tree_count() && !with_triangles) {
-      options.mesh = absent_arrays(file.tree_record(i));
+      options.mesh = absent_arrays(OpenFile::of(file).tree_record(i));
     }
     Result<Tree> tree = Tree::bind(file, i, options);
     if (!tree) {

@@ -10,6 +10,8 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/scene_info.h"
+#include "format/container.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -27,7 +29,9 @@ struct TreeBytes {
 };
 
 TreeBytes bytes_of(const File& file, std::uint32_t index) {
-  const auto size = [&](SectionKind kind) { return file.section(kind, index).size(); };
+  const auto size = [&](SectionKind kind) {
+    return OpenFile::of(file).section(kind, index).size();
+  };
   return {size(SectionKind::kNodes) + size(SectionKind::kDuplicates),
           size(SectionKind::kVertices) + size(SectionKind::kCorners), size(SectionKind::kFaceIds),
           size(SectionKind::kCertificate) + sizeof(TreeRecord)};
@@ -40,7 +44,7 @@ double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
 }
 
 Json tree_json(const File& file, std::uint32_t index) {
-  const TreeRecord record = file.tree_record(index);
+  const TreeRecord record = OpenFile::of(file).tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
   Json json = {{"name", file.tree_name(index)},
                {"codec", codec_name(record.codec)},
@@ -58,7 +62,7 @@ Json tree_json(const File& file, std::uint32_t index) {
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)}};
-  const Bytes certificate = file.section(SectionKind::kCertificate, index);
+  const Bytes certificate = OpenFile::of(file).section(SectionKind::kCertificate, index);
   json["max_vertex_error"] =
       certificate.size() == sizeof(CertificateRecord)
           ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
@@ -76,13 +80,13 @@ Json tree_json(const File& file, std::uint32_t index) {
 }
 
 Json file_json(const File& file) {
-  const FileHeader& header = file.container().header;
+  const FileHeader& header = OpenFile::of(file).container().header;
   Json json = {{"version", fmt::format("{}.{}", header.version_major, header.version_minor)},
                {"file_bytes", header.file_bytes}};
   json["trees"] = Json::array();
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) json["trees"].push_back(tree_json(file, i));
   json["sections"] = Json::array();
-  for (const SectionEntry& entry : file.container().sections) {
+  for (const SectionEntry& entry : OpenFile::of(file).container().sections) {
     json["sections"].push_back(
         {{"kind", section_name(static_cast<SectionKind>(entry.kind))},
          {"tree", entry.owner == kNoOwner ? Json(nullptr) : Json(entry.owner)},
@@ -119,7 +123,7 @@ int run(const Arguments& arguments) {
   if (!opened) return fail(opened.error());
   const File* const file = &opened->file;
   for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
-    if (Status status = check_tree_record(file->tree_record(i), i); !status) {
+    if (Status status = check_tree_record(OpenFile::of(*file).tree_record(i), i); !status) {
       return fail(status.error());
     }
   }

@@ -200,7 +200,7 @@ int run_paper(const Arguments& arguments) {
 // Why other libraries are not in the report; empty when they are.
 std::string why_no_peers(const Arguments& arguments) {
   if (arguments.no_times) return "--no-times";
-  if (arguments.peers.empty()) return "boxtree_peers was not built";
+  if (arguments.peers.empty()) return "no --peers PROGRAM";
   return {};
 }
 
@@ -269,7 +269,6 @@ int run(const Arguments& arguments) {
 
 void add_report_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  arguments->peers = default_peers();
   CLI::App& command =
       *app.add_subcommand("report", "Which encoding to use for meshes: bytes, times and errors");
   command.add_option("meshes", arguments->meshes, "Mesh files")->required();
@@ -292,7 +291,8 @@ void add_report_command(CLI::App& app, int& status) {
       ->excludes(paper);
   command
       .add_option("--peers", arguments->peers,
-                  "The program boxtree_peers [tests/bench/ beside this one, if built]")
+                  "The program boxtree_peers, to measure other libraries, too "
+                  "(BUILD/tests/bench/boxtree_peers) [none]")
       ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }

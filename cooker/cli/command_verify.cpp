@@ -15,6 +15,7 @@
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -28,7 +29,7 @@ struct Arguments {
 template <class Property>
 bool any_tree(const File& file, Property property) {
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    if (property(file.tree_record(i))) return true;
+    if (property(OpenFile::of(file).tree_record(i))) return true;
   }
   return false;
 }

@@ -10,7 +10,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "format/result.h"
+#include <boxtree/error.h>
+
 #include "runtime/tree/geometry.h"
 
 namespace boxtree::cooker {

@@ -59,14 +59,6 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
 
 }  // namespace
 
-std::filesystem::path default_peers() {
-  std::error_code error;
-  const std::filesystem::path self = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) return {};
-  const std::filesystem::path path = self.parent_path() / "tests/bench/boxtree_peers";
-  return std::filesystem::exists(path, error) ? path : std::filesystem::path();
-}
-
 Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
                                        const std::vector<std::string>& arguments, bool quiet) {
   std::vector<std::string> command = {program.string()};

@@ -7,13 +7,11 @@
 #include <string>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/report/paper_tables.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
-
-/// The measuring program of a build folder, which an installation does not have; empty then.
-[[nodiscard]] std::filesystem::path default_peers();
 
 /// Runs `program` with `arguments` and --json. Its messages go where ours do unless `quiet`.
 /// Errors: kFileUnreadable when it does not start; kInternal when it fails or prints no rows.

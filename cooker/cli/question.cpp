@@ -11,6 +11,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -21,14 +22,15 @@ Json face_json(const FaceRef& face) {
 
 Result<Json> answer(const Tree& tree, const RayQuestion& question) {
   const auto hit = question.any ? any_hit(tree, question.ray) : closest_hit(tree, question.ray);
-  if (!hit) return hit.error();
-  Json json = {{"hit", hit->has_value()}};
-  if (*hit) {
-    const RayHit& found = **hit;
+  if (!hit.ok()) return hit.error();
+  Json json = {{"hit", hit.has_value()}};
+  if (hit.has_value()) {
+    const RayHit& found = *hit;
     json["t"] = found.t;
     json["face"] = face_json(found.face);
     json["triangle"] = found.triangle;
-    json["point"] = to_json(question.ray.origin + found.t * question.ray.direction);
+    json["point"] = to_json(found.point);
+    json["normal"] = to_json(found.normal);
     json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
   }
   return json;
@@ -47,9 +49,9 @@ Result<Json> answer_faces(Overlap overlap) {
 
 const char* name_of(Overlap overlap) {
   switch (overlap) {
-    case Overlap::kHit:
+    case Overlap::kOverlapping:
       return "hit";
-    case Overlap::kFree:
+    case Overlap::kDisjoint:
       return "free";
     case Overlap::kUndecided:
       return "undecided";
@@ -92,7 +94,7 @@ template <class Bounded>
 Json bounds_json(const Bounded& bounds) {
   return {{"lower", bounds.lower},
           {"upper", bounds.upper},
-          {"near_enough", bounds.is_near_enough},
+          {"near_enough", bounds.converged},
           {"nodes", bounds.nodes_expanded}};
 }
 
@@ -105,9 +107,9 @@ Result<Json> answer(const Tree& tree, const PointQuestion& question) {
     return json;
   }
   const auto closest = closest_point(tree, question.at, question.options.max_distance);
-  if (!closest) return closest.error();
+  if (!closest.ok()) return closest.error();
   Json json;
-  add_closest(json, *closest);
+  add_closest(json, closest.as_optional());
   return json;
 }
 
@@ -329,8 +331,8 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
   std::unique_ptr<SourceMesh> source;
   if (!mesh.empty()) {
     ImportOptions import = careful_import();
-    const bool f64 =
-        *index < file->tree_count() && (file->tree_record(*index).flags & kTreePositionsF64) != 0;
+    const bool f64 = *index < file->tree_count() &&
+                     (OpenFile::of(*file).tree_record(*index).flags & kTreePositionsF64) != 0;
     if (f64) import.precision = Precision::kF64;
     Result<Imported> imported = import_mesh(mesh, import);
     if (!imported) return imported.error();

@@ -10,7 +10,8 @@
 #include <fmt/format.h>
 
 #include "cooker/import/mesh_arrays.h"
-#include "runtime/scene/scene.h"
+#include "runtime/file/open_file.h"
+#include "runtime/scene/bound_scene.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -43,14 +44,14 @@ Json instance_json(const File& file, const Scene& scene, std::uint32_t number) {
           {"tree", info->tree},
           {"layer", info->layer},
           {"moves", info->moves},
-          {"triangles", file.tree_record(info->tree).triangle_count},
+          {"triangles", OpenFile::of(file).tree_record(info->tree).triangle_count},
           {"pose", rows}};
 }
 
 Json left_out_json(const File& file) {
   Json json = Json::array();
-  const Bytes bytes = file.section(SectionKind::kLeftOut);
-  const Bytes names = file.section(SectionKind::kNames);
+  const Bytes bytes = OpenFile::of(file).section(SectionKind::kLeftOut);
+  const Bytes names = OpenFile::of(file).section(SectionKind::kNames);
   for (std::size_t i = 0; i < bytes.size() / sizeof(LeftOutRecord); ++i) {
     const auto record = load<LeftOutRecord>(bytes.data(), i);
     const bool is_text = in_range(record.text_offset, record.text_bytes, names.size());
@@ -80,7 +81,7 @@ Result<Json> scene_json(const File& file) {
   }
   Json layers = Json::array();
   for (std::uint32_t i = 0; i < scene->layer_count(); ++i) {
-    const LayerRecord layer = scene->layer(i);
+    const LayerRecord layer = BoundScene::of(*scene).layer(i);
     Json meets = Json::array();
     for (std::uint32_t other = 0; other < scene->layer_count(); ++other) {
       if (((layer.meets >> other) & 1u) != 0) meets.push_back(other);
@@ -94,7 +95,7 @@ Result<Json> scene_json(const File& file) {
     materials.push_back(scene->material_name(i));
   }
   return Json{{"instance_count", scene->instance_count()},
-              {"moving", scene->moving().size()},
+              {"moving", BoundScene::of(*scene).moving().size()},
               {"placed_triangles", triangles},
               {"queries", kinds_json(scene->query_kinds())},
               {"layers", layers},

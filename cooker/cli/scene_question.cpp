@@ -19,7 +19,7 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
     if (!info->name.empty()) json["name"] = info->name;
   }
   json["face"] = face.face.id == kNoFaceId ? Json(nullptr) : Json(face.face.id);
-  const std::uint32_t material = scene.material(face.instance, face.face);
+  const std::uint32_t material = scene.material(face);
   if (material == kNoMaterial) return;
   const std::string_view name = scene.material_name(material);
   json["material"] = name.empty() ? Json(material) : Json(name);
@@ -27,14 +27,15 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
 
 Result<Json> answer(const Scene& scene, const RayQuestion& question) {
   const auto hit = question.any ? any_hit(scene, question.ray) : closest_hit(scene, question.ray);
-  if (!hit) return hit.error();
-  Json json = {{"hit", hit->has_value()}};
-  if (*hit) {
-    const RayHit& found = (*hit)->hit;
+  if (!hit.ok()) return hit.error();
+  Json json = {{"hit", hit.has_value()}};
+  if (hit.has_value()) {
+    const SceneRayHit& found = *hit;
     json["t"] = found.t;
-    add_face(scene, {(*hit)->instance, found.face}, json);
+    add_face(scene, {found.instance, found.face}, json);
     json["triangle"] = found.triangle;
-    json["point"] = to_json(question.ray.origin + found.t * question.ray.direction);
+    json["point"] = to_json(found.point);
+    json["normal"] = to_json(found.normal);
     json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
   }
   return json;
@@ -73,13 +74,13 @@ Result<Json> answer(const Scene& scene, const SphereQuestion& question) {
 Result<Json> answer(const Scene& scene, const PointQuestion& question) {
   if (question.with_bounds) return not_for_scenes("an allowed error or a budget");
   const auto found = closest_point(scene, question.at, question.options.max_distance);
-  if (!found) return found.error();
-  Json json = {{"found", found->has_value()}};
-  if (*found) {
-    const ClosestPoint& closest = (*found)->closest;
+  if (!found.ok()) return found.error();
+  Json json = {{"found", found.has_value()}};
+  if (found.has_value()) {
+    const SceneClosestPoint& closest = *found;
     json["distance"] = closest.distance;
     json["point"] = to_json(closest.point);
-    add_face(scene, {(*found)->instance, closest.face}, json);
+    add_face(scene, {closest.instance, closest.face}, json);
     json["triangle"] = closest.triangle;
   }
   return json;

@@ -7,7 +7,7 @@
 
 #include "cooker/encode/encoded.h"
 #include "format/tree_record.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 

@@ -17,18 +17,18 @@ namespace boxtree::cooker {
 namespace {
 
 bool is_external(const Tree& tree) {
-  return tree.record().geometry == GeometryId::kExternal;
+  return BoundTree::of(tree).record().geometry == GeometryId::kExternal;
 }
 
 std::vector<std::uint32_t> face_ids_of(const Tree& tree) {
-  std::vector<std::uint32_t> ids(tree.record().face_count);
-  for (std::uint32_t f = 0; f < ids.size(); ++f) ids[f] = tree.face_id(f);
+  std::vector<std::uint32_t> ids(BoundTree::of(tree).record().face_count);
+  for (std::uint32_t f = 0; f < ids.size(); ++f) ids[f] = BoundTree::of(tree).face_id(f);
   return ids;
 }
 
 // Which stored face comes when; nothing if they are stored in the order asked for.
 Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder order) {
-  const std::uint32_t count = tree.record().face_count;
+  const std::uint32_t count = BoundTree::of(tree).record().face_count;
   if (order == ExportOrder::kSource && !tree.has_face_ids() && !tree.empty()) {
     return Error{Errc::kPartLeftOut,
                  fmt::format("{}: face ids were left out when it was cooked, so that the order of "
@@ -36,8 +36,8 @@ Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder or
                              tree.name())};
   }
   const bool stored_as_source =
-      is_external(tree) || (tree.record().flags & kTreeFacesInSourceOrder) != 0;
-  const bool stored_as_tree = tree.leaves().is_in_tree_order();
+      is_external(tree) || (BoundTree::of(tree).record().flags & kTreeFacesInSourceOrder) != 0;
+  const bool stored_as_tree = BoundTree::of(tree).leaves().is_in_tree_order();
   if (order == ExportOrder::kSource ? stored_as_source : stored_as_tree) {
     return std::vector<std::uint32_t>();
   }
@@ -59,8 +59,8 @@ Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder or
 }  // namespace
 
 bool has_f32_positions(const Tree& tree) {
-  return tree.record().geometry != GeometryId::kGrid &&
-         (tree.record().flags & kTreePositionsF64) == 0;
+  return BoundTree::of(tree).record().geometry != GeometryId::kGrid &&
+         (BoundTree::of(tree).record().flags & kTreePositionsF64) == 0;
 }
 
 Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
@@ -69,10 +69,10 @@ Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
   Result<std::vector<std::uint32_t>> stored = stored_order(tree, order);
   if (!stored) return stored.error();
   faces.order_ = std::move(*stored);
-  if (tree.leaves().is_grid()) {
+  if (BoundTree::of(tree).leaves().is_grid()) {
     if (Status status = faces.decode_grid(tree); !status) return status.error();
   } else {
-    faces.arrays_ = tree.leaves().mesh();
+    faces.arrays_ = BoundTree::of(tree).leaves().mesh();
   }
   if (Status status = faces.check(); !status) {
     return Error{status.code(), fmt::format("{}: {}", tree.name(), status.error().detail)};
@@ -81,19 +81,21 @@ Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
 }
 
 Status DecodedFaces::decode_grid(const Tree& tree) {
-  const std::uint32_t count = tree.record().face_count;
+  const std::uint32_t count = BoundTree::of(tree).record().face_count;
   decoded_.positions.precision = Precision::kF64;
   decoded_.faces.reserve(count);
   Welder<double> welder(decoded_.positions.f64, count / 2);  // as many as a closed surface has
   const auto number_of = [&](const TriangleBatch& batch, std::uint32_t triangle,
                              std::size_t corner) {
-    const Eigen::Vector3d p = tree.frame().to_object(batch.triangle(triangle).corner[corner]);
+    const Eigen::Vector3d p =
+        BoundTree::of(tree).frame().to_object(batch.triangle(triangle).corner[corner]);
     return welder.add({p[0], p[1], p[2]});
   };
   TriangleBatch batch;
   for (std::uint32_t first = 0; first < count; first += kLeafFaces) {
     const std::uint32_t faces = std::min(kLeafFaces, count - first);
-    if (const Errc error = tree.leaves().read(first, faces, batch); error != Errc::kOk) {
+    if (const Errc error = BoundTree::of(tree).leaves().read(first, faces, batch);
+        error != Errc::kOk) {
       return Error{error, fmt::format("{}: faces from {} on cannot be read", tree.name(), first)};
     }
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -116,7 +118,7 @@ Status DecodedFaces::check() {
     }
   }
   for (std::uint32_t f = 0; f < face_count(); ++f) {
-    const std::array<std::uint32_t, 4> corner = arrays_.face(f);
+    const std::array<std::uint32_t, 4> corner = face_of(arrays_, f);
     const std::size_t corners = corner[3] == kMissingCorner ? 3 : 4;
     for (std::size_t i = 0; i < corners; ++i) {
       if (corner[i] < vertex_count()) continue;

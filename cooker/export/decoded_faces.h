@@ -9,7 +9,7 @@
 #include <Eigen/Core>
 
 #include "cooker/import/source_mesh.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 
@@ -44,12 +44,12 @@ class DecodedFaces {
 
   /// Precondition: vertex < vertex_count().
   [[nodiscard]] Eigen::Vector3d position(std::uint32_t vertex) const {
-    return arrays_.position(vertex);
+    return position_of(arrays_, vertex);
   }
   /// Vertex numbers of face i in the order chosen, the last kMissingCorner for a triangle.
   /// Precondition: i < face_count().
   [[nodiscard]] std::array<std::uint32_t, 4> face(std::uint32_t i) const {
-    return arrays_.face(order_.empty() ? i : order_[i]);
+    return face_of(arrays_, order_.empty() ? i : order_[i]);
   }
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 Status check_levels(std::span<const Tree> trees, const std::vector<LevelRange>& levels) {
   std::uint32_t deepest = 0;
-  for (const Tree& tree : trees) deepest = std::max(deepest, tree.record().depth);
+  for (const Tree& tree : trees) deepest = std::max(deepest, BoundTree::of(tree).record().depth);
   for (const LevelRange& range : levels) {
     if (range.first > deepest) {
       return Error{Errc::kInvalidQuery,
@@ -124,8 +124,9 @@ Box<double> bounds_of(const ShownTree& shown) {
     bounds.extend(shown.faces->position(v));
   }
   for (const BoxGroup& group : shown.boxes) {
-    visit_group(shown.tree, group,
-                [&](const Box<double>& box) { bounds.extend(shown.tree.to_object(box)); });
+    visit_group(shown.tree, group, [&](const Box<double>& box) {
+      bounds.extend(BoundTree::of(shown.tree).to_object(box));
+    });
   }
   return {{bounds.min()[0], bounds.min()[1], bounds.min()[2]},
           {bounds.max()[0], bounds.max()[1], bounds.max()[2]}};

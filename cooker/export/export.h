@@ -12,8 +12,8 @@
 
 #include "cooker/export/decoded_faces.h"
 #include "cooker/export/tree_boxes.h"
-#include "runtime/scene/scene.h"
-#include "runtime/tree/tree.h"
+#include "runtime/scene/bound_scene.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 

@@ -13,6 +13,7 @@
 #include "cooker/export/byte_sink.h"
 #include "cooker/export/placed_shape.h"
 #include "cooker/version.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -148,7 +149,7 @@ Part plan_boxes(const ShownTree& shown, const BoxGroup& group, bool solid,
   part.vertex_count = 8 * group.count;
   part.index_count = group.count * (solid ? 6 * kBoxSides.size() : 2 * kBoxEdges.size());
   visit_group(shown.tree, group, [&](const Box<double>& box) {
-    const PlacedBox bounds = placed(shown.tree.to_object(box), translation);
+    const PlacedBox bounds = placed(BoundTree::of(shown.tree).to_object(box), translation);
     extend(part, bounds.low, bounds.high);
   });
   return part;
@@ -378,7 +379,8 @@ class PartBytes {
 
   void write_boxes() {
     visit_group(tree_.shown->tree, *part_.group, [&](const Box<double>& box) {
-      const PlacedBox bounds = placed(tree_.shown->tree.to_object(box), tree_.translation);
+      const PlacedBox bounds =
+          placed(BoundTree::of(tree_.shown->tree).to_object(box), tree_.translation);
       for (unsigned corner = 0; corner < 8; ++corner) out_.put(bounds.corner(corner));
     });
     for (std::uint64_t first = 0; first < part_.vertex_count; first += 8) {
@@ -406,7 +408,7 @@ class PartBytes {
 Eigen::Vector3d glb_translation(const Tree& tree) {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
   if (tree.empty() || has_f32_positions(tree)) return translation;
-  const Eigen::AlignedBox3d bounds = tree.to_object(tree.root().box);
+  const Eigen::AlignedBox3d bounds = BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
   const double extent = bounds.sizes().maxCoeff();
   if (!(extent > 0) || !std::isfinite(extent)) return translation;
   const double step = std::ldexp(1.0, std::ilogb(extent));

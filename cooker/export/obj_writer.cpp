@@ -10,6 +10,7 @@
 #include "cooker/export/byte_sink.h"
 #include "cooker/export/placed_shape.h"
 #include "cooker/version.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -54,8 +55,9 @@ class ObjText {
     }
     for (const BoxGroup& group : shown.boxes) {
       out_.print("g {}\n", group_name(name, group.name()));
-      visit_group(shown.tree, group,
-                  [&](const Box<double>& box) { add_box(shown.tree.to_object(box)); });
+      visit_group(shown.tree, group, [&](const Box<double>& box) {
+        add_box(BoundTree::of(shown.tree).to_object(box));
+      });
     }
   }
 

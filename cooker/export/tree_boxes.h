@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "format/limits.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/work.h"
 
 namespace boxtree::cooker {
@@ -44,9 +44,9 @@ template <class Visit>
     std::uint32_t level;
   };
   if (tree.empty()) return Errc::kOk;
-  std::vector<Entry> stack = {{tree.root(), 0}};
+  std::vector<Entry> stack = {{BoundTree::of(tree).root(), 0}};
   NodeChildren children;
-  WalkBound bound(tree.record().node_count);
+  WalkBound bound(BoundTree::of(tree).record().node_count);
   while (!stack.empty()) {
     const Entry entry = stack.back();
     stack.pop_back();
@@ -59,7 +59,8 @@ template <class Visit>
     if (entry.level >= kMaxDepth) return Errc::kDepthExceeded;
     if (entry.level >= deepest) continue;
     if (!bound.take_one()) return bound.error();
-    if (const Errc error = tree.expand(entry.node, children); error != Errc::kOk) return error;
+    if (const Errc error = BoundTree::of(tree).expand(entry.node, children); error != Errc::kOk)
+      return error;
     for (std::uint32_t i = children.count; i-- > 0;) {
       stack.push_back({children.child[i], entry.level + 1});
     }

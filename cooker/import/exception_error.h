@@ -5,7 +5,7 @@
 #include <exception>
 #include <new>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

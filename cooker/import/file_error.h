@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

@@ -10,7 +10,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 struct aiScene;
 

@@ -8,7 +8,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

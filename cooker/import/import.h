@@ -9,8 +9,9 @@
 #include <string>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/import/source_mesh.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "cooker/import/source_mesh.h"
-#include "runtime/scene/scene.h"
+#include "runtime/file/open_file.h"
+#include "runtime/scene/bound_scene.h"
 #include "runtime/tree/geometry.h"
 
 namespace boxtree::cooker {
@@ -46,7 +47,7 @@ namespace boxtree::cooker {
 [[nodiscard]] inline Result<Scene> bind_without_meshes(const File& file) {
   std::vector<SceneMeshArrays> absent;
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    absent.push_back({i, absent_arrays(file.tree_record(i))});
+    absent.push_back({i, absent_arrays(OpenFile::of(file).tree_record(i))});
   }
   SceneOptions options;
   options.meshes = absent;

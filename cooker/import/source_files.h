@@ -11,7 +11,7 @@
 
 #include <assimp/DefaultIOSystem.h>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

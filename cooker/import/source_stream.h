@@ -11,8 +11,9 @@
 #include <string_view>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/system/file_handle.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -5,7 +5,7 @@
 
 #include <string_view>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

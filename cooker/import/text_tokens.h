@@ -15,8 +15,9 @@
 
 #include <Eigen/Core>
 
+#include <boxtree/error.h>
+
 #include "cooker/import/source_mesh.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

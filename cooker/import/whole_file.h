@@ -8,7 +8,7 @@
 #include <limits>
 #include <string>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

@@ -5,9 +5,10 @@
 #include <cstdint>
 #include <string>
 
+#include <boxtree/error.h>
+
 #include "cooker/text/utf8.h"
 #include "format/bytes.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

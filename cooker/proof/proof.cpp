@@ -18,6 +18,7 @@
 #include "cooker/proof/reserved.h"
 #include "cooker/proof/scene_proof.h"
 #include "format/limits.h"
+#include "runtime/file/open_file.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree::cooker {
@@ -52,20 +53,20 @@ class Walk {
   Walk(const Tree& tree, bool with_geometry, Reached& reached, NodeBudget& budget, TreeProof& proof)
       : tree_(tree),
         with_geometry_(with_geometry),
-        task_levels_(tree.record().face_count < kParallelFaces ? 0
-                     : is_wide(tree.codec())                   ? kWideTaskLevels
-                                                               : kBinaryTaskLevels),
+        task_levels_(BoundTree::of(tree).record().face_count < kParallelFaces ? 0
+                     : is_wide(BoundTree::of(tree).codec())                   ? kWideTaskLevels
+                                                                              : kBinaryTaskLevels),
         reached_(reached),
         budget_(budget),
         proof_(proof) {}
 
   void run() {
     if (!tree_.empty()) {
-      walk(tree_.root(), 0);
+      walk(BoundTree::of(tree_).root(), 0);
       visit_duplicates();
       report_unreached();
     }
-    const TreeRecord& record = tree_.record();
+    const TreeRecord& record = BoundTree::of(tree_).record();
     compare("depth", proof_.certificate.depth, record.depth);
     compare("nodes", proof_.certificate.node_count, record.node_count);
     compare("faces", proof_.certificate.face_count, record.face_count);
@@ -115,7 +116,7 @@ class Walk {
       return content;
     }
     NodeChildren children;
-    if (const Errc error = tree_.expand(node, children); error != Errc::kOk) {
+    if (const Errc error = BoundTree::of(tree_).expand(node, children); error != Errc::kOk) {
       add(error, "node " + std::to_string(node.ref.first) + " contradicts itself");
       return content;
     }
@@ -188,7 +189,7 @@ class Walk {
     }
     if (!with_geometry_) return content;
     TriangleBatch batch;
-    if (const Errc error = tree_.leaf_triangles(leaf, batch); error != Errc::kOk) {
+    if (const Errc error = BoundTree::of(tree_).leaf_triangles(leaf, batch); error != Errc::kOk) {
       add(error, "leaf at face " + std::to_string(leaf.ref.first) + " cannot be read");
       return content;
     }
@@ -206,10 +207,10 @@ class Walk {
   // original: so it must be in a leaf, be the same to the bit, and have the smaller id. Originals
   // ascend, as they are searched for.
   void visit_duplicates() {
-    const std::uint32_t in_leaves = faces_in_leaves(tree_.record());
+    const std::uint32_t in_leaves = faces_in_leaves(BoundTree::of(tree_).record());
     std::uint32_t before = 0;
-    for (std::uint32_t copy = in_leaves; copy < tree_.record().face_count; ++copy) {
-      const std::uint32_t original = tree_.original_of(copy);
+    for (std::uint32_t copy = in_leaves; copy < BoundTree::of(tree_).record().face_count; ++copy) {
+      const std::uint32_t original = BoundTree::of(tree_).original_of(copy);
       const bool is_original = original < in_leaves && original >= before &&
                                reached_[original].load(std::memory_order_relaxed) != 0;
       if (!is_original) {
@@ -221,7 +222,8 @@ class Walk {
       before = original;
       if (!reach(copy, "is in a leaf and a copy of another one")) continue;
       if (!has_same_triangles(original, copy) ||
-          (tree_.has_face_ids() && tree_.face_id(original) > tree_.face_id(copy))) {
+          (tree_.has_face_ids() &&
+           BoundTree::of(tree_).face_id(original) > BoundTree::of(tree_).face_id(copy))) {
         add(Errc::kDuplicateDiffers, "face " + std::to_string(copy) +
                                          " is listed as a copy of face " +
                                          std::to_string(original));
@@ -232,8 +234,8 @@ class Walk {
   bool has_same_triangles(std::uint32_t original, std::uint32_t copy) {
     if (!with_geometry_) return true;
     TriangleBatch a, b;
-    if (tree_.leaves().read(original, 1, a) != Errc::kOk ||
-        tree_.leaves().read(copy, 1, b) != Errc::kOk || a.count != b.count) {
+    if (BoundTree::of(tree_).leaves().read(original, 1, a) != Errc::kOk ||
+        BoundTree::of(tree_).leaves().read(copy, 1, b) != Errc::kOk || a.count != b.count) {
       return false;
     }
     Box<double> content = empty_box<double>();
@@ -270,7 +272,7 @@ class Walk {
 
 Status check_certificate(const File& file, std::uint32_t index, bool with_geometry,
                          const CertificateRecord& found) {
-  const Bytes bytes = file.section(SectionKind::kCertificate, index);
+  const Bytes bytes = OpenFile::of(file).section(SectionKind::kCertificate, index);
   if (bytes.size() != sizeof(CertificateRecord)) {
     return Error{
         Errc::kSectionSize,
@@ -286,7 +288,7 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
   BindOptions options;
   options.mesh = mesh;
   options.verify_mesh = mesh.has_value();
-  if (!mesh) options.mesh = absent_arrays(file.tree_record(index));
+  if (!mesh) options.mesh = absent_arrays(OpenFile::of(file).tree_record(index));
   return Tree::bind(file, index, options);
 }
 
@@ -294,8 +296,8 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 
 TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   TreeProof proof;
-  Reached reached(tree.empty() ? 0 : tree.record().face_count);
-  NodeBudget budget(tree.record().node_count);
+  Reached reached(tree.empty() ? 0 : BoundTree::of(tree).record().face_count);
+  NodeBudget budget(BoundTree::of(tree).record().node_count);
   Walk(tree, with_geometry, reached, budget, proof).run();
   return proof;
 }
@@ -314,7 +316,7 @@ bool certificate_holds(const CertificateRecord& stated, const CertificateRecord&
 
 Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
   Findings findings;
-  if (Status status = check_padding(file.bytes(), file.container()); !status) {
+  if (Status status = check_padding(file.bytes(), OpenFile::of(file).container()); !status) {
     findings.push_back(status.error());
   }
   if (Status status = verify_checksums(file); !status) findings.push_back(status.error());
@@ -324,19 +326,21 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
       findings.push_back(tree.error());
       continue;
     }
-    const bool with_geometry = tree->record().geometry != GeometryId::kExternal || mesh.has_value();
+    const bool with_geometry =
+        BoundTree::of(*tree).record().geometry != GeometryId::kExternal || mesh.has_value();
     TreeProof proof = prove_tree(*tree, with_geometry);
-    for (Error& finding : check_reserved(tree->record(), file.section(SectionKind::kNodes, i),
-                                         file.section(SectionKind::kVertices, i),
-                                         file.section(SectionKind::kCorners, i))) {
+    for (Error& finding : check_reserved(BoundTree::of(*tree).record(),
+                                         OpenFile::of(file).section(SectionKind::kNodes, i),
+                                         OpenFile::of(file).section(SectionKind::kVertices, i),
+                                         OpenFile::of(file).section(SectionKind::kCorners, i))) {
       proof.findings.push_back(std::move(finding));
     }
     if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
       proof.findings.push_back(status.error());
     }
-    const TreeRecord& record = tree->record();
-    if (Status status = check_text(file.section(SectionKind::kNames), record.name_offset,
-                                   record.name_bytes, "its name");
+    const TreeRecord& record = BoundTree::of(*tree).record();
+    if (Status status = check_text(OpenFile::of(file).section(SectionKind::kNames),
+                                   record.name_offset, record.name_bytes, "its name");
         !status) {
       proof.findings.push_back(status.error());
     }

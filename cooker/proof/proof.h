@@ -9,7 +9,7 @@
 #include <boxtree/file.h>
 
 #include "format/tree_record.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 

@@ -7,7 +7,8 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/names.h"
-#include "runtime/scene/scene.h"
+#include "runtime/file/open_file.h"
+#include "runtime/scene/bound_scene.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree::cooker {
@@ -18,11 +19,12 @@ class SceneWalk {
   SceneWalk(const File& file, const Scene& scene) : file_(file), scene_(scene) {}
 
   Findings run() {
-    const SceneRecord& record = scene_.record();
+    const SceneRecord& record = BoundScene::of(scene_).record();
     reached_.assign(record.static_count, false);
-    if (record.root == RootKind::kLeaf) visit_leaf(0, root_box<float>(scene_.top_level()));
+    if (record.root == RootKind::kLeaf)
+      visit_leaf(0, root_box<float>(BoundScene::of(scene_).top_level()));
     if (record.root == RootKind::kSubtree) {
-      visit_node({0, 0}, root_box<float>(scene_.top_level()), 1);
+      visit_node({0, 0}, root_box<float>(BoundScene::of(scene_).top_level()), 1);
     }
     for (std::uint32_t i = 0; i < record.static_count; ++i) {
       if (!reached_[i]) add(Errc::kFaceUnreachable, name(i) + "no leaf of the top level is it");
@@ -54,12 +56,12 @@ class SceneWalk {
   Box<double> visit_node(NodeRef node, const Box<float>& box, std::uint32_t depth) {
     Box<double> content = empty_box<double>();
     TopLevel::Codec::Children children;
-    if (depth > kMaxWideDepth || nodes_ == scene_.record().node_count) {
+    if (depth > kMaxWideDepth || nodes_ == BoundScene::of(scene_).record().node_count) {
       add(Errc::kDepthExceeded,
           "node " + std::to_string(node.first) + " is too deep, or met twice");
       return content;
     }
-    if (!scene_.top_level().codec.expand(node, box, children)) {
+    if (!BoundScene::of(scene_).top_level().codec.expand(node, box, children)) {
       add(Errc::kNodeCorrupt, "node " + std::to_string(node.first) + " contradicts itself");
       return content;
     }
@@ -68,7 +70,8 @@ class SceneWalk {
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const Box<double> below =
           children.is_leaf(i)
-              ? visit_leaf(scene_.top_level().instance(children.ref[i]), children.box(i))
+              ? visit_leaf(BoundScene::of(scene_).top_level().instance(children.ref[i]),
+                           children.box(i))
               : visit_node(children.ref[i], children.box(i), depth + 1);
       expand(content, below);
     }
@@ -79,10 +82,10 @@ class SceneWalk {
   Box<double> visit_leaf(std::uint32_t instance, const Box<float>& box) {
     if (reached_[instance]) add(Errc::kFaceRepeated, name(instance) + "is two leaves");
     reached_[instance] = true;
-    const std::optional<Scene::Placed> placed = scene_.place(instance);
+    const std::optional<BoundScene::Placed> placed = BoundScene::of(scene_).place(instance);
     const auto bounds = placed ? placed->bounds() : std::nullopt;
     if (!bounds) return empty_box<double>();  // check_instance says why
-    const Box<double> content = scene_.to_frame(bounds->world);
+    const Box<double> content = BoundScene::of(scene_).to_frame(bounds->world);
     check_box(name(instance) + "its leaf", content, box);
     return content;
   }
@@ -98,24 +101,24 @@ class SceneWalk {
 
   void check_instance(std::uint32_t instance) {
     const auto record =
-        load<InstanceRecord>(file_.section(SectionKind::kInstances).data(), instance);
-    const bool is_static = instance < scene_.record().static_count;
+        load<InstanceRecord>(OpenFile::of(file_).section(SectionKind::kInstances).data(), instance);
+    const bool is_static = instance < BoundScene::of(scene_).record().static_count;
     if (is_static == ((record.flags & kInstanceMoves) != 0) ||
         (record.flags & ~kInstanceKnownFlags) != 0) {
       add(Errc::kRecordInvalid, name(instance) + "flags " + std::to_string(record.flags));
     }
     check_text(name(instance) + "its name", record.name_offset, record.name_bytes);
-    const std::optional<Scene::Placed> placed = scene_.place(instance);
+    const std::optional<BoundScene::Placed> placed = BoundScene::of(scene_).place(instance);
     const auto bounds = placed ? placed->bounds() : std::nullopt;
     if (!bounds) {
       add(Errc::kRecordInvalid, name(instance) + "its tree, layer or pose");
-    } else if (is_static && bounds->condition > scene_.record().condition) {
+    } else if (is_static && bounds->condition > BoundScene::of(scene_).record().condition) {
       add(Errc::kRecordInvalid, name(instance) + "its condition is above the scene's");
     }
   }
 
   void check_text(const std::string& what, std::uint32_t offset, std::uint32_t bytes) {
-    const Bytes names = file_.section(SectionKind::kNames);
+    const Bytes names = OpenFile::of(file_).section(SectionKind::kNames);
     const Status status = cooker::check_text(names, offset, bytes, what);
     if (!status.ok()) add(status.error().code, status.error().detail);
   }
@@ -123,14 +126,15 @@ class SceneWalk {
   void check_layers() {
     const std::uint32_t count = scene_.layer_count();
     for (std::uint32_t i = 0; i < count; ++i) {
-      const LayerRecord layer = scene_.layer(i);
+      const LayerRecord layer = BoundScene::of(scene_).layer(i);
       const std::string what = "layer " + std::to_string(i) + ": ";
       check_text(what + "its name", layer.name_offset, layer.name_bytes);
       if ((layer.query_kinds & ~std::uint32_t{scene_.query_kinds()}) != 0) {
         add(Errc::kRecordInvalid, what + "answers queries that the scene does not");
       }
       for (std::uint32_t j = 0; j < i; ++j) {
-        if (((layer.meets >> j) & 1u) == ((scene_.layer(j).meets >> i) & 1u)) continue;
+        if (((layer.meets >> j) & 1u) == ((BoundScene::of(scene_).layer(j).meets >> i) & 1u))
+          continue;
         add(Errc::kRecordInvalid, what + "meets layer " + std::to_string(j) + " one way alone");
       }
     }
@@ -139,13 +143,14 @@ class SceneWalk {
   void check_materials() {
     const std::uint32_t count = scene_.material_count();
     for (std::uint32_t i = 0; i < count; ++i) {
-      const auto record = load<MaterialRecord>(file_.section(SectionKind::kMaterials).data(), i);
+      const auto record =
+          load<MaterialRecord>(OpenFile::of(file_).section(SectionKind::kMaterials).data(), i);
       check_text("material " + std::to_string(i) + ": its name", record.name_offset,
                  record.name_bytes);
     }
     for (std::uint32_t tree = 0; tree < file_.tree_count(); ++tree) {
       const std::string what = "materials of tree " + std::to_string(tree) + ": ";
-      const Bytes runs = file_.section(SectionKind::kMaterialRuns, tree);
+      const Bytes runs = OpenFile::of(file_).section(SectionKind::kMaterialRuns, tree);
       for (std::size_t i = 0; i < runs.size() / sizeof(MaterialRun); ++i) {
         const auto run = load<MaterialRun>(runs.data(), i);
         const bool is_ordered =
@@ -155,7 +160,7 @@ class SceneWalk {
           add(Errc::kRecordInvalid, what + "run " + std::to_string(i));
         }
       }
-      const Bytes faces = file_.section(SectionKind::kFaceMaterials, tree);
+      const Bytes faces = OpenFile::of(file_).section(SectionKind::kFaceMaterials, tree);
       const std::uint8_t bytes = material_number_bytes(count);
       for (std::size_t face = 0; face < faces.size() / bytes; ++face) {
         if (load_number(faces.data(), bytes, face) >= count) {
@@ -166,7 +171,7 @@ class SceneWalk {
   }
 
   void check_left_out() {
-    const Bytes bytes = file_.section(SectionKind::kLeftOut);
+    const Bytes bytes = OpenFile::of(file_).section(SectionKind::kLeftOut);
     for (std::size_t i = 0; i < bytes.size() / sizeof(LeftOutRecord); ++i) {
       const auto record = load<LeftOutRecord>(bytes.data(), i);
       const std::string what = "left out " + std::to_string(i) + ": ";

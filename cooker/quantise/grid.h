@@ -8,8 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include <boxtree/error.h>
+
 #include "cooker/import/source_mesh.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

@@ -32,19 +32,15 @@ struct Bounds {
   double lower = 0;
   double upper = 0;
   bool is_found = false;
-  bool is_near_enough = false;
+  bool converged = false;
   std::uint64_t nodes = 0;
 };
 
 template <class Answer>
 Bounds bounds_of(const Result<Answer>& answer) {
   if (!answer) return {answer.code()};
-  return {Errc::kOk,
-          answer->lower,
-          answer->upper,
-          answer->witness.has_value(),
-          answer->is_near_enough,
-          answer->nodes_expanded};
+  return {Errc::kOk,         answer->lower,         answer->upper, answer->witness.has_value(),
+          answer->converged, answer->nodes_expanded};
 }
 
 Bounds ask(const Tree& tree, const Eigen::Vector3d& point, const Approximation& approximation) {
@@ -108,7 +104,7 @@ class Sweep {
       const TrueDistance& truth = truths_[i];
       nodes.push_back(static_cast<double>(found.nodes));
       if (!before_.empty() && nodes[i] > before_[i]) ++step.dearer;
-      if (found.is_near_enough) ++step.near_enough;
+      if (found.converged) ++step.near_enough;
       if (found.lower > truth.upper || found.upper < truth.lower) ++step.false_bounds;
       if (!found.is_found) continue;
       const double scale = std::max(truth.upper, resolution_);

@@ -110,21 +110,21 @@ class Watch {
 // kLeafFaces would be if the triangles were spread evenly over a square of the tree's extent.
 Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size_t count) {
   const double extent = bounds_in_object_space(tree).sizes().maxCoeff();
-  const double faces = std::max(tree.record().face_count, kLeafFaces);
+  const double faces = std::max(BoundTree::of(tree).record().face_count, kLeafFaces);
   const double half_edge = extent * std::sqrt(kLeafFaces / faces) / 2;
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(half_edge);
   std::mt19937 random(1);
   std::vector<Eigen::AlignedBox3d> boxes;
   while (boxes.size() < count && !tree.empty()) {
-    Node node = tree.root();
+    Node node = BoundTree::of(tree).root();
     NodeChildren children;
     while (!node.is_leaf) {
-      const Errc error = tree.expand(node, children);
+      const Errc error = BoundTree::of(tree).expand(node, children);
       if (error != Errc::kOk) return error;
       if (children.count == 0) return Errc::kNodeCorrupt;
       node = children.child[random() % children.count];
     }
-    const Eigen::Vector3d center = tree.to_object(node.box).center();
+    const Eigen::Vector3d center = BoundTree::of(tree).to_object(node.box).center();
     boxes.emplace_back(center - half, center + half);
   }
   return boxes;

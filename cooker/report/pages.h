@@ -9,9 +9,10 @@
 #include <functional>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "format/bytes.h"
-#include "format/result.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 

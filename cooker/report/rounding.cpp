@@ -14,6 +14,7 @@
 #include "cooker/cook.h"
 #include "cooker/import/mesh_arrays.h"
 #include "format/codec_plain.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -154,7 +155,7 @@ Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTre
   figures.gates_nearest = check_gates(nearest, arrays_of(mesh));
   figures.gates_outward = check_gates(outward, arrays_of(mesh));
   const auto count = [&](const EncodedTree& encoded, std::uint64_t& total) -> Status {
-    const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, BindOptions());
+    const Result<Tree> tree = bind_parts(parts_of(encoded));
     if (!tree) return tree.error();
     const std::vector<Pose> poses = aligned_poses(bounds_in_object_space(*tree));
     figures.questions = poses.size();
@@ -181,7 +182,7 @@ Result<std::vector<StairFigures>> stair_contact() {
   const Result<EncodedTree> box = cook_as(crate(), CodecId::kPlainF32, options);
   if (!box) return box.error();
   const EncodedTree nearest = with_nearest_cuts(*f32);
-  const Result<Tree> resting = Tree::bind(parts_of(*box), 0, BindOptions());
+  const Result<Tree> resting = bind_parts(parts_of(*box));
   if (!resting) return resting.error();
 
   std::vector<StairFigures> rows;
@@ -190,7 +191,7 @@ Result<std::vector<StairFigures>> stair_contact() {
     row.depth = depth;
     row.steps = kSteps;
     const auto count_missed = [&](const EncodedTree& encoded, std::uint64_t& missed) -> Status {
-      const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, BindOptions());
+      const Result<Tree> tree = bind_parts(parts_of(encoded));
       if (!tree) return tree.error();
       for (std::size_t i = 0; i < kSteps; ++i) {
         Pose pose = Pose::Identity();

@@ -6,8 +6,9 @@
 #include <cstdint>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "cooker/proof/gates.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

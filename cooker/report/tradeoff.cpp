@@ -17,6 +17,7 @@
 #include "cooker/choose/search.h"
 #include "cooker/report/scratch_file.h"
 #include "cooker/write/file_writer.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -67,15 +68,15 @@ Result<Answers> answers_of(const Tree& tree, const Workload& questions) {
   answers.distances.reserve(questions.points.size());
   for (const Ray& ray : questions.rays) {
     const auto hit = closest_hit(tree, ray);
-    if (!hit) return hit.error();
-    answers.ray_lengths.push_back(*hit ? (*hit)->t * ray.direction.norm()
-                                       : std::numeric_limits<double>::infinity());
+    if (!hit.ok()) return hit.error();
+    answers.ray_lengths.push_back(hit.has_value() ? hit->t * ray.direction.norm()
+                                                  : std::numeric_limits<double>::infinity());
   }
   for (const Eigen::Vector3d& point : questions.points) {
     const auto closest = closest_point(tree, point);
-    if (!closest) return closest.error();
-    answers.distances.push_back(*closest ? (*closest)->distance
-                                         : std::numeric_limits<double>::infinity());
+    if (!closest.ok()) return closest.error();
+    answers.distances.push_back(closest.has_value() ? closest->distance
+                                                    : std::numeric_limits<double>::infinity());
   }
   return answers;
 }
@@ -239,7 +240,7 @@ class Measurement {
       return Error{Errc::kInternal, mesh_.name + ": nothing to compare answers with"};
     }
     const EncodedTree& encoded = assemble(tried, i);
-    const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
+    const Result<Tree> tree = bind_parts(parts_of(encoded));
     if (!tree) return tree.error();
     Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();
@@ -256,7 +257,7 @@ class Measurement {
     const std::vector<std::byte> file = serialize(std::span(&encoded, 1));
     point.bytes = bytes_of(encoded, file.size());
     if (!point.gates.pass()) return {};  // listed as failed, but it has no answers to look at
-    const Result<Tree> tree = Tree::bind(parts_of(encoded), 0, {});
+    const Result<Tree> tree = bind_parts(parts_of(encoded));
     if (!tree) return tree.error();
     const Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();

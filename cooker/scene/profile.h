@@ -11,11 +11,11 @@
 #include <string_view>
 #include <vector>
 
+#include <boxtree/error.h>
 #include <boxtree/query.h>
 
 #include "cooker/choose/choose.h"
 #include "format/codec.h"
-#include "format/result.h"
 #include "format/scene_record.h"
 
 namespace boxtree::cooker {

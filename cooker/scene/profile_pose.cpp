@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "runtime/primitive/rounding.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -177,7 +179,7 @@ Eigen::Matrix3d rotation_of(const Eigen::Vector4d& quaternion) noexcept {
 // magnitudes (Higham, "Accuracy and Stability", lemma 3.1). Rows are divided by their largest
 // magnitude first, so that none of it over- or underflows.
 bool is_invertible(const Eigen::Matrix3d& linear) noexcept {
-  constexpr double kGamma8 = 8 * (std::numeric_limits<double>::epsilon() / 2) * (1 + 1e-14);
+  constexpr double kGamma8 = 8 * kRoundoffF64 * (1 + 1e-14);
   Eigen::Matrix3d m = linear;
   for (int row = 0; row < 3; ++row) {
     double largest = 0;

@@ -14,6 +14,7 @@
 #include "format/bytes.h"
 #include "format/container.h"
 #include "runtime/file/checksum.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -24,12 +25,12 @@ class Account {
 
   void add_kept(const File& file) {
     std::uint64_t of_sections = 0;
-    for (const SectionEntry& entry : file.container().sections) {
+    for (const SectionEntry& entry : OpenFile::of(file).container().sections) {
       add_section(entry);
       of_sections += entry.size;
     }
     const std::uint64_t table =
-        sizeof(FileHeader) + file.container().sections.size() * sizeof(SectionEntry);
+        sizeof(FileHeader) + OpenFile::of(file).container().sections.size() * sizeof(SectionEntry);
     keep("header and section table", table, "what a reader opens the file by");
     keep("padding", file.bytes().size() - of_sections - table,
          "every section starts at a multiple of 64 bytes");

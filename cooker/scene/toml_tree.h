@@ -9,7 +9,7 @@
 #include <variant>
 #include <vector>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

@@ -5,8 +5,9 @@
 #include <filesystem>
 #include <string>
 
+#include <boxtree/error.h>
+
 #include "format/bytes.h"
-#include "format/result.h"
 
 namespace boxtree::cooker {
 

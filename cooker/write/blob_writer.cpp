@@ -9,6 +9,7 @@
 
 #include "cooker/proof/proof.h"
 #include "cooker/write/file_writer.h"
+#include "runtime/file/mapping.h"
 
 namespace boxtree::cooker {
 
@@ -20,7 +21,7 @@ Status write_blob(const std::filesystem::path& path, const FileParts& parts, Blo
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
   if (Status status = out->write(*blob); !status) return status;
-  const Result<Mapping> written = Mapping::map(out->descriptor(), path);
+  const Result<Mapping> written = Mapping::map(out->descriptor(), path.string());
   if (!written) return written.error();
   const Result<File> opened = open_blob(written->bytes(), ~std::uint64_t{0});
   if (!opened) return opened.error();

@@ -11,6 +11,7 @@
 #include "cooker/text/utf8.h"
 #include "format/container.h"
 #include "runtime/file/checksum.h"
+#include "runtime/file/mapping.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -197,7 +198,7 @@ Status write_file(const std::filesystem::path& path, const FileParts& parts) {
       !status) {
     return status;
   }
-  const Result<Mapping> written = Mapping::map(file->descriptor(), path);
+  const Result<Mapping> written = Mapping::map(file->descriptor(), path.string());
   if (!written) return written.error();
   const Result<File> opened = File::open(written->bytes());
   if (!opened) return opened.error();

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <span>
 
-#include "format/result.h"
+#include <boxtree/error.h>
 
 namespace boxtree::cooker {
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The container around a compressed stream.
+#include "format/blob.h"
+
 #include <algorithm>
 #include <cstring>
 #include <string>
@@ -9,6 +11,7 @@
 
 #include "runtime/blob/compressor.h"
 #include "runtime/file/checksum.h"
+#include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
 
 namespace boxtree {
@@ -69,14 +72,14 @@ Result<File> open_blob(Bytes blob, std::uint64_t memory_limit) {
   if (checksum(out) != header.checksum) {
     return Error{Errc::kBlobCorrupt, "the checksum of the file inside differs"};
   }
-  return File::open(std::move(*memory).finish());
+  return OpenFile::open(std::move(*memory).finish(), {});
 }
 
-Result<File> open_blob(const std::filesystem::path& path, std::uint64_t memory_limit) {
+Result<File> open_blob(const std::string& path, std::uint64_t memory_limit) {
   const Result<Mapping> mapping = Mapping::map(path);
   if (!mapping) return mapping.error();
   Result<File> file = open_blob(mapping->bytes(), memory_limit);
-  if (!file) return Error{file.code(), path.string() + ": " + file.error().detail};
+  if (!file) return Error{file.code(), path + ": " + file.error().detail};
   return file;
 }
 

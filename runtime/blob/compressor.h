@@ -6,9 +6,10 @@
 #include <span>
 #include <vector>
 
+#include <boxtree/error.h>
+
 #include "format/blob.h"
 #include "format/bytes.h"
-#include "format/result.h"
 
 namespace boxtree {
 

@@ -16,7 +16,7 @@ namespace {
 
 class Descriptor {
  public:
-  explicit Descriptor(const std::filesystem::path& path)
+  explicit Descriptor(const std::string& path)
       // Not blocking, so that opening a pipe comes back and the pipe can be refused.
       : value_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   Descriptor(const Descriptor&) = delete;
@@ -30,19 +30,19 @@ class Descriptor {
   int value_;
 };
 
-Error system_error(Errc code, const std::filesystem::path& path, int number) {
-  return Error{code, path.string() + ": " + std::generic_category().message(number)};
+Error system_error(Errc code, const std::string& path, int number) {
+  return Error{code, path + ": " + std::generic_category().message(number)};
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
-Result<std::size_t> regular_file_size(int file, const std::filesystem::path& path) {
+Result<std::size_t> regular_file_size(int file, const std::string& path) {
   if (file < 0) {
     return system_error(errno == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable, path, errno);
   }
   struct stat info {};
   if (::fstat(file, &info) != 0) return system_error(Errc::kFileUnreadable, path, errno);
   if (!S_ISREG(info.st_mode)) {
-    return Error{Errc::kFileUnreadable, path.string() + ": not a regular file"};
+    return Error{Errc::kFileUnreadable, path + ": not a regular file"};
   }
   return static_cast<std::size_t>(info.st_size);
 }
@@ -63,12 +63,12 @@ Mapping::~Mapping() {
   if (data_ != nullptr) ::munmap(const_cast<std::byte*>(data_), size_);
 }
 
-Result<Mapping> Mapping::map(const std::filesystem::path& path) {
+Result<Mapping> Mapping::map(const std::string& path) {
   const Descriptor file(path);
   return map(file.value(), path);
 }
 
-Result<Mapping> Mapping::map(int descriptor, const std::filesystem::path& name) {
+Result<Mapping> Mapping::map(int descriptor, const std::string& name) {
   const Result<std::size_t> size = regular_file_size(descriptor, name);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
@@ -77,19 +77,19 @@ Result<Mapping> Mapping::map(int descriptor, const std::filesystem::path& name) 
   return Mapping(static_cast<const std::byte*>(data), *size);
 }
 
-Result<Mapping> Mapping::copy(const std::filesystem::path& path) {
+Result<Mapping> Mapping::copy(const std::string& path) {
   const Descriptor file(path);
   const Result<std::size_t> size = regular_file_size(file.value(), path);
   if (!size) return size.error();
   if (*size == 0) return Mapping();
   Result<WritableMapping> copied = WritableMapping::allocate(*size);
-  if (!copied) return Error{copied.code(), path.string() + ": " + copied.error().detail};
+  if (!copied) return Error{copied.code(), path + ": " + copied.error().detail};
   std::byte* const data = copied->bytes().data();
   for (std::size_t done = 0; done < *size;) {
     const ssize_t got = ::pread(file.value(), data + done, *size - done, static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return system_error(Errc::kFileUnreadable, path, errno);
-    if (got == 0) return Error{Errc::kFileUnreadable, path.string() + ": shrank while being read"};
+    if (got == 0) return Error{Errc::kFileUnreadable, path + ": shrank while being read"};
     done += static_cast<std::size_t>(got);
   }
   return std::move(*copied).finish();

@@ -2,12 +2,13 @@
 // A whole file as read-only memory, mapped or copied.
 #pragma once
 
-#include <filesystem>
 #include <span>
+#include <string>
 #include <utility>
 
+#include <boxtree/error.h>
+
 #include "format/bytes.h"
-#include "format/result.h"
 
 namespace boxtree {
 
@@ -26,13 +27,13 @@ class Mapping {
   ///
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does. Use copy() for files that others may modify.
-  static Result<Mapping> map(const std::filesystem::path& path);
+  static Result<Mapping> map(const std::string& path);
 
   /// Maps a file that is open already; `name` is for messages. The descriptor stays the caller's.
-  static Result<Mapping> map(int descriptor, const std::filesystem::path& name);
+  static Result<Mapping> map(int descriptor, const std::string& name);
 
   /// Reads `path` into memory of its own: immune to later changes of the file.
-  static Result<Mapping> copy(const std::filesystem::path& path);
+  static Result<Mapping> copy(const std::string& path);
 
   [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
 

@@ -6,9 +6,10 @@
 #include <string>
 #include <string_view>
 
+#include <boxtree/error.h>
+
 #include "format/bytes.h"
 #include "format/container.h"
-#include "format/result.h"
 
 namespace boxtree {
 

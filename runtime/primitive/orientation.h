@@ -8,6 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "runtime/primitive/rounding.h"
+
 namespace boxtree {
 
 // Error bounds of the filters. Let u = 2^-53, and let every operation round with a factor 1 + d,
@@ -22,9 +24,8 @@ namespace boxtree {
 //
 // Underflow adds at most 2^-1075 a product, which the second product of orient3d multiplies by a
 // difference of at most 2^201: less than 2^-860 in all, for coordinates up to 2^200.
-inline constexpr double kRoundoff = std::numeric_limits<double>::epsilon() / 2;
-inline constexpr double kOrient3dBound = (8 + 256 * kRoundoff) * kRoundoff;
-inline constexpr double kOrient2dBound = (4 + 64 * kRoundoff) * kRoundoff;
+inline constexpr double kOrient3dBound = (8 + 256 * kRoundoffF64) * kRoundoffF64;
+inline constexpr double kOrient2dBound = (4 + 64 * kRoundoffF64) * kRoundoffF64;
 inline constexpr double kOrientUnderflow = 0x1p-860;
 
 /// orient3d and orient2d by expansion arithmetic alone, some 100 times slower.

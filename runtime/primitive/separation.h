@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
 namespace boxtree {
@@ -20,8 +21,8 @@ namespace boxtree {
 // of two of them, rounded, by at most 8 u |v|_1 R (1 + O(u)) in all. The square root, the quotient
 // and |v|^2 round by less than a factor 1 - 4 u together.
 // Underflow: |v|_1 of at least 2^-400 keeps what products lose below 2^-600 of the quotient.
-inline constexpr double kSeparationError = 5 * std::numeric_limits<double>::epsilon();
-inline constexpr double kSeparationQuotient = 1 - 2 * std::numeric_limits<double>::epsilon();
+inline constexpr double kSeparationError = 10 * kRoundoffF64;
+inline constexpr double kSeparationQuotient = 1 - 4 * kRoundoffF64;
 inline constexpr double kSeparationUnderflow = 0x1p-600;
 inline constexpr double kShortestDirection = 0x1p-400;
 

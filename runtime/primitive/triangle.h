@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The triangle that every leaf predicate takes: three corners in double precision.
+// What every leaf predicate asks of a triangle.
 #pragma once
 
-#include <array>
-
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 
-namespace boxtree {
+#include <boxtree/triangle.h>
 
-/// A triangle in any orthogonal coordinates. Corners may coincide or lie on a line: the predicates
-/// treat such a degenerate triangle as the segment or point that it is.
-struct Triangle {
-  std::array<Eigen::Vector3d, 3> corner;
-};
+namespace boxtree {
 
 /// Whether the triangle's normal, computed in double, is zero: a segment, a point, or too thin to
 /// have an area that double resolves.

@@ -36,17 +36,17 @@
 #include <limits>
 
 #include "runtime/primitive/orientation.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 namespace {
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();  // 2 u
-constexpr double kGrow = 1 + 4 * kEpsilon;
-constexpr double kProjectionError = 4 * kEpsilon;
+constexpr double kGrow = 1 + 8 * kRoundoffF64;
+constexpr double kProjectionError = 8 * kRoundoffF64;
 constexpr double kUnderflow = 0x1p-1068;
 constexpr double kTwoSums = 4 * kUnderflow;  // what is lost in the radius and in a projection
-constexpr double kOverlapError = 32 * kEpsilon;
+constexpr double kOverlapError = 64 * kRoundoffF64;
 constexpr double kLargestSure = 0x1p300;
 constexpr double kShortestSure = 0x1p-300;
 

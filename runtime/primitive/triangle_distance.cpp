@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "runtime/primitive/closest_point.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
 #include "runtime/primitive/vector3.h"
 
@@ -24,12 +25,12 @@ namespace {
 // off by at most 5 R u a component: 2 of the edge, 2 of the product, 1 of the sum. A point of a
 // face by 7 R u, and by 8 R u more where its weights exceed 1 by 4 u. At worst an edge pierces a
 // face: 20 R u a component, below 36 R u in length.
-constexpr double kPointError = 18 * std::numeric_limits<double>::epsilon();
+constexpr double kPointError = 36 * kRoundoffF64;
 // Difference of the points, squares, sum and root: below a factor 1 + 4 u.
-constexpr double kUpperQuotient = 1 + 2 * std::numeric_limits<double>::epsilon();
+constexpr double kUpperQuotient = 1 + 4 * kRoundoffF64;
 // The line between two computed points is off by at most 10 R u a component, an arm of the triangle
 // at most 2 R long on each axis: 60 R R u, and as little again for the rounding of their product.
-constexpr double kPlaneError = 40 * std::numeric_limits<double>::epsilon();
+constexpr double kPlaneError = 80 * kRoundoffF64;
 // Squares of less than 2^-537 are lost.
 constexpr double kUpperUnderflow = 0x1p-500;
 

@@ -7,9 +7,10 @@
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
-Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
+Result<Visit> overlap_box(const Tree& queried, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
                           const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
   const BoxQuery query{tree.frame().to_tree(box.min()).cwiseMax(-kReach).cwiseMin(kReach),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Boxes over the wide codecs.
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/targets.h"
@@ -18,16 +19,16 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_box(const Tree& tree, FaceWalk<BoxQuery>& faces) {
+Errc walk_box(const BoundTree& tree, FaceWalk<BoxQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
 class BoxFilter {
  public:
   // Decoded boxes are exact; triangles were rounded to float.
-  BoxFilter(const Tree& tree, const BoxQuery& query) {
-    const double error = reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
-                         double{std::numeric_limits<float>::min()};
+  BoxFilter(const BoundTree& tree, const BoxQuery& query) {
+    const double error =
+        tree.largest_reach() * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       bounds_.set(k, query.low[axis], query.high[axis], error);
@@ -43,7 +44,7 @@ class BoxFilter {
   BoxBounds bounds_;
 };
 
-Errc walk_box(const Tree& tree, FaceWalk<BoxQuery>& faces) {
+Errc walk_box(const BoundTree& tree, FaceWalk<BoxQuery>& faces) {
   return with_wide_codec<Errc>(
       tree, [&](const auto& codec) { return walk<BoxFilter>(tree, codec, faces); });
 }
@@ -61,7 +62,7 @@ HWY_EXPORT(walk_box);
 
 }  // namespace
 
-Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk) {
+Errc walk_wide(const BoundTree& tree, FaceWalk<BoxQuery>& walk) {
   if (tree.has_float_nodes()) {
     return HWY_DYNAMIC_DISPATCH(walk_box)(tree, walk);
   }

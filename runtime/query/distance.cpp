@@ -15,9 +15,9 @@ namespace {
 using Walk = DistanceWalk<ErasedCodec, ErasedCodec>;
 
 struct Placed {
-  const Tree& first;
+  const BoundTree& first;
   const Pose& first_pose;
-  const Tree& second;
+  const BoundTree& second;
   const RelativePose& pose;
   const WorldMetric& metric;
 };
@@ -25,7 +25,7 @@ struct Placed {
 Distance answer(const Placed& placed, const Walk& walk, const Approximation& approximation) {
   Distance result;
   result.nodes_expanded = walk.visited();
-  result.is_near_enough = !walk.is_spent();
+  result.converged = !walk.is_spent();
   result.lower = placed.metric.length_below(walk.lower());
   const NearestPair& nearest = walk.nearest();
   const bool is_within = walk.lower() <= approximation.max_distance;
@@ -47,10 +47,12 @@ Distance answer(const Placed& placed, const Walk& walk, const Approximation& app
 
 }  // namespace
 
-Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
+Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const Tree& second_tree,
                           const Pose& second_pose, const DistanceOptions& options) {
   const DefaultFloatState state;
-  if (!options.is_valid()) return Errc::kInvalidQuery;
+  const BoundTree& first = BoundTree::of(first_tree);
+  const BoundTree& second = BoundTree::of(second_tree);
+  if (!is_valid(options)) return Errc::kInvalidQuery;
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;

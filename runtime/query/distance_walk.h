@@ -15,10 +15,12 @@
 #include <limits>
 #include <optional>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/nearest_triangles.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/world_metric.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/frontier.h"
 #include "runtime/walk/traversal.h"
 
@@ -29,8 +31,8 @@ template <Codec A, Codec B>
 class DistanceWalk {
  public:
   /// `approximation` is in the metric's units.
-  DistanceWalk(const Tree& first, const A& first_codec, const Tree& second, const B& second_codec,
-               const RelativePose& pose, const WorldMetric& metric,
+  DistanceWalk(const BoundTree& first, const A& first_codec, const BoundTree& second,
+               const B& second_codec, const RelativePose& pose, const WorldMetric& metric,
                const Approximation& approximation) noexcept
       : first_(first),
         second_(second),
@@ -79,7 +81,7 @@ class DistanceWalk {
   /// The lower bound of the distance. The root of a rounded square may be above the square by a
   /// factor of 1 + u.
   [[nodiscard]] double lower() const noexcept {
-    constexpr double kLess = 1 - std::numeric_limits<double>::epsilon();
+    constexpr double kLess = 1 - 2 * kRoundoffF64;
     const double left = std::sqrt(std::min(nearest_.left(), frontier_.least_left())) * kLess;
     return std::min({left, nearest_.pair().lower, nearest_.pair().upper});
   }
@@ -213,8 +215,8 @@ class DistanceWalk {
     return sum;
   }
 
-  const Tree& first_;
-  const Tree& second_;
+  const BoundTree& first_;
+  const BoundTree& second_;
   const A first_codec_;
   const B second_codec_;
   const RelativePose& pose_;

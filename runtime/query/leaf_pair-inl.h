@@ -10,8 +10,10 @@
 #include <boxtree/query.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/pair_filter.h"
 #include "runtime/query/pair_work.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/leaf-inl.h"
 #include "runtime/walk/vector3-inl.h"
 
@@ -85,12 +87,12 @@ HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector leng
                                          float plane_error, const Vector3 (&w)[3],
                                          float point_error) {
   const Floats d;
-  constexpr float kUnit = std::numeric_limits<float>::epsilon() / 2;
   const FloatVector h0 = dot(normal, w[0]), h1 = dot(normal, w[1]), h2 = dot(normal, w[2]);
   const FloatVector away = hn::Max(largest(w[0]), hn::Max(largest(w[1]), largest(w[2])));
-  const FloatVector blur = hn::MulAdd(hn::Set(d, 64 * kUnit), length, hn::Set(d, 64 * plane_error));
-  const FloatVector spread =
-      hn::MulAdd(hn::Set(d, 32 * kUnit), away, hn::Set(d, 8 * (plane_error + point_error)));
+  const FloatVector blur = hn::MulAdd(hn::Set(d, static_cast<float>(64 * kRoundoffF32)), length,
+                                      hn::Set(d, 64 * plane_error));
+  const FloatVector spread = hn::MulAdd(hn::Set(d, static_cast<float>(32 * kRoundoffF32)), away,
+                                        hn::Set(d, 8 * (plane_error + point_error)));
   constexpr float kUnderflow = 0x1p-100f;
   const FloatVector doubt =
       hn::MulAdd(length, hn::MulAdd(blur, away, hn::Mul(length, spread)), hn::Set(d, kUnderflow));
@@ -102,7 +104,7 @@ HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector leng
 /// times in a row.
 class LeafPairs {
  public:
-  LeafPairs(const Tree& first, const Tree& second, const RelativePose& pose,
+  LeafPairs(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
             const PairFilter& filter, PairVisitor visitor)
       : pose_(pose),
         filter_(filter),

@@ -11,6 +11,7 @@
 #include "runtime/query/leaf_reading.h"
 #include "runtime/query/pair_work.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -29,7 +30,7 @@ using TriangleWatch = FunctionRef<bool(const Triangle& first, const Triangle& mo
 /// Reports the faces of two leaves that touch. Everything passed by reference must outlive it.
 class LeafPairTest {
  public:
-  LeafPairTest(const Tree& first, const Tree& second, const RelativePose& pose,
+  LeafPairTest(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                PairVisitor visitor) noexcept
       : pose_(pose), report_(first, second, visitor), leaves_(first, second, pose) {}
 

@@ -12,6 +12,7 @@
 #include "format/limits.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -19,7 +20,8 @@ namespace boxtree {
 /// passed by reference must outlive it.
 class LeafReading {
  public:
-  LeafReading(const Tree& first_tree, const Tree& second_tree, const RelativePose& pose) noexcept
+  LeafReading(const BoundTree& first_tree, const BoundTree& second_tree,
+              const RelativePose& pose) noexcept
       : first_tree_(first_tree), second_tree_(second_tree), pose_(pose) {}
 
   /// Errors: those of corrupt leaves.
@@ -39,8 +41,8 @@ class LeafReading {
 
   static constexpr NodeRef kNone{0xffffffffu, 0xffffffffu};
 
-  const Tree& first_tree_;
-  const Tree& second_tree_;
+  const BoundTree& first_tree_;
+  const BoundTree& second_tree_;
   const RelativePose& pose_;
   NodeRef first_read_ = kNone;  // the leaf that `first` holds
   NodeRef second_read_ = kNone;

@@ -52,7 +52,7 @@ double NearestTriangles::best_to_improve(double rounding) const noexcept {
 
 void NearestTriangles::set_enough() noexcept {
   const double best = best_to_improve(rounding_);
-  const double enough = std::min(approximation_.enough(pair_.upper), best);
+  const double enough = std::min(converged_beyond(approximation_, pair_.upper), best);
   // The neighbour above: what is exactly at the maximal distance counts.
   const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
                                      std::numeric_limits<double>::infinity());

@@ -16,6 +16,7 @@
 #include "runtime/query/leaf_reading.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/world_metric.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -34,7 +35,7 @@ struct NearestPair {
 class NearestTriangles {
  public:
   /// `approximation` is in the metric's units.
-  NearestTriangles(const Tree& first, const Tree& second, const RelativePose& pose,
+  NearestTriangles(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                    const WorldMetric& metric, const Approximation& approximation) noexcept
       : first_(first),
         second_(second),
@@ -75,8 +76,8 @@ class NearestTriangles {
   void set_enough() noexcept;
   void set_ends() noexcept;
 
-  const Tree& first_;
-  const Tree& second_;
+  const BoundTree& first_;
+  const BoundTree& second_;
   const RelativePose& pose_;
   const WorldMetric& metric_;
   const Approximation& approximation_;

@@ -11,6 +11,7 @@
 #include <boxtree/overlap.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/float_state.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/scaled_length.h"
@@ -22,7 +23,7 @@ namespace boxtree {
 namespace {
 
 // Rounding of a sum of three squares and its root, upward.
-constexpr double kMore = 1 + 8 * std::numeric_limits<double>::epsilon();
+constexpr double kMore = 1 + 16 * kRoundoffF64;
 
 // What the pair walk is told, and what became of it.
 struct Watch {
@@ -31,7 +32,7 @@ struct Watch {
   double distance;  // in the metric's units
   std::uint64_t budget;
   std::uint64_t visited = 0;
-  Overlap why = Overlap::kFree;
+  Overlap why = Overlap::kDisjoint;
 };
 
 struct Watcher {
@@ -67,7 +68,7 @@ struct Watcher {
 };
 
 // Whether nodes have at most two children; a tree without nodes may be taken for either.
-bool is_binary(const Tree& tree) noexcept {
+bool is_binary(const BoundTree& tree) noexcept {
   return with_codec(tree, [](const auto& codec) {
     return std::remove_cvref_t<decltype(codec)>::Children::kWidth ==
            ErasedBinaryCodec::Children::kWidth;
@@ -75,7 +76,8 @@ bool is_binary(const Tree& tree) noexcept {
 }
 
 template <Codec C>
-Result<Visit> walk(const Tree& first, const Tree& second, Watch& watch, PairVisitor visitor) {
+Result<Visit> walk(const BoundTree& first, const BoundTree& second, Watch& watch,
+                   PairVisitor visitor) {
   PairBound bound(first, second, nullptr);
   return PairWalk<C, C, Watcher>(first, C{&first}, second, C{&second}, watch.pose, visitor, bound,
                                  Watcher{&watch})
@@ -84,7 +86,7 @@ Result<Visit> walk(const Tree& first, const Tree& second, Watch& watch, PairVisi
 
 // A box among the nodes of one tree, in tree space.
 struct BoxSearch {
-  const Tree& tree;
+  const BoundTree& tree;
   const BoxQuery& box;
   double distance;
   std::uint64_t budget;
@@ -133,7 +135,7 @@ struct BoxSearch {
         result.overlap = Overlap::kUndecided;
         break;
       }
-      result.overlap = Overlap::kHit;
+      result.overlap = Overlap::kOverlapping;
       result.face = face_ref(tree, batch.face[i]);
       break;
     }
@@ -159,7 +161,7 @@ struct BoxSearch {
       if (stops(entry.node)) return Errc::kOk;
       if (entry.is_leaf) {
         const Errc error = leaf(entry.ref);
-        if (error != Errc::kOk || result.overlap != Overlap::kFree) return error;
+        if (error != Errc::kOk || result.overlap != Overlap::kDisjoint) return error;
         continue;
       }
       if (!bound.take_one()) return bound.error();
@@ -177,10 +179,12 @@ struct BoxSearch {
 
 }  // namespace
 
-Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
-                                   const Pose& second_pose, double distance,
-                                   std::uint64_t node_budget) {
+Result<PairOverlap> overlap_within(const Tree& first_tree, const Pose& first_pose,
+                                   const Tree& second_tree, const Pose& second_pose,
+                                   double distance, std::uint64_t node_budget) {
   const DefaultFloatState state;
+  const BoundTree& first = BoundTree::of(first_tree);
+  const BoundTree& second = BoundTree::of(second_tree);
   if (!(distance >= 0)) return Errc::kInvalidQuery;
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
@@ -197,14 +201,15 @@ Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, co
   const Result<Visit> visit = binary ? walk<ErasedBinaryCodec>(first, second, watch, visitor)
                                      : walk<ErasedCodec>(first, second, watch, visitor);
   if (!visit) return visit.error();
-  result.overlap = result.contact ? Overlap::kHit : watch.why;
+  result.overlap = result.contact ? Overlap::kOverlapping : watch.why;
   result.nodes_expanded = watch.visited;
   return result;
 }
 
-Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
+Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedBox3d& box,
                                       double distance, std::uint64_t node_budget) {
   const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite() || !(distance >= 0)) {
     return Errc::kInvalidQuery;

@@ -8,9 +8,10 @@
 #include <cstddef>
 #include <limits>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/tree/float_range.h"
-#include "runtime/walk/rounding.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -23,7 +24,6 @@ struct FloatMap {
   /// the map must not be used.
   FloatMap(const AffineMap& map, const Eigen::Vector3d& reach, const Eigen::Vector3d& target_reach,
            const Eigen::Vector3d& given_error, double limit) noexcept {
-    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -41,7 +41,7 @@ struct FloatMap {
       // Each of the three products passes through the rounding of its factors, of the center and of
       // three sums: 8u of the sum of magnitudes, doubled for the half extents; 4u of what the image
       // is compared with, for its own center and half extent and their sums.
-      error[i] = float_above(16 * kUnit * magnitude + 4 * kUnit * target_reach[row] +
+      error[i] = float_above(16 * kRoundoffF32 * magnitude + 4 * kRoundoffF32 * target_reach[row] +
                              given_error[row] + kFloatUnderflow);
     }
     is_in_range = largest <= limit;
@@ -59,10 +59,10 @@ struct FloatMap {
 /// products of three coordinates (float_range.h); the map to the second only moves boxes, with one
 /// product a term.
 struct PairFilter {
-  PairFilter(const Tree& first, const Tree& second, const RelativePose& pose) noexcept
-      : to_first(pose.to_first(), reach_of(second), reach_of(first), Eigen::Vector3d::Zero(),
+  PairFilter(const BoundTree& first, const BoundTree& second, const RelativePose& pose) noexcept
+      : to_first(pose.to_first(), second.reach(), first.reach(), Eigen::Vector3d::Zero(),
                  kFloatReach),
-        to_second(pose.to_second(), reach_of(first), reach_of(second), pose.to_second_error(),
+        to_second(pose.to_second(), first.reach(), second.reach(), pose.to_second_error(),
                   kFloatReach * kFloatReach) {}
 
   /// Whether the filter may be used.

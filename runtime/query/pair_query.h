@@ -4,10 +4,13 @@
 
 #include <boxtree/contact.h>
 
+#include "runtime/tree/bound_tree.h"
+#include "runtime/walk/work.h"
+
 namespace boxtree {
 
 /// overlap_pairs as a part of a larger query.
-Result<Visit> visit_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
+Result<Visit> visit_pairs(const BoundTree& first, const Pose& first_pose, const BoundTree& second,
                           const Pose& second_pose, PairVisitor visitor, QueryWork& work);
 
 }  // namespace boxtree

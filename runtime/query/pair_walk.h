@@ -10,6 +10,7 @@
 #include "runtime/query/leaf_pairs.h"
 #include "runtime/query/pair_work.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -41,8 +42,8 @@ struct PairSide {
 template <Codec A, Codec B, class Observer = NoPairObserver>
 class PairWalk {
  public:
-  PairWalk(const Tree& first, const A& first_codec, const Tree& second, const B& second_codec,
-           const RelativePose& pose, PairVisitor visitor, PairBound& bound,
+  PairWalk(const BoundTree& first, const A& first_codec, const BoundTree& second,
+           const B& second_codec, const RelativePose& pose, PairVisitor visitor, PairBound& bound,
            Observer observer = {}) noexcept
       : first_(first),
         second_(second),
@@ -223,8 +224,8 @@ class PairWalk {
     stopped_ = leaves_.stopped();
   }
 
-  const Tree& first_;
-  const Tree& second_;
+  const BoundTree& first_;
+  const BoundTree& second_;
   const A first_codec_;
   const B second_codec_;
   const RelativePose& pose_;

@@ -20,7 +20,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
+Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                         const PairFilter& /*filter*/, PairVisitor visitor, PairBound& bound) {
   return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor, bound)
       .run();
@@ -101,7 +101,7 @@ struct PairChildren {
 template <class Node>
 class WidePairWalk {
  public:
-  WidePairWalk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
+  WidePairWalk(const BoundTree& first, const WideCodec<Node>& first_codec, const BoundTree& second,
                const WideCodec<Node>& second_codec, const RelativePose& pose,
                const PairFilter& filter, PairVisitor visitor, PairBound& bound)
       : codec_{&first_codec, &second_codec},
@@ -258,13 +258,14 @@ class WidePairWalk {
 };
 
 template <class Node>
-Result<Visit> walk(const Tree& first, const WideCodec<Node>& first_codec, const Tree& second,
-                   const WideCodec<Node>& second_codec, const RelativePose& pose,
-                   const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
+Result<Visit> walk(const BoundTree& first, const WideCodec<Node>& first_codec,
+                   const BoundTree& second, const WideCodec<Node>& second_codec,
+                   const RelativePose& pose, const PairFilter& filter, PairVisitor visitor,
+                   PairBound& bound) {
   return WidePairWalk<Node>(first, first_codec, second, second_codec, pose, filter, visitor, bound)
       .run(root_box<float>(first), root_box<float>(second));
 }
-Result<Visit> walk_pair(const Tree& first, const Tree& second, const RelativePose& pose,
+Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                         const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
     return walk(first, codec, second, std::get<C>(second.codec_view()), pose, filter, visitor,
@@ -285,8 +286,8 @@ HWY_EXPORT(walk_pair);
 
 }  // namespace
 
-Result<Visit> walk_wide_pairs(const Tree& first, const Tree& second, const RelativePose& pose,
-                              PairVisitor visitor, PairBound& bound) {
+Result<Visit> walk_wide_pairs(const BoundTree& first, const BoundTree& second,
+                              const RelativePose& pose, PairVisitor visitor, PairBound& bound) {
   if (first.has_float_nodes() && second.has_float_nodes()) {
     const PairFilter filter(first, second, pose);
     if (filter.is_in_range()) {

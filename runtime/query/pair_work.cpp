@@ -4,12 +4,13 @@
 
 namespace boxtree {
 
-PairBound::PairBound(const Tree& first, const Tree& second, QueryWork* work) noexcept
+PairBound::PairBound(const BoundTree& first, const BoundTree& second, QueryWork* work) noexcept
     : parts_(most_pairs(first.record(), second.record()), work),
       faces_left_(
           saturated_product(faces_in_leaves(first.record()), faces_in_leaves(second.record()))) {}
 
-PairReport::PairReport(const Tree& first, const Tree& second, PairVisitor visitor) noexcept
+PairReport::PairReport(const BoundTree& first, const BoundTree& second,
+                       PairVisitor visitor) noexcept
     : first_(first),
       second_(second),
       visitor_(visitor),

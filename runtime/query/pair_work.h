@@ -16,6 +16,7 @@
 #include "format/codec.h"
 #include "format/limits.h"
 #include "format/tree_record.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_copies.h"
 #include "runtime/walk/work.h"
 
@@ -43,7 +44,7 @@ namespace boxtree {
 /// Counts the work of one walk of two trees.
 class PairBound {
  public:
-  PairBound(const Tree& first, const Tree& second, QueryWork* work) noexcept;
+  PairBound(const BoundTree& first, const BoundTree& second, QueryWork* work) noexcept;
 
   /// Counts a pair of nodes, or of a node and a leaf, about to be taken apart. kOk to go on.
   [[nodiscard]] Errc take_apart() noexcept {
@@ -65,7 +66,7 @@ class PairBound {
 /// Tells a visitor of the pairs of faces that touch.
 class PairReport {
  public:
-  PairReport(const Tree& first, const Tree& second, PairVisitor visitor) noexcept;
+  PairReport(const BoundTree& first, const BoundTree& second, PairVisitor visitor) noexcept;
 
   /// Tells of two faces, and of each copy of the one with each of the other. Whether to go on; see
   /// stopped() and error().
@@ -84,8 +85,8 @@ class PairReport {
  private:
   [[nodiscard]] bool tell_copies(std::uint32_t first, std::uint32_t second);
 
-  const Tree& first_;
-  const Tree& second_;
+  const BoundTree& first_;
+  const BoundTree& second_;
   PairVisitor visitor_;
   std::uint64_t pairs_left_;
   bool stopped_ = false;

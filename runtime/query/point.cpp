@@ -7,6 +7,7 @@
 
 #include <boxtree/closest.h>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/float_state.h"
 #include "runtime/query/point_query.h"
@@ -22,7 +23,7 @@ namespace {
 // goes straight down first, so that a small budget finds something.
 class BestFirst {
  public:
-  BestFirst(const Tree& tree, PointQuery& query, std::uint64_t budget) noexcept
+  BestFirst(const BoundTree& tree, PointQuery& query, std::uint64_t budget) noexcept
       : tree_(tree), codec_{&tree}, query_(query), budget_(budget) {}
 
   Errc run() noexcept {
@@ -97,7 +98,7 @@ class BestFirst {
     return Errc::kOk;
   }
 
-  const Tree& tree_;
+  const BoundTree& tree_;
   const ErasedCodec codec_;
   PointQuery& query_;
   const std::uint64_t budget_;
@@ -108,7 +109,7 @@ class BestFirst {
 
 // At least the length of a vector, be its square a double or not.
 double length_above(const Eigen::Vector3d& v) noexcept {
-  constexpr double kMore = 1 + 2 * std::numeric_limits<double>::epsilon();
+  constexpr double kMore = 1 + 4 * kRoundoffF64;
   constexpr int kExponent = 600;
   const double square = squared_length(v);
   if (square > 0x1p-900) return std::sqrt(square) * kMore;
@@ -118,15 +119,16 @@ double length_above(const Eigen::Vector3d& v) noexcept {
 
 }  // namespace
 
-Errc find_nearest(const Tree& tree, PointQuery& query) {
+Errc find_nearest(const BoundTree& tree, PointQuery& query) {
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen::Vector3d& point,
-                                                  double max_distance, const QueryLimits& limits) {
+PointResult closest_point(const Tree& queried, const Eigen::Vector3d& point, double max_distance,
+                          const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
   if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;
@@ -134,20 +136,19 @@ Result<std::optional<ClosestPoint>> closest_point(const Tree& tree, const Eigen:
   WalkBound nodes(tree.record().node_count, &work);
   PointQuery query{tree, nodes, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
   if (const Errc error = find_nearest(tree, query); error != Errc::kOk) return error;
-  if (query.found) {
-    query.found->point = tree.frame().to_object(query.found->point);
-    query.found->distance = std::sqrt(query.found->distance) * tree.frame().scale;
-  }
-  return query.found;
+  if (!query.found) return {};
+  query.found->point = tree.frame().to_object(query.found->point);
+  query.found->distance = std::sqrt(query.found->distance) * tree.frame().scale;
+  return *query.found;
 }
 
-Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
+Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3d& point,
                                        const PointOptions& options) {
   const DefaultFloatState state;
-  constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+  const BoundTree& tree = BoundTree::of(queried);
   const Frame& frame = tree.frame();
   const Eigen::Vector3d tree_point = frame.to_tree(point);
-  if (!is_within_reach(tree_point) || !options.is_valid()) return Errc::kInvalidQuery;
+  if (!is_within_reach(tree_point) || !is_valid(options)) return Errc::kInvalidQuery;
   ApproximatePoint result;
   result.lower = std::numeric_limits<double>::infinity();
   if (tree.empty()) return result;
@@ -167,7 +168,7 @@ Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& 
     BestFirst walk(tree, query, options.node_budget);
     walked = walk.run();
     left = walk.left();
-    result.is_near_enough = !walk.is_spent();
+    result.converged = !walk.is_spent();
   }
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
@@ -176,15 +177,16 @@ Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& 
   // 1 + 4 u of the square that they stand for, and so is a root. The point itself is off by the
   // rounding of its way to tree space.
   const int exponent = tree.record().scale_exponent;
-  const double place = frame.origin.isZero(0) ? 0 : kEpsilon * tree_point.cwiseAbs().maxCoeff();
-  const double untested = std::sqrt(std::min(query.best, left)) * (1 - 4 * kEpsilon);
+  const double place =
+      frame.origin.isZero(0) ? 0 : 2 * kRoundoffF64 * tree_point.cwiseAbs().maxCoeff();
+  const double untested = std::sqrt(std::min(query.best, left)) * (1 - 8 * kRoundoffF64);
   result.lower =
       scaled_below(std::max(0.0, std::min(untested, query.tested_lower) - place), exponent);
   result.nodes_expanded = query.nodes_expanded;
   if (!query.found) return result;
   // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp),
   // and the point itself by half the least double where its way to tree space underflows.
-  const double off = 13 * kEpsilon * reach_of(tree).maxCoeff() + place;
+  const double off = 26 * kRoundoffF64 * tree.largest_reach() + place;
   const double lost =
       frame.to_object(tree_point) == point ? 0 : std::numeric_limits<double>::denorm_min();
   const double upper = length_above(query.found->point - tree_point) + off + lost;

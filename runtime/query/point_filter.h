@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <limits>
 
-#include "runtime/walk/rounding.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -18,8 +18,7 @@ namespace boxtree {
 struct PointFilter {
   /// `reach`: the largest magnitude of any coordinate of the tree's boxes.
   PointFilter(double reach, const Eigen::Vector3d& point) noexcept {
-    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
-    const double bound = 4 * kUnit * (point.cwiseAbs().maxCoeff() + reach) +
+    const double bound = 4 * kRoundoffF32 * (point.cwiseAbs().maxCoeff() + reach) +
                          double{std::numeric_limits<float>::min()};
     error = float_above(bound);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -38,12 +37,12 @@ struct PointFilter {
   /// A float that a computed lower bound of a squared distance does not exceed if the squared
   /// distance does not exceed `squared`; three products and two sums lose less than 8u of it.
   [[nodiscard]] static float above(double squared) noexcept {
-    return float_above(squared) * (1 + 8 * std::numeric_limits<float>::epsilon()) +
+    return float_above(squared) * static_cast<float>(1 + 16 * kRoundoffF32) +
            std::numeric_limits<float>::min();
   }
   /// The same for upper bounds.
   [[nodiscard]] static float below(double squared) noexcept {
-    return float_below(squared) * (1 - 8 * std::numeric_limits<float>::epsilon()) -
+    return float_below(squared) * static_cast<float>(1 - 16 * kRoundoffF32) -
            std::numeric_limits<float>::min();
   }
 

@@ -12,11 +12,15 @@
 #include <boxtree/closest.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/approximation.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/scaled_length.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -31,16 +35,15 @@ struct PlacedPoint {
 
   /// No point of tree space whose squared distance is larger can be as near as `best`.
   [[nodiscard]] double bound_in_tree() const noexcept {
-    constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
     const double reach = (std::sqrt(best) + error) / least_stretch + kLengthUnderflow;
-    return least_stretch > 0 ? reach * reach * (1 + 16 * kUnit)
+    return least_stretch > 0 ? reach * reach * (1 + 16 * kRoundoffF64)
                              : std::numeric_limits<double>::infinity();
   }
 };
 
 /// A query of traverse_nearest, in tree space.
 struct PointQuery {
-  const Tree& tree;
+  const BoundTree& tree;
   WalkBound& nodes;
   Eigen::Vector3d point;  // tree space
   double best;            // squared distance; shrinks
@@ -111,7 +114,7 @@ struct PointQuery {
   // The square of what is not worth looking at; the very distance where no error is allowed.
   [[nodiscard]] double enough(double squared) const noexcept {
     if (approximation->relative_error == 0 && approximation->absolute_error == 0) return squared;
-    const double least = approximation->enough(std::sqrt(squared));
+    const double least = converged_beyond(*approximation, std::sqrt(squared));
     return std::min(squared, least * least);
   }
 
@@ -122,7 +125,7 @@ struct PointQuery {
     for (std::size_t c = 0; c < 3; ++c) corner[c] = triangle.corner[c] - point;
     const double reach = reach_of(corner);
     // Each corner is off by a rounding of its difference on each axis, less than this in length.
-    const double off = std::numeric_limits<double>::epsilon() * reach;
+    const double off = 2 * kRoundoffF64 * reach;
     const std::array<Eigen::Vector3d, 1> here{Eigen::Vector3d::Zero()};
     const double lower = separation_near(here[0], Eigen::Vector3d(closest - point), here, corner,
                                          reach, std::sqrt(squared) - 16 * off);
@@ -131,9 +134,9 @@ struct PointQuery {
 };
 
 /// By vectors; see walk_tree.h.
-Errc walk_wide(const Tree& tree, PointQuery& query);
+Errc walk_wide(const BoundTree& tree, PointQuery& query);
 
 /// closest_point for callers that have made the query themselves: the first error met, if any.
-Errc find_nearest(const Tree& tree, PointQuery& query);
+Errc find_nearest(const BoundTree& tree, PointQuery& query);
 
 }  // namespace boxtree

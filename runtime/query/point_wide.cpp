@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The closest point over the wide codecs.
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/point_filter.h"
 #include "runtime/query/point_query.h"
 #include "runtime/walk/erased_codec.h"
@@ -21,7 +22,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_point(const Tree& tree, PointQuery& query) {
+Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 #else
@@ -29,10 +30,10 @@ Errc walk_point(const Tree& tree, PointQuery& query) {
 template <class Node>
 class PointFaces {
  public:
-  PointFaces(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query)
+  PointFaces(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
       : codec_(codec),
         query_(query),
-        filter_(reach_of(tree).maxCoeff(), query.point),
+        filter_(tree.largest_reach(), query.point),
         prefetch_(tree, codec),
         leaf_(tree) {
     set_bound();
@@ -89,7 +90,7 @@ class PointFaces {
  private:
   void set_bound() {
     bound_ = PointFilter::above(query_.best);
-    distance_ = float_above(std::sqrt(query_.best)) * (1 + std::numeric_limits<float>::epsilon());
+    distance_ = float_above(std::sqrt(query_.best)) * static_cast<float>(1 + 2 * kRoundoffF32);
   }
 
   const WideCodec<Node>& codec_;
@@ -102,13 +103,13 @@ class PointFaces {
 };
 
 template <class Node>
-Errc walk(const Tree& tree, const WideCodec<Node>& codec, PointQuery& query) {
+Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query) {
   const Box<float> root = root_box<float>(tree);
   if (query.key(root) > query.bound()) return Errc::kOk;
   PointFaces<Node> faces(tree, codec, query);
   return NearestWalk<Node, PointFaces<Node>>(codec, faces).run(root);
 }
-Errc walk_point(const Tree& tree, PointQuery& query) {
+Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
 }
 #endif
@@ -125,8 +126,8 @@ HWY_EXPORT(walk_point);
 
 }  // namespace
 
-Errc walk_wide(const Tree& tree, PointQuery& query) {
-  if (tree.has_float_nodes() && PointFilter::is_near(reach_of(tree).maxCoeff(), query.point)) {
+Errc walk_wide(const BoundTree& tree, PointQuery& query) {
+  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_reach(), query.point)) {
     return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
   }
   return traverse_nearest(tree, ErasedCodec{&tree}, query);

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 
+#include "runtime/primitive/normal.h"
 #include "runtime/query/float_state.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/walk/walk_tree.h"
@@ -27,32 +28,52 @@ int direction_exponent(const Eigen::Vector3d& direction) noexcept {
   return exponent;
 }
 
-Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first,
-                                       QueryWork& work) {
-  if (!is_valid(ray) || !is_within_reach(tree.frame().to_tree(ray.origin))) {
-    return Errc::kInvalidQuery;
-  }
+Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
+              RayCandidate& hit) {
+  if (!is_valid(ray)) return Errc::kInvalidQuery;
+  const RayInTree in_tree(tree, ray, direction_exponent(ray.direction));
+  if (!is_within_reach(in_tree.origin)) return Errc::kInvalidQuery;
+  // The walks test the root, too; but rays that miss it are done before anything else is computed.
+  const double key = in_tree.key(root_box<double>(tree));
+  const bool misses = !(key <= in_tree.t_max) || key == std::numeric_limits<double>::infinity();
+  if (tree.empty() || misses) return Errc::kOk;
   WalkBound nodes(tree.record().node_count, &work);
-  RayQuery query(tree, nodes, ray, direction_exponent(ray.direction), stop_at_first);
+  RayQuery query(tree, nodes, in_tree, stop_at_first, hit);
   const Errc walked =
       with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (query.hit) query.hit->t = parameter_of(ray, query.hit->t, query.parameter_exponent);
-  return query.hit;
+  if (hit.is_hit) hit.t = parameter_of(ray, hit.t, query.parameter_exponent);
+  return Errc::kOk;
 }
 
-Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray,
-                                          const QueryLimits& limits) {
+namespace {
+
+RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first,
+                 const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
   QueryWork work(limits);
-  return cast_ray(tree, ray, false, work);
+  RayCandidate hit;
+  const Errc error = cast_ray(tree, ray, stop_at_first, work, hit);
+  if (error != Errc::kOk || !hit.is_hit) return error;
+  return RayHit{hit.t,
+                hit.face,
+                hit.half,
+                hit.u,
+                hit.v,
+                tree.frame().to_object(hit.point()),
+                unit_normal(hit.triangle)};
 }
 
-Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits) {
-  const DefaultFloatState state;
-  QueryWork work(limits);
-  return cast_ray(tree, ray, true, work);
+}  // namespace
+
+RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits) {
+  return hit_on(tree, ray, false, limits);
+}
+
+RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits) {
+  return hit_on(tree, ray, true, limits);
 }
 
 }  // namespace boxtree

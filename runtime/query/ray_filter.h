@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <limits>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/ray_query.h"
-#include "runtime/walk/rounding.h"
 
 namespace boxtree {
 
@@ -41,21 +41,18 @@ struct RayBoxFilter {
   /// and direction (moved, rounded to float), for the distance of a plane or corner from the
   /// origin, its product with a reciprocal that was rounded twice, and the sums after it.
   [[nodiscard]] static double rounding(double reach) noexcept {
-    return 16 * kUnit * (2 * reach) + double{std::numeric_limits<float>::min()};
+    return 16 * kRoundoffF32 * (2 * reach) + double{std::numeric_limits<float>::min()};
   }
   /// What the query's own tests give away, see RaySlab: eight times what its margin is.
   [[nodiscard]] static double given_away(const Eigen::Vector3d& origin, double reach) noexcept {
-    constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
-    return 128 * kUnitDouble * (origin.cwiseAbs().maxCoeff() + reach);
+    return 128 * kRoundoffF64 * (origin.cwiseAbs().maxCoeff() + reach);
   }
 
   /// The largest parameter of the filter that a hit not beyond `t` can have.
   [[nodiscard]] float bound(double t) const noexcept {
-    return float_above(std::max(0.0, t - start)) * (1 + 4 * std::numeric_limits<float>::epsilon()) +
+    return float_above(std::max(0.0, t - start)) * static_cast<float>(1 + 8 * kRoundoffF32) +
            4 * error;
   }
-
-  static constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
 
   double start;
   float error;
@@ -73,12 +70,12 @@ struct RayFilter : RayBoxFilter {
   /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
   /// and no parameter overflows.
   [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
-    return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach_of(query.tree).maxCoeff();
+    return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * query.tree.largest_reach();
   }
 
   /// `enter`: where the query's slab test enters the root box. Precondition: is_near(query).
   RayFilter(const RayQuery& query, double enter) noexcept
-      : RayFilter(query, enter, reach_of(query.tree).maxCoeff()) {}
+      : RayFilter(query, enter, query.tree.largest_reach()) {}
 
   std::array<float, 3> margins;  // of both planes of an axis
   std::size_t axis_x, axis_y, axis_z;
@@ -87,7 +84,8 @@ struct RayFilter : RayBoxFilter {
  private:
   RayFilter(const RayQuery& query, double enter, double reach) noexcept
       : RayBoxFilter(query.slab, query.origin, query.direction, std::max(enter, query.t_min),
-                     rounding(reach) + 8.0 * query.tree.record().depth * kUnit * (2 * reach) +
+                     rounding(reach) +
+                         8.0 * query.tree.record().depth * kRoundoffF32 * (2 * reach) +
                          given_away(query.origin, reach)) {
     for (std::size_t k = 0; k < 3; ++k) margins[k] = 2 * margin[k];
     axis_x = static_cast<std::size_t>(query.shear.axis_x);

@@ -13,26 +13,42 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/query/ray_slab.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
+/// The best hit so far: t in parameters of the query, the triangle in tree space.
+struct RayCandidate {
+  bool is_hit = false;  // the rest is meaningless without
+  double t = 0;
+  FaceRef face;
+  std::uint32_t half = 0;
+  double u = 0, v = 0;
+  Triangle triangle;
+
+  /// The point that was hit, in tree space, by the weights of the corners.
+  [[nodiscard]] Eigen::Vector3d point() const noexcept {
+    const auto& [a, b, c] = triangle.corner;
+    const double w = (1 - u) - v;
+    Eigen::Vector3d point;
+    for (Eigen::Index k = 0; k < 3; ++k) point[k] = (w * a[k] + u * b[k]) + v * c[k];
+    return point;
+  }
+};
+
 /// A ray in tree space, origin + s * direction, where s = t * 2^parameter_exponent: the largest
 /// component of the direction is in [1/2, 1), so that directions of any length behave alike and t
-/// is converted without rounding. A query of traverse_nearest.
-struct RayQuery {
-  RayQuery(const Tree& asked, WalkBound& bound, const Ray& ray, int direction_exponent,
-           bool stop_at_first) noexcept
-      : tree(asked),
-        nodes(bound),
-        parameter_exponent(direction_exponent - asked.record().scale_exponent),
-        origin(asked.frame().to_tree(ray.origin)),
+/// is converted without rounding.
+struct RayInTree {
+  RayInTree(const BoundTree& tree, const Ray& ray, int direction_exponent) noexcept
+      : parameter_exponent(direction_exponent - tree.record().scale_exponent),
+        origin(tree.frame().to_tree(ray.origin)),
         direction(scaled(ray.direction, -direction_exponent)),
-        slab(origin, direction, reach_of(asked)),
-        shear(origin, direction),
+        slab(origin, direction, tree.largest_reach()),
         t_min(scaled(ray.t_min, parameter_exponent)),
-        t_max(scaled(ray.t_max, parameter_exponent)),
-        any(stop_at_first) {}
+        t_max(scaled(ray.t_max, parameter_exponent)) {}
 
   /// x * 2^exponent, by a product where the power is a normal number.
   [[nodiscard]] static double scaled(double x, int exponent) noexcept {
@@ -44,12 +60,31 @@ struct RayQuery {
     return {scaled(v[0], exponent), scaled(v[1], exponent), scaled(v[2], exponent)};
   }
 
-  [[nodiscard]] double bound() const noexcept { return t_max; }
-
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
     return slab.key(box, t_min);
   }
+
+  int parameter_exponent;
+  Eigen::Vector3d origin;
+  Eigen::Vector3d direction;
+  RaySlab slab;
+  double t_min;
+  double t_max;  // shrinks to the best hit
+};
+
+/// A query of traverse_nearest. `best`: where the answer is put, no hit yet.
+struct RayQuery : RayInTree {
+  RayQuery(const BoundTree& queried, WalkBound& bound, const RayInTree& ray, bool stop_at_first,
+           RayCandidate& best) noexcept
+      : RayInTree(ray),
+        tree(queried),
+        nodes(bound),
+        shear(origin, direction),
+        any(stop_at_first),
+        hit(best) {}
+
+  [[nodiscard]] double bound() const noexcept { return t_max; }
 
   [[nodiscard]] bool leaf(NodeRef ref) noexcept {
     error = tree.leaves().read(ref.first, ref.second, batch);
@@ -61,7 +96,7 @@ struct RayQuery {
   }
 
   /// Whether no other triangle can matter.
-  [[nodiscard]] bool is_done() const noexcept { return any && hit.has_value(); }
+  [[nodiscard]] bool is_done() const noexcept { return any && hit.is_hit; }
 
   void test(const Triangle& triangle, std::uint32_t face_order, std::uint32_t half) noexcept {
     const SlabInterval interval = slab.intersect(bounds_of(triangle));
@@ -72,28 +107,22 @@ struct RayQuery {
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
     const FaceRef face = face_ref(tree, face_order);
-    if (hit && t == hit->t && !comes_before(face, half, hit->face, hit->triangle)) return;
-    hit = RayHit{t, face, half, found->u, found->v};
+    if (hit.is_hit && t == hit.t && !comes_before(face, half, hit.face, hit.half)) return;
+    hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
     t_max = t;
   }
 
-  const Tree& tree;
+  const BoundTree& tree;
   WalkBound& nodes;
-  int parameter_exponent;
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
-  RaySlab slab;
   RayShear shear;
-  double t_min;
-  double t_max;  // shrinks to the best hit
   bool any;
-  std::optional<RayHit> hit;
+  RayCandidate& hit;
   Errc error = Errc::kOk;
   TriangleBatch batch;
 };
 
 /// By vectors; see walk_tree.h.
-Errc walk_wide(const Tree& tree, RayQuery& query);
+Errc walk_wide(const BoundTree& tree, RayQuery& query);
 
 /// A parameter of the query in those of the ray. Kept within the ray's own interval, as conversion
 /// may underflow: for a subnormal direction, say.
@@ -108,8 +137,9 @@ Errc walk_wide(const Tree& tree, RayQuery& query);
 /// finite is left to is_within_reach().
 [[nodiscard]] bool is_valid(const Ray& ray) noexcept;
 
-/// closest_hit or any_hit for callers that have seen to the floating-point state.
-Result<std::optional<RayHit>> cast_ray(const Tree& tree, const Ray& ray, bool stop_at_first,
-                                       QueryWork& work);
+/// closest_hit or any_hit for callers that have seen to the floating-point state. `hit`: the
+/// answer, with the ray's own t.
+Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
+              RayCandidate& hit);
 
 }  // namespace boxtree

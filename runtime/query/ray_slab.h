@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "format/box.h"
+#include "runtime/primitive/rounding.h"
 
 namespace boxtree {
 
@@ -35,15 +36,12 @@ struct SlabInterval {
 /// not depend on that.
 class RaySlab {
  public:
-  /// `reach`: largest magnitude of any box coordinate, on each axis.
-  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-          const Eigen::Vector3d& reach) noexcept {
+  /// `reach`: largest magnitude of any box coordinate, on all axes.
+  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) noexcept {
     // A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
     // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
     constexpr double kHuge = 0x1p1000;
-    constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-    const double margin =
-        8 * kUnitRoundoff * (origin.cwiseAbs().maxCoeff() + power_above(reach.maxCoeff()));
+    const double margin = 8 * kRoundoffF64 * (origin.cwiseAbs().maxCoeff() + power_above(reach));
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       const double d = direction[axis];

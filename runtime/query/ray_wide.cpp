@@ -21,7 +21,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_ray(const Tree& tree, RayQuery& query) {
+Errc walk_ray(const BoundTree& tree, RayQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 #else
@@ -36,7 +36,8 @@ struct RayChildren {
 template <class Node>
 class RayWalk {
  public:
-  RayWalk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query, const RayFilter& filter)
+  RayWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query,
+          const RayFilter& filter)
       : codec_(codec), query_(query), filter_(filter), prefetch_(tree, codec), leaf_(tree) {
     bound_ = filter.bound(query.t_max);
   }
@@ -183,7 +184,7 @@ class RayWalk {
 };
 
 template <class Node>
-Errc walk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
+Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query) {
   const Box<float> root = root_box<float>(tree);
   const SlabInterval at = query.slab.intersect(root);
   if (!(at.enter <= at.leave && at.leave >= query.t_min && at.enter <= query.t_max)) {
@@ -192,7 +193,7 @@ Errc walk(const Tree& tree, const WideCodec<Node>& codec, RayQuery& query) {
   return RayWalk<Node>(tree, codec, query, RayFilter(query, at.enter)).run(root);
 }
 
-Errc walk_ray(const Tree& tree, RayQuery& query) {
+Errc walk_ray(const BoundTree& tree, RayQuery& query) {
   return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
 }
 #endif
@@ -209,7 +210,7 @@ HWY_EXPORT(walk_ray);
 
 }  // namespace
 
-Errc walk_wide(const Tree& tree, RayQuery& query) {
+Errc walk_wide(const BoundTree& tree, RayQuery& query) {
   if (tree.has_float_nodes() && RayFilter::is_near(query))
     return HWY_DYNAMIC_DISPATCH(walk_ray)(tree, query);
   return traverse_nearest(tree, ErasedCodec{&tree}, query);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/walk/traversal.h"
 
@@ -41,8 +42,8 @@ Eigen::Matrix3d composed(const Eigen::Matrix3d& a, const Eigen::Matrix3d& b,
 
 }  // namespace
 
-std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& first_pose,
-                                               const Tree& second,
+std::optional<RelativePose> RelativePose::make(const BoundTree& first, const Pose& first_pose,
+                                               const BoundTree& second,
                                                const Pose& second_pose) noexcept {
   const Frame& f = first.frame();
   const Frame& s = second.frame();
@@ -71,9 +72,8 @@ std::optional<RelativePose> RelativePose::make(const Tree& first, const Pose& fi
   // For y in second's root box and x = L y + t, how far can the computed inverse map of x lie from
   // y? The residuals of the inverse are measured; gamma_16 covers the at most 16 roundings of
   // measuring and of applying it (Higham, "Accuracy and Stability", lemma 3.1).
-  constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
-  constexpr double kGamma16 = 16 * kUnitRoundoff / (1 - 16 * kUnitRoundoff);
-  const Eigen::Vector3d y = reach_of(second);
+  constexpr double kGamma16 = 16 * kRoundoffF64 / (1 - 16 * kRoundoffF64);
+  const Eigen::Vector3d y = second.reach();
   const Eigen::Vector3d x =
       product(relative.to_first_.linear.cwiseAbs(), y) + relative.to_first_.translation.cwiseAbs();
   const Eigen::Matrix3d residual =

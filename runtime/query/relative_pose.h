@@ -17,6 +17,7 @@
 
 #include "format/box.h"
 #include "runtime/primitive/triangle.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -66,8 +67,9 @@ struct AffineMap {
 class RelativePose {
  public:
   /// Nothing when a pose is not finite or not invertible.
-  static std::optional<RelativePose> make(const Tree& first, const Pose& first_pose,
-                                          const Tree& second, const Pose& second_pose) noexcept;
+  static std::optional<RelativePose> make(const BoundTree& first, const Pose& first_pose,
+                                          const BoundTree& second,
+                                          const Pose& second_pose) noexcept;
 
   /// Second's tree space to first's: where triangles are compared.
   [[nodiscard]] const AffineMap& to_first() const noexcept { return to_first_; }

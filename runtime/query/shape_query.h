@@ -6,8 +6,10 @@
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_visit.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -65,11 +67,11 @@ struct SphereQuery {
 };
 
 /// By vectors; see walk_tree.h.
-Errc walk_wide(const Tree& tree, FaceWalk<BoxQuery>& walk);
-Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk);
+Errc walk_wide(const BoundTree& tree, FaceWalk<BoxQuery>& walk);
+Errc walk_wide(const BoundTree& tree, FaceWalk<SphereQuery>& walk);
 
 /// overlap_sphere for callers that have made the shape themselves.
-Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor,
+Result<Visit> visit_sphere(const BoundTree& tree, const SphereQuery& sphere, FaceVisitor visitor,
                            QueryWork& work);
 
 }  // namespace boxtree

@@ -11,14 +11,15 @@
 
 namespace boxtree {
 
-Result<Visit> visit_sphere(const Tree& tree, const SphereQuery& sphere, FaceVisitor visitor,
+Result<Visit> visit_sphere(const BoundTree& tree, const SphereQuery& sphere, FaceVisitor visitor,
                            QueryWork& work) {
   return visit_faces(tree, sphere, visitor, work);
 }
 
-Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
+Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center, double radius,
                              FaceVisitor visitor, const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
   if (!(radius >= 0) || !std::isfinite(radius) || !is_within_reach(tree_center)) {
     return Errc::kInvalidQuery;

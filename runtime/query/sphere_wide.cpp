@@ -20,14 +20,14 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_sphere(const Tree& tree, FaceWalk<SphereQuery>& faces) {
+Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
 class SphereFilter {
  public:
-  SphereFilter(const Tree& tree, const SphereQuery& query)
-      : center_(reach_of(tree).maxCoeff(), query.center),
+  SphereFilter(const BoundTree& tree, const SphereQuery& query)
+      : center_(tree.largest_reach(), query.center),
         above_(PointFilter::above(query.squared_radius)),
         below_(PointFilter::below(query.certain_squared_radius)) {}
 
@@ -49,7 +49,7 @@ class SphereFilter {
   float above_, below_;  // squared radius
 };
 
-Errc walk_sphere(const Tree& tree, FaceWalk<SphereQuery>& faces) {
+Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
   return with_wide_codec<Errc>(
       tree, [&](const auto& codec) { return walk<SphereFilter>(tree, codec, faces); });
 }
@@ -67,9 +67,8 @@ HWY_EXPORT(walk_sphere);
 
 }  // namespace
 
-Errc walk_wide(const Tree& tree, FaceWalk<SphereQuery>& walk) {
-  if (tree.has_float_nodes() &&
-      PointFilter::is_near(reach_of(tree).maxCoeff(), walk.shape.center)) {
+Errc walk_wide(const BoundTree& tree, FaceWalk<SphereQuery>& walk) {
+  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_reach(), walk.shape.center)) {
     return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

@@ -7,6 +7,7 @@
 #define BOXTREE_RUNTIME_QUERY_TRIANGLE_DISTANCE_INL_H
 #endif
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/distance-inl.h"
 #include "runtime/walk/leaf-inl.h"
 #include "runtime/walk/vector3-inl.h"
@@ -43,7 +44,6 @@ HWY_INLINE FloatVector squared_to_segment(const Vector3& w, const Vector3& edge)
 HWY_INLINE FloatVector triangle_distance(const PointFilter& point, const LeafFloats& leaf,
                                          std::size_t group, std::size_t part) {
   const Floats d;
-  constexpr float kUnit = std::numeric_limits<float>::epsilon() / 2;
   const float c = leaf.corner_error();
   Vector3 p, corner[3];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -56,9 +56,10 @@ HWY_INLINE FloatVector triangle_distance(const PointFilter& point, const LeafFlo
   const Vector3 n = cross(e1, e2);
   const FloatVector length = hn::Max(largest(e1), hn::Max(largest(e2), largest(e3)));
   const FloatVector away = hn::Max(largest(w), largest(w1));
-  const FloatVector blur = hn::MulAdd(hn::Set(d, kUnit), length, hn::Set(d, c));  // c + u L
-  const FloatVector spread =
-      hn::MulAdd(hn::Set(d, kUnit), away, hn::Set(d, point.error + c));  // e + c + u W
+  const FloatVector blur =
+      hn::MulAdd(hn::Set(d, static_cast<float>(kRoundoffF32)), length, hn::Set(d, c));  // c + u L
+  const FloatVector spread = hn::MulAdd(hn::Set(d, static_cast<float>(kRoundoffF32)), away,
+                                        hn::Set(d, point.error + c));  // e + c + u W
 
   const FloatVector length2 = hn::Mul(length, length);
   const FloatVector doubt =

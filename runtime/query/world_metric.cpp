@@ -9,16 +9,16 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
 namespace {
 
-constexpr double kUnit = std::numeric_limits<double>::epsilon() / 2;
 // Covers the roundings of computing a bound itself: fewer than 16 of them in each.
-constexpr double kMore = 1 + 32 * kUnit;
-constexpr double kLess = 1 - 32 * kUnit;
+constexpr double kMore = 1 + 32 * kRoundoffF64;
+constexpr double kLess = 1 - 32 * kRoundoffF64;
 // Above this, what was measured of an inverse says that it is none.
 constexpr double kTooSingular = 0.25;
 
@@ -33,7 +33,7 @@ double largest_stretch(const Eigen::Matrix3d& rows) noexcept {
   const Eigen::Matrix3d b2 = b * b;
   const Eigen::Matrix3d b4 = b2 * b2;
   const double largest_sum = b4.cwiseAbs().rowwise().sum().maxCoeff();
-  return std::sqrt(std::sqrt(std::sqrt(largest_sum))) * (1 + 256 * kUnit);
+  return std::sqrt(std::sqrt(std::sqrt(largest_sum))) * (1 + 256 * kRoundoffF64);
 }
 
 // Rows scaled to length 1, and the lengths.
@@ -54,7 +54,7 @@ double relative_residual(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y,
                          const Eigen::Vector3d& y_length, const Eigen::Matrix3d& g,
                          const Eigen::Vector3d& bound) noexcept {
   const Eigen::Matrix3d residual =
-      (y * g - a).cwiseAbs() + 8 * kUnit * (y.cwiseAbs() * g.cwiseAbs() + a.cwiseAbs());
+      (y * g - a).cwiseAbs() + 8 * kRoundoffF64 * (y.cwiseAbs() * g.cwiseAbs() + a.cwiseAbs());
   double largest = 0;
   for (Eigen::Index k = 0; k < 3; ++k) {
     const double relative = residual.row(k).dot(bound) / y_length[k] * kMore;
@@ -84,8 +84,8 @@ GapWeights weights_of(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y, const 
 
 }  // namespace
 
-std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& first_pose,
-                                             const Tree& second,
+std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose& first_pose,
+                                             const BoundTree& second,
                                              const RelativePose& pose) noexcept {
   WorldMetric metric;
   const Eigen::Matrix3d linear = first_pose.linear();
@@ -120,14 +120,15 @@ std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& firs
   }
   // Images of the second tree's points are off by to_second_error; those of the first tree's, which
   // the hull of a box holds as they are computed, by gamma_4 of the terms.
-  const Eigen::Vector3d terms = pose.to_second().linear.cwiseAbs() * reach_of(first) +
-                                pose.to_second().translation.cwiseAbs();
+  const Eigen::Vector3d terms =
+      pose.to_second().linear.cwiseAbs() * first.reach() + pose.to_second().translation.cwiseAbs();
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
-    metric.in_second_.margin[k] = (pose.to_second_error()[axis] + 8 * kUnit * terms[axis]) * kMore;
+    metric.in_second_.margin[k] =
+        (pose.to_second_error()[axis] + 8 * kRoundoffF64 * terms[axis]) * kMore;
   }
 
-  metric.place_ = reach_of(first) + pose.to_first().linear.cwiseAbs() * reach_of(second) +
+  metric.place_ = first.reach() + pose.to_first().linear.cwiseAbs() * second.reach() +
                   pose.to_first().translation.cwiseAbs();
 
   // |G z| = |(G C^-1) (C z)|, C the lengths of the columns.
@@ -138,7 +139,7 @@ std::optional<WorldMetric> WorldMetric::make(const Tree& first, const Pose& firs
   metric.stretch_ = largest_stretch(columns.rows) * kMore;
   // A rounded difference, three products and two sums: gamma_4 of at most row sum times largest
   // magnitude in each of three components.
-  metric.image_error_ = 8 * kUnit * g.cwiseAbs().rowwise().sum().maxCoeff();
+  metric.image_error_ = 8 * kRoundoffF64 * g.cwiseAbs().rowwise().sum().maxCoeff();
   return metric;
 }
 
@@ -163,7 +164,7 @@ Direction WorldMetric::direction(const Eigen::Vector3d& along,
   result.first_ = n;
   result.second_ = -(pose.to_first().linear.transpose() * n);
   result.offset_ = n.dot(pose.to_first().translation);
-  result.error_ = 32 * kUnit * n.cwiseAbs().dot(place_);
+  result.error_ = 32 * kRoundoffF64 * n.cwiseAbs().dot(place_);
   result.scale_ = scale;
   return result;
 }

@@ -25,6 +25,7 @@
 #include "runtime/primitive/triangle.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/scaled_length.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -108,8 +109,9 @@ class Direction {
 class WorldMetric {
  public:
   /// Nothing where the powers of two of a pose are too far apart for any unit.
-  static std::optional<WorldMetric> make(const Tree& first, const Pose& first_pose,
-                                         const Tree& second, const RelativePose& pose) noexcept;
+  static std::optional<WorldMetric> make(const BoundTree& first, const Pose& first_pose,
+                                         const BoundTree& second,
+                                         const RelativePose& pose) noexcept;
 
   /// Squared distances, from below, of boxes in the first tree's space...
   [[nodiscard]] const GapWeights& in_first() const noexcept { return in_first_; }

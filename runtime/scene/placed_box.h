@@ -6,6 +6,7 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_visit.h"
 #include "runtime/walk/traversal.h"
 
@@ -39,6 +40,6 @@ struct PlacedBoxQuery {
 };
 
 /// By vectors; see walk_tree.h.
-Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk);
+Errc walk_wide(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& walk);
 
 }  // namespace boxtree

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/scene/placed_box.h"
+#include "runtime/tree/float_range.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/targets.h"
 #include "runtime/walk/walk_tree.h"
@@ -21,7 +23,7 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if HWY_TARGET == HWY_SCALAR
-Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
+Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
@@ -31,10 +33,8 @@ Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
 // themselves are rounded to double, where they are, not seen from the box: less than 8 roundings.
 class PlacedBoxFilter {
  public:
-  PlacedBoxFilter(const Tree& tree, const PlacedBoxQuery& query) {
-    constexpr double kUnit = std::numeric_limits<float>::epsilon() / 2;
-    constexpr double kUnitDouble = std::numeric_limits<double>::epsilon() / 2;
-    const Eigen::Vector3d reach = reach_of(tree);
+  PlacedBoxFilter(const BoundTree& tree, const PlacedBoxQuery& query) {
+    const Eigen::Vector3d reach = tree.reach();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       const double middle = query.box.low[k] / 2 + query.box.high[k] / 2;
@@ -46,7 +46,7 @@ class PlacedBoxFilter {
         terms += std::abs(factor) * reach[static_cast<Eigen::Index>(j)];
       }
       const double placed = std::abs(query.to_world.translation[row]) + terms;
-      const double error = 16 * kUnit * terms + 8 * kUnitDouble * placed + kFloatUnderflow;
+      const double error = 16 * kRoundoffF32 * terms + 8 * kRoundoffF64 * placed + kFloatUnderflow;
       offset_[k] = static_cast<float>(offset);
       bounds_.set(k, query.box.low[k] - middle, query.box.high[k] - middle, error);
     }
@@ -89,7 +89,7 @@ class PlacedBoxFilter {
   BoxBounds bounds_;
 };
 
-Errc walk_placed_box(const Tree& tree, FaceWalk<PlacedBoxQuery>& faces) {
+Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
   return with_wide_codec<Errc>(
       tree, [&](const auto& codec) { return walk<PlacedBoxFilter>(tree, codec, faces); });
 }
@@ -106,7 +106,7 @@ namespace {
 HWY_EXPORT(walk_placed_box);
 
 // Whether no product or sum of the filter overflows: coordinates are at most kFloatReach.
-bool is_in_range(const Tree& tree, const PlacedBoxQuery& query) {
+bool is_in_range(const BoundTree& tree, const PlacedBoxQuery& query) {
   constexpr double kLargest = 0x1p80;
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -119,7 +119,7 @@ bool is_in_range(const Tree& tree, const PlacedBoxQuery& query) {
 
 }  // namespace
 
-Errc walk_wide(const Tree& tree, FaceWalk<PlacedBoxQuery>& walk) {
+Errc walk_wide(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& walk) {
   if (is_in_range(tree, walk.shape)) {
     return HWY_DYNAMIC_DISPATCH(walk_placed_box)(tree, walk);
   }

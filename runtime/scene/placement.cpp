@@ -6,13 +6,12 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/scaled_length.h"
 
 namespace boxtree {
 namespace {
-
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // Zero times a number that is not finite is not a number, and stays so in sums.
 bool is_finite(const Eigen::Matrix3d& m) noexcept {
@@ -88,7 +87,7 @@ std::optional<PlacementBounds> Placement::bounds(const Box<double>& root) const 
 // coordinate is spread by |L| |L^-1|, whose rounding and that of the comparison itself are counted
 // generously: 64 roundings in all.
 double PlacementBounds::error() const noexcept {
-  return 64 * kUnitRoundoff * condition * magnitude + std::numeric_limits<double>::min();
+  return 64 * kRoundoffF64 * condition * magnitude + std::numeric_limits<double>::min();
 }
 
 Ray Placement::to_object(const Ray& world) const noexcept {
@@ -111,7 +110,7 @@ double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vecto
   const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
   const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude(root) +
                          std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
-  return std::sqrt(squared_length(back)) + 128 * kUnitRoundoff * largest + kLengthUnderflow;
+  return std::sqrt(squared_length(back)) + 128 * kRoundoffF64 * largest + kLengthUnderflow;
 }
 
 // The squares of both are eigenvalues of L^T L, which Gershgorin's circles hold. Where axes are far
@@ -122,11 +121,11 @@ Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
   const double xx = squared_length(x), yy = squared_length(y), zz = squared_length(z);
   const double xy = std::abs(dot(x, y)), yz = std::abs(dot(y, z)), zx = std::abs(dot(z, x));
   // Entries of the product are off by 3u of what they sum up, which no diagonal sum is less than.
-  const double off = 16 * kUnitRoundoff * ((xx + yy) + zz);
+  const double off = 16 * kRoundoffF64 * ((xx + yy) + zz);
   const double smallest = std::min({xx - (xy + zx), yy - (xy + yz), zz - (zx + yz)}) - off;
   const double largest = std::max({xx + (xy + zx), yy + (xy + yz), zz + (zx + yz)}) + off;
-  Stretch stretch{std::sqrt(std::max(0.0, smallest)) * (1 - 4 * kUnitRoundoff),
-                  std::sqrt(largest) * (1 + 4 * kUnitRoundoff)};
+  Stretch stretch{std::sqrt(std::max(0.0, smallest)) * (1 - 4 * kRoundoffF64),
+                  std::sqrt(largest) * (1 + 4 * kRoundoffF64)};
   // Within sqrt(3) of the shortest axis, and so of the best there is: the norm promises no more.
   if (3 * smallest >= std::min({xx, yy, zz})) return stretch;
   const Eigen::Matrix3d inverse = inverse_of(linear);
@@ -140,11 +139,11 @@ Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
         entry -= linear(i, k) * inverse(k, j);
         terms += std::abs(linear(i, k) * inverse(k, j));
       }
-      const double residual = std::abs(entry) + 8 * kUnitRoundoff * terms;
+      const double residual = std::abs(entry) + 8 * kRoundoffF64 * terms;
       lacking += residual * residual;
     }
   }
-  const double other = (1 - std::sqrt(lacking)) / std::sqrt(norm) * (1 - 32 * kUnitRoundoff);
+  const double other = (1 - std::sqrt(lacking)) / std::sqrt(norm) * (1 - 32 * kRoundoffF64);
   if (other > stretch.least) stretch.least = other;  // false for NaN
   return stretch;
 }

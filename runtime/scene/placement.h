@@ -14,6 +14,7 @@
 #include "format/box.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
@@ -42,7 +43,7 @@ class Placement {
   /// Nothing when the pose is not finite or not invertible.
   static std::optional<Placement> make(const Frame& frame, const Pose& pose) noexcept;
   /// The same for a tree with that frame.
-  static std::optional<Placement> make(const Tree& tree, const Pose& pose) noexcept {
+  static std::optional<Placement> make(const BoundTree& tree, const Pose& pose) noexcept {
     return make(tree.frame(), pose);
   }
 

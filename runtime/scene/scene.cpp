@@ -1,193 +1,69 @@
 // SPDX-License-Identifier: MIT
-// What a scene says of its instances, and moving them.
-#include "runtime/scene/scene.h"
-
-#include <algorithm>
-#include <cmath>
+// The scene as applications see it.
 #include <utility>
 
-#include "runtime/query/float_state.h"
-#include "runtime/tree/dispatch.h"
+#include <boxtree/scene.h>
+
+#include "runtime/scene/bound_scene.h"
 
 namespace boxtree {
-namespace {
 
-Pose pose_of(const std::byte* numbers, std::uint32_t bytes) noexcept {
-  Pose pose;
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 4; ++column) {
-      const std::size_t i = 4 * row + column;
-      pose.matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
-          bytes == sizeof(float) ? double{load<float>(numbers, i)} : load<double>(numbers, i);
-    }
-  }
-  pose.makeAffine();
-  return pose;
+Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
+  return BoundScene::bind(file, options);
 }
 
-}  // namespace
+Scene::Scene(std::unique_ptr<BoundScene> bound) noexcept : bound_(std::move(bound)) {}
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
 
-void Scene::rebuild() {
-  if (moving_.empty()) return;
-  const DefaultFloatState state;
-  std::vector<Box<double>> boxes;
-  boxes.reserve(moving_.size());
-  for (const Moving& moving : moving_) boxes.push_back(to_frame(moving.bounds.world));
-  moving_tree_.build(boxes);
+std::uint32_t Scene::instance_count() const noexcept {
+  return bound_->instance_count();
 }
-
-Status Scene::update(std::uint32_t instance, const Pose& pose) {
-  const DefaultFloatState state;
-  if (instance >= instance_count()) return Errc::kInstanceIndex;
-  const Moving* found = find_moving(instance);
-  if (found == nullptr) return Errc::kInstanceStatic;
-  Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
-  const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
-  if (!placement) return Errc::kInvalidPose;
-  const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
-  if (!bounds || !(to_world(bounds->magnitude) <= kReach)) return Errc::kInvalidPose;
-  moving.placed.pose = pose;
-  moving.placed.placement = *placement;
-  moving.bounds = *bounds;
-  const auto number = static_cast<std::uint32_t>(found - moving_.data());
-  conditions_.set(number, bounds->condition);
-  moving_tree_.refit(number, to_frame(bounds->world));
-  return {};
+std::span<const Tree> Scene::trees() const noexcept {
+  return bound_->trees();
+}
+QueryKinds Scene::query_kinds() const noexcept {
+  return bound_->query_kinds();
 }
 
 Result<InstanceInfo> Scene::info(std::uint32_t number) const {
-  if (number >= instance_count()) {
-    return Error{Errc::kInstanceIndex,
-                 "instance " + std::to_string(number) + " of " + std::to_string(instance_count())};
-  }
-  const std::optional<InstanceRecord> record = record_of(number);
-  if (!record) {
-    return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + ": its record"};
-  }
-  return InstanceInfo{text(record->name_offset, record->name_bytes), record->tree, record->id,
-                      record->layer, find_moving(number) != nullptr};
+  return bound_->info(number);
 }
-
 Result<std::uint32_t> Scene::find_instance(std::string_view name) const {
-  for (std::uint32_t i = 0; i < instance_count(); ++i) {
-    const InstanceRecord record = instance(i);
-    if (text(record.name_offset, record.name_bytes) == name) return i;
-  }
-  return Error{Errc::kInstanceIndex, "no instance is named \"" + std::string(name) + "\""};
+  return bound_->find_instance(name);
 }
-
 Result<Pose> Scene::pose(std::uint32_t number) const {
-  const Result<InstanceInfo> known = info(number);
-  if (!known) return known.error();
-  const Moving* moving = find_moving(number);
-  return moving != nullptr ? moving->placed.pose : stored_pose(number);
+  return bound_->pose(number);
 }
-
 std::string_view Scene::layer_name(std::uint32_t number) const noexcept {
-  if (number >= layer_count()) return {};
-  const LayerRecord record = layer(number);
-  return text(record.name_offset, record.name_bytes);
+  return bound_->layer_name(number);
+}
+std::uint32_t Scene::layer_count() const noexcept {
+  return bound_->layer_count();
 }
 
-std::uint32_t Scene::material(std::uint32_t number, const FaceRef& face) const noexcept {
-  if (number >= instance_count()) return kNoMaterial;
-  const std::uint32_t tree = instance(number).tree;
-  if (tree >= trees_.size()) return kNoMaterial;
-  const TreeMaterials& materials = materials_of_tree_[tree];
-  if (materials.faces != nullptr) {
-    if (face.order >= trees_[tree].record().face_count) return kNoMaterial;
-    return load_number(materials.faces, static_cast<std::uint8_t>(materials.number_bytes),
-                       face.order);
-  }
-  // One run is of all faces, whatever their ids; else the last one that starts at or before it.
-  std::uint32_t first = 0;
-  std::uint32_t count = materials.run_count;
-  if (count == 0) return kNoMaterial;
-  if (count > 1 && face.id == kNoFaceId) return kNoMaterial;
-  while (count > 1) {
-    const std::uint32_t half = count / 2;
-    const bool is_right = load<MaterialRun>(materials.runs, first + half).first_face <= face.id;
-    first += is_right ? half : 0;
-    count = is_right ? count - half : half;
-  }
-  return load<MaterialRun>(materials.runs, first).material;
+Result<Triangle> Scene::triangle(const SceneFace& face, std::uint32_t half) const {
+  return bound_->triangle(face, half);
 }
-
+std::uint32_t Scene::material(const SceneFace& face) const noexcept {
+  return bound_->material(face);
+}
 std::string_view Scene::material_name(std::uint32_t number) const noexcept {
-  if (number >= material_count()) return {};
-  const auto record = load<MaterialRecord>(materials_, number);
-  return text(record.name_offset, record.name_bytes);
+  return bound_->material_name(number);
+}
+std::uint32_t Scene::material_count() const noexcept {
+  return bound_->material_count();
 }
 
-std::optional<PlacementBounds> Scene::Placed::bounds() const noexcept {
-  return placement.bounds(root_box<double>(*tree));
+Status Scene::make_movable(std::uint32_t instance) {
+  return bound_->make_movable(instance);
 }
-
-std::optional<InstanceRecord> Scene::record_of(std::uint32_t number) const noexcept {
-  const InstanceRecord record = instance(number);
-  if (record.tree >= trees_.size() || record.layer >= layer_count()) return std::nullopt;
-  return record;
+Status Scene::update(std::uint32_t instance, const Pose& pose) {
+  return bound_->update(instance, pose);
 }
-
-std::optional<Scene::Placed> Scene::place(std::uint32_t number) const noexcept {
-  const std::optional<InstanceRecord> record = record_of(number);
-  return record ? place(number, *record) : std::nullopt;
-}
-
-std::optional<Scene::Placed> Scene::place(std::uint32_t number,
-                                          const InstanceRecord& record) const noexcept {
-  const Tree& tree = trees_[record.tree];
-  const Pose pose = stored_pose(number);
-  const std::optional<Placement> placement = place_in_units(tree, pose);
-  if (!placement) return std::nullopt;
-  return Placed{&tree, pose, *placement, record.id, record.layer};
-}
-
-std::optional<Scene::Placed> Scene::place_now(std::uint32_t number) const noexcept {
-  const Moving* moving = find_moving(number);
-  return moving != nullptr ? moving->placed : place(number);
-}
-
-bool Scene::is_detached(std::uint32_t number) const noexcept {
-  return has_detached_ && find_moving(number) != nullptr;
-}
-
-LayerRecord Scene::layer(std::uint32_t number) const noexcept {
-  return load<LayerRecord>(layers_, number);
-}
-
-std::optional<Placement> Scene::place_in_units(const Tree& tree, const Pose& pose) const noexcept {
-  Pose scaled = pose;
-  scaled.affine() *= frame_.inverse_scale;
-  return is_within_reach(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
-}
-
-Box<double> Scene::to_frame(const Box<double>& units) const noexcept {
-  const Eigen::Vector3d low = to_frame(Eigen::Vector3d(units.low[0], units.low[1], units.low[2]));
-  const Eigen::Vector3d high =
-      to_frame(Eigen::Vector3d(units.high[0], units.high[1], units.high[2]));
-  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
-}
-
-std::string_view Scene::text(std::uint32_t offset, std::uint32_t size) const noexcept {
-  if (!in_range(offset, size, names_.size())) return {};
-  return {reinterpret_cast<const char*>(names_.data()) + offset, size};
-}
-
-InstanceRecord Scene::instance(std::uint32_t number) const noexcept {
-  return load<InstanceRecord>(instances_, number);
-}
-
-Pose Scene::stored_pose(std::uint32_t number) const noexcept {
-  return pose_of(poses_ + std::size_t{number} * kNumbersOfPose * record().pose_bytes,
-                 record().pose_bytes);
-}
-
-const Scene::Moving* Scene::find_moving(std::uint32_t number) const noexcept {
-  const auto place = std::lower_bound(
-      moving_.begin(), moving_.end(), number,
-      [](const Moving& moving, std::uint32_t value) { return moving.instance < value; });
-  return place != moving_.end() && place->instance == number ? &*place : nullptr;
+void Scene::rebuild() {
+  bound_->rebuild();
 }
 
 }  // namespace boxtree

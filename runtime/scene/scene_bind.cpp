@@ -1,26 +1,33 @@
 // SPDX-License-Identifier: MIT
 // Binding a scene: the checks that let queries trust counts and section sizes.
 #include <algorithm>
+#include <memory>
 #include <utility>
 
+#include "format/message.h"
 #include "runtime/file/section.h"
 #include "runtime/query/float_state.h"
-#include "runtime/scene/scene.h"
+#include "runtime/scene/bound_scene.h"
 
 namespace boxtree {
 
-Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
+Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
   const DefaultFloatState state;
-  Scene scene;
+  BoundScene scene;
   if (Status status = scene.bind_sections(file); !status) return status.error();
   if (Status status = scene.bind_trees(file, options); !status) return status.error();
   if (Status status = scene.check_materials(file); !status) return status.error();
   if (Status status = scene.check_parts(options); !status) return status.error();
-  if (Status status = scene.bind_moving(options); !status) return status.error();
-  return scene;
+  std::vector<std::uint32_t> moving(options.moving.begin(), options.moving.end());
+  for (std::uint32_t i = scene.record().static_count; i < scene.instance_count(); ++i) {
+    moving.push_back(i);
+  }
+  if (Status status = scene.bind_moving(std::move(moving)); !status) return status.error();
+  return Scene(std::make_unique<BoundScene>(std::move(scene)));
 }
 
-Status Scene::bind_sections(const File& file) {
+Status BoundScene::bind_sections(const File& opened) {
+  const OpenFile& file = OpenFile::of(opened);
   const Bytes section = file.section(SectionKind::kScene);
   if (section.empty()) return Error{Errc::kNoScene, "the file has no section \"scene\""};
   const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
@@ -54,13 +61,13 @@ Status Scene::bind_sections(const File& file) {
   names_ = file.section(SectionKind::kNames);
   left_out_ = file.section(SectionKind::kLeftOut);
   if (left_out_.size() % sizeof(LeftOutRecord) != 0) {
-    return Error{Errc::kSectionSize, section_text(SectionKind::kLeftOut) + ": " +
-                                         std::to_string(left_out_.size()) + " bytes"};
+    return error_with(Errc::kSectionSize, section_text(SectionKind::kLeftOut), ": # bytes",
+                      {left_out_.size()});
   }
   return {};
 }
 
-Status Scene::bind_trees(const File& file, const SceneOptions& options) {
+Status BoundScene::bind_trees(const File& file, const SceneOptions& options) {
   trees_.reserve(file.tree_count());
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
     BindOptions bind;
@@ -77,16 +84,17 @@ Status Scene::bind_trees(const File& file, const SceneOptions& options) {
   return {};
 }
 
-Status Scene::check_materials(const File& file) {
+Status BoundScene::check_materials(const File& opened) {
+  const OpenFile& file = OpenFile::of(opened);
   materials_of_tree_.resize(trees_.size());
   for (std::uint32_t i = 0; i < trees_.size(); ++i) {
     const Bytes runs = file.section(SectionKind::kMaterialRuns, i);
     const Bytes faces = file.section(SectionKind::kFaceMaterials, i);
-    const std::uint64_t count = trees_[i].record().face_count;
+    const std::uint64_t count = trees_[i].face_count();
     if (runs.size() % sizeof(MaterialRun) != 0 || runs.size() / sizeof(MaterialRun) > count) {
-      return Error{Errc::kSectionSize, "tree " + std::to_string(i) + ": " +
-                                           section_text(SectionKind::kMaterialRuns) + ": " +
-                                           std::to_string(runs.size()) + " bytes"};
+      return error_with(Errc::kSectionSize, "tree ",
+                        "#: " + section_text(SectionKind::kMaterialRuns) + ": # bytes",
+                        {i, runs.size()});
     }
     const std::uint8_t number_bytes = material_number_bytes(material_count());
     if (!faces.empty() && faces.size() != number_bytes * count) {
@@ -102,7 +110,7 @@ Status Scene::check_materials(const File& file) {
   return {};
 }
 
-Status Scene::check_parts(const SceneOptions& options) const {
+Status BoundScene::check_parts(const SceneOptions& options) const {
   const auto asked = [&](QueryKinds kind) {
     return (options.queries & kind) != 0 && (record().query_kinds & kind) == 0;
   };
@@ -120,7 +128,7 @@ Status Scene::check_parts(const SceneOptions& options) const {
 
 // The record that says why, if the file has one: of the tree, else of the whole scene, else of any
 // tree.
-Error Scene::left_out(Part part, std::uint32_t owner, const std::string& what) const {
+Error BoundScene::left_out(Part part, std::uint32_t owner, const std::string& what) const {
   const std::size_t count = left_out_.size() / sizeof(LeftOutRecord);
   std::string_view reason;
   int best = 0;
@@ -137,35 +145,48 @@ Error Scene::left_out(Part part, std::uint32_t owner, const std::string& what) c
               (reason.empty() ? " when it was cooked" : " by " + std::string(reason))};
 }
 
-bool Scene::has_names() const noexcept {
+bool BoundScene::has_names() const noexcept {
   for (std::uint32_t i = 0; i < instance_count(); ++i) {
     if (instance(i).name_bytes != 0) return true;
   }
   return instance_count() == 0;
 }
 
-Status Scene::bind_moving(const SceneOptions& options) {
-  std::vector<std::uint32_t> numbers(options.moving.begin(), options.moving.end());
+Status BoundScene::make_movable(std::uint32_t instance) {
+  const DefaultFloatState state;
+  if (find_moving(instance) != nullptr) return {};
+  return bind_moving({instance});
+}
+
+// Adds instances to those that move, all or none of them.
+Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
+  bool detaches = has_detached_;
   for (const std::uint32_t number : numbers) {
     if (number >= instance_count()) {
-      return Error{Errc::kInstanceIndex, "instance " + std::to_string(number) + " of " +
-                                             std::to_string(instance_count())};
+      return error_with(Errc::kInstanceIndex, {}, "instance # of #", {number, instance_count()});
     }
-    has_detached_ |= number < record().static_count;
+    detaches |= number < record().static_count;
   }
-  for (std::uint32_t i = record().static_count; i < instance_count(); ++i) numbers.push_back(i);
+  for (const Moving& moving : moving_) numbers.push_back(moving.instance);
   std::sort(numbers.begin(), numbers.end());
   numbers.erase(std::unique(numbers.begin(), numbers.end()), numbers.end());
+  std::vector<Moving> moving;
   for (const std::uint32_t number : numbers) {
+    if (const Moving* const known = find_moving(number); known != nullptr) {
+      moving.push_back(*known);
+      continue;
+    }
     const auto corrupt = [number](const char* what) {
-      return Error{Errc::kRecordInvalid, "instance " + std::to_string(number) + what};
+      return error_with(Errc::kRecordInvalid, {}, what, {number});
     };
     const std::optional<Placed> placed = place(number);
-    if (!placed) return corrupt(": its record");
+    if (!placed) return corrupt("instance #: its record");
     const auto bounds = placed->bounds();
-    if (!bounds) return corrupt(": its pose");
-    moving_.push_back({number, *placed, *bounds});
+    if (!bounds) return corrupt("instance #: its pose");
+    moving.push_back({number, *placed, *bounds});
   }
+  moving_ = std::move(moving);
+  has_detached_ = detaches;
   conditions_.reset(moving_.size());
   for (std::size_t i = 0; i < moving_.size(); ++i) conditions_.set(i, moving_[i].bounds.condition);
   rebuild();

@@ -15,7 +15,7 @@ namespace {
 // errors less, so both shares suffice.
 struct BodyInScene {
   Admission admission;
-  const Tree& tree;
+  const BoundTree& tree;
   const Pose& pose;
   double condition;  // of its placement
   Box<double> in_frame;
@@ -34,7 +34,7 @@ struct BodyInScene {
     return walk_top_level(top, instances, in_frame);
   }
 
-  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     if (instance == own_instance) return true;
     const bool swap = other.placement.condition() < condition;
     const auto report = [&](const FaceRef& own, const FaceRef& met) {
@@ -67,13 +67,14 @@ struct LaterMoving {
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return body.overlaps(box);
   }
-  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& other) {
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     return instance <= body.own_instance || body.visit(instance, other);
   }
 };
 
-BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Placed& placed,
-                    const PlacementBounds& bounds, ScenePairVisitor visitor, QueryWork& work) {
+BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
+                    const BoundScene::Placed& placed, const PlacementBounds& bounds,
+                    ScenePairVisitor visitor, QueryWork& work) {
   return {{scene, kPairQueries, scene.layer(placed.layer).meets, work},
           *placed.tree,
           placed.pose,
@@ -84,17 +85,18 @@ BodyInScene body_of(const Scene& scene, std::uint32_t instance, const Scene::Pla
           visitor};
 }
 
-bool asks_for_contacts(const Scene& scene, std::uint32_t layer) {
+bool asks_for_contacts(const BoundScene& scene, std::uint32_t layer) {
   return (scene.layer(layer).query_kinds & kPairQueries) != 0;
 }
 
 }  // namespace
 
-Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor, const QueryLimits& limits) {
+Result<Visit> contacts(const Scene& queried, ScenePairVisitor visitor, const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  for (const Scene::Moving& moving : scene.moving()) {
+  for (const BoundScene::Moving& moving : scene.moving()) {
     if (!asks_for_contacts(scene, moving.placed.layer)) continue;
     BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor, work);
     Errc walked = walk_static(scene, body);
@@ -109,13 +111,14 @@ Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor, const Query
   return Visit::kComplete;
 }
 
-Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor,
+Result<Visit> contacts_of(const Scene& queried, std::uint32_t instance, ScenePairVisitor visitor,
                           const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
-  const std::optional<Scene::Placed> placed = scene.place_now(instance);
+  const std::optional<BoundScene::Placed> placed = scene.place_now(instance);
   if (!placed) return Errc::kRecordInvalid;
   if (!asks_for_contacts(scene, placed->layer)) return Visit::kComplete;
   const auto bounds = placed->bounds();
@@ -124,11 +127,13 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
   return outcome_of(walk_overlap(scene, body), body);
 }
 
-Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
+Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const Pose& pose,
                             ScenePairVisitor visitor, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
+  const BoundTree& tree = BoundTree::of(body_tree);
   const std::optional<Placement> placement = scene.place_in_units(tree, pose);
   if (!placement) return Errc::kInvalidPose;
   if (tree.empty()) return Visit::kComplete;

@@ -4,6 +4,7 @@
 
 #include <boxtree/scene.h>
 
+#include "runtime/primitive/normal.h"
 #include "runtime/query/float_state.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/scene/scene_walk.h"
@@ -12,12 +13,11 @@ namespace boxtree {
 namespace {
 
 // In units of the scene, with a direction whose largest component is in [1/2, 1): its parameter is
-// t
-// * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(); what is left
-// is the error of the ray's own origin on its way to object space and back, of which the slab's
-// margin gets its share by a larger reach.
+// t * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(); what is
+// left is the error of the ray's own origin on its way to object space and back, of which the
+// slab's margin gets its share by a larger reach.
 struct SceneRayQuery {
-  SceneRayQuery(const Scene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
+  SceneRayQuery(const BoundScene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
                 QueryWork& work) noexcept
       : admission{scene, kRayQueries, layers, work},
         exponent(direction_exponent(world.direction)),
@@ -28,14 +28,13 @@ struct SceneRayQuery {
         any(stop_at_first),
         in_frame(make_in_frame(scene)) {}
 
-  [[nodiscard]] TopLevelRay make_in_frame(const Scene& scene) const noexcept {
+  [[nodiscard]] TopLevelRay make_in_frame(const BoundScene& scene) const noexcept {
     const Eigen::Vector3d origin = scene.to_frame(ray.origin);
     const double widened = reach(scene);
-    return {origin, ray.direction, widened,
-            RaySlab(origin, ray.direction, Eigen::Vector3d::Constant(widened)), ray.t_min};
+    return {origin, ray.direction, widened, RaySlab(origin, ray.direction, widened), ray.t_min};
   }
 
-  [[nodiscard]] double reach(const Scene& scene) const noexcept {
+  [[nodiscard]] double reach(const BoundScene& scene) const noexcept {
     double largest = reach_of(scene.top_level());
     if (!scene.moving_tree().empty()) {
       largest = std::max(largest, reach_of(scene.moving_tree().root_box()).maxCoeff());
@@ -44,9 +43,7 @@ struct SceneRayQuery {
     return largest + 16 * scene.condition() * (origin + largest);
   }
 
-  [[nodiscard]] bool is_done() const noexcept {
-    return error != Errc::kOk || (any && best.has_value());
-  }
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || (any && best.is_hit); }
   [[nodiscard]] double bound() const noexcept { return ray.t_max; }
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
@@ -56,19 +53,16 @@ struct SceneRayQuery {
     return walk_top_level(top, instances, in_frame, ray.t_max);
   }
 
-  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
-    const Result<std::optional<RayHit>> found =
-        cast_ray(*placed.tree, placed.placement.to_object(ray), any, admission.work);
-    if (!found) {
-      error = found.code();
-      return false;
-    }
-    if (!*found) return true;
-    const RayHit& hit = **found;
-    if (best && hit.t == best->hit.t && placed.id >= best_id) return true;
-    best = SceneRayHit{hit, instance};
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
+    RayCandidate found;
+    error = cast_ray(*placed.tree, placed.placement.to_object(ray), any, admission.work, found);
+    if (!found.is_hit || error != Errc::kOk) return error == Errc::kOk;
+    if (best.is_hit && found.t == best.t && placed.id >= best_id) return true;
+    best = found;
     best_id = placed.id;
-    ray.t_max = hit.t;
+    best_instance = instance;
+    best_to_units = placed.placement.to_world();
+    ray.t_max = found.t;
     return !is_done();
   }
 
@@ -78,14 +72,17 @@ struct SceneRayQuery {
   Ray ray;  // t_max shrinks to the best hit
   bool any;
   TopLevelRay in_frame;
-  std::optional<SceneRayHit> best;
+  RayCandidate best;
   std::uint32_t best_id = 0;
+  std::uint32_t best_instance = 0;
+  AffineMap best_to_units;  // from its tree space
   Errc error = Errc::kOk;
 };
 
-Result<std::optional<SceneRayHit>> cast(const Scene& scene, const Ray& ray, bool stop_at_first,
-                                        LayerMask layers, const QueryLimits& limits) {
+SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, LayerMask layers,
+                    const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
   if (!is_valid(ray) || !is_within_reach(scene.to_units(ray.origin))) {
@@ -95,21 +92,23 @@ Result<std::optional<SceneRayHit>> cast(const Scene& scene, const Ray& ray, bool
   const Errc walked = walk_nearest(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (query.best) {
-    query.best->hit.t = parameter_of(ray, query.best->hit.t, query.parameter_exponent);
-  }
-  return query.best;
+  if (!query.best.is_hit) return {};
+  const RayCandidate& best = query.best;
+  return SceneRayHit{{parameter_of(ray, best.t, query.parameter_exponent), best.face, best.half,
+                      best.u, best.v, scene.to_world(query.best_to_units.apply(best.point())),
+                      placed_normal(query.best_to_units.linear, unit_normal(best.triangle))},
+                     query.best_instance};
 }
 
 }  // namespace
 
-Result<std::optional<SceneRayHit>> closest_hit(const Scene& scene, const Ray& ray, LayerMask layers,
-                                               const QueryLimits& limits) {
+SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers,
+                           const QueryLimits& limits) {
   return cast(scene, ray, false, layers, limits);
 }
 
-Result<std::optional<SceneRayHit>> any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
-                                           const QueryLimits& limits) {
+SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
+                       const QueryLimits& limits) {
   return cast(scene, ray, true, layers, limits);
 }
 

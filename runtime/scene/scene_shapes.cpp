@@ -4,6 +4,7 @@
 
 #include <boxtree/scene.h>
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/query/float_state.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/shape_query.h"
@@ -13,8 +14,6 @@
 
 namespace boxtree {
 namespace {
-
-constexpr double kUnitRoundoff = std::numeric_limits<double>::epsilon() / 2;
 
 // What boxes and spheres share: `ask(placed, faces)` answers for one instance.
 template <class Shape>
@@ -33,7 +32,7 @@ struct ShapeInScene {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return shape.walk(top, instances);
   }
-  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const Result<Visit> visited = shape.ask(placed, {visitor, instance}, admission.work);
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
@@ -42,7 +41,7 @@ struct ShapeInScene {
 };
 
 template <class Shape>
-Result<Visit> ask_scene(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
+Result<Visit> ask_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
                         LayerMask layers, const QueryLimits& limits) {
   QueryWork work(limits);
   ShapeInScene<Shape> query{{scene, kBoxQueries, layers, work}, shape, visitor};
@@ -62,7 +61,7 @@ struct WorldBox {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces,
+  [[nodiscard]] Result<Visit> ask(const BoundScene::Placed& placed, const FacesOfInstance& faces,
                                   QueryWork& work) const {
     const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
     return visit_faces_compactly(*placed.tree, query, faces, work);
@@ -72,15 +71,15 @@ struct WorldBox {
 // The distance of an instance's box, in the scene's frame, is that of its content but for the
 // rounding of the point there and of distances, 64 roundings of the point's own magnitude; what the
 // instance contributes is in its box.
-double scene_error(const Scene& scene, const Eigen::Vector3d& point) noexcept {
+double scene_error(const BoundScene& scene, const Eigen::Vector3d& point) noexcept {
   const double magnitude =
       point.cwiseAbs().maxCoeff() + scene.to_units(scene.frame().origin).cwiseAbs().maxCoeff();
-  return 64 * kUnitRoundoff * magnitude + kLengthUnderflow;
+  return 64 * kRoundoffF64 * magnitude + kLengthUnderflow;
 }
 
 // A squared distance in the scene's frame that holds all within `distance`.
 double frame_bound(double distance, double error) noexcept {
-  return (distance + error) * (distance + error) * (1 + 16 * kUnitRoundoff);
+  return (distance + error) * (distance + error) * (1 + 16 * kRoundoffF64);
 }
 
 // A point of the scene's units in the space of a tree, or 0 from so far away that its boxes say
@@ -107,7 +106,7 @@ struct SphereInUnits {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, center_in_frame, squared_radius_in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const Scene::Placed& placed, const FacesOfInstance& faces,
+  [[nodiscard]] Result<Visit> ask(const BoundScene::Placed& placed, const FacesOfInstance& faces,
                                   QueryWork& work) const {
     const Placement& placement = placed.placement;
     const PlacedSphere exact{placement.to_world(), center, radius * radius};
@@ -122,8 +121,8 @@ struct SphereInUnits {
         most = std::min((radius + error) / stretch.least + kLengthUnderflow, most);
       certain = std::max(0.0, radius - error) / stretch.most;
     }
-    const SphereQuery query{in_tree.at, most * most * (1 + 16 * kUnitRoundoff), &exact,
-                            certain * certain * (1 - 16 * kUnitRoundoff)};
+    const SphereQuery query{in_tree.at, most * most * (1 + 16 * kRoundoffF64), &exact,
+                            certain * certain * (1 - 16 * kRoundoffF64)};
     return visit_sphere(*placed.tree, query, faces, work);
   }
 };
@@ -149,9 +148,9 @@ struct PointInScene {
     return walk_top_level(top, instances, point_in_frame, best_in_frame);
   }
   void set_bound() noexcept { best_in_frame = frame_bound(std::sqrt(best), scene_margin); }
-  [[nodiscard]] bool visit(std::uint32_t instance, const Scene::Placed& placed) {
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const Placement& placement = placed.placement;
-    const Tree& tree = *placed.tree;
+    const BoundTree& tree = *placed.tree;
     const PointInTree in_tree(placement, point);
     PlacedPoint exact{placement.to_world(), point, best, 0, 0};
     if (in_tree.is_near) {
@@ -165,7 +164,7 @@ struct PointInScene {
     if (error != Errc::kOk) return false;
     if (!query.found) return true;
     if (found && exact.best == best && placed.id >= found_id) return true;
-    found = SceneClosestPoint{*query.found, instance};
+    found = SceneClosestPoint{{*query.found}, instance};
     found_id = placed.id;
     best = exact.best;
     set_bound();
@@ -175,9 +174,10 @@ struct PointInScene {
 
 }  // namespace
 
-Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
+Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
                           SceneFaceVisitor visitor, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
@@ -193,10 +193,11 @@ Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
   return ask_scene(scene, shape, visitor, layers, limits);
 }
 
-Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, double radius,
+Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center, double radius,
                              SceneFaceVisitor visitor, LayerMask layers,
                              const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(center);
   const double length = scene.to_units(radius);
@@ -206,11 +207,10 @@ Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, 
   return ask_scene(scene, shape, visitor, layers, limits);
 }
 
-Result<std::optional<SceneClosestPoint>> closest_point(const Scene& scene,
-                                                       const Eigen::Vector3d& point,
-                                                       double max_distance, LayerMask layers,
-                                                       const QueryLimits& limits) {
+ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& point,
+                               double max_distance, LayerMask layers, const QueryLimits& limits) {
   const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(point);
@@ -227,12 +227,10 @@ Result<std::optional<SceneClosestPoint>> closest_point(const Scene& scene,
   const Errc walked = walk_nearest(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (query.found) {
-    ClosestPoint& closest = query.found->closest;
-    closest.point = scene.to_world(closest.point);
-    closest.distance = scene.to_world(std::sqrt(closest.distance));
-  }
-  return query.found;
+  if (!query.found) return {};
+  query.found->point = scene.to_world(query.found->point);
+  query.found->distance = scene.to_world(std::sqrt(query.found->distance));
+  return *query.found;
 }
 
 }  // namespace boxtree

@@ -2,7 +2,7 @@
 // How every query walks a scene: the top level of the file, then the tree over moving instances.
 #pragma once
 
-#include "runtime/scene/scene.h"
+#include "runtime/scene/bound_scene.h"
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/walk/traversal.h"
 #include "runtime/walk/work.h"
@@ -11,7 +11,7 @@ namespace boxtree {
 
 /// Which instances a query is for, and what may be spent on them.
 struct Admission {
-  const Scene& scene;
+  const BoundScene& scene;
   QueryKinds kind;
   LayerMask layers;
   QueryWork& work;
@@ -22,7 +22,7 @@ struct Admission {
 };
 
 // What a query of a scene has, below:
-// query.visit(instance, const Scene::Placed&) -> bool: whether to go on.
+// query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
 // query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about.
 // query.admission; and query.error, which is set when an instance is corrupt.
 // What the templates of walk/traversal.h ask of boxes, in the scene's frame.
@@ -30,7 +30,7 @@ struct Admission {
 /// Counts an instance and visits it; whether to go on.
 template <class Query>
 [[nodiscard]] bool visit_instance(Query& query, std::uint32_t instance,
-                                  const Scene::Placed& placed) {
+                                  const BoundScene::Placed& placed) {
   if (!query.admission.work.take_one()) query.error = Errc::kWorkLimit;
   return query.error == Errc::kOk && query.visit(instance, placed);
 }
@@ -55,8 +55,8 @@ struct MovingInstances {
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) {
-    const Scene& scene = query.admission.scene;
-    const Scene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
+    const BoundScene& scene = query.admission.scene;
+    const BoundScene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
     return !query.admission.admits(moving.placed.layer) ||
            visit_instance(query, moving.instance, moving.placed);
   }
@@ -64,7 +64,7 @@ struct MovingInstances {
 
 /// Visits the static instances that the query may meet, each at most once whatever the bytes.
 template <class Query>
-Errc walk_static(const Scene& scene, Query& query) {
+Errc walk_static(const BoundScene& scene, Query& query) {
   WalkBound visits(scene.instance_count());
   return query.walk(scene.top_level(), [&](std::uint32_t instance) {
     if (!visits.take_one()) {
@@ -82,7 +82,7 @@ Errc walk_static(const Scene& scene, Query& query) {
 
 /// Visits the instances whose boxes overlap; the query may stop it, and holds errors of instances.
 template <class Query>
-Errc walk_overlap(const Scene& scene, Query& query) {
+Errc walk_overlap(const BoundScene& scene, Query& query) {
   const Errc walked = walk_static(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
   MovingInstances<Query> moving(query, scene.moving_tree());
@@ -91,7 +91,7 @@ Errc walk_overlap(const Scene& scene, Query& query) {
 
 /// The same from near to far. Moving instances come first: they are few, and near what asks.
 template <class Query>
-Errc walk_nearest(const Scene& scene, Query& query) {
+Errc walk_nearest(const BoundScene& scene, Query& query) {
   MovingInstances<Query> moving(query, scene.moving_tree());
   const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().codec(), moving);
   if (walked != Errc::kOk || query.is_done()) return walked;

@@ -5,12 +5,12 @@
 
 #include <cstdint>
 
-#include <boxtree/configuration.h>
+#include <boxtree/error.h>
 #include <boxtree/query.h>
 
-#include "format/error.h"
 #include "runtime/query/ray_slab.h"
 #include "runtime/scene/top_level.h"
+#include "runtime/tree/codecs.h"
 
 namespace boxtree {
 

@@ -4,9 +4,11 @@
 #include <string>
 
 #include "format/message.h"
+#include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
+#include "runtime/tree/bound_tree.h"
+#include "runtime/tree/dispatch.h"
 #include "runtime/tree/float_range.h"
-#include "runtime/tree/tree.h"
 
 namespace boxtree {
 namespace {
@@ -23,22 +25,42 @@ bool are_readable(const MeshArrays& mesh) {
 
 }  // namespace
 
-Result<Tree> Tree::bind(const File& file, std::uint32_t index, const BindOptions& options) {
+Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptions& options) {
+  const OpenFile& file = OpenFile::of(opened);
   if (index >= file.tree_count()) {
     return error_with(Errc::kTreeIndex, {}, "tree # of #", {index, file.tree_count()});
   }
-  return bind(
+  return BoundTree::bind(
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
        file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
        file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index)},
       index, options);
 }
 
-Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options) {
-  Tree tree;
+Result<Tree> Tree::bind(const File& file, const BindOptions& options) {
+  if (file.has_scene() || file.tree_count() != 1) {
+    return error_with(Errc::kTreeIndex, {},
+                      "the file holds # trees and # scenes: say which tree, or bind the scene",
+                      {file.tree_count(), file.has_scene() ? 1u : 0u});
+  }
+  return bind(file, 0, options);
+}
+
+Result<Tree> bind_parts(const TreeParts& parts, const BindOptions& options) {
+  return BoundTree::bind(parts, 0, options);
+}
+
+Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
+                             const BindOptions& options) {
+  Tree bound{BoundTree()};
+  BoundTree& tree = inside(bound);
   tree.record_ = parts.record;
   if (Status status = check_tree_record(tree.record_, index); !status) return status.error();
   tree.frame_ = Frame(tree.record_);
+  const Box<double> root{tree.record_.root_low, tree.record_.root_high};
+  tree.reach_ = reach_of(root);
+  tree.largest_reach_ = tree.reach_.maxCoeff();
+  tree.root_f32_ = rounded_outward<float>(root);
   tree.name_ = parts.name;
   const std::string place = "tree " + std::to_string(index) + ": ";
   if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
@@ -50,10 +72,10 @@ Result<Tree> Tree::bind(const TreeParts& parts, std::uint32_t index, const BindO
   }
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
-  return tree;
+  return bound;
 }
 
-Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
   const std::string where = place + section_text(SectionKind::kNodes);
   if (parts.nodes.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
@@ -64,7 +86,7 @@ Status Tree::bind_nodes(const TreeParts& parts, const std::string& place) {
   return {};
 }
 
-Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
   if (record_.geometry == GeometryId::kGrid) return bind_grid(parts, place);
   const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
   const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
@@ -81,7 +103,7 @@ Status Tree::bind_stored_geometry(const TreeParts& parts, const std::string& pla
   return {};
 }
 
-Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_grid(const TreeParts& parts, const std::string& place) {
   const auto clusters = sized_section(parts.corners, SectionKind::kCorners, place,
                                       clusters_of(record_.face_count), sizeof(ClusterRecord));
   if (!clusters) return clusters.error();
@@ -95,7 +117,7 @@ Status Tree::bind_grid(const TreeParts& parts, const std::string& place) {
   return {};
 }
 
-Status Tree::bind_external_geometry(const std::string& place, const BindOptions& options) {
+Status BoundTree::bind_external_geometry(const std::string& place, const BindOptions& options) {
   if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
   const MeshArrays& mesh = *options.mesh;
   if (!are_readable(mesh)) {
@@ -120,8 +142,8 @@ Status Tree::bind_external_geometry(const std::string& place, const BindOptions&
   return {};
 }
 
-Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
-                           const BindOptions& options) {
+Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place,
+                                const BindOptions& options) {
   const auto ids =
       sized_section(parts.face_ids, SectionKind::kFaceIds, place,
                     record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
@@ -136,7 +158,7 @@ Status Tree::bind_face_ids(const TreeParts& parts, const std::string& place,
   return {};
 }
 
-Status Tree::bind_duplicates(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& place) {
   const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
                                        record_.duplicate_count, record_.duplicate_bytes);
   if (!originals) return originals.error();

@@ -4,6 +4,7 @@
 
 #include <concepts>
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
 #include <variant>
 
@@ -15,6 +16,16 @@
 #include "format/tree_record.h"
 
 namespace boxtree {
+
+template <CodecId... Ids>
+struct CodecList {};
+
+/// The codecs whose trees can be bound.
+using BuiltCodecs = CodecList<BOXTREE_CODEC_IDS>;
+inline constexpr std::string_view kBuiltCodecNames = BOXTREE_CODEC_NAMES;
+
+/// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
+inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 
 /// What a tree and its queries ask of a codec. `bind` checks what can be checked without reading
 /// nodes; `expand` is the one question of a traversal. Whatever the bytes, neither reads outside

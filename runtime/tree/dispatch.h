@@ -5,16 +5,17 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
 /// Calls `visitor` with the codec of `tree`.
 template <class Visitor>
-decltype(auto) with_codec(const Tree& tree, Visitor&& visitor) {
+decltype(auto) with_codec(const BoundTree& tree, Visitor&& visitor) {
   return std::visit(std::forward<Visitor>(visitor), tree.codec_view());
 }
 
@@ -30,12 +31,15 @@ template <class S>
   return box;
 }
 
-/// The root box in the scalar of a codec, rounded outward. The cooker stores values of that scalar,
-/// so nothing is rounded but where a tree of f64 is a single leaf, which walks take for one of any
-/// codec; a corrupt value only makes a wrong box, and kMaxRootCoordinate keeps it finite.
+/// The root box in the scalar of a codec, rounded outward. A corrupt value only makes a wrong box,
+/// and kMaxRootCoordinate keeps it finite.
 template <class S>
-[[nodiscard]] Box<S> root_box(const Tree& tree) noexcept {
-  return rounded_outward<S>({tree.record().root_low, tree.record().root_high});
+[[nodiscard]] Box<S> root_box(const BoundTree& tree) noexcept {
+  if constexpr (std::is_same_v<S, float>) {
+    return tree.root_f32();
+  } else {
+    return {tree.record().root_low, tree.record().root_high};
+  }
 }
 
 }  // namespace boxtree

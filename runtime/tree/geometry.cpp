@@ -4,21 +4,21 @@
 
 namespace boxtree {
 
-std::array<std::uint32_t, 4> MeshArrays::face(std::uint32_t face) const noexcept {
+std::array<std::uint32_t, 4> face_of(const MeshArrays& mesh, std::uint32_t face) noexcept {
   std::array<std::uint32_t, 4> corner;
   corner[3] = kMissingCorner;
-  const std::size_t first = std::size_t{face} * corners_per_face;
-  for (std::size_t i = 0; i < corners_per_face; ++i) {
-    corner[i] = corner_bytes == 2 ? load<std::uint16_t>(corners, first + i)
-                                  : load<std::uint32_t>(corners, first + i);
+  const std::size_t first = std::size_t{face} * mesh.corners_per_face;
+  for (std::size_t i = 0; i < mesh.corners_per_face; ++i) {
+    corner[i] = mesh.corner_bytes == 2 ? load<std::uint16_t>(mesh.corners, first + i)
+                                       : load<std::uint32_t>(mesh.corners, first + i);
   }
-  if (corner_bytes == 2 && corner[3] == 0xffffu) corner[3] = kMissingCorner;
+  if (mesh.corner_bytes == 2 && corner[3] == 0xffffu) corner[3] = kMissingCorner;
   return corner;
 }
 
-Eigen::Vector3d MeshArrays::position(std::uint32_t vertex) const noexcept {
-  const std::byte* place = positions + std::size_t{vertex} * position_stride;
-  if (positions_f64) {
+Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexcept {
+  const std::byte* place = mesh.positions + std::size_t{vertex} * mesh.position_stride;
+  if (mesh.positions_f64) {
     const auto p = load<std::array<double, 3>>(place);
     return {p[0], p[1], p[2]};
   }

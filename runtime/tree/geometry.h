@@ -6,79 +6,22 @@
 #include <cstddef>
 #include <cstdint>
 
+#include <boxtree/error.h>
+#include <boxtree/tree.h>
+
 #include "format/bytes.h"
 #include "format/grid.h"
 #include "format/limits.h"
-#include "format/result.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/tree/frame.h"
 
 namespace boxtree {
 
-/// Marks the missing fourth corner of a triangle in 32-bit corner arrays with four corners a face;
-/// 16-bit arrays use 0xffff.
-inline constexpr std::uint32_t kMissingCorner = 0xffffffffu;
-
-/// Where positions and corners lie, in the file or in the application's memory. A face has
-/// `corners_per_face` corner numbers, 3 or 4; with 4, the last may be the missing corner.
-struct MeshArrays {
-  const std::byte* positions = nullptr;
-  std::size_t position_stride = 0;  // bytes from one vertex to the next
-  bool positions_f64 = false;       // three doubles a vertex, otherwise three floats
-  std::uint32_t vertex_count = 0;
-  const std::byte* corners = nullptr;
-  std::uint32_t corner_bytes = 0;  // 2 or 4
-  std::uint32_t corners_per_face = 3;
-  std::uint32_t face_count = 0;
-
-  /// The vertex numbers of a face. Precondition: face < face_count.
-  [[nodiscard]] std::array<std::uint32_t, 4> face(std::uint32_t face) const noexcept;
-  /// A position in object space. Precondition: vertex < vertex_count.
-  [[nodiscard]] Eigen::Vector3d position(std::uint32_t vertex) const noexcept;
-};
-
-/// Describes an application's own arrays for a tree that was cooked with external geometry. They
-/// must be the arrays of the source mesh (same faces, same order, same positions), must outlive the
-/// tree and must not change.
-[[nodiscard]] inline MeshArrays external_mesh(const float* positions, std::uint32_t vertex_count,
-                                              const std::uint32_t* corners,
-                                              std::uint32_t face_count,
-                                              std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions),
-          3 * sizeof(float),
-          false,
-          vertex_count,
-          reinterpret_cast<const std::byte*>(corners),
-          sizeof(*corners),
-          corners_per_face,
-          face_count};
-}
-[[nodiscard]] inline MeshArrays external_mesh(const float* positions, std::uint32_t vertex_count,
-                                              const std::uint16_t* corners,
-                                              std::uint32_t face_count,
-                                              std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions),
-          3 * sizeof(float),
-          false,
-          vertex_count,
-          reinterpret_cast<const std::byte*>(corners),
-          sizeof(*corners),
-          corners_per_face,
-          face_count};
-}
-[[nodiscard]] inline MeshArrays external_mesh(const double* positions, std::uint32_t vertex_count,
-                                              const std::uint32_t* corners,
-                                              std::uint32_t face_count,
-                                              std::uint32_t corners_per_face = 3) noexcept {
-  return {reinterpret_cast<const std::byte*>(positions),
-          3 * sizeof(double),
-          true,
-          vertex_count,
-          reinterpret_cast<const std::byte*>(corners),
-          sizeof(*corners),
-          corners_per_face,
-          face_count};
-}
+/// The vertex numbers of a face. Precondition: face < mesh.face_count.
+[[nodiscard]] std::array<std::uint32_t, 4> face_of(const MeshArrays& mesh,
+                                                   std::uint32_t face) noexcept;
+/// A position in object space. Precondition: vertex < mesh.vertex_count.
+[[nodiscard]] Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexcept;
 
 /// XXH3-64 over the corner positions of all faces in order, each face preceded by its corner count:
 /// the same for every way to index the same faces. kVertexOutOfRange for a bad corner number.

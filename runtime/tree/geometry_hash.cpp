@@ -12,7 +12,7 @@ Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
   ChecksumStream stream;
   const std::size_t position_bytes = 3 * (mesh.positions_f64 ? sizeof(double) : sizeof(float));
   for (std::uint32_t f = 0; f < mesh.face_count; ++f) {
-    const std::array<std::uint32_t, 4> corner = mesh.face(f);
+    const std::array<std::uint32_t, 4> corner = face_of(mesh, f);
     const std::uint32_t count = corner[3] == kMissingCorner ? 3 : 4;
     stream.add(std::as_bytes(std::span(&count, 1)));
     for (std::size_t i = 0; i < count; ++i) {

@@ -1,96 +1,63 @@
 // SPDX-License-Identifier: MIT
-// A bound tree: its root, and what lies below a node.
-#include "runtime/tree/tree.h"
-
+// The tree as applications see it: a BoundTree in storage of its own.
 #include <algorithm>
-#include <cmath>
-#include <limits>
-#include <variant>
+#include <new>
+#include <string>
 
-#include "runtime/tree/dispatch.h"
+#include <boxtree/tree.h>
+
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
+Tree::Tree(const BoundTree& bound) noexcept {
+  new (storage_) BoundTree(bound);
+}
+Tree::Tree(const Tree& other) noexcept : Tree(BoundTree::of(other)) {}
+Tree& Tree::operator=(const Tree& other) noexcept {
+  if (this != &other) new (storage_) BoundTree(BoundTree::of(other));
+  return *this;
+}
+// Views alone: nothing to release, which operator= relies on, too.
+Tree::~Tree() {
+  static_assert(std::is_trivially_destructible_v<BoundTree>);
+}
+
+std::string_view Tree::name() const noexcept {
+  return BoundTree::of(*this).name();
+}
+std::string_view Tree::codec_name() const noexcept {
+  return boxtree::codec_name(BoundTree::of(*this).codec());
+}
+std::uint32_t Tree::face_count() const noexcept {
+  return BoundTree::of(*this).record().face_count;
+}
+std::uint32_t Tree::triangle_count() const noexcept {
+  return BoundTree::of(*this).record().triangle_count;
+}
+bool Tree::empty() const noexcept {
+  return BoundTree::of(*this).empty();
+}
 bool Tree::has_face_ids() const noexcept {
-  return face_ids_ != nullptr || (record_.flags & kTreeFacesInSourceOrder) != 0;
+  return BoundTree::of(*this).has_face_ids();
 }
 
-NodeRef Tree::root_ref() const noexcept {
-  if (record_.root == RootKind::kLeaf) return {0, faces_in_leaves(record_)};
-  return std::visit([this](const auto& codec) { return codec.root(record_); }, codec_);
+Eigen::AlignedBox3d Tree::bounds() const noexcept {
+  const BoundTree& tree = BoundTree::of(*this);
+  if (tree.empty()) return {};
+  return tree.to_object({tree.record().root_low, tree.record().root_high});
 }
 
-Node Tree::root() const noexcept {
-  return {{record_.root_low, record_.root_high}, root_ref(), record_.root == RootKind::kLeaf};
+Result<Triangle> Tree::triangle(const FaceRef& face, std::uint32_t half) const {
+  const BoundTree& tree = BoundTree::of(*this);
+  Result<Triangle> triangle = tree.triangle(face, half);
+  if (!triangle) return triangle;
+  for (Eigen::Vector3d& corner : triangle->corner) corner = tree.frame().to_object(corner);
+  return triangle;
 }
 
-Errc Tree::expand(const Node& node, NodeChildren& out) const noexcept {
-  out.count = 0;
-  return with_codec(*this, [&]<class C>(const C& codec) {
-    typename C::Children children;
-    if (!codec.expand(node.ref, box_cast<typename C::Scalar>(node.box), children)) {
-      return Errc::kNodeCorrupt;
-    }
-    for (std::uint32_t i = 0; i < children.count; ++i) {
-      out.child[i] = {box_cast<double>(children.box(i)), children.ref[i], children.is_leaf(i)};
-    }
-    out.count = children.count;
-    return Errc::kOk;
-  });
-}
-
-Errc Tree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept {
-  return leaves_.read(leaf.ref.first, leaf.ref.second, out);
-}
-
-std::uint32_t Tree::face_id(std::uint32_t face) const noexcept {
-  if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
-  if (face_ids_ == nullptr) return kNoFaceId;
-  return load_number(face_ids_, record_.face_id_bytes, face);
-}
-
-FaceRange Tree::duplicates_of(std::uint32_t face) const noexcept {
-  const std::uint32_t originals = faces_in_leaves(record_);
-  if (duplicates_ == nullptr) return {originals, originals};
-  // The first whose original is not below `limit`.
-  const auto from = [this](std::uint32_t limit) {
-    std::uint32_t low = 0;
-    std::uint32_t high = record_.duplicate_count;
-    while (low < high) {
-      const std::uint32_t middle = low + (high - low) / 2;
-      const bool below = load_number(duplicates_, record_.duplicate_bytes, middle) < limit;
-      (below ? low : high) = below ? middle + 1 : middle;
-    }
-    return low;
-  };
-  const std::uint32_t first = from(face);
-  return {originals + first, originals + std::max(first, from(face + 1))};
-}
-
-std::uint32_t Tree::original_of(std::uint32_t face) const noexcept {
-  const std::uint32_t originals = faces_in_leaves(record_);
-  if (duplicates_ == nullptr || face < originals) return face;
-  return load_number(duplicates_, record_.duplicate_bytes, face - originals);
-}
-
-Eigen::AlignedBox3d Tree::to_object(const Box<double>& box) const noexcept {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  Eigen::Vector3d low;
-  Eigen::Vector3d high;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const auto axis = static_cast<Eigen::Index>(k);
-    low[axis] = box.low[k] * frame_.scale;
-    high[axis] = box.high[k] * frame_.scale;
-    if (frame_.origin[axis] == 0) continue;  // scaling by a power of two did not round
-    // Two roundings: a position whose difference from the origin was rounded into the box may lie
-    // less than an ulp of that difference outside, far more than one of its own near zero; and
-    // adding the origin rounds again.
-    low[axis] = std::nextafter(low[axis], -kInfinity) + frame_.origin[axis];
-    high[axis] = std::nextafter(high[axis], kInfinity) + frame_.origin[axis];
-    low[axis] = std::nextafter(low[axis], -kInfinity);
-    high[axis] = std::nextafter(high[axis], kInfinity);
-  }
-  return {low, high};
+Tree Tree::without_duplicates() const noexcept {
+  return BoundTree::of(*this).without_duplicates();
 }
 
 }  // namespace boxtree

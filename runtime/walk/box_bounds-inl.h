@@ -8,8 +8,8 @@
 #define BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H
 #endif
 
+#include "runtime/primitive/rounding.h"
 #include "runtime/walk/overlap-inl.h"
-#include "runtime/walk/rounding.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "runtime/tree/bound_tree.h"
 #include "runtime/tree/dispatch.h"
 
 namespace boxtree {
@@ -18,7 +19,7 @@ struct ErasedCodecOf {
   using Children = ChildSet<Width, double>;
   static constexpr std::uint32_t kDepthLimit = kMaxDepth;
 
-  const Tree* tree;
+  const BoundTree* tree;
 
   static Result<ErasedCodecOf> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }

@@ -7,17 +7,19 @@
 
 #include <boxtree/query.h>
 
+#include "runtime/tree/bound_tree.h"
+
 namespace boxtree {
 
-/// How an answer names the face at position `order` of the tree. Precondition: it is there.
-[[nodiscard]] inline FaceRef face_ref(const Tree& tree, std::uint32_t order) noexcept {
-  return {tree.face_id(order), order};
+/// How an answer names face `index` of the tree's order. Precondition: it is there.
+[[nodiscard]] inline FaceRef face_ref(const BoundTree& tree, std::uint32_t index) noexcept {
+  return {tree.face_id(index), index};
 }
 
 /// A face that a leaf holds, and then all that are copies of it.
 class FaceWithCopies {
  public:
-  FaceWithCopies(const Tree& tree, std::uint32_t face) noexcept
+  FaceWithCopies(const BoundTree& tree, std::uint32_t face) noexcept
       : tree_(tree), face_(face), copies_(tree.duplicates_of(face)) {}
 
   [[nodiscard]] std::uint32_t count() const noexcept { return 1 + copies_.last - copies_.first; }
@@ -27,7 +29,7 @@ class FaceWithCopies {
   }
 
  private:
-  const Tree& tree_;
+  const BoundTree& tree_;
   std::uint32_t face_;
   FaceRange copies_;
 };

@@ -2,7 +2,9 @@
 // What box and sphere queries share: walk the boxes that overlap, report each face that touches.
 #pragma once
 
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -12,7 +14,7 @@ namespace boxtree {
 /// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
 template <class Shape>
 struct FaceWalk {
-  const Tree& tree;
+  const BoundTree& tree;
   const Shape& shape;
   typename Shape::Visitor visitor;
   WalkBound& nodes;

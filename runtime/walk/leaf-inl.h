@@ -8,9 +8,9 @@
 #endif
 
 #include "format/grid_leaf.h"
-#include "runtime/tree/tree.h"
+#include "runtime/primitive/rounding.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/decode-inl.h"
-#include "runtime/walk/rounding.h"
 #include "runtime/walk/traversal.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,12 +21,12 @@ namespace boxtree::HWY_NAMESPACE {
 /// nearest, see corner_error(). Exact triangles come from with_triangle().
 class LeafFloats {
  public:
-  explicit LeafFloats(const Tree& tree) : reader_(tree.leaves()), mesh_(reader_.mesh()) {
+  explicit LeafFloats(const BoundTree& tree) : reader_(tree.leaves()), mesh_(reader_.mesh()) {
     const Frame& frame = reader_.frame();
     scale_ = static_cast<float>(frame.inverse_scale);
     const bool is_exact =
         double{scale_} == frame.inverse_scale && std::isnormal(scale_) && frame.origin.isZero(0);
-    rounding_ = float_above(reach_of(tree).maxCoeff() * std::numeric_limits<float>::epsilon() +
+    rounding_ = float_above(tree.largest_reach() * 2 * kRoundoffF32 +
                             double{std::numeric_limits<float>::min()});
     direct_ = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
               mesh_.position_stride == kStride && reader_.is_in_tree_order() &&

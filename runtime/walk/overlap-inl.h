@@ -8,6 +8,7 @@
 #define BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
 #endif
 
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_visit.h"
 #include "runtime/walk/leaf-inl.h"
 #include "runtime/walk/prefetch-inl.h"
@@ -37,7 +38,7 @@ HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& trian
 template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
-  OverlapWalk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
+  OverlapWalk(const BoundTree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& walk)
       : codec_(codec),
         walk_(walk),
         filter_(tree, walk.shape),
@@ -155,7 +156,7 @@ class OverlapWalk {
 };
 
 template <class Filter, class Node, class Shape>
-Errc walk(const Tree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& faces) {
+Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, FaceWalk<Shape>& faces) {
   const Box<float> root = root_box<float>(tree);
   if (!faces.overlaps(root)) return Errc::kOk;
   return OverlapWalk<Node, Shape, Filter>(tree, codec, faces).run(root);

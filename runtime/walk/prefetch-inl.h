@@ -10,7 +10,7 @@
 
 #include <hwy/cache_control.h>
 
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/node-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -20,7 +20,7 @@ namespace boxtree::HWY_NAMESPACE {
 template <class Node>
 class Prefetch {
  public:
-  Prefetch(const Tree& tree, const WideCodec<Node>& codec)
+  Prefetch(const BoundTree& tree, const WideCodec<Node>& codec)
       : nodes_(codec.nodes),
         corners_(tree.leaves().mesh().corners),
         clusters_(tree.leaves().grid().clusters) {

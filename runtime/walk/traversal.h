@@ -18,6 +18,7 @@
 #include <boxtree/query.h>
 
 #include "format/limits.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/tree/dispatch.h"
 #include "runtime/walk/face_copies.h"
 #include "runtime/walk/work.h"
@@ -43,18 +44,13 @@ namespace boxtree {
 [[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,
                                        std::uint32_t b_half) noexcept {
   if (a.id != b.id) return a.id < b.id;
-  return a.order != b.order ? a.order < b.order : a_half < b_half;
+  return a.index != b.index ? a.index < b.index : a_half < b_half;
 }
 
 /// 1 for the second triangle of a quad, else 0.
 [[nodiscard]] inline std::uint32_t half_of_face(const TriangleBatch& batch,
                                                 std::uint32_t triangle) noexcept {
   return triangle > 0 && batch.face[triangle - 1] == batch.face[triangle] ? 1 : 0;
-}
-
-/// Largest magnitude of any box coordinate of a tree, on each axis.
-[[nodiscard]] inline Eigen::Vector3d reach_of(const Tree& tree) noexcept {
-  return reach_of(Box<double>{tree.record().root_low, tree.record().root_high});
 }
 
 /// Squared distance from a point to a closed box; monotone in the box, zero inside.
@@ -83,8 +79,7 @@ template <class Query>
   return query.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
-/// Visits every leaf whose box passes, in no promised order. `tree`: a Tree, or whatever else has
-/// empty(), record(), root_ref() and root_box<S>() as a tree has.
+/// Visits every leaf whose box passes, in no promised order. `tree`: a BoundTree or its like.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
 /// query.nodes: a WalkBound, of as many nodes as the tree's record states.

@@ -4,9 +4,11 @@
 #pragma once
 
 #include "format/codec_wide.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/face_visit.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -24,7 +26,7 @@ inline constexpr bool kIsWalkedByVectors<WideCodec<Node>> = kWalksByVectors;
 
 /// Calls `visitor` with the codec of a tree, one of the wide ones.
 template <class Answer, class Visitor>
-Answer with_wide_codec(const Tree& tree, const Visitor& visitor) {
+Answer with_wide_codec(const BoundTree& tree, const Visitor& visitor) {
   return with_codec(tree, [&]<class C>([[maybe_unused]] const C& codec) -> Answer {
     if constexpr (kIsWalkedByVectors<C>) {
       return visitor(codec);
@@ -35,13 +37,13 @@ Answer with_wide_codec(const Tree& tree, const Visitor& visitor) {
 }
 
 // Queries that the wide codecs walk by vectors have a function of their own, in query/*_wide.cpp:
-//   Errc walk_wide(const Tree& tree, QUERY& query);   Precondition: the codec of `tree` is a wide
-//   one.
+//   Errc walk_wide(const BoundTree& tree, QUERY& query);   Precondition: the codec of `tree` is a
+//   wide one.
 
 /// Visits what can matter to the query, from near to far. Returns kNodeCorrupt or kDepthExceeded
 /// for corrupt nodes; the query holds the errors of leaves.
 template <Codec C, class Query>
-Errc walk_nearest(const Tree& tree, const C& codec, Query& query) {
+Errc walk_nearest(const BoundTree& tree, const C& codec, Query& query) {
   if constexpr (kIsWalkedByVectors<C>) {
     return walk_wide(tree, query);
   } else {
@@ -51,7 +53,7 @@ Errc walk_nearest(const Tree& tree, const C& codec, Query& query) {
 
 /// Visits the faces that touch the shape; errors likewise.
 template <Codec C, class Shape>
-Errc walk_overlap(const Tree& tree, const C& codec, FaceWalk<Shape>& walk) {
+Errc walk_overlap(const BoundTree& tree, const C& codec, FaceWalk<Shape>& walk) {
   if constexpr (kIsWalkedByVectors<C>) {
     return walk_wide(tree, walk);
   } else {
@@ -61,8 +63,8 @@ Errc walk_overlap(const Tree& tree, const C& codec, FaceWalk<Shape>& walk) {
 
 /// Visits each face once of which some triangle touches the shape.
 template <class Shape>
-Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::Visitor visitor,
-                          QueryWork& work) {
+Result<Visit> visit_faces(const BoundTree& tree, const Shape& shape,
+                          typename Shape::Visitor visitor, QueryWork& work) {
   WalkBound nodes(tree.record().node_count, &work);
   FaceWalk<Shape> walk{tree, shape, visitor, nodes};
   const Errc walked =
@@ -72,7 +74,7 @@ Result<Visit> visit_faces(const Tree& tree, const Shape& shape, typename Shape::
 
 /// The same without a walk of its own for each codec: by vectors, and one walk for all others.
 template <class Shape>
-Result<Visit> visit_faces_compactly(const Tree& tree, const Shape& shape,
+Result<Visit> visit_faces_compactly(const BoundTree& tree, const Shape& shape,
                                     typename Shape::Visitor visitor, QueryWork& work) {
   WalkBound nodes(tree.record().node_count, &work);
   FaceWalk<Shape> walk{tree, shape, visitor, nodes};

@@ -6,22 +6,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <limits>
 
-#include "format/error.h"
+#include <boxtree/query.h>
 
 namespace boxtree {
-
-/// No limit of the nodes that a query may visit.
-inline constexpr std::uint64_t kUnlimitedNodes = std::numeric_limits<std::uint64_t>::max();
-
-/// What a caller lets one query cost; SECURITY.md states what each may cost without. A query that
-/// would cost more ends with kWorkLimit; what its visitor was given until then is true.
-struct QueryLimits {
-  /// Nodes taken apart, or pairs of a node with a node or leaf, and instances visited [unlimited].
-  /// For each at most 8 leaves, or pairs of leaves, are compared.
-  std::uint64_t nodes = kUnlimitedNodes;
-};
 
 /// What is left of a query's limit; shared by the walks that it is made of, one after the other.
 struct QueryWork {

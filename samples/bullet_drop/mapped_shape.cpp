@@ -38,21 +38,20 @@ void MappedShape::processAllTriangles(btTriangleCallback* callback, const btVect
   // A damaged file: no contact rather than a wrong one. An engine would report visit.error().
   if (!visit) return;
   std::sort(faces.begin(), faces.end(), [](const auto& x, const auto& y) { return x.id < y.id; });
-  boxtree::TriangleBatch batch;
   for (const boxtree::FaceRef& face : faces) {
-    if (tree_.leaves().read(face.order, 1, batch) != boxtree::Errc::kOk) return;
-    for (std::uint32_t i = 0; i < batch.count; ++i) {
+    // A quad has a second half.
+    for (std::uint32_t half = 0; half < 2; ++half) {
+      const auto triangle = tree_.triangle(face, half);
+      if (!triangle) break;
       btVector3 corners[3];
-      for (std::size_t k = 0; k < 3; ++k) {
-        corners[k] = to_bullet(tree_.frame().to_object(batch.triangle(i).corner[k])) * scaling_;
-      }
+      for (std::size_t k = 0; k < 3; ++k) corners[k] = to_bullet(triangle->corner[k]) * scaling_;
       callback->processTriangle(corners, 0, static_cast<int>(face.id));
     }
   }
 }
 
 void MappedShape::getAabb(const btTransform& pose, btVector3& low, btVector3& high) const {
-  const Eigen::AlignedBox3d bounds = tree_.to_object(tree_.root().box);
+  const Eigen::AlignedBox3d bounds = tree_.bounds();
   btVector3 local_low = to_bullet(bounds.min()) * scaling_;
   btVector3 local_high = to_bullet(bounds.max()) * scaling_;
   const btVector3 other = local_low;

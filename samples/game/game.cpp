@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Maps the cooked level and crate: where is the ground, and does the crate touch the stairs?
 #include <cstdio>
+#include <string>
 
 #include <boxtree/boxtree.h>
 
 namespace {
 
 boxtree::Result<boxtree::File> open(const char* name) {
-  return boxtree::File::open(std::filesystem::path(BOXTREE_ASSET_DIR) / name);
+  return boxtree::File::open(std::string(BOXTREE_ASSET_DIR "/") + name);
 }
 
 }  // namespace
@@ -24,15 +25,15 @@ int main() {
   if (!level || !crate) return 1;
 
   const auto ground = boxtree::closest_hit(*level, {{2.5, 0, 10}, {0, 0, -1}});
-  if (!ground || !*ground) return 1;
-  std::printf("ground under (2.5, 0): height %g, face %u\n", 10 - (*ground)->t, (*ground)->face.id);
+  if (!ground) return 1;
+  std::printf("ground under (2.5, 0): height %g, face %u\n", ground->point[2], ground->face.id);
 
   boxtree::Pose pose = boxtree::Pose::Identity();
   for (const double height : {0.6, 0.5, 0.4}) {
     pose.translation() = Eigen::Vector3d(2.5, 0, height);
     const auto contact = boxtree::first_contact(*level, boxtree::Pose::Identity(), *crate, pose);
-    if (!contact) return 1;
-    std::printf("crate at height %g: %s\n", height, *contact ? "touches" : "free");
+    if (!contact.ok()) return 1;
+    std::printf("crate at height %g: %s\n", height, contact ? "touches" : "free");
   }
   return 0;
 }

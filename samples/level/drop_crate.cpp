@@ -13,7 +13,7 @@ int main(int argument_count, char** arguments) {
     std::fputs("usage: drop_crate LEVEL.bxt\n", stderr);
     return 1;
   }
-  const auto file = boxtree::File::open(std::filesystem::path(arguments[1]));
+  const auto file = boxtree::File::open(arguments[1]);
   if (!file) {
     std::fprintf(stderr, "%s\n", file.error().message().c_str());
     return 1;

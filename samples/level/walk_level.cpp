@@ -35,7 +35,7 @@ int main(int argument_count, char** arguments) {
     std::fputs("usage: walk_level LEVEL.bxt\n", stderr);
     return 1;
   }
-  const auto file = boxtree::File::open(std::filesystem::path(arguments[1]));
+  const auto file = boxtree::File::open(arguments[1]);
   if (!file) {
     std::fprintf(stderr, "%s\n", file.error().message().c_str());
     return 1;
@@ -61,17 +61,17 @@ int main(int argument_count, char** arguments) {
       Vector3d next = feet + kStride * ahead.normalized();
       const auto hit = boxtree::closest_hit(
           *scene, {next + Vector3d(0, kStepHeight, 0), Vector3d(0, -1, 0), 0, 10});
-      if (!hit || !*hit) break;  // the edge of the world
-      next[1] += kStepHeight - (*hit)->hit.t;
+      if (!hit) break;  // the edge of the world
+      next[1] += kStepHeight - hit->t;
       if (is_blocked(*scene, next)) {
         if (++blocked == 40)
           std::printf("blocked at (%.2f, %.2f, %.2f)\n", feet[0], feet[1], feet[2]);
         continue;
       }
       feet = next;
-      const auto material = scene->material((*hit)->instance, (*hit)->hit.face);
+      const auto material = scene->material({hit->instance, hit->face});
       const std::string now = std::string(scene->material_name(material)) + " of " +
-                              std::string(scene->info((*hit)->instance)->name);
+                              std::string(scene->info(hit->instance)->name);
       if (now != ground) {
         ground = now;
         std::printf("(%6.2f, %5.2f, %6.2f) on %s\n", feet[0], feet[1], feet[2], ground.c_str());

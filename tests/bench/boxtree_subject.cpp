@@ -9,6 +9,7 @@
 #include "cooker/cook.h"
 #include "cooker/report/scratch_file.h"
 #include "runtime/query/pair_walk.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/bench/subject.h"
 #include "tests/support/require.h"
 
@@ -94,7 +95,7 @@ class BoxtreeSubject : public Subject {
  public:
   BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, const cooker::CookOptions& options)
       : encoded_(cook(mesh, codec, options)),
-        tree_(require(Tree::bind(cooker::parts_of(encoded_), 0, BindOptions()))) {}
+        tree_(require(bind_parts(cooker::parts_of(encoded_)))) {}
 
   [[nodiscard]] SubjectBytes bytes() const override {
     const auto tree = static_cast<double>(encoded_.nodes.bytes.size());
@@ -163,14 +164,15 @@ class BoxtreeSubject : public Subject {
                                                   CacheModel& cache) override {
     if (encoded_.geometry.geometry == GeometryId::kGrid) return {};  // listens to arrays alone
     PairWork work;
+    const BoundTree& tree = BoundTree::of(tree_);
     for (const Pose& pose : poses) {
-      const auto relative = RelativePose::make(tree_, Pose::Identity(), tree_, pose);
+      const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
       if (!relative) throw std::runtime_error(std::string(error_info(Errc::kInvalidPose).name));
-      with_codec(tree_, [&]<class C>(const C& codec) {
+      with_codec(tree, [&]<class C>(const C& codec) {
         const Listener<C> listener{&codec, &encoded_.geometry, &work, &cache};
         const auto visitor = [&](const FacePair&) { return !first_only; };
-        PairBound bound(tree_, tree_, nullptr);
-        static_cast<void>(require(PairWalk<C, C, Listener<C>>(tree_, codec, tree_, codec, *relative,
+        PairBound bound(tree, tree, nullptr);
+        static_cast<void>(require(PairWalk<C, C, Listener<C>>(tree, codec, tree, codec, *relative,
                                                               visitor, bound, listener)
                                       .run()));
       });

@@ -113,7 +113,7 @@ class OriginalSubject : public Subject {
     const Eigen::Vector3d reach =
         mesh_.bounds.min().cwiseAbs().cwiseMax(mesh_.bounds.max().cwiseAbs());
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      RayQuery query{RaySlab(rays[i].origin, rays[i].direction, widened(reach)),
+      RayQuery query{RaySlab(rays[i].origin, rays[i].direction, widened(reach).maxCoeff()),
                      RayShear(rays[i].origin, rays[i].direction)};
       if (query.key(tree_.root_box()) != kInfinity) {
         descend_nearest(tree_.root(), tree_.root_box(), query);

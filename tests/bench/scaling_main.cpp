@@ -18,6 +18,7 @@
 #include "cooker/choose/measure.h"
 #include "cooker/cook.h"
 #include "cooker/report/page.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/require.h"
 
@@ -61,7 +62,7 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
   options.face_ids = false;
   const cooker::EncodedTree encoded =
       require(cooker::cook_as(mesh, codec_of(arguments.codec), options));
-  const Tree tree = require(Tree::bind(cooker::parts_of(encoded), 0, BindOptions()));
+  const Tree tree = require(bind_parts(cooker::parts_of(encoded)));
   const cooker::Workload workload = cooker::make_workload(cooker::bounds_in_object_space(tree),
                                                           {arguments.rays, 0, 0, arguments.poses});
 

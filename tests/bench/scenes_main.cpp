@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cooker/choose/measure.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -113,7 +114,7 @@ class Bench {
  public:
   Bench(const Scene& scene, const Tree& merged, const Tree& body, const Arguments& arguments)
       : scene_(scene), merged_(merged), body_(body), arguments_(arguments) {
-    bounds_ = merged.to_object(merged.root().box);
+    bounds_ = BoundTree::of(merged).to_object(BoundTree::of(merged).root().box);
     for (int i = 0; i < arguments.questions; ++i) {
       const Vector3d from =
           i % 2 == 0 ? Vector3d(point() + Vector3d(0, 1, 0))

@@ -320,7 +320,7 @@ same "$(grep -c '<h2>stiff</h2>' report.html)" 1
 jq 'del(.load)' report.json >first.json
 expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json --json report.json
 same "$(jq 'del(.load)' report.json | cmp - first.json && echo same)" same
-expect 0 "$boxtree" report cube.obj --quick --peers '' --json report.json
+expect 0 "$boxtree" report cube.obj --quick --json report.json
 same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
 expect 2 "$boxtree" report missing.obj
 expect 2 "$boxtree" report cube.obj --include missing.json

@@ -36,6 +36,23 @@ for generator in Ninja "Unix Makefiles"; do
   grep -q 'Cooking level.bxt' "$work/log" || fail "$generator: a touched mesh did not recook"
   grep -q 'Cooking crate.bxt' "$work/log" && fail "$generator: crate was recooked for nothing"
 done
+# Nothing but public headers is installed, and each of them is enough by itself: no header that
+# decodes nodes, and none of the slow ones of the standard library.
+public=$(cd "$source" && ls runtime/include/boxtree format/include/boxtree | grep '\.h$' | sort)
+installed=$(cd "$work/prefix/include" && find . -type f | sed 's|^\./boxtree/||' | sort)
+[ "$installed" = "$(printf '%s\nconfiguration.h\n' "$public" | sort)" ] ||
+  fail "installed headers: $installed"
+eigen=$(sed -n 's/^Eigen3_DIR:[A-Z]*=//p' "$build/CMakeCache.txt")/../../../include/eigen3
+for header in $installed; do
+  echo "#include <boxtree/$header>" >"$work/alone.cpp"
+  "$compiler" -std=c++20 -Wall -Wextra -Wpedantic -Werror -I "$work/prefix/include" -isystem "$eigen" \
+    -fsyntax-only "$work/alone.cpp" || fail "$header is not enough by itself"
+  "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -M "$work/alone.cpp" >"$work/read"
+  if grep -qE '(codec|grid|variant|filesystem)(\.h)?( |$)' "$work/read"; then
+    fail "$header includes $(grep -oE '[^ ]*(codec|grid|variant|filesystem)[^ ]*' "$work/read")"
+  fi
+done
+
 # The component blob is found apart.
 mkdir "$work/blob"
 cat >"$work/blob/CMakeLists.txt" <<'CMAKE'

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "format/container.h"
 #include "tests/fuzz/question.h"
 #include "tests/support/cooked.h"
 

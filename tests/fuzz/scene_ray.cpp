@@ -12,14 +12,14 @@ void run(Bytes input) {
     const auto any = any_hit(scene, ray, layers, question.limits());
     check(closest);
     check(any);
-    if (closest && any && closest->has_value() != any->has_value()) {
+    if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {
       finding("closest_hit and any_hit differ");
     }
     // What an answer names is there.
-    if (closest && closest->has_value()) {
-      const std::uint32_t instance = (*closest)->instance;
+    if (closest.has_value()) {
+      const std::uint32_t instance = closest->instance;
       if (!scene.info(instance)) finding("a hit names no instance");
-      static_cast<void>(scene.material_name(scene.material(instance, (*closest)->hit.face)));
+      static_cast<void>(scene.material_name(scene.material({instance, closest->face})));
     }
   });
 }

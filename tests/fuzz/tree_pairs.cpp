@@ -14,7 +14,7 @@ void run(Bytes input) {
     const auto first =
         first_contact(tree, Pose::Identity(), tree, question.pose(), question.limits());
     check(first);
-    if (all && first && first->has_value() != (pairs != 0)) {
+    if (all.ok() && first.ok() && first.has_value() != (pairs != 0)) {
       finding("overlap_pairs and first_contact differ");
     }
   });

@@ -14,7 +14,7 @@ void run(Bytes input) {
     check(closest);
     check(any);
     // Nothing is missed: both know whether there is a hit.
-    if (closest && any && closest->has_value() != any->has_value()) {
+    if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {
       finding("closest_hit and any_hit differ");
     }
   });

@@ -21,7 +21,7 @@ void query_tree(Bytes bytes, const Query& query) {
     return;
   }
   query(*tree, input.question, [&](const auto& result) {
-    if (!result) check_error(*file, result.code());
+    if (!result.ok()) check_error(*file, result.code());
   });
 }
 
@@ -32,7 +32,7 @@ void query_scene(Bytes bytes, const Query& query) {
   const Result<File> file = File::open(input.file());
   if (!file || !file->has_scene()) return;
   const auto check = [&](const auto& result) {
-    if (!result) check_error(*file, result.code());
+    if (!result.ok()) check_error(*file, result.code());
   };
   SceneOptions options;
   const std::uint32_t made_moving = input.question.option(11);

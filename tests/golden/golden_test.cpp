@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/temp_folder.h"
 
@@ -76,25 +77,25 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   ASSERT_TRUE(file.ok()) << file.error().message();
   const Result<Tree> tree = Tree::bind(*file);
   ASSERT_TRUE(tree.ok()) << tree.error().message();
-  EXPECT_EQ(tree->codec(), GetParam().codec);
+  EXPECT_EQ(BoundTree::of(*tree).codec(), GetParam().codec);
   EXPECT_EQ(tree->name(), "scene");
   const std::uint32_t more = is_wide(GetParam().codec) ? 12 : 0;
-  EXPECT_EQ(tree->record().face_count, 8 + more);
-  EXPECT_EQ(tree->record().triangle_count, 9 + more);
+  EXPECT_EQ(BoundTree::of(*tree).record().face_count, 8 + more);
+  EXPECT_EQ(BoundTree::of(*tree).record().triangle_count, 9 + more);
 
   const auto down = closest_hit(*tree, {{0.25, 0.25, 3}, {0, 0, -1}});
-  ASSERT_TRUE(down.ok() && down->has_value());
-  EXPECT_EQ((*down)->face.id, 0u);
-  EXPECT_EQ((*down)->t, 3);
+  ASSERT_TRUE(down.ok() && down.has_value());
+  EXPECT_EQ(down->face.id, 0u);
+  EXPECT_EQ(down->t, 3);
   // The quad and a piece of the pentagon share the plane: the smaller face id answers.
   const auto shared = closest_hit(*tree, {{4.5, 0.5, 3}, {0, 0, -1}});
-  ASSERT_TRUE(shared.ok() && shared->has_value());
-  EXPECT_EQ((*shared)->face.id, 1u);
-  EXPECT_EQ((*shared)->t, 2.5);
+  ASSERT_TRUE(shared.ok() && shared.has_value());
+  EXPECT_EQ(shared->face.id, 1u);
+  EXPECT_EQ(shared->t, 2.5);
   const auto closest = closest_point(*tree, {0.4375, 9, 1});
-  ASSERT_TRUE(closest.ok() && closest->has_value());
-  EXPECT_EQ((*closest)->face.id, 4u);  // the face without area
-  EXPECT_EQ((*closest)->distance, 2);
+  ASSERT_TRUE(closest.ok() && closest.has_value());
+  EXPECT_EQ(closest->face.id, 4u);  // the face without area
+  EXPECT_EQ(closest->distance, 2);
   std::vector<std::uint32_t> touched;
   ASSERT_TRUE(overlap_box(*tree, {Eigen::Vector3d(12.0625, 2, -1), Eigen::Vector3d(13, 4, 1)},
                           [&](const FaceRef& face) {

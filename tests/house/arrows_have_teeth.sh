@@ -17,7 +17,8 @@ refused() {
   rm "$work/$1"
 }
 
-printf '%s\n' '#include <cstdint>' '#include "format/error.h"' >"$work/format/good.h"
+printf '%s\n' '#include <cstdint>' '#include <boxtree/error.h>' '#include "format/limits.h"' \
+  >"$work/format/good.h"
 printf '%s\n' '#include <Eigen/Core>' '#include "runtime/walk/work.h"' '#include <boxtree/ray.h>' \
   >"$work/runtime/query/good.h"
 check
@@ -26,7 +27,10 @@ refused format/bad.h '"runtime/file/mapping.h"' 'format comes before runtime'
 refused format/bad.h '<Eigen/Core>' 'format does not use Eigen/Core'
 refused format/bad.h '<iostream>' 'format prints nothing'
 refused runtime/query/bad.h '"cooker/cook.h"' 'runtime comes before cooker'
-refused runtime/query/bad.h '"runtime/scene/scene.h"' 'runtime/query comes before runtime/scene'
+refused runtime/query/bad.h '"runtime/scene/bound_scene.h"' 'runtime/query comes before runtime/scene'
+refused runtime/include/boxtree/bad.h '"runtime/tree/bound_tree.h"' \
+  'a public header includes nothing private'
+refused runtime/include/boxtree/bad.h '<format/codec.h>' 'a public header includes nothing private'
 refused runtime/query/bad.h '"runtime/wide/ray.h"' \
   "runtime/wide has no place in the order of runtime's folders"
 refused runtime/query/bad.h '<runtime/walk/work.h>' \

@@ -28,6 +28,8 @@ LIBRARIES = {
 PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"
+# What format shares with applications, in format/include.
+OF_FORMAT = ("boxtree/error.h", "boxtree/kinds.h")
 
 
 def folder_of(path):
@@ -40,7 +42,11 @@ def fault_of(source, folder, name, quoted):
     """Why a source in that folder must not include that name; None if it may."""
     part = source.split("/")[0]
     if name.startswith(PUBLIC):
-        return "format knows nothing of the runtime" if part == "format" else None
+        if part == "format" and name not in OF_FORMAT:
+            return "format knows nothing of the runtime"
+        return None
+    if folder == "include" and (quoted or name.split("/")[0] in PARTS):
+        return "a public header includes nothing private"
     if quoted or name.split("/")[0] in PARTS:
         if not quoted:
             return 'a private header is included by its path in quotes: "%s"' % name
@@ -49,7 +55,7 @@ def fault_of(source, folder, name, quoted):
             return "only a header of the project is included in quotes"
         if PARTS.index(other) > PARTS.index(part):
             return f"{part} comes before {other}"
-        if other != part or folder == "include":
+        if other != part:
             return None
         order = ORDER[part]
         for each in (folder, other_folder):

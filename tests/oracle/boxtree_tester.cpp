@@ -4,6 +4,7 @@
 
 #include "cooker/cook.h"
 #include "runtime/primitive/predicates.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/oracle/pair_tester.h"
 #include "tests/support/require.h"
 
@@ -23,8 +24,8 @@ cooker::EncodedTree cook_one(const Triangle& triangle, CodecId codec) {
 
 bool trees_meet(const Triangle& p, const Triangle& q, CodecId codec) {
   const cooker::EncodedTree first = cook_one(p, codec), second = cook_one(q, codec);
-  const Tree a = require(Tree::bind(cooker::parts_of(first), 0, {}));
-  const Tree b = require(Tree::bind(cooker::parts_of(second), 0, {}));
+  const Tree a = require(bind_parts(cooker::parts_of(first)));
+  const Tree b = require(bind_parts(cooker::parts_of(second)));
   return require(first_contact(a, Pose::Identity(), b, Pose::Identity())).has_value();
 }
 

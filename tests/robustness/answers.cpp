@@ -116,8 +116,8 @@ class Writer {
   std::vector<std::uint64_t> words_;
 };
 
-template <class T>
-std::uint64_t code_of(const Result<T>& result) {
+template <class R>
+std::uint64_t code_of(const R& result) {
   return static_cast<std::uint64_t>(result.code());
 }
 
@@ -125,14 +125,14 @@ std::vector<std::uint64_t> ask_ray(const Tree& tree, const Ray& ray, int exponen
   Writer out(exponent);
   const auto hit = closest_hit(tree, ray);
   out.add(code_of(hit));
-  if (!hit) return out.take();
+  if (!hit.ok()) return out.take();
   const auto any = any_hit(tree, ray);
   out.add(code_of(any));
-  out.add(any.ok() && (*any).has_value() ? 1 : 0);
-  if (!*hit) return out.take();
-  out.add((*hit)->face.id);
-  out.add((*hit)->triangle);
-  for (const double x : {(*hit)->t, (*hit)->u, (*hit)->v}) out.add_number(x);
+  out.add(any.ok() && any.has_value() ? 1 : 0);
+  if (!hit.has_value()) return out.take();
+  out.add(hit->face.id);
+  out.add(hit->triangle);
+  for (const double x : {hit->t, hit->u, hit->v}) out.add_number(x);
   return out.take();
 }
 
@@ -140,11 +140,11 @@ std::vector<std::uint64_t> ask_point(const Tree& tree, const Eigen::Vector3d& po
   Writer out(exponent);
   const auto closest = closest_point(tree, point);
   out.add(code_of(closest));
-  if (!closest || !*closest) return out.take();
-  out.add((*closest)->face.id);
-  out.add((*closest)->triangle);
-  out.add_length((*closest)->distance);
-  for (Eigen::Index k = 0; k < 3; ++k) out.add_length((*closest)->point[k]);
+  if (!closest.has_value()) return out.take();
+  out.add(closest->face.id);
+  out.add(closest->triangle);
+  out.add_length(closest->distance);
+  for (Eigen::Index k = 0; k < 3; ++k) out.add_length(closest->point[k]);
   return out.take();
 }
 
@@ -170,7 +170,7 @@ std::vector<std::uint64_t> ask_pairs(const Tree& tree, const Pose& pose) {
   out.sort_rest(0);
   out.add(code_of(result));
   const auto contact = first_contact(tree, Pose::Identity(), tree, pose);
-  out.add(contact.ok() && (*contact).has_value() ? 1 : 0);
+  out.add(contact.ok() && contact.has_value() ? 1 : 0);
   return out.take();
 }
 

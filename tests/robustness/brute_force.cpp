@@ -11,6 +11,7 @@
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree::robustness {
@@ -42,20 +43,20 @@ class Brute {
   Brute(Run& run, const Subject& subject)
       : run_(run),
         subject_(subject),
-        frame_(subject.tree().frame()),
+        frame_(BoundTree::of(subject.tree()).frame()),
         triangles_(decoded_triangles(subject.tree())) {}
 
   void check_ray(const Ray& ray, std::size_t number) {
     const RayShear shear(frame_.to_tree(ray.origin), ray.direction);
     const double scale = frame_.scale;
-    const double reach = reach_of(subject_.tree()).maxCoeff();
+    const double reach = BoundTree::of(subject_.tree()).largest_reach();
     // The product keeps t within the slabs of the triangle, which are as wide as its error bound.
     const double length = ray.direction.cwiseAbs().maxCoeff();
     const double doubt = 0x1p-46 * scale * (shear.origin.cwiseAbs().maxCoeff() + reach) / length;
     std::optional<double> surely;
     const auto hit = closest_hit(subject_.tree(), ray);
     const auto any = any_hit(subject_.tree(), ray);
-    if (!hit || !any) return complain(false, "ray", number);
+    if (!hit.ok() || !any.ok()) return complain(false, "ray", number);
     bool is_found = false;
     for (const DecodedTriangle& t : triangles_) {
       const auto found = intersect_ray_triangle(shear, t.triangle);
@@ -63,19 +64,19 @@ class Brute {
       const double at = found->t * scale;
       if (is_edge_on(shear, t.triangle)) {
         // That it was hit is rounding, and where is anybody's guess between its corners.
-        is_found |= *hit && (*hit)->face.id == t.face;
+        is_found |= hit.has_value() && hit->face.id == t.face;
         continue;
       }
       if (at < ray.t_min - doubt || at > ray.t_max + doubt) continue;
       if (at >= ray.t_min + doubt && at <= ray.t_max - doubt && (!surely || at < *surely)) {
         surely = at;
       }
-      is_found |= *hit && (*hit)->face.id == t.face && (*hit)->triangle == t.half &&
-                  std::abs((*hit)->t - at) <= doubt;
+      is_found |= hit.has_value() && hit->face.id == t.face && hit->triangle == t.half &&
+                  std::abs(hit->t - at) <= doubt;
     }
-    bool right = (*any).has_value() == (*hit).has_value();
-    if (*hit) {
-      right &= is_found && (!surely || (*hit)->t <= *surely + doubt);
+    bool right = any.has_value() == hit.has_value();
+    if (hit.has_value()) {
+      right &= is_found && (!surely || hit->t <= *surely + doubt);
     } else {
       right &= !surely.has_value();
     }
@@ -111,12 +112,13 @@ class Brute {
       best = std::min(best, (closest_point_on_triangle(at, t.triangle) - at).norm());
     }
     const auto closest = closest_point(subject_.tree(), point);
-    if (!closest) return complain(false, "point", number);
-    bool right = (*closest).has_value() == (best < kInfinity);
-    if (*closest) {
-      const double distance = (*closest)->distance * frame_.inverse_scale;
+    if (!closest.ok()) return complain(false, "point", number);
+    bool right = closest.has_value() == (best < kInfinity);
+    if (closest.has_value()) {
+      const double distance = closest->distance * frame_.inverse_scale;
       right &= std::abs(distance - best) <=
-               0x1p-48 * (best + at.cwiseAbs().maxCoeff() + reach_of(subject_.tree()).maxCoeff());
+               0x1p-48 * (best + at.cwiseAbs().maxCoeff() +
+                          BoundTree::of(subject_.tree()).largest_reach());
     }
     complain(right, "point", number);
   }
@@ -202,7 +204,8 @@ std::size_t check_answers(Run& run, const SourceMesh& mesh, const Questions& que
 
 FacePairs brute_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
                       const Pose& second_pose) {
-  const auto relative = RelativePose::make(first, first_pose, second, second_pose);
+  const auto relative =
+      RelativePose::make(BoundTree::of(first), first_pose, BoundTree::of(second), second_pose);
   if (!relative) throw std::runtime_error("the poses cannot be composed");
   struct Bounded {
     DecodedTriangle decoded;

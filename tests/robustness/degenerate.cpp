@@ -6,6 +6,7 @@
 #include <random>
 
 #include "cooker/proof/proof.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/support/coincident.h"
@@ -90,7 +91,8 @@ class DegenerateKind {
       check_boxes(subject, boxes);
       check_spheres(subject);
       check_rays(subject);
-      const Subject other = make_subject(proper, subject.tree().codec(), kExactStore);
+      const Subject other =
+          make_subject(proper, BoundTree::of(subject.tree()).codec(), kExactStore);
       run_.check(
           found_pairs(subject.tree(), Pose::Identity(), other.tree(), Pose::Identity()) == pairs,
           [&] { return subject.name + ": pairs"; });
@@ -163,7 +165,7 @@ class DegenerateKind {
           cases_.point(kRange) + Eigen::Vector3d(0.5, 0, 0);  // not zero
       const Eigen::Vector3d target = i % 2 == 0 ? aimed[0] : Eigen::Vector3d(cases_.point(kRange));
       const auto hit = closest_hit(subject.tree(), {target - 4 * direction, direction});
-      const bool is_true = hit.ok() && (!*hit || is_on_face(**hit, target, direction));
+      const bool is_true = hit.ok() && (!hit.has_value() || is_on_face(*hit, target, direction));
       run_.check(is_true, [&] { return subject.name + ": ray " + std::to_string(i); });
     }
   }
@@ -271,8 +273,8 @@ void duplicates(Run& run) {
       check_duplicates(run, subject, copies);
       const Tree& tree = subject.tree();
       // A million pairs of coplanar triangles: not in every codec.
-      const bool is_one_of_few =
-          tree.codec() == CodecId::kPlainF32 || tree.codec() == CodecId::kWide8;
+      const bool is_one_of_few = BoundTree::of(tree).codec() == CodecId::kPlainF32 ||
+                                 BoundTree::of(tree).codec() == CodecId::kWide8;
       if (copies > 50 && !is_one_of_few && !run.is_full()) return;
       std::vector<bool> met(std::size_t{copies} * copies, false);
       std::uint64_t pairs = 0, repeated = 0;
@@ -332,7 +334,7 @@ void few_triangles(Run& run) {
                 .ok() &&
             overlap_sphere(tree, {0, 0, 0}, 9, count).ok() && faces == 0,
         name);
-    const Subject other = make_subject(some, tree.codec(), kExactStore);
+    const Subject other = make_subject(some, BoundTree::of(tree).codec(), kExactStore);
     for (const auto& [a, b] : {std::pair(&tree, &other.tree()), std::pair(&other.tree(), &tree),
                                std::pair(&tree, &tree)}) {
       run.check(!test::require(first_contact(*a, Pose::Identity(), *b, Pose::Identity())), name);

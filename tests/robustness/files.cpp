@@ -9,6 +9,8 @@
 #include <fmt/format.h>
 
 #include "cooker/proof/proof.h"
+#include "format/container.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/support/require.h"
@@ -90,7 +92,8 @@ void bad_vertices(Run& run) {
         std::set<std::uint32_t> found;
         for (const DecodedTriangle& t : decoded_triangles(subject.tree())) {
           const auto& c = t.triangle.corner;
-          const Eigen::Vector3d middle = subject.tree().frame().to_object((c[0] + c[1] + c[2]) / 3);
+          const Eigen::Vector3d middle =
+              BoundTree::of(subject.tree()).frame().to_object((c[0] + c[1] + c[2]) / 3);
           const auto visit = overlap_sphere(subject.tree(), middle, 1e-3, [&](const FaceRef& face) {
             found.insert(face.id);
             return true;

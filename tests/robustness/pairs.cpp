@@ -103,7 +103,7 @@ void touching_sweep(Run& run) {
               there.translation() =
                   here.linear() * Eigen::Vector3d(t.shift[0] + gap, t.shift[1], t.shift[2]);
               const auto contact = first_contact(first.tree(), here, second.tree(), there);
-              run.check(contact.ok() && (*contact).has_value() == (gap <= 0), [&] {
+              run.check(contact.ok() && contact.has_value() == (gap <= 0), [&] {
                 return std::string(t.name) + ", " + first.name + ": gap " + std::to_string(gap) +
                        " (2^-" + std::to_string(k) + ")";
               });
@@ -126,9 +126,9 @@ void containment(Run& run) {
         Pose pose = Pose::Identity();
         pose.translation() = Eigen::Vector3d(0.25 * i, 0.125 * i, 0);
         const auto contact = first_contact(big.tree(), Pose::Identity(), small.tree(), pose);
-        run.check(contact.ok() && !(*contact).has_value(), [&] { return big.name; });
+        run.check(contact.ok() && !contact.has_value(), [&] { return big.name; });
         const auto out = closest_hit(big.tree(), {pose.translation(), {0.3, 0.2, 1}});
-        run.check(out.ok() && (*out).has_value(), [&] { return big.name + ": ray out"; });
+        run.check(out.ok() && out.has_value(), [&] { return big.name + ": ray out"; });
       }
     }
   }
@@ -150,20 +150,21 @@ void no_nan(Run& run) {
     for_each_subject(mesh, [&](const Subject& subject) {
       const auto name = [&] { return subject.name; };
       for (const Ray& ray : questions.rays) {
-        const auto hit = *closest_hit(subject.tree(), ray);
-        misses += hit ? 0u : 1u;
-        if (!hit) continue;
+        const auto hit = closest_hit(subject.tree(), ray);
+        misses += hit.has_value() ? 0u : 1u;
+        if (!hit.has_value()) continue;
         run.check(hit->t >= ray.t_min && hit->t <= ray.t_max && std::isfinite(hit->t), name);
         run.check(is_weight(hit->u) && is_weight(hit->v), name);
       }
       for (const Eigen::Vector3d& point : questions.points) {
-        const auto closest = *closest_point(subject.tree(), point);
-        run.check(closest && closest->point.allFinite() && closest->distance >= 0, name);
+        const auto closest = closest_point(subject.tree(), point);
+        run.check(closest.has_value() && closest->point.allFinite() && closest->distance >= 0,
+                  name);
       }
       Pose away = Pose::Identity();
       away.translation() = 3 * bounds_of(mesh).diagonal() + Eigen::Vector3d::Ones();
       const auto contact = first_contact(subject.tree(), Pose::Identity(), subject.tree(), away);
-      run.check(contact.ok() && !(*contact).has_value(), name);
+      run.check(contact.ok() && !contact.has_value(), name);
     });
   }
   run.premise(misses > 1000, "hardly any ray misses");

@@ -73,7 +73,7 @@ void far_away(Run& run) {
         const Eigen::Vector3d between = (0.5 + gap) * normal - second.linear() * corner;
         second.translation() = first.translation() + between;
         const auto contact = first_contact(subject.tree(), first, subject.tree(), second);
-        return contact.ok() && (*contact).has_value();
+        return contact.ok() && contact.has_value();
       };
       run.check(!touches_at(1), "contact at a gap of 1");
       // Between these the answer changes once; rounding of 1e6 is 1.2e-10.

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <random>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 
@@ -77,7 +78,7 @@ void traversal_rounding(Run& run) {
 // centroid hits it, and the closest point to the centroid is no farther than rounding.
 void check_every_face_is_found(Run& run, const SourceMesh& mesh) {
   for_each_subject(mesh, [&](const Subject& subject) {
-    const Frame& frame = subject.tree().frame();
+    const Frame& frame = BoundTree::of(subject.tree()).frame();
     for (const DecodedTriangle& t : decoded_triangles(subject.tree())) {
       const auto& c = t.triangle.corner;
       const Eigen::Vector3d middle = frame.to_object((c[0] + c[1] + c[2]) / 3);
@@ -93,8 +94,8 @@ void check_every_face_is_found(Run& run, const SourceMesh& mesh) {
       const auto hit =
           closest_hit(subject.tree(), {middle + size * normal, Eigen::Vector3d(-normal * size)});
       const auto closest = closest_point(subject.tree(), middle);
-      run.check(visit.ok() && found && hit.ok() && (*hit).has_value() && closest.ok() &&
-                    (*closest).has_value() && (*closest)->distance <= size * 1e-6,
+      run.check(visit.ok() && found && hit.ok() && hit.has_value() && closest.ok() &&
+                    closest.has_value() && closest->distance <= size * 1e-6,
                 [&] { return subject.name + ": face " + std::to_string(t.face); });
     }
   });

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/support/require.h"
@@ -153,9 +154,11 @@ void watertight(Run& run) {
         const std::size_t c = i % 3;
         const double along = i % 2 == 0 ? 0 : unit();
         const Eigen::Vector3d target =
-            subject.tree().frame().to_object(corner[c] + along * (corner[(c + 1) % 3] - corner[c]));
+            BoundTree::of(subject.tree())
+                .frame()
+                .to_object(corner[c] + along * (corner[(c + 1) % 3] - corner[c]));
         const auto hit = closest_hit(subject.tree(), {origin, target - origin});
-        leaks += hit.ok() && (*hit).has_value() ? 0u : 1u;
+        leaks += hit.ok() && hit.has_value() ? 0u : 1u;
       }
       for (std::uint64_t i = 0; i < rays; ++i) run.check(i >= leaks, [&] { return subject.name; });
     });
@@ -204,10 +207,12 @@ void seams_without_area(Run& run) {
         const auto& corner =
             triangles[static_cast<std::size_t>(random() % triangles.size())].triangle.corner;
         const double along = i % 2 == 0 ? 0 : unit() + 0.5;
-        const Eigen::Vector3d target = subject.tree().frame().to_object(
-            corner[i % 3] + along * (corner[(i + 1) % 3] - corner[i % 3]));
+        const Eigen::Vector3d target =
+            BoundTree::of(subject.tree())
+                .frame()
+                .to_object(corner[i % 3] + along * (corner[(i + 1) % 3] - corner[i % 3]));
         const auto hit = closest_hit(subject.tree(), {origin, target - origin});
-        run.check(hit.ok() && (*hit).has_value(), [&] { return subject.name; });
+        run.check(hit.ok() && hit.has_value(), [&] { return subject.name; });
       }
     });
   }
@@ -231,7 +236,7 @@ void real_world_triangle(Run& run) {
       const Eigen::Vector3d from =
           at + std::ldexp(i % 2 == 0 ? 1.0 : -1.0, static_cast<int>(i % 14)) * (normal + aside);
       const auto hit = closest_hit(subject.tree(), {from, at - from});
-      run.check(hit.ok() && (*hit).has_value() && std::abs((*hit)->t - 1) < 1e-3,
+      run.check(hit.ok() && hit.has_value() && std::abs(hit->t - 1) < 1e-3,
                 [&] { return subject.name + ": ray " + std::to_string(i); });
       // A small triangle that stands in the face.
       const Eigen::Vector3d side = 0.01 * aside.cross(normal);
@@ -242,7 +247,7 @@ void real_world_triangle(Run& run) {
       const Subject probe = make_subject(other, CodecId::kPackedF64, kExactStore);
       const auto contact =
           first_contact(subject.tree(), Pose::Identity(), probe.tree(), Pose::Identity());
-      run.check(contact.ok() && (*contact).has_value(),
+      run.check(contact.ok() && contact.has_value(),
                 [&] { return subject.name + ": contact " + std::to_string(i); });
     }
   });
@@ -262,7 +267,7 @@ void rays_from_afar(Run& run) {
         ray.origin[axis] = -sign * std::ldexp(1.0, exponent);
         ray.direction[axis] = sign;
         const auto hit = closest_hit(subject.tree(), ray);
-        run.check(hit.ok() && (*hit).has_value() && std::isfinite((*hit)->t),
+        run.check(hit.ok() && hit.has_value() && std::isfinite(hit->t),
                   [&] { return subject.name + ": from 2^" + std::to_string(exponent); });
       }
     }
@@ -279,7 +284,7 @@ void invalid_questions(Run& run) {
     // But for what binding checks, the header of packed nodes.
     const auto first = encoded.nodes.bytes.begin() + (is_packed(codec.id) ? kPackedHeader : 0);
     std::fill(first, encoded.nodes.bytes.end(), std::byte{0xff});
-    const Tree tree = test::require(Tree::bind(cooker::parts_of(encoded), 0, {}));
+    const Tree tree = test::require(bind_parts(cooker::parts_of(encoded)));
     run.premise(!closest_hit(tree, {{0, 0, 0}, {1, 0, 0}}).ok(),
                 "the damage goes unseen: " + std::string(codec.name));
     const auto refused = [&](Errc code, Errc expected, const char* what) {

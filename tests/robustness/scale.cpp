@@ -53,7 +53,8 @@ void far_from_origin(Run& run) {
   };
   std::vector<Eigen::Vector3d> shifts;
   for (int i = 0; i < 20; ++i) shifts.emplace_back(100 * unit(), 100 * unit(), 100 * unit());
-  const auto visits = [&](const Tree& tree) {
+  const auto visits = [&](const Tree& asked) {
+    const BoundTree& tree = BoundTree::of(asked);
     std::uint64_t count = 0;
     for (const Eigen::Vector3d& shift : shifts) {
       Pose pose = Pose::Identity();

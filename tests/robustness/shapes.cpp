@@ -4,6 +4,9 @@
 #include <cstring>
 #include <random>
 
+#include "format/container.h"
+#include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"
 
@@ -55,11 +58,11 @@ void equal_centroids(Run& run) {
   // A file may not claim a depth beyond the stacks of its readers.
   for_each_subject(test::torus(12, 8), [&](const Subject& subject) {
     std::vector<std::byte> bytes = subject.cooked.bytes;
-    const Bytes record = subject.cooked.file.section(SectionKind::kTrees);
+    const Bytes record = OpenFile::of(subject.cooked.file).section(SectionKind::kTrees);
     const auto at = static_cast<std::size_t>(record.data() - subject.cooked.bytes.data()) +
                     offsetof(TreeRecord, depth);
     for (const std::uint32_t depth :
-         {is_wide(subject.tree().codec()) ? kMaxWideDepth + 1 : kMaxDepth + 1, 1000u,
+         {is_wide(BoundTree::of(subject.tree()).codec()) ? kMaxWideDepth + 1 : kMaxDepth + 1, 1000u,
           0xffffffffu}) {
       std::memcpy(bytes.data() + at, &depth, sizeof(depth));
       test::repair_checksums(bytes);
@@ -76,7 +79,8 @@ void deep_chains(Run& run) {
     hits += check_answers(run, mesh, questions_about(mesh, 33));
     for_each_subject(mesh, [&](const Subject& subject) {
       const WalkFigures figures = walk_tree(subject.tree());
-      const std::uint32_t most = is_wide(subject.tree().codec()) ? kMaxWideDepth : kMaxDepth;
+      const std::uint32_t most =
+          is_wide(BoundTree::of(subject.tree()).codec()) ? kMaxWideDepth : kMaxDepth;
       run.check(figures.depth <= most && figures.missed == 0 && figures.escapes == 0,
                 [&] { return subject.name; });
     });
@@ -95,14 +99,15 @@ void check_counts(Run& run, const SourceMesh& mesh, CodecId codec, const Store& 
   std::uint64_t wrong = 0;
   const std::vector<DecodedTriangle> triangles = decoded_triangles(subject.tree());
   run.check(triangles.size() == mesh.triangle_count(), name);
-  const double tolerance = store.geometry == GeometryId::kExact
-                               ? 0
-                               : std::ldexp(1.0, subject.tree().record().grid_exponent);
+  const double tolerance =
+      store.geometry == GeometryId::kExact
+          ? 0
+          : std::ldexp(1.0, BoundTree::of(subject.tree()).record().grid_exponent);
   for (const DecodedTriangle& t : triangles) {
     const Triangle source = source_triangle(mesh, t.face, t.half);
     for (std::size_t c = 0; c < 3; ++c) {
       const Eigen::Vector3d error =
-          subject.tree().frame().to_object(t.triangle.corner[c]) - source.corner[c];
+          BoundTree::of(subject.tree()).frame().to_object(t.triangle.corner[c]) - source.corner[c];
       wrong += error.cwiseAbs().maxCoeff() <= tolerance ? 0u : 1u;
     }
   }

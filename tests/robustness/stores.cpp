@@ -6,6 +6,7 @@
 #include <map>
 
 #include "cooker/quantise/grid.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/robustness/run.h"
 #include "tests/support/require.h"
@@ -52,8 +53,8 @@ void collapsed_faces(Run& run) {
         options.grid.bits = bits;
         options.codec = codec.id;
         const cooker::CookedTree cooked = test::require(cooker::cook_mesh(mesh, options));
-        const Tree tree = test::require(Tree::bind(cooker::parts_of(cooked.tree), 0, {}));
-        const int step = tree.record().grid_exponent;
+        const Tree tree = test::require(bind_parts(cooker::parts_of(cooked.tree)));
+        const int step = BoundTree::of(tree).record().grid_exponent;
         std::uint32_t expected = 0;
         for (std::size_t f = 0; f < faces; ++f) expected += has_no_area(mesh, f, 0, step) ? 1u : 0u;
         const auto name = [&] {
@@ -69,7 +70,7 @@ void collapsed_faces(Run& run) {
         for (const DecodedTriangle& t : triangles) {
           const Triangle source = source_triangle(mesh, t.face, t.half);
           for (std::size_t c = 0; c < 3; ++c) {
-            const Eigen::Vector3d at = tree.frame().to_object(t.triangle.corner[c]);
+            const Eigen::Vector3d at = BoundTree::of(tree).frame().to_object(t.triangle.corner[c]);
             is_near &= (at - source.corner[c]).cwiseAbs().maxCoeff() <= std::ldexp(0.5, step);
           }
         }
@@ -123,12 +124,13 @@ void shared_vertices(Run& run) {
       std::size_t shared = 0;
       for (std::size_t i = 0; i < tiles.size(); ++i) {
         const cooker::CookedTree cooked = test::require(cooker::cook_mesh(tiles[i], options, grid));
-        const Tree tree = test::require(Tree::bind(cooker::parts_of(cooked.tree), 0, {}));
+        const Tree tree = test::require(bind_parts(cooker::parts_of(cooked.tree)));
         for (const DecodedTriangle& t : decoded_triangles(tree)) {
           const Triangle source = source_triangle(tiles[i], t.face, t.half);
           for (std::size_t c = 0; c < 3; ++c) {
             const Position from = bits_of(source.corner[c]);
-            const Position to = bits_of(tree.frame().to_object(t.triangle.corner[c]));
+            const Position to =
+                bits_of(BoundTree::of(tree).frame().to_object(t.triangle.corner[c]));
             const auto [place, is_new] = decoded.try_emplace(from, to);
             shared += !is_new && first_tile[from] != i ? 1u : 0u;
             if (is_new) first_tile[from] = i;

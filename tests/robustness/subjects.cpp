@@ -7,15 +7,18 @@
 #include <stdexcept>
 #include <tuple>
 
+#include "runtime/tree/bound_tree.h"
+
 namespace boxtree::robustness {
 namespace {
 
 class Walk {
  public:
-  explicit Walk(const Tree& tree) : tree_(tree), met_(tree.record().face_count, false) {}
+  explicit Walk(const Tree& tree)
+      : tree_(tree), met_(BoundTree::of(tree).record().face_count, false) {}
 
   WalkFigures run() {
-    if (!tree_.empty()) visit(tree_.root());
+    if (!tree_.empty()) visit(BoundTree::of(tree_).root());
     visit_duplicates();
     figures_.missed = static_cast<std::uint64_t>(std::count(met_.begin(), met_.end(), false));
     return figures_;
@@ -34,7 +37,8 @@ class Walk {
     } else {
       figures_.depth = std::max(figures_.depth, static_cast<std::uint32_t>(path_.size()));
       NodeChildren children;
-      if (tree_.expand(node, children) != Errc::kOk) throw std::runtime_error("corrupt node");
+      if (BoundTree::of(tree_).expand(node, children) != Errc::kOk)
+        throw std::runtime_error("corrupt node");
       for (std::uint32_t i = 0; i < children.count; ++i) visit(children.child[i]);
     }
     path_.pop_back();
@@ -43,7 +47,8 @@ class Walk {
   void visit_leaf(const Node& leaf) {
     ++figures_.leaves;
     TriangleBatch batch;
-    if (tree_.leaf_triangles(leaf, batch) != Errc::kOk) throw std::runtime_error("corrupt leaf");
+    if (BoundTree::of(tree_).leaf_triangles(leaf, batch) != Errc::kOk)
+      throw std::runtime_error("corrupt leaf");
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       const bool is_second_half = i > 0 && batch.face[i] == batch.face[i - 1];
       figures_.repeated += !is_second_half && met_[batch.face[i]] ? 1u : 0u;
@@ -55,9 +60,9 @@ class Walk {
 
   // Copies stand in no leaf; they are met where their originals are.
   void visit_duplicates() {
-    for (std::uint32_t face = 0; face < tree_.record().face_count; ++face) {
-      if (!met_[face] || tree_.original_of(face) != face) continue;
-      const FaceRange copies = tree_.duplicates_of(face);
+    for (std::uint32_t face = 0; face < BoundTree::of(tree_).record().face_count; ++face) {
+      if (!met_[face] || BoundTree::of(tree_).original_of(face) != face) continue;
+      const FaceRange copies = BoundTree::of(tree_).duplicates_of(face);
       for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
         figures_.repeated += met_[copy] ? 1u : 0u;
         met_[copy] = true;
@@ -99,12 +104,12 @@ Subject make_subject(const SourceMesh& mesh, CodecId codec, const Store& store) 
 std::vector<DecodedTriangle> decoded_triangles(const Tree& tree) {
   std::vector<DecodedTriangle> all;
   TriangleBatch batch;
-  for (std::uint32_t order = 0; order < tree.record().face_count; ++order) {
-    if (tree.leaves().read(order, 1, batch) != Errc::kOk) {
+  for (std::uint32_t order = 0; order < BoundTree::of(tree).record().face_count; ++order) {
+    if (BoundTree::of(tree).leaves().read(order, 1, batch) != Errc::kOk) {
       throw std::runtime_error("face " + std::to_string(order) + " cannot be read");
     }
     for (std::uint32_t i = 0; i < batch.count; ++i) {
-      all.push_back({tree.face_id(order), i, batch.triangle(i)});
+      all.push_back({BoundTree::of(tree).face_id(order), i, batch.triangle(i)});
     }
   }
   std::sort(all.begin(), all.end(), [](const DecodedTriangle& a, const DecodedTriangle& b) {

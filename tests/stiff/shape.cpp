@@ -8,6 +8,7 @@
 
 #include "format/codec_plain.h"
 #include "format/half.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/require.h"
 
 namespace boxtree::stiff {
@@ -34,17 +35,18 @@ Eigen::AlignedBox3d bounds_in_world(std::span<const Triangle> triangles, const P
 
 // Reads every face through the tree, as a contact solver of an application would.
 void read_triangles(Shape& shape, const Tree& tree) {
-  const std::uint32_t faces = tree.record().face_count;
+  const std::uint32_t faces = BoundTree::of(tree).record().face_count;
   std::vector<std::vector<Triangle>> by_id(faces);
   TriangleBatch batch;
   for (std::uint32_t order = 0; order < faces; ++order) {
-    if (const Errc error = tree.leaves().read(order, 1, batch); error != Errc::kOk) {
+    if (const Errc error = BoundTree::of(tree).leaves().read(order, 1, batch); error != Errc::kOk) {
       throw std::runtime_error("a face cannot be read");
     }
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       Triangle triangle = batch.triangle(i);
-      for (Eigen::Vector3d& corner : triangle.corner) corner = tree.frame().to_object(corner);
-      by_id.at(tree.face_id(order)).push_back(triangle);
+      for (Eigen::Vector3d& corner : triangle.corner)
+        corner = BoundTree::of(tree).frame().to_object(corner);
+      by_id.at(BoundTree::of(tree).face_id(order)).push_back(triangle);
     }
   }
   shape.first = {0};
@@ -61,7 +63,7 @@ Shape shape_of(std::string name, cooker::EncodedTree encoded) {
   shape.name = std::move(name);
   shape.max_vertex_error = encoded.geometry.max_vertex_error;
   shape.encoded = std::make_unique<const cooker::EncodedTree>(std::move(encoded));
-  shape.tree = require(Tree::bind(cooker::parts_of(*shape.encoded), 0, BindOptions()));
+  shape.tree = require(bind_parts(cooker::parts_of(*shape.encoded)));
   read_triangles(shape, *shape.tree);
   return shape;
 }

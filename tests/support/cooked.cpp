@@ -6,7 +6,10 @@
 #include <cstring>
 #include <stdexcept>
 
+#include "format/container.h"
 #include "runtime/file/checksum.h"
+#include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/require.h"
 
 namespace boxtree::test {
@@ -60,24 +63,24 @@ CookedTree cook_tree(const cooker::SourceMesh& mesh, const Encoding& encoding) {
 
 std::vector<Triangle> all_triangles(const Tree& tree) {
   std::vector<Triangle> triangles;
-  std::vector<Node> pending{tree.root()};
+  std::vector<Node> pending{BoundTree::of(tree).root()};
   while (!pending.empty()) {
     const Node node = pending.back();
     pending.pop_back();
     if (node.is_leaf) {
       TriangleBatch batch;
-      EXPECT_EQ(tree.leaf_triangles(node, batch), Errc::kOk);
+      EXPECT_EQ(BoundTree::of(tree).leaf_triangles(node, batch), Errc::kOk);
       for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
       continue;
     }
     NodeChildren children;
-    EXPECT_EQ(tree.expand(node, children), Errc::kOk);
+    EXPECT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
     for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
   }
-  for (std::uint32_t face = faces_in_leaves(tree.record()); face < tree.record().face_count;
-       ++face) {
+  for (std::uint32_t face = faces_in_leaves(BoundTree::of(tree).record());
+       face < BoundTree::of(tree).record().face_count; ++face) {
     TriangleBatch batch;
-    EXPECT_EQ(tree.leaves().read(face, 1, batch), Errc::kOk);
+    EXPECT_EQ(BoundTree::of(tree).leaves().read(face, 1, batch), Errc::kOk);
     for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));
   }
   return triangles;
@@ -85,7 +88,7 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
 
 SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind) {
   const File opened = require(File::open(Bytes(file)));
-  for (const SectionEntry& entry : opened.container().sections) {
+  for (const SectionEntry& entry : OpenFile::of(opened).container().sections) {
     if (entry.kind == static_cast<std::uint32_t>(kind)) return entry;
   }
   throw std::runtime_error("no such section");

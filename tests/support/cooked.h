@@ -12,6 +12,7 @@
 #include <boxtree/boxtree.h>
 
 #include "cooker/cook.h"
+#include "format/container.h"
 
 namespace boxtree::test {
 

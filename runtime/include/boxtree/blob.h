@@ -2,13 +2,12 @@
 // boxtree::blob, a library of its own: files that are compressed as a whole (paper section 3.1).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <string>
 #include <vector>
 
 #include <boxtree/file.h>
-
-#include "format/blob.h"
 
 namespace boxtree {
 
@@ -20,8 +19,7 @@ inline constexpr std::uint64_t kDefaultBlobMemory = std::uint64_t{1} << 30;
 /// more is ever produced, whatever the stream holds.
 /// Errors: as File::open; kFeatureUnsupported when the file is no blob; kBlobLimit; kBlobCorrupt
 /// when the stream is truncated, damaged or not as long as stated. Thread-safe.
-Result<File> open_blob(const std::filesystem::path& path,
-                       std::uint64_t memory_limit = kDefaultBlobMemory);
+Result<File> open_blob(const std::string& path, std::uint64_t memory_limit = kDefaultBlobMemory);
 
 /// The same over memory of the caller, which is not needed any more afterwards.
 Result<File> open_blob(Bytes blob, std::uint64_t memory_limit = kDefaultBlobMemory);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boxtree/configuration.h>
+#include <boxtree/error.h>
 #include <boxtree/file.h>
 #if BOXTREE_HAS_RAY_QUERIES
 #include <boxtree/ray.h>
@@ -19,8 +20,8 @@
 #if BOXTREE_HAS_DISTANCE_QUERIES
 #include <boxtree/distance.h>
 #endif
+#include <boxtree/traverse.h>
+#include <boxtree/tree.h>
 #if BOXTREE_HAS_SCENE_QUERIES
 #include <boxtree/scene.h>
 #endif
-
-#include "runtime/tree/tree.h"

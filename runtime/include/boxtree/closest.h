@@ -2,13 +2,12 @@
 // Closest point: the point of the surface nearest to a given one.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 
 #include <boxtree/configuration.h>
 #include <boxtree/query.h>
-
-#include "runtime/query/approximation.h"
 
 namespace boxtree {
 
@@ -16,19 +15,21 @@ static_assert(BOXTREE_HAS_POINT_QUERIES,
               "BOXTREE_QUERIES left point queries out of this build of boxtree");
 
 struct ClosestPoint {
-  Eigen::Vector3d point;  // object space
-  double distance;        // object space
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();            // object space
+  double distance = std::numeric_limits<double>::infinity();  // object space
   FaceRef face;
-  std::uint32_t triangle;  // 0, or 1 for the second half (0,2,3) of a quad
+  std::uint32_t triangle = 0;  // 0, or 1 for the second half (0,2,3) of a quad
 };
 
+using PointResult = QueryResult<ClosestPoint>;
+
 /// The nearest point of the tree's surface within `max_distance` of `point` (object space), or
-/// nothing. Of several faces at the same distance the one with the smallest id (order, if the file
+/// nothing. Of several faces at the same distance the one with the smallest id (index, if the file
 /// has no ids). Errors: kInvalidQuery (NaN or infinite point, NaN or negative distance) and the
 /// codes of corrupt bytes and limits as for closest_hit. Never allocates.
-Result<std::optional<ClosestPoint>> closest_point(
-    const Tree& tree, const Eigen::Vector3d& point,
-    double max_distance = std::numeric_limits<double>::infinity(), const QueryLimits& limits = {});
+PointResult closest_point(const Tree& tree, const Eigen::Vector3d& point,
+                          double max_distance = std::numeric_limits<double>::infinity(),
+                          const QueryLimits& limits = {});
 
 using PointOptions = Approximation;
 
@@ -41,17 +42,18 @@ struct ApproximatePoint {
   /// distance. Its `distance` is computed as in the exact query, so it may differ from `upper`, and
   /// from the truth, by rounding.
   std::optional<ClosestPoint> witness;
-  /// Whether the bounds are as near to each other as was asked, or as rounding lets them be: some
-  /// 2^-44 of the tree's extent and the distance. Otherwise the budget ran out.
-  bool is_near_enough = true;
-  /// Nodes taken apart and leaves read: what the budget counts.
+  /// Whether the bounds are as near to each other as was required, or as rounding lets them be:
+  /// some 2^-44 of the tree's extent and the distance. Otherwise the budget ran out.
+  bool converged = true;
+  /// Nodes expanded and leaves read: what the budget counts.
   std::uint64_t nodes_expanded = 0;
 };
 
-/// The nearest point, as nearly as is asked. With zero errors and no budget the witness is that of
-/// the exact query to the last bit. With a budget the walk is best-first and may stop anywhere;
+/// The nearest point, as nearly as is required. With zero errors and no budget the witness is that
+/// of the exact query to the last bit. With a budget the walk is best-first and may stop anywhere;
 /// without one it is that of the exact query, leaving out what cannot improve the answer by more
-/// than the error. Errors as above; kInvalidQuery also for options that are NaN or negative.
+/// than the error. Errors as above; kInvalidQuery also for options that are NaN or negative. Takes
+/// up to 160 KB of stack.
 Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
                                        const PointOptions& options);
 

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Distance of two trees' surfaces, exactly or as nearly as is asked, each tree with a pose.
+// Distance of two trees' surfaces, exactly or as nearly as is required, each tree with a pose.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <optional>
 
 #include <boxtree/configuration.h>
 #include <boxtree/query.h>
-
-#include "runtime/query/approximation.h"
 
 namespace boxtree {
 
@@ -33,10 +32,10 @@ struct Distance {
   /// maximal distance. Points far from the world's origin are rounded more coarsely than `upper`
   /// is.
   std::optional<DistanceWitness> witness;
-  /// Whether the bounds are as near to each other as was asked, or as rounding lets them be: some
-  /// 2^-44 of the triangles' size and distance. Otherwise the budget ran out.
-  bool is_near_enough = true;
-  /// Pairs of nodes taken apart and pairs of leaves compared: what the budget counts.
+  /// Whether the bounds are as near to each other as was required, or as rounding lets them be:
+  /// some 2^-44 of the triangles' size and distance. Otherwise the budget ran out.
+  bool converged = true;
+  /// Pairs of nodes expanded and pairs of leaves compared: what the budget counts.
   std::uint64_t nodes_expanded = 0;
 };
 

@@ -2,15 +2,18 @@
 // An open .bxt file: checked header and section table over mapped bytes.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <filesystem>
+#include <memory>
+#include <string>
 #include <string_view>
 
-#include "format/container.h"
-#include "format/tree_record.h"
-#include "runtime/file/mapping.h"
+#include <boxtree/error.h>
+#include <boxtree/kinds.h>
 
 namespace boxtree {
+
+class OpenFile;
 
 struct OpenOptions {
   /// Read the file into private memory instead of mapping it [default false]: for files that other
@@ -24,47 +27,40 @@ struct OpenOptions {
 /// bytes and must not outlive it (moving the File keeps them valid).
 class File {
  public:
-  /// Maps `path` and checks header and section table; no section but the tree table is touched, so
-  /// the cost does not depend on the size of the file. Safe for untrusted bytes.
+  /// Maps `path` (UTF-8) and checks header and section table; no section but the tree table is
+  /// touched, so the cost does not depend on the size of the file. Safe for untrusted bytes.
+  /// While it is mapped the file must not be truncated in place: replace files by rename, as the
+  /// cooker does, or open them with OpenOptions::copy.
   /// Errors: kFileNotFound, kFileUnreadable, kMapFailed and the codes 10..29.
-  static Result<File> open(const std::filesystem::path& path, const OpenOptions& options = {});
+  static Result<File> open(const std::string& path, const OpenOptions& options = {});
 
   /// The same over memory of the caller, which must stay unchanged while the File or a Tree bound
   /// to it lives. Any alignment.
   static Result<File> open(Bytes memory, const OpenOptions& options = {});
 
-  /// The same over memory that the File takes over.
-  static Result<File> open(Mapping owned, const OpenOptions& options = {});
+  File(File&&) noexcept;
+  File& operator=(File&&) noexcept;
+  ~File();
 
-  [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
-  [[nodiscard]] const Container& container() const noexcept { return container_; }
-  [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }
-  [[nodiscard]] bool has_scene() const noexcept { return !section(SectionKind::kScene).empty(); }
+  [[nodiscard]] Bytes bytes() const noexcept;
+  [[nodiscard]] std::uint32_t tree_count() const noexcept;
+  [[nodiscard]] bool has_scene() const noexcept;
 
-  /// The record of tree `index`, not yet checked (Tree::bind checks it). Precondition:
-  /// index < tree_count().
-  [[nodiscard]] TreeRecord tree_record(std::uint32_t index) const noexcept;
-
-  /// Name of tree `index`, empty if it has none or the record points outside the names section.
+  /// Name of tree `index`, empty if it has none or the file has no such tree.
   [[nodiscard]] std::string_view tree_name(std::uint32_t index) const noexcept;
 
-  /// Number of the tree with that name; the first if several share it. Error: kTreeIndex.
+  /// Number of the tree with that name; the first if several share it. O(trees). Error: kTreeIndex.
   [[nodiscard]] Result<std::uint32_t> find_tree(std::string_view name) const;
 
-  /// Bytes of a section; empty when the file has none of that kind and owner.
-  [[nodiscard]] Bytes section(SectionKind kind, std::uint32_t owner = kNoOwner) const noexcept;
-
  private:
-  File() = default;
-  static Result<File> check(File file, const OpenOptions& options);
+  friend class OpenFile;
+  explicit File(std::unique_ptr<const OpenFile> open) noexcept;
 
-  Mapping mapping_;
-  Bytes bytes_;
-  Container container_;
-  std::uint32_t tree_count_ = 0;
+  std::unique_ptr<const OpenFile> open_;
 };
 
 /// Whether the bytes of every section have the checksum of the section table; reads the whole file.
+/// Error: kChecksumMismatch.
 Status verify_checksums(const File& file);
 
 }  // namespace boxtree

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What touches a shape: the faces that share a point with a box or a sphere, and overlap as far as
-// it matters (hit, free, or too close to be worth telling). Queries that BOXTREE_QUERIES left out
-// of this build are not declared.
+// it matters (overlapping, disjoint, or too close to be worth telling). Queries that
+// BOXTREE_QUERIES left out of this build are not declared.
 #pragma once
 
 #include <cstdint>
@@ -9,9 +9,6 @@
 
 #include <boxtree/configuration.h>
 #include <boxtree/query.h>
-
-#include "runtime/query/approximation.h"
-#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -36,32 +33,32 @@ Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, do
 
 #if BOXTREE_HAS_WITHIN_QUERIES
 enum class Overlap : std::uint8_t {
-  kHit,          // some face touches
-  kFree,         // none does
-  kUndecided,    // not told apart, and closer to each other than the distance asked with
+  kOverlapping,  // some face touches
+  kDisjoint,     // none does
+  kUndecided,    // not told apart, and closer to each other than the given distance
   kBudgetSpent,  // the budget ran out before anything was known
 };
 
 struct PairOverlap {
-  Overlap overlap = Overlap::kFree;
-  std::optional<FacePair> contact;   // of a hit
-  std::uint64_t nodes_expanded = 0;  // pairs of nodes taken apart and of leaves compared
+  Overlap overlap = Overlap::kDisjoint;
+  std::optional<FacePair> contact;   // where they overlap
+  std::uint64_t nodes_expanded = 0;  // pairs of nodes expanded and of leaves compared
 };
 
-/// Whether two surfaces touch. Hits and frees are certain: exact predicates decide, as for
-/// overlap_pairs. Where the walk comes upon parts of both that are closer than `distance` (in the
-/// world) it may end with kUndecided: the larger the distance, the earlier; never if it is 0. The
-/// walk ends with kBudgetSpent rather than visit more than `node_budget` pairs. Poses as for
+/// Whether two surfaces touch. Overlapping and disjoint are certain: exact predicates decide, as
+/// for overlap_pairs. Where the walk comes upon parts of both that are closer than `distance` (in
+/// the world) it may end with kUndecided: the larger the distance, the earlier; never if it is 0.
+/// The walk ends with kBudgetSpent rather than visit more than `node_budget` pairs. Poses as for
 /// overlap_pairs. Errors: kInvalidPose, kInvalidQuery (distance NaN or negative) and those of
-/// corrupt bytes. Never allocates.
+/// corrupt bytes. Never allocates; takes up to 192 KB of stack.
 Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
                                    const Pose& second_pose, double distance,
                                    std::uint64_t node_budget = kUnlimitedNodes);
 
 struct BoxOverlap {
-  Overlap overlap = Overlap::kFree;
-  std::optional<FaceRef> face;       // of a hit
-  std::uint64_t nodes_expanded = 0;  // nodes taken apart and leaves read
+  Overlap overlap = Overlap::kDisjoint;
+  std::optional<FaceRef> face;       // where they overlap
+  std::uint64_t nodes_expanded = 0;  // nodes expanded and leaves read
 };
 
 /// The same for a closed box in object space and the surface. Certain here means exact, where

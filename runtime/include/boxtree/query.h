@@ -1,27 +1,59 @@
 // SPDX-License-Identifier: MIT
-// What all queries share: how faces are named in answers, poses, and how visitors are passed.
+// What all queries share: poses, visitors, limits, allowed errors, and answers that may be nothing.
+// Queries are safe from many threads at once, and take at most 64 KB of stack where their page does
+// not say otherwise.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <type_traits>
 #include <utility>
 
 #include <Eigen/Geometry>
 
-#include "format/result.h"
-#include "runtime/tree/tree.h"
+#include <boxtree/error.h>
+#include <boxtree/tree.h>
 
 namespace boxtree {
 
-/// A face in an answer.
-struct FaceRef {
-  std::uint32_t id;     // number in the source mesh; kNoFaceId when the file has no ids
-  std::uint32_t order;  // number in the tree's own order: the key of leaf_triangles' `face`
-};
-
 /// Object space to world. Unaligned, so that its layout does not depend on compiler options.
 using Pose = Eigen::Transform<double, 3, Eigen::Affine, Eigen::DontAlign>;
+
+/// What a query for one thing returns: an answer, nothing, or an error.
+///
+///   if (const auto hit = closest_hit(tree, ray)) use(hit->t);   // neither a miss nor an error
+///   else if (!hit.ok()) report(hit.code());
+///
+/// Where there is no answer the value is the one that T starts with, so a miss that is read all the
+/// same says "infinitely far, no face".
+template <class T>
+class [[nodiscard]] QueryResult {
+ public:
+  QueryResult() = default;
+  QueryResult(const T& answer) : value_(answer), has_value_(true) {}
+  QueryResult(Errc code) noexcept : code_(code) {}
+
+  /// Whether there is an answer.
+  [[nodiscard]] bool has_value() const noexcept { return has_value_; }
+  explicit operator bool() const noexcept { return has_value_; }
+  const T& operator*() const noexcept { return value_; }
+  const T* operator->() const noexcept { return &value_; }
+  [[nodiscard]] std::optional<T> as_optional() const {
+    return has_value_ ? std::optional<T>(value_) : std::nullopt;
+  }
+
+  /// Whether the query was carried out, be there an answer or not.
+  [[nodiscard]] bool ok() const noexcept { return code_ == Errc::kOk; }
+  [[nodiscard]] Errc code() const noexcept { return code_; }
+  [[nodiscard]] Error error() const { return {code_, {}}; }
+
+ private:
+  T value_{};
+  Errc code_ = Errc::kOk;
+  bool has_value_ = false;
+};
 
 /// A borrowed callable: no allocation, valid during the call it is passed to.
 template <class Signature>
@@ -33,16 +65,30 @@ class FunctionRef<R(Args...)> {
   template <class F,
             class = std::enable_if_t<!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
                                      std::is_invocable_r_v<R, F&, Args...>>>
-  FunctionRef(F&& callable) noexcept
-      : object_(const_cast<void*>(static_cast<const void*>(std::addressof(callable)))),
-        call_([](void* object, Args... args) -> R {
-          return (*static_cast<std::remove_reference_t<F>*>(object))(std::forward<Args>(args)...);
-        }) {}
-  R operator()(Args... args) const { return call_(object_, std::forward<Args>(args)...); }
+  FunctionRef(F&& callable) noexcept {
+    if constexpr (std::is_function_v<std::remove_reference_t<F>>) {
+      target_.function = reinterpret_cast<void (*)()>(&callable);
+      call_ = [](Target target, Args... args) -> R {
+        return reinterpret_cast<std::remove_reference_t<F>*>(target.function)(
+            std::forward<Args>(args)...);
+      };
+    } else {
+      target_.object = const_cast<void*>(static_cast<const void*>(std::addressof(callable)));
+      call_ = [](Target target, Args... args) -> R {
+        return (*static_cast<std::remove_reference_t<F>*>(target.object))(
+            std::forward<Args>(args)...);
+      };
+    }
+  }
+  R operator()(Args... args) const { return call_(target_, std::forward<Args>(args)...); }
 
  private:
-  void* object_;
-  R (*call_)(void*, Args...);
+  union Target {
+    void* object;
+    void (*function)();
+  };
+  Target target_;
+  R (*call_)(Target, Args...);
 };
 
 /// Receives one face after the other; returns whether to go on.
@@ -61,6 +107,30 @@ using PairVisitor = FunctionRef<bool(const FacePair&)>;
 enum class Visit : std::uint8_t {
   kComplete,  // every answer was visited
   kStopped,   // the visitor asked to stop
+};
+
+/// No limit of the nodes that a query may visit.
+inline constexpr std::uint64_t kUnlimitedNodes = std::numeric_limits<std::uint64_t>::max();
+
+/// What a caller lets one query cost; SECURITY.md states what each may cost without. A query that
+/// would cost more ends with kWorkLimit; what its visitor was given until then is true.
+struct QueryLimits {
+  /// Nodes expanded, or pairs of a node with a node or leaf, and instances visited [unlimited].
+  /// For each at most 8 leaves, or pairs of leaves, are compared.
+  std::uint64_t nodes = kUnlimitedNodes;
+};
+
+/// How near to the truth an answer has to be, and what it may cost. An answer [lower, upper] has
+/// converged if upper <= lower * (1 + relative_error) or upper <= lower + absolute_error: whichever
+/// allows more. Zeros require all that double tells.
+struct Approximation {
+  double relative_error = 0;  // [0] 0 or more
+  double absolute_error = 0;  // [0] [length] 0 or more
+  /// Nothing farther is looked for [infinity] [length].
+  double max_distance = std::numeric_limits<double>::infinity();
+  /// Nodes expanded and leaves read (pairs of them, for two trees) before the query ends with what
+  /// it knows [unlimited].
+  std::uint64_t node_budget = kUnlimitedNodes;
 };
 
 }  // namespace boxtree

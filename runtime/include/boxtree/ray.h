@@ -2,13 +2,11 @@
 // Rays: the closest hit, and whether there is any.
 #pragma once
 
+#include <cstdint>
 #include <limits>
-#include <optional>
 
 #include <boxtree/configuration.h>
 #include <boxtree/query.h>
-
-#include "runtime/walk/work.h"
 
 namespace boxtree {
 
@@ -24,25 +22,31 @@ struct Ray {
 };
 
 struct RayHit {
-  double t;
+  double t = std::numeric_limits<double>::infinity();
   FaceRef face;
-  std::uint32_t triangle;  // 0, or 1 for the second half (0,2,3) of a quad
-  double u, v;             // weights of the triangle's corners 1 and 2; corner 0 has 1 - u - v
+  std::uint32_t triangle = 0;  // 0, or 1 for the second half (0,2,3) of a quad
+  double u = 0, v = 0;         // weights of the triangle's corners 1 and 2; corner 0 has 1 - u - v
+  /// Where the face was hit, on the face by its weights: from far away more exact than
+  /// origin + t * direction.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  /// Unit normal of the face, to the side from which its corners are seen counterclockwise; zero
+  /// where the face has no area.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-/// The hit with the smallest t; of several at the same t the one with the smallest face id (order,
-/// if the file has no ids), so that all codecs and brute force agree. Both sides of a face count,
-/// edges and corners are part of it and no gap lies between faces that share them; a ray in the
-/// plane of a face does not hit it, nor does any ray hit a face without area, but for rounding.
-/// Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
+using RayResult = QueryResult<RayHit>;
+
+/// The hit with the smallest t, in object space; of several at the same t the one with the smallest
+/// face id (index, if the file has no ids), so that all codecs and brute force agree. Both sides of
+/// a face count, edges and corners are part of it and no gap lies between faces that share them; a
+/// ray in the plane of a face does not hit it, nor does any ray hit a face without area, but for
+/// rounding. Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
 /// interval, an origin more than 2^180 mesh extents away), and
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
 /// bytes; kWorkLimit when `limits` do not suffice. Never allocates.
-Result<std::optional<RayHit>> closest_hit(const Tree& tree, const Ray& ray,
-                                          const QueryLimits& limits = {});
+RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 /// Some hit, or nothing: cheaper than closest_hit when only the fact matters. Errors as there.
-Result<std::optional<RayHit>> any_hit(const Tree& tree, const Ray& ray,
-                                      const QueryLimits& limits = {});
+RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 }  // namespace boxtree

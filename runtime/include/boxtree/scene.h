@@ -1,52 +1,157 @@
 // SPDX-License-Identifier: MIT
-// What a scene answers, in world coordinates: rays, boxes, spheres, closest points, contacts.
+// A scene of an open file, placed trees under one top-level tree, and what it answers, in world
+// coordinates: rays, boxes, spheres, closest points, contacts.
 //
 // Each query answers for the instances of the given layers whose layer answers its kind. Errors, if
 // not said otherwise: those of the same query on a tree; kPartLeftOut when the scene was cooked
 // without the kind; kRecordInvalid on corrupt bytes. Limits count for all instances together. None
-// allocates.
+// allocates; contacts and pairs take up to 352 KB of stack, all others at most 64 KB.
 #pragma once
 
+#include <cstdint>
 #include <limits>
-#include <optional>
+#include <memory>
+#include <span>
+#include <string_view>
 
 #include <boxtree/closest.h>
 #include <boxtree/configuration.h>
 #include <boxtree/contact.h>
 #include <boxtree/ray.h>
 
-#include "runtime/scene/scene.h"
-
 static_assert(BOXTREE_HAS_SCENE_QUERIES,
               "BOXTREE_QUERIES left scenes out of this build of boxtree");
 
 namespace boxtree {
 
+class BoundScene;
+
+/// Layers of a scene, as bits.
+using LayerMask = std::uint32_t;
+inline constexpr LayerMask kAllLayers = 0xffffffffu;
+
+/// The application's arrays for one tree with external geometry.
+struct SceneMeshArrays {
+  std::uint32_t tree;
+  MeshArrays arrays;
+};
+
+struct SceneOptions {
+  /// The kinds of queries that the application will make. One that the profile left out is refused
+  /// here, and named.
+  QueryKinds queries = 0;
+  /// Refuse a scene without these [default false] rather than answer kNoFaceId, kNoMaterial or an
+  /// empty name later: a tree without face ids, no material at all, no instance with a name.
+  bool require_face_ids = false;
+  bool require_materials = false;
+  bool require_names = false;
+  /// For trees with external geometry.
+  std::span<const SceneMeshArrays> meshes = {};
+  /// Static instances that update() shall be allowed to move: doors, say; see make_movable(). The
+  /// others that move are known from the file.
+  std::span<const std::uint32_t> moving = {};
+};
+
+/// What the file says of one instance.
+struct InstanceInfo {
+  std::string_view name;  // empty when it has none, or names were left out
+  std::uint32_t tree = 0;
+  std::uint32_t id = 0;  // number in the source, depth first
+  std::uint32_t layer = 0;
+  bool moves = false;
+};
+
+/// The instance of a body that is no part of the scene, and of no answer.
+inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
+
 /// A face of an instance.
 struct SceneFace {
-  std::uint32_t instance;
+  std::uint32_t instance = kNoInstance;
   FaceRef face;
+};
+
+/// One scene. Points into the bytes of its File. Instances are numbered from 0 in the order of the
+/// file. Queries on a scene that is not being updated are safe from many threads at once; update(),
+/// make_movable() and rebuild() need the scene for themselves. The file's bytes are never written:
+/// poses of moving instances, and the tree over them, live in the Scene. Move-only; a scene that
+/// was moved from may only be assigned to or destroyed.
+class Scene {
+ public:
+  /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows
+  /// with the number of trees and moving instances alone.
+  /// Errors: kNoScene, kPartLeftOut (naming the part and the line of the profile),
+  /// kInstanceIndex, kRecordInvalid, kSectionMissing, kSectionSize, and those of Tree::bind.
+  static Result<Scene> bind(const File& file, const SceneOptions& options = {});
+  // A scene must not outlive its file.
+  static Result<Scene> bind(const File&& file, const SceneOptions& options = {}) = delete;
+
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  [[nodiscard]] std::uint32_t instance_count() const noexcept;
+  [[nodiscard]] std::span<const Tree> trees() const noexcept;
+  [[nodiscard]] QueryKinds query_kinds() const noexcept;
+
+  /// Error: kInstanceIndex; kRecordInvalid where the bytes of the instance are corrupt.
+  [[nodiscard]] Result<InstanceInfo> info(std::uint32_t number) const;
+  /// The number of the instance with that name, the first if several share it; O(instances).
+  /// Error: kInstanceIndex.
+  [[nodiscard]] Result<std::uint32_t> find_instance(std::string_view name) const;
+  /// Its pose, object space to world: as last given to update(), else as in the file. Errors as for
+  /// info().
+  [[nodiscard]] Result<Pose> pose(std::uint32_t number) const;
+  /// Name of a layer; empty when it has none.
+  [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
+  [[nodiscard]] std::uint32_t layer_count() const noexcept;
+
+  /// A triangle of a face that an answer names, in world coordinates: each corner is brought there
+  /// in double precision. `half` and cost as for Tree::triangle. Errors: as there and for info().
+  [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half = 0) const;
+
+  /// The material of a face that an answer names; kNoMaterial without materials.
+  [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
+  /// Name of a material; empty when it has none.
+  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
+  [[nodiscard]] std::uint32_t material_count() const noexcept;
+
+  /// Lets update() move a static instance from now on; nothing happens where it moves already.
+  /// O(moving instances), allocates. Errors: kInstanceIndex, kRecordInvalid.
+  Status make_movable(std::uint32_t instance);
+  /// Gives a moving instance another pose and refits the tree over the moving ones; O(log) of their
+  /// number, no allocation. Errors: kInstanceIndex, kInstanceStatic, kInvalidPose (then nothing
+  /// has changed).
+  Status update(std::uint32_t instance, const Pose& pose);
+  /// Builds the tree over moving instances anew, for after many of them have gone far. Allocates.
+  void rebuild();
+
+ private:
+  friend class BoundScene;
+  explicit Scene(std::unique_ptr<BoundScene> bound) noexcept;
+
+  std::unique_ptr<BoundScene> bound_;
 };
 
 /// Receives one face after the other; returns whether to go on.
 using SceneFaceVisitor = FunctionRef<bool(const SceneFace&)>;
 
-struct SceneRayHit {
-  RayHit hit;
-  std::uint32_t instance;
+/// `t` counts in units of the ray's direction; point and normal are in world coordinates, the
+/// normal carried there by the pose.
+struct SceneRayHit : RayHit {
+  std::uint32_t instance = kNoInstance;
 };
+
+using SceneRayResult = QueryResult<SceneRayHit>;
 
 /// The hit with the smallest t; of several at the same t that of the instance with the smallest id,
 /// then of the smallest face. The ray is brought into each tree's object space in double precision
 /// and answered there, so no gap lies between faces of one instance that share an edge.
-Result<std::optional<SceneRayHit>> closest_hit(const Scene& scene, const Ray& ray,
-                                               LayerMask layers = kAllLayers,
-                                               const QueryLimits& limits = {});
+SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
+                           const QueryLimits& limits = {});
 
 /// Some hit, or nothing.
-Result<std::optional<SceneRayHit>> any_hit(const Scene& scene, const Ray& ray,
-                                           LayerMask layers = kAllLayers,
-                                           const QueryLimits& limits = {});
+SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
+                       const QueryLimits& limits = {});
 
 /// Visits every face that touches the closed box `box` of the world, each once. Exact for the
 /// triangles that arise when each corner is brought into the world in double precision.
@@ -59,17 +164,18 @@ Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, 
                              SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
                              const QueryLimits& limits = {});
 
-struct SceneClosestPoint {
-  ClosestPoint closest;  // world
-  std::uint32_t instance;
+/// Point and distance are in world coordinates.
+struct SceneClosestPoint : ClosestPoint {
+  std::uint32_t instance = kNoInstance;
 };
+
+using ScenePointResult = QueryResult<SceneClosestPoint>;
 
 /// The nearest point of any surface within `max_distance` of `point`, or nothing. Of several at the
 /// same distance that of the instance with the smallest id, then of the smallest face.
-Result<std::optional<SceneClosestPoint>> closest_point(
-    const Scene& scene, const Eigen::Vector3d& point,
-    double max_distance = std::numeric_limits<double>::infinity(), LayerMask layers = kAllLayers,
-    const QueryLimits& limits = {});
+ScenePointResult closest_point(const Scene& scene, const Eigen::Vector3d& point,
+                               double max_distance = std::numeric_limits<double>::infinity(),
+                               LayerMask layers = kAllLayers, const QueryLimits& limits = {});
 
 /// A face of an instance and a face of another body that touch.
 struct ScenePair {
@@ -92,7 +198,6 @@ Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairV
 
 /// Visits every pair of a face of the scene (`first`) and a face of a tree that is no part of it,
 /// placed by `pose` (`second`, whose instance is kNoInstance).
-inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
 Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
                             ScenePairVisitor visitor, LayerMask layers = kAllLayers,
                             const QueryLimits& limits = {});

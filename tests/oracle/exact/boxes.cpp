@@ -149,12 +149,12 @@ void check_within(const Setting& s, const Cooked& cooked, double distance, Tally
   };
   if (!answer) return tally.wrong("within: error", describe_it);
   switch (answer->overlap) {
-    case Overlap::kHit:
+    case Overlap::kOverlapping:
       if (!answer->face || !std::binary_search(s.truth.begin(), s.truth.end(), answer->face->id)) {
         tally.wrong("within: a hit that is none", describe_it);
       }
       break;
-    case Overlap::kFree:
+    case Overlap::kDisjoint:
       if (!s.truth.empty()) tally.wrong("within: free though a face touches", describe_it);
       break;
     case Overlap::kUndecided:

@@ -150,7 +150,7 @@ void check_distance(const Setting& s, const Cooked& a, const Cooked& b,
       square_of_faces(s, answer->witness->faces.first.id, answer->witness->faces.second.id)) {
     complain("witness farther than upper");
   }
-  if (!answer->is_near_enough) return;
+  if (!answer->converged) return;
   const double least = 8 * std::numeric_limits<double>::denorm_min();
   const double allowed = 0x1p-44 * s.unit + least +
                          std::max(answer->lower * options.relative_error, options.absolute_error);
@@ -166,13 +166,14 @@ void check_within(const Setting& s, const Cooked& a, const Cooked& b, double lim
     tally.wrong(category, [&] { return describe(s, a, b, fmt::format("within {:a}", limit)); });
   };
   if (!answer) return complain("within: error");
-  const bool is_hit = answer->overlap == Overlap::kHit;
+  const bool is_hit = answer->overlap == Overlap::kOverlapping;
   if (is_hit &&
       (!answer->contact ||
        square_of_faces(s, answer->contact->first.id, answer->contact->second.id).sign() != 0)) {
     complain("within: a hit that is none");
   }
-  if (answer->overlap == Overlap::kFree && s.touches) complain("within: free though faces touch");
+  if (answer->overlap == Overlap::kDisjoint && s.touches)
+    complain("within: free though faces touch");
   if (answer->overlap == Overlap::kUndecided && is_at_most(Dyadic(limit), s.square)) {
     complain("within: undecided though all is farther");
   }

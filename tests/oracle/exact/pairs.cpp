@@ -87,11 +87,11 @@ void check(const Setting& s, const Cooked& a, const Cooked& b, Tally& tally) {
 
   const auto contact = first_contact(a.tree, s.poses.first, b.tree, s.poses.second);
   tally.answer();
-  if (!contact || contact->has_value() == s.truth.empty()) {
+  if (!contact.ok() || contact.has_value() == s.truth.empty()) {
     tally.wrong("first contact" + by, describe_it);
-  } else if (*contact &&
+  } else if (contact.has_value() &&
              !std::binary_search(s.truth.begin(), s.truth.end(),
-                                 std::make_pair((*contact)->first.id, (*contact)->second.id))) {
+                                 std::make_pair(contact->first.id, contact->second.id))) {
     tally.wrong("first contact that is none" + by, describe_it);
   }
 }
@@ -102,7 +102,7 @@ void check_refusal(const Setting& s, Tally& tally) {
     tally.answer();
     const auto contact = first_contact(s.first.trees[i]->tree, s.poses.first,
                                        s.second.trees[i]->tree, s.poses.second);
-    if (contact || contact.code() != Errc::kInvalidPose) {
+    if (contact.ok() || contact.code() != Errc::kInvalidPose) {
       tally.wrong("not refused by all",
                   [&] { return describe(s, *s.first.trees[i], *s.second.trees[i], {}); });
     }

@@ -212,7 +212,7 @@ void check_refusal(const Setting& s, Tally& tally) {
   for (const auto& cooked : s.group.trees) {
     tally.answer();
     const auto answer = closest_point(cooked->tree, s.point);
-    if (answer || answer.code() != Errc::kInvalidQuery) {
+    if (answer.ok() || answer.code() != Errc::kInvalidQuery) {
       tally.wrong("not refused by all", [&] { return describe(s, *cooked, {"", ""}, {}); });
     }
   }
@@ -225,25 +225,26 @@ void check_all(const Setting& s, bool with_bounds, Tally& tally) {
   std::optional<Quotient> square;
   for (std::size_t i = 0; i < s.group.trees.size(); ++i) {
     const Cooked& cooked = *s.group.trees[i];
-    const auto answer = closest_point(cooked.tree, s.point, s.max_distance);
+    const auto result = closest_point(cooked.tree, s.point, s.max_distance);
     tally.answer();
-    if (!answer) {
-      tally.wrong("error", [&] { return describe(s, cooked, {"", answer.error().message()}, {}); });
+    if (!result.ok()) {
+      tally.wrong("error", [&] { return describe(s, cooked, {"", result.error().message()}, {}); });
       continue;
     }
+    const std::optional<ClosestPoint> answer = result.as_optional();
     double worst = 0;
-    if (i == 0 || !is_same(*answer, first)) complaints = examine(s, *answer, worst);
+    if (i == 0 || !is_same(answer, first)) complaints = examine(s, answer, worst);
     if (i == 0) {
-      first = *answer;
-    } else if (!is_same(*answer, first)) {
+      first = answer;
+    } else if (!is_same(answer, first)) {
       tally.wrong("other bits than plain-f32", [&] {
-        return describe(s, cooked, {"", words_of(*answer) + ", plain-f32: " + words_of(first)},
-                        face_of(*answer));
+        return describe(s, cooked, {"", words_of(answer) + ", plain-f32: " + words_of(first)},
+                        face_of(answer));
       });
     }
     tally.error(worst);
     for (const Complaint& c : complaints) {
-      tally.wrong(c.category, [&] { return describe(s, cooked, c, face_of(*answer)); });
+      tally.wrong(c.category, [&] { return describe(s, cooked, c, face_of(answer)); });
     }
     if (!with_bounds) continue;
     if (!square) square = nearest_square(s, to_tree_exactly(s.group.frame(), s.point));

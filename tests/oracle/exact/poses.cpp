@@ -188,7 +188,8 @@ std::optional<std::vector<Face>> exact_images(const Group& first, const Group& s
 
 std::optional<Images> images(const Tree& first, const Group& second, const PlacedPair& poses,
                              const Tree& second_tree) {
-  const auto relative = RelativePose::make(first, poses.first, second_tree, poses.second);
+  const auto relative = RelativePose::make(BoundTree::of(first), poses.first,
+                                           BoundTree::of(second_tree), poses.second);
   if (!relative) return std::nullopt;
   const Eigen::Matrix3d& m = relative->to_first().linear;
   const Eigen::Vector3d& shift = relative->to_first().translation;

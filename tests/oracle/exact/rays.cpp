@@ -97,13 +97,13 @@ bool is_same(const std::optional<RayHit>& a, const std::optional<RayHit>& b) {
 void check_any(const Setting& s, const Cooked& cooked, bool has_closest, Tally& tally) {
   const auto any = any_hit(cooked.tree, s.ray);
   tally.answer();
-  if (!any || any->has_value() != has_closest) {
+  if (!any.ok() || any.has_value() != has_closest) {
     return tally.wrong("any hit is not as closest hit",
                        [&] { return describe(s, cooked, "any hit", {}); });
   }
-  if (!*any) return;
+  if (!any.has_value()) return;
   Complaints complaints;
-  examine_hit(s, **any, complaints);
+  examine_hit(s, *any, complaints);
   for (const Complaint& c : complaints) {
     tally.wrong("any hit: " + c.category, [&] { return describe(s, cooked, c.what, c.faces); });
   }
@@ -122,25 +122,25 @@ void check_all(Setting& s, Tally& tally) {
     const Cooked& cooked = *s.group.trees[i];
     const auto hit = closest_hit(cooked.tree, s.ray);
     tally.answer();
-    if (!hit && is_beyond && hit.code() == Errc::kInvalidQuery) {
+    if (!hit.ok() && is_beyond && hit.code() == Errc::kInvalidQuery) {
       tally.refused();
       continue;
     }
-    if (!hit || is_beyond) {
+    if (!hit.ok() || is_beyond) {
       tally.wrong("error, or not refused", [&] { return describe(s, cooked, "error", {}); });
       continue;
     }
-    if (i == 0) first = *hit;
-    if (!is_same(*hit, first)) {
+    if (i == 0) first = hit.as_optional();
+    if (!is_same(hit.as_optional(), first)) {
       tally.wrong("other bits than plain-f32", [&] { return describe(s, cooked, "bits", {}); });
     }
     Complaints complaints;
-    if (*hit) examine_hit(s, **hit, complaints);
-    examine_missed(s, *hit, complaints);
+    if (hit.has_value()) examine_hit(s, *hit, complaints);
+    examine_missed(s, hit.as_optional(), complaints);
     for (const Complaint& c : complaints) {
       tally.wrong(c.category, [&] { return describe(s, cooked, c.what, c.faces); });
     }
-    check_any(s, cooked, hit->has_value(), tally);
+    check_any(s, cooked, hit.has_value(), tally);
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include <Eigen/LU>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/oracle/exact/poses.h"
 #include "tests/support/require.h"
 
@@ -177,7 +178,7 @@ std::unique_ptr<SceneSubject> draw_scene(Draw& d) {
   }
   for (const Tree& tree : subject->variants[0].scene.trees()) {
     Group group;
-    group.space = tree.frame();
+    group.space = BoundTree::of(tree).frame();
     group.triangles = decoded_triangles_of(tree);
     subject->trees.push_back(std::move(group));
   }
@@ -216,7 +217,8 @@ World world_of(const SceneSubject& subject) {
   for (std::uint32_t id = 0; id < subject.poses.size(); ++id) {
     const std::uint32_t tree = subject.tree_of_id[id];
     const cooker::SourceMesh& mesh = subject.meshes[tree];
-    const Eigen::Vector3d origin = subject.variants[0].scene.trees()[tree].frame().origin;
+    const Eigen::Vector3d origin =
+        BoundTree::of(subject.variants[0].scene.trees()[tree]).frame().origin;
     for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
       const cooker::Face& face = mesh.faces[f];
       for (std::uint32_t half = 0; half < (face.is_quad() ? 2u : 1u); ++half) {

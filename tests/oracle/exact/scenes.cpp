@@ -147,9 +147,9 @@ void check_sphere(const State& s, Draw& draw) {
 
 void examine_closest(const State& s, const SceneVariant& variant, const std::string& query,
                      const Point& at, const SceneClosestPoint& answer) {
-  const double distance = answer.closest.distance;
+  const double distance = answer.distance;
   const std::uint32_t id = variant.id_of_number[answer.instance];
-  const auto own = index_of(s, id, answer.closest.face.id, answer.closest.triangle);
+  const auto own = index_of(s, id, answer.face.id, answer.triangle);
   const auto complain = [&](const char* category, const std::string& what, std::uint32_t index) {
     s.tally.wrong(category, [&] { return describe(s, variant, query, what, index); });
   };
@@ -191,26 +191,26 @@ void check_point(const State& s, Draw& draw) {
   for (const SceneVariant& variant : s.subject.variants) {
     const auto answer = closest_point(variant.scene, position.at);
     s.tally.answer();
-    if (!answer) {
+    if (!answer.ok()) {
       s.tally.refused();
       if (answer.code() != Errc::kInvalidQuery || first) {
         s.tally.wrong("point: error", [&] { return describe(s, variant, query, "error", {}); });
       }
       continue;
     }
-    if (!*answer) {
+    if (!answer.has_value()) {
       s.tally.wrong("point: nothing", [&] { return describe(s, variant, query, "nothing", {}); });
       continue;
     }
-    const ClosestPoint& c = (*answer)->closest;
+    const SceneClosestPoint& c = *answer;
     const ClosestKey key{
-        c.distance, c.point[0], c.point[1], c.point[2], variant.id_of_number[(*answer)->instance],
+        c.distance, c.point[0], c.point[1], c.point[2], variant.id_of_number[answer->instance],
         c.face.id};
     if (!first) first = key;
     if (key != *first) {
       s.tally.wrong("point: other bits", [&] { return describe(s, variant, query, "bits", {}); });
     }
-    examine_closest(s, variant, query, at, **answer);
+    examine_closest(s, variant, query, at, *answer);
   }
 }
 
@@ -251,8 +251,7 @@ Ray draw_ray(Draw& draw, const Group& world) {
 
 void examine_hit(const State& s, const SceneVariant& variant, const RaySetting& r,
                  const SceneRayHit& hit) {
-  const auto own =
-      index_of(s, variant.id_of_number[hit.instance], hit.hit.face.id, hit.hit.triangle);
+  const auto own = index_of(s, variant.id_of_number[hit.instance], hit.face.id, hit.triangle);
   const auto complain = [&](const char* category, const std::string& what) {
     s.tally.wrong(category, [&] { return describe(s, variant, r.query, what, own); });
   };
@@ -261,11 +260,10 @@ void examine_hit(const State& s, const SceneVariant& variant, const RaySetting& 
   if (!truth.may_be_hit) complain("ray: a hit beside the face", "beside the face");
   const double low = (std::isnan(truth.t) ? truth.t_low : truth.t) - truth.t_tolerance;
   const double high = (std::isnan(truth.t) ? truth.t_high : truth.t) + truth.t_tolerance;
-  if (std::isfinite(low) && std::isfinite(high) && (hit.hit.t < low || hit.hit.t > high)) {
-    complain("ray: wrong t",
-             fmt::format("t {:.17g}, exact {:.17g} to {:.17g}", hit.hit.t, low, high));
+  if (std::isfinite(low) && std::isfinite(high) && (hit.t < low || hit.t > high)) {
+    complain("ray: wrong t", fmt::format("t {:.17g}, exact {:.17g} to {:.17g}", hit.t, low, high));
   }
-  if (!(hit.hit.t >= r.ray.t_min && hit.hit.t <= r.ray.t_max)) complain("ray: t out of range", "");
+  if (!(hit.t >= r.ray.t_min && hit.t <= r.ray.t_max)) complain("ray: t out of range", "");
 }
 
 void examine_missed(const State& s, const SceneVariant& variant, const RaySetting& r,
@@ -275,7 +273,7 @@ void examine_missed(const State& s, const SceneVariant& variant, const RaySettin
     const double tolerance = truth.t_tolerance + 2 * std::numeric_limits<double>::denorm_min();
     if (!truth.is_surely_hit || !std::isfinite(truth.t) || !std::isfinite(tolerance)) continue;
     if (!(truth.t - tolerance >= r.ray.t_min && truth.t + tolerance <= r.ray.t_max)) continue;
-    if (hit && hit->hit.t <= truth.t + tolerance) continue;
+    if (hit && hit->t <= truth.t + tolerance) continue;
     s.tally.wrong(hit ? "ray: a nearer hit missed" : "ray: missed", [&] {
       return describe(s, variant, r.query, fmt::format("hit at {:.17g} is exact", truth.t), i);
     });
@@ -315,7 +313,7 @@ void check_ray(const State& s, Draw& draw) {
   for (const SceneVariant& variant : s.subject.variants) {
     const auto hit = closest_hit(variant.scene, r.ray);
     s.tally.answer();
-    if (!hit) {
+    if (!hit.ok()) {
       s.tally.refused();
       if (hit.code() != Errc::kInvalidQuery || first) {
         s.tally.wrong("ray: error", [&] { return describe(s, variant, r.query, "error", {}); });
@@ -323,23 +321,23 @@ void check_ray(const State& s, Draw& draw) {
       continue;
     }
     std::optional<Key> key;
-    if (*hit) {
-      const RayHit& h = (*hit)->hit;
-      key = Key{h.t, h.u, h.v, variant.id_of_number[(*hit)->instance], h.face.id};
-      examine_hit(s, variant, r, **hit);
+    if (hit.has_value()) {
+      const SceneRayHit& h = *hit;
+      key = Key{h.t, h.u, h.v, variant.id_of_number[hit->instance], h.face.id};
+      examine_hit(s, variant, r, *hit);
     }
     if (!first) first = key;
     if (key != *first) {
       s.tally.wrong("ray: other bits", [&] { return describe(s, variant, r.query, "bits", {}); });
     }
-    examine_missed(s, variant, r, *hit);
+    examine_missed(s, variant, r, hit.as_optional());
     const auto any = any_hit(variant.scene, r.ray);
     s.tally.answer();
-    if (!any || any->has_value() != hit->has_value()) {
+    if (!any.ok() || any.has_value() != hit.has_value()) {
       s.tally.wrong("ray: any hit is not as closest hit",
                     [&] { return describe(s, variant, r.query, "any", {}); });
-    } else if (*any) {
-      examine_hit(s, variant, r, **any);
+    } else if (any.has_value()) {
+      examine_hit(s, variant, r, *any);
     }
   }
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cooker/cook.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/require.h"
 
 namespace boxtree::oracle {
@@ -56,7 +57,7 @@ std::unique_ptr<Cooked> cook(const SourceMesh& mesh, CodecId codec, GeometryId g
 }
 
 void finish(Group& group) {
-  group.space = group.trees.front()->tree.frame();
+  group.space = BoundTree::of(group.trees.front()->tree).frame();
   group.triangles = decoded_triangles_of(group.trees.front()->tree);
   for (const Decoded& t : group.triangles) group.largest = std::max(group.largest, t.largest);
 }
@@ -66,8 +67,8 @@ void finish(Group& group) {
 std::vector<Decoded> decoded_triangles_of(const Tree& tree) {
   std::vector<Decoded> all;
   TriangleBatch batch;
-  for (std::uint32_t order = 0; order < tree.record().face_count; ++order) {
-    if (tree.leaves().read(order, 1, batch) != Errc::kOk) {
+  for (std::uint32_t order = 0; order < BoundTree::of(tree).record().face_count; ++order) {
+    if (BoundTree::of(tree).leaves().read(order, 1, batch) != Errc::kOk) {
       throw std::runtime_error("a face cannot be read");
     }
     for (std::uint32_t i = 0; i < batch.count; ++i) {
@@ -75,7 +76,8 @@ std::vector<Decoded> decoded_triangles_of(const Tree& tree) {
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t k = 0; k < 3; ++k) t[c][k] = batch.coordinate[c][k][i];
       }
-      all.push_back({tree.face_id(order), i, t, as<Dyadic>(t), bounds_of(t), largest(t)});
+      all.push_back(
+          {BoundTree::of(tree).face_id(order), i, t, as<Dyadic>(t), bounds_of(t), largest(t)});
     }
   }
   std::sort(all.begin(), all.end(), [](const Decoded& a, const Decoded& b) {

@@ -8,6 +8,8 @@
 
 #include <boxtree/boxtree.h>
 
+#include "format/codec.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/oracle/exact/geometry.h"
 #include "tests/oracle/exact/meshes.h"
 

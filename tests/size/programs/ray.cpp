@@ -10,6 +10,6 @@ int main(int, char** argv) {
   const auto tree = boxtree::Tree::bind(*file);
   if (!tree) return std::puts(tree.error().detail.c_str()), 1;
   const auto hit = boxtree::closest_hit(*tree, {{0, 0, 10}, {0, 0, -1}});
-  if (!hit || !*hit) return 1;
-  std::printf("t %g, face %u\n", (*hit)->t, (*hit)->face.id);
+  if (!hit) return 1;
+  std::printf("t %g, face %u\n", hit->t, hit->face.id);
 }

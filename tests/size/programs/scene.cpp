@@ -12,7 +12,7 @@ int main(int, char** argv) {
   const auto scene = Scene::bind(*file);
   if (!scene) return std::puts(scene.error().detail.c_str()), 1;
   const auto hit = closest_hit(*scene, Ray{{0, 0, 10}, {0, 0, -1}});
-  if (!hit || !*hit) return 1;
+  if (!hit) return 1;
   int faces = 0;
   const auto count = [&faces](const SceneFace&) { return ++faces > 0; };
   const auto box =
@@ -20,7 +20,7 @@ int main(int, char** argv) {
   const auto sphere = overlap_sphere(*scene, {0, 0, 0}, 1, count);
   const auto point = closest_point(*scene, {0, 0, 0});
   const auto touching = contacts(*scene, [](const ScenePair&) { return true; });
-  if (!box || !sphere || !point || !*point || !touching) return 1;
-  std::printf("t %g, face %u, %d faces, distance %g\n", (*hit)->hit.t, (*hit)->hit.face.id, faces,
-              (*point)->closest.distance);
+  if (!box || !sphere || !point || !touching) return 1;
+  std::printf("t %g, face %u, %d faces, distance %g\n", hit->t, hit->face.id, faces,
+              point->distance);
 }

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 
@@ -91,7 +92,7 @@ TEST(Search, TakesOutOneTreeWhole) {
     EXPECT_EQ(tree.nodes.codec, candidate.codec);
     EXPECT_EQ(tree.geometry.geometry, candidate.geometry);
     EXPECT_EQ(tree.nodes.bytes.size(), candidate.tree_bytes);
-    EXPECT_TRUE(Tree::bind(parts_of(tree), 0, {}).ok());
+    EXPECT_TRUE(bind_parts(parts_of(tree)).ok());
   }
 }
 

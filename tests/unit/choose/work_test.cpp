@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cooker/cook.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 
@@ -30,7 +31,7 @@ void count(const Tree& tree, const Node& node, const Eigen::AlignedBox3d& box, R
   }
   ++reached.nodes;
   NodeChildren children;
-  ASSERT_EQ(tree.expand(node, children), Errc::kOk);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     count(tree, children.child[i], box, reached);
   }
@@ -40,12 +41,14 @@ TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
   const SourceMesh mesh = test::torus(40, 24);
   for (const CodecInfo& codec : kCodecs) {
     const EncodedTree encoded = require(cook_as(mesh, codec.id));
-    const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+    const Tree tree = require(bind_parts(parts_of(encoded)));
     Workload questions;
     questions.boxes = choice_questions(bounds_of(mesh)).boxes;
     Reached reached;
     for (const Eigen::AlignedBox3d& box : questions.boxes) {
-      count(tree, tree.root(), {tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())},
+      count(tree, BoundTree::of(tree).root(),
+            {BoundTree::of(tree).frame().to_tree(box.min()),
+             BoundTree::of(tree).frame().to_tree(box.max())},
             reached);
     }
     const auto boxes = static_cast<double>(questions.boxes.size());
@@ -60,7 +63,7 @@ TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
   const SourceMesh mesh = test::torus(40, 24);
   const Workload questions = choice_questions(bounds_of(mesh));
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide4));
-  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  const Tree tree = require(bind_parts(parts_of(encoded)));
   const WorkOfKinds first = require(count_work(tree, questions));
   const WorkOfKinds second = require(count_work(tree, questions));
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
@@ -76,7 +79,7 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
   SourceMesh mesh = test::torus(3, 3);
   mesh.faces.assign(200'000, mesh.faces.front());
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide8));
-  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  const Tree tree = require(bind_parts(parts_of(encoded)));
   for (const Work& work : require(count_work(tree, choice_questions(bounds_of(mesh))))) {
     EXPECT_LE(work.nodes + work.leaves, 1'000'008);
   }
@@ -84,7 +87,7 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
 
 TEST(CountWork, ATreeWithoutFacesHasNone) {
   const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
-  const Tree tree = require(Tree::bind(parts_of(encoded), 0, {}));
+  const Tree tree = require(bind_parts(parts_of(encoded)));
   const Workload questions = choice_questions(bounds_of(test::torus(4, 4)));
   for (const Work& work : require(count_work(tree, questions))) {
     EXPECT_EQ(work.nodes, 0);

@@ -12,6 +12,7 @@
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -33,14 +34,15 @@ CookOptions on_grid(int bits) {
 std::map<std::uint32_t, std::vector<Eigen::Vector3d>> decoded_faces(const Tree& tree) {
   std::map<std::uint32_t, std::vector<Eigen::Vector3d>> faces;
   TriangleBatch batch;
-  for (std::uint32_t f = 0; f < tree.record().face_count; ++f) {
-    EXPECT_EQ(tree.leaves().read(f, 1, batch), Errc::kOk);
-    std::vector<Eigen::Vector3d>& corners = faces[tree.face_id(f)];
-    EXPECT_TRUE(corners.empty()) << "face " << tree.face_id(f) << " occurs twice";
+  for (std::uint32_t f = 0; f < BoundTree::of(tree).record().face_count; ++f) {
+    EXPECT_EQ(BoundTree::of(tree).leaves().read(f, 1, batch), Errc::kOk);
+    std::vector<Eigen::Vector3d>& corners = faces[BoundTree::of(tree).face_id(f)];
+    EXPECT_TRUE(corners.empty()) << "face " << BoundTree::of(tree).face_id(f) << " occurs twice";
     for (const Eigen::Vector3d& corner : batch.triangle(0).corner) {
-      corners.push_back(tree.frame().to_object(corner));
+      corners.push_back(BoundTree::of(tree).frame().to_object(corner));
     }
-    if (batch.count == 2) corners.push_back(tree.frame().to_object(batch.triangle(1).corner[2]));
+    if (batch.count == 2)
+      corners.push_back(BoundTree::of(tree).frame().to_object(batch.triangle(1).corner[2]));
   }
   return faces;
 }
@@ -54,7 +56,7 @@ TEST_P(GridStore, HoldsTheSourceRoundedToTheGrid) {
       const cooker::EncodedTree encoded =
           test::require(cooker::cook_as(mesh, GetParam(), on_grid(bits)));
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), on_grid(bits));
-      const double step = std::ldexp(1.0, cooked.tree.record().grid_exponent);
+      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).record().grid_exponent);
       const Eigen::AlignedBox3d bounds = cooker::bounds_of(mesh);
       const double extent = bounds.diagonal().maxCoeff();
       EXPECT_LE(extent, step * std::ldexp(1.0, bits));
@@ -270,7 +272,7 @@ TEST(Grid, WhatTouchesStillTouches) {
     }
   }
   EXPECT_GT(shared, 12u);
-  EXPECT_TRUE(first_contact(a, Pose::Identity(), b, Pose::Identity())->has_value());
+  EXPECT_TRUE(first_contact(a, Pose::Identity(), b, Pose::Identity()).has_value());
 }
 
 }  // namespace

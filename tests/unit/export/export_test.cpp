@@ -9,6 +9,7 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "exported.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "viewer_files.h"
@@ -28,7 +29,8 @@ TEST_P(Export, ReimportedFilesHoldTheFacesOfTheSourceInItsOrder) {
     const auto obj = export_one(folder, "out.obj", cooked.tree, triangles_only());
     const SourceMesh again = as_f32(imported(obj, Precision::kF64));
     EXPECT_EQ(faces_of(again), faces_of(mesh));
-    EXPECT_EQ(cook_as(again, GetParam())->geometry_hash, cooked.tree.record().geometry_hash);
+    EXPECT_EQ(cook_as(again, GetParam())->geometry_hash,
+              BoundTree::of(cooked.tree).record().geometry_hash);
     // Lines are no faces: boxes do not disturb.
     const auto glb = export_one(folder, "out.glb", cooked.tree, {});
     EXPECT_EQ(triangles_of(imported(glb)), triangles_of(mesh));
@@ -50,7 +52,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf 
   const std::string group = "level " + std::to_string(level);
   const auto add_to = [&](const std::string& name) {
     path.path.emplace_back(name, out.boxes[name].size());
-    out.boxes[name].push_back(tree.to_object(node.box));
+    out.boxes[name].push_back(BoundTree::of(tree).to_object(node.box));
   };
   add_to(group);
   if (node.is_leaf) {
@@ -60,7 +62,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf 
     return;
   }
   NodeChildren children;
-  ASSERT_EQ(tree.expand(node, children), Errc::kOk);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     walk(tree, children.child[i], level + 1, path, out);
   }
@@ -68,7 +70,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf 
 
 Walked walked(const Tree& tree) {
   Walked out;
-  if (!tree.empty()) walk(tree, tree.root(), 0, {}, out);
+  if (!tree.empty()) walk(tree, BoundTree::of(tree).root(), 0, {}, out);
   return out;
 }
 
@@ -127,9 +129,9 @@ void expect_boxes_around_triangles(const Tree& tree, const std::filesystem::path
   const ViewedPart& triangles = parts.at("triangles");
   std::map<std::uint32_t, std::vector<std::size_t>> elements_of_face;
   std::size_t element = 0;
-  for (std::uint32_t f = 0; f < tree.record().face_count; ++f) {
+  for (std::uint32_t f = 0; f < BoundTree::of(tree).record().face_count; ++f) {
     TriangleBatch batch;
-    ASSERT_EQ(tree.leaf_triangles({{}, {f, 1}, true}, batch), Errc::kOk);
+    ASSERT_EQ(BoundTree::of(tree).leaf_triangles({{}, {f, 1}, true}, batch), Errc::kOk);
     const bool is_split = batch.count == 2 && triangles.elements.at(element).size() == 3;
     for (int i = 0; i < (is_split ? 2 : 1); ++i) elements_of_face[f].push_back(element++);
   }
@@ -207,7 +209,7 @@ TEST_P(Export, GridPointsAreWhatATreeDecodes) {
       SCOPED_TRACE(mesh.name + ", " + std::to_string(bits));
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), on_grid(bits));
       // Multiples of the step, as the grid's origin is one: what import rounded here, face by face.
-      const double step = std::ldexp(1.0, cooked.tree.record().grid_exponent);
+      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).record().grid_exponent);
       SourceMesh rounded = far_away(mesh, 1, Eigen::Vector3d::Zero());
       for (double& x : rounded.positions.f64) x = std::floor(x / step + 0.5) * step;
       const auto obj = export_one(folder, "out.obj", cooked.tree, triangles_only());
@@ -280,10 +282,10 @@ TEST_P(Export, ExternalGeometryComesFromItsMesh) {
       as_f32(imported(export_one(folder, "tree.obj", cooked.tree, in_tree_order), Precision::kF64));
   for (std::uint32_t f = 0; f < mesh.faces.size(); ++f) {
     ASSERT_EQ(bits_of(in_order, in_order.faces[f]),
-              bits_of(mesh, mesh.faces[cooked.tree.face_id(f)]));
+              bits_of(mesh, mesh.faces[BoundTree::of(cooked.tree).face_id(f)]));
   }
   // Boxes need no mesh.
-  bind.mesh = absent_arrays(cooked.tree.record());
+  bind.mesh = absent_arrays(BoundTree::of(cooked.tree).record());
   const Tree boxes_only = test::require(Tree::bind(cooked.file, 0, bind));
   ExportOptions boxes = everything();
   boxes.triangles = false;

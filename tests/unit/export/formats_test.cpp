@@ -12,6 +12,9 @@
 
 #include "cooker/export/obj_writer.h"
 #include "exported.h"
+#include "format/container.h"
+#include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "viewer_files.h"
@@ -302,7 +305,7 @@ TEST(ExportFile, RefusesWhatMakesNoSense) {
   const test::TempFolder folder;
   const test::CookedTree cooked = test::cook_tree(test::soup(400, 3), CodecId::kWide8);
   const std::span<const Tree> trees(&cooked.tree, 1);
-  const std::uint32_t depth = cooked.tree.record().depth;
+  const std::uint32_t depth = BoundTree::of(cooked.tree).record().depth;
   const auto code = [&](const char* name, std::vector<LevelRange> levels) {
     ExportOptions options;
     options.levels = std::move(levels);
@@ -357,7 +360,7 @@ TEST(ExportFile, DamagedBytesAreShownOrRefused) {
 
   std::vector<std::byte> bytes = test::cook_bytes(test::soup(100, 3), CodecId::kPlainF32);
   const File file = test::require(File::open(Bytes(bytes)));
-  const Bytes nodes = file.section(SectionKind::kNodes, 0);
+  const Bytes nodes = OpenFile::of(file).section(SectionKind::kNodes, 0);
   std::fill_n(bytes.data() + (nodes.data() - bytes.data()), nodes.size(), std::byte{0xff});
   const Tree tree = test::require(Tree::bind(file));
   const auto old = folder.write("out.obj", "old");

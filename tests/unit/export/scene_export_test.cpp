@@ -12,6 +12,10 @@
 
 #include "cooker/import/source_scene.h"
 #include "exported.h"
+#include "format/container.h"
+#include "runtime/file/open_file.h"
+#include "runtime/scene/bound_scene.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/meshes.h"
 #include "tests/support/scenes.h"
 #include "viewer_files.h"
@@ -283,7 +287,7 @@ TEST(ExportScene, FacesOfMirroredInstancesKeepTheirFront) {
   const double torus = volume_of(seen_of(as_part(cooked.meshes[0])));
   ASSERT_GT(torus, 0);
   const Tree& tree = scene.trees()[0];
-  const double box = tree.to_object(tree.root().box).volume();
+  const double box = BoundTree::of(tree).to_object(BoundTree::of(tree).root().box).volume();
   ExportOptions options;
   options.levels = {{0, 0}};
   options.solid_boxes = true;
@@ -320,7 +324,7 @@ TEST(ExportScene, BoxesTurnWithTheirInstance) {
       EXPECT_TRUE(part.has_lines);
       const PlacedTree& placed = cooked.parts.instances[id];
       const Tree& tree = scene.trees()[placed.tree];
-      const Eigen::AlignedBox3d box = tree.to_object(tree.root().box);
+      const Eigen::AlignedBox3d box = BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
       for (unsigned i = 0; i < 8; ++i) {
         const Eigen::Vector3d corner =
             test::placed(placed.pose, box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
@@ -399,8 +403,8 @@ TEST(ExportScene, PosesThatAreNoneAreRefused) {
     test::CookedScene cooked = test::cook_scene({far_away(test::torus(8, 6), 100, {0, 0, 0})},
                                                 test::random_parts(3, 1, 0, 1, 1));
     const Scene scene = test::require(Scene::bind(cooked.file));
-    ASSERT_EQ(scene.record().pose_bytes, sizeof(double));
-    const Bytes poses = cooked.file.section(SectionKind::kPoses);
+    ASSERT_EQ(BoundScene::of(scene).record().pose_bytes, sizeof(double));
+    const Bytes poses = OpenFile::of(cooked.file).section(SectionKind::kPoses);
     std::byte* const first = cooked.bytes.data() + (poses.data() - cooked.bytes.data());
     std::memcpy(first, &bad, sizeof(bad));
     for (const char* name : {"out.obj", "out.glb"}) {

@@ -8,6 +8,7 @@
 
 #include <boxtree/blob.h>
 
+#include "format/container.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -37,7 +38,7 @@ TEST_P(Blobs, ComeBackBitForBitAndAnswer) {
   EXPECT_TRUE(std::ranges::equal(opened->bytes(), file_));
   const Result<Tree> tree = Tree::bind(*opened);
   ASSERT_TRUE(tree.ok());
-  EXPECT_TRUE((*closest_hit(*tree, {{1, 0.01, 9}, {0, 0, -1}})).has_value());
+  EXPECT_TRUE(closest_hit(*tree, {{1, 0.01, 9}, {0, 0, -1}}).has_value());
   EXPECT_EQ(blob_, *make_blob(file_, GetParam()));
 }
 

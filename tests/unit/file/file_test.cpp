@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"
@@ -65,7 +66,7 @@ TEST(FileOpen, MapAndCopyAndMemoryAgree) {
     const Result<Tree> tree = Tree::bind(*file);
     ASSERT_TRUE(tree.ok());
     const auto hit = closest_hit(*tree, {{1, 0.01, 9}, {0, 0, -1}});
-    ASSERT_TRUE(hit.ok() && hit->has_value());
+    ASSERT_TRUE(hit.ok() && hit.has_value());
   }
 }
 
@@ -94,7 +95,7 @@ TEST(FileTrees, AreFoundByNumberAndName) {
   EXPECT_EQ(*file->find_tree("sphere"), 1u);
   EXPECT_EQ(file->find_tree("cube").code(), Errc::kTreeIndex);
   EXPECT_EQ(Tree::bind(*file, 2).code(), Errc::kTreeIndex);
-  EXPECT_EQ(Tree::bind(*file, 1)->record().face_count, trees[1].face_count);
+  EXPECT_EQ(BoundTree::of(*Tree::bind(*file, 1)).record().face_count, trees[1].face_count);
 }
 
 }  // namespace

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+#include "format/container.h"
+
 namespace boxtree {
 namespace {
 

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Each lie that a header, a section table or a tree record can tell, and the code that it earns.
+#include "format/container.h"
+
 #include <cstring>
 #include <functional>
 
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
+#include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -39,7 +42,7 @@ FileBytes valid_file() {
 
 std::size_t section_index(const FileBytes& bytes, SectionKind kind) {
   const Result<File> file = File::open(Bytes(bytes));
-  const auto& sections = file->container().sections;
+  const auto& sections = OpenFile::of(*file).container().sections;
   for (std::size_t i = 0; i < sections.size(); ++i) {
     if (sections[i].kind == static_cast<std::uint32_t>(kind)) return i;
   }
@@ -178,15 +181,17 @@ TEST(Container, GapsHaveABound) {
 TEST(Container, PaddingMustBeZero) {
   FileBytes bytes = valid_file();
   const Result<File> file = File::open(Bytes(bytes));
-  EXPECT_TRUE(check_padding(Bytes(bytes), file->container()).ok());
+  EXPECT_TRUE(check_padding(Bytes(bytes), OpenFile::of(*file).container()).ok());
   bytes.back() = std::byte{1};
-  EXPECT_EQ(check_padding(Bytes(bytes), file->container()).code(), Errc::kPaddingNotZero);
+  EXPECT_EQ(check_padding(Bytes(bytes), OpenFile::of(*file).container()).code(),
+            Errc::kPaddingNotZero);
 }
 
 TEST(Container, SectionChecksumsAreCheckedOnDemand) {
   FileBytes bytes = valid_file();
-  const SectionEntry nodes =
-      File::open(Bytes(bytes))->container().sections[section_index(bytes, SectionKind::kNodes)];
+  const SectionEntry nodes = OpenFile::of(*File::open(Bytes(bytes)))
+                                 .container()
+                                 .sections[section_index(bytes, SectionKind::kNodes)];
   bytes[nodes.offset + nodes.size - 1] ^= std::byte{1};
   EXPECT_TRUE(File::open(Bytes(bytes)).ok());
   OpenOptions options;
@@ -216,7 +221,7 @@ INSTANTIATE_TEST_SUITE_P(
                    [](TreeRecord& r) { r.codec = static_cast<CodecId>(777); }),
         record_lie("geometry", Errc::kGeometryUnsupported,
                    [](TreeRecord& r) { r.geometry = static_cast<GeometryId>(777); }),
-        record_lie("flags", Errc::kRecordInvalid, [](TreeRecord& r) { r.flags |= 1u << 31; }),
+        record_lie("flags", Errc::kFeatureUnsupported, [](TreeRecord& r) { r.flags |= 1u << 31; }),
         record_lie("reserve", Errc::kRecordInvalid, [](TreeRecord& r) { r.reserved2[6] = 1; }),
         record_lie("grid_of_exact", Errc::kRecordInvalid,
                    [](TreeRecord& r) { r.grid_exponent = 1; }),

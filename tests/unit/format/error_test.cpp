@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The pinned error table, as literals: a change here is a change of the interface.
-#include "format/error.h"
-
 #include <gtest/gtest.h>
+
+#include <boxtree/error.h>
 
 namespace boxtree {
 namespace {

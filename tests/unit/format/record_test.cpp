@@ -74,6 +74,14 @@ TEST(TreeRecords, DepthHasTheLimitOfTheCodec) {
   EXPECT_EQ(with_depth(CodecId::kPlainF32, kMaxDepth + 1), kInvalid);
 }
 
+// A newer format may set them: that is not a damaged file.
+TEST(TreeRecords, UnknownFlagsAreUnsupportedNotInvalid) {
+  for (const std::uint32_t bit : {2u, 7u, 31u}) {
+    EXPECT_EQ(tree_after([=](TreeRecord& record) { record.flags |= 1u << bit; }),
+              Errc::kFeatureUnsupported);
+  }
+}
+
 TEST(TreeRecords, CountsKeepTheirLimits) {
   const auto with_faces = [](std::uint32_t faces, std::uint32_t triangles) {
     return tree_after([=](TreeRecord& record) {

@@ -377,7 +377,9 @@ TEST_F(ImportSceneTest, AcceptsThePosesThatContactsAccept) {
     const Result<SourceScene> got = import_scene(write("a.gltf", gltf.text(nodes)));
     Pose pose = Pose::Identity();
     pose.linear() *= std::ldexp(1.0, kNodes * exponent);
-    const bool is_pose = RelativePose::make(cooked.tree, pose, cooked.tree, pose).has_value();
+    const bool is_pose =
+        RelativePose::make(BoundTree::of(cooked.tree), pose, BoundTree::of(cooked.tree), pose)
+            .has_value();
     EXPECT_EQ(got.ok(), is_pose) << "2^" << kNodes * exponent;
     if (got.ok()) {
       EXPECT_EQ(got->instances[0].pose.matrix(), pose.matrix());

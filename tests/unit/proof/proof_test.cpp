@@ -9,6 +9,7 @@
 
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
+#include "format/container.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -9,8 +9,10 @@
 #include "format/codec_packed.h"
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
+#include "format/container.h"
 #include "format/grid.h"
 #include "format/grid_leaf.h"
+#include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -173,7 +175,7 @@ TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
     const SectionEntry vertices = test::entry_of(bytes, SectionKind::kVertices);
     const SectionEntry clusters = test::entry_of(bytes, SectionKind::kCorners);
     const File file = test::require(File::open(Bytes(bytes)));
-    const TreeRecord record = file.tree_record(0);
+    const TreeRecord record = OpenFile::of(file).tree_record(0);
     const GridView grid{bytes.data() + clusters.offset,
                         Bytes(bytes).subspan(vertices.offset, vertices.size), record.face_count,
                         record.corners_per_face};

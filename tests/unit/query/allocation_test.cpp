@@ -43,9 +43,9 @@ TEST(Allocation, QueriesNeverAllocate) {
     return true;
   };
   const std::size_t before = allocations;
-  const bool hit = (*closest_hit(*tree, {{1, 0, 9}, {0, 0, -1}})).has_value();
-  const bool any = (*any_hit(*tree, {{1, 0, 9}, {0, 0, -1}})).has_value();
-  const bool near = (*closest_point(*tree, {3, 1, 2})).has_value();
+  const bool hit = closest_hit(*tree, {{1, 0, 9}, {0, 0, -1}}).has_value();
+  const bool any = any_hit(*tree, {{1, 0, 9}, {0, 0, -1}}).has_value();
+  const bool near = closest_point(*tree, {3, 1, 2}).has_value();
   const bool box =
       overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, count).ok();
   const bool sphere = overlap_sphere(*tree, {1, 0, 0}, 1, count).ok();

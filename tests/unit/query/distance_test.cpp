@@ -11,6 +11,7 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_reference.h"
@@ -29,10 +30,12 @@ struct Truth {
 // one's space. Spheres around triangles rule out most pairs.
 Truth brute_force(const Tree& first, const Pose& first_pose, const Tree& second,
                   const Pose& second_pose) {
-  const auto pose = RelativePose::make(first, first_pose, second, second_pose);
+  const auto pose =
+      RelativePose::make(BoundTree::of(first), first_pose, BoundTree::of(second), second_pose);
   EXPECT_TRUE(pose.has_value());
   const Eigen::Matrix<long double, 3, 3> to_world =
-      first_pose.linear().cast<long double>() * std::ldexp(1.0L, first.record().scale_exponent);
+      first_pose.linear().cast<long double>() *
+      std::ldexp(1.0L, BoundTree::of(first).record().scale_exponent);
   struct Placed {
     Triangle local;
     test::LongTriangle world;
@@ -174,7 +177,7 @@ TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
       SCOPED_TRACE(error);
       const auto found = distance(first, first_pose, second, second_pose, {error, 0});
       ASSERT_TRUE(found.ok());
-      ASSERT_TRUE(found->is_near_enough);
+      ASSERT_TRUE(found->converged);
       check_bounds(*found, truth);
       ASSERT_LE(found->upper, found->lower * (1 + error) + 1e-12 * size);
       ASSERT_LE(found->nodes_expanded, nodes);
@@ -214,7 +217,7 @@ TEST_P(Distances, BudgetsEndTheSearchWithTrueBounds) {
       ASSERT_TRUE(found.ok());
       check_bounds(*found, truth);
       ASSERT_LE(found->nodes_expanded, budget);
-      if (!found->is_near_enough) {
+      if (!found->converged) {
         ++spent;
         ASSERT_EQ(found->nodes_expanded, budget);
       }
@@ -258,7 +261,7 @@ TEST_P(Distances, BudgetsLeaveTheNearestChildAmongWhatIsLeft) {
           distance(first.tree, Pose::Identity(), second.tree, Pose::Identity(), options);
       ASSERT_TRUE(found.ok());
       check_bounds(*found, truth);
-      spent += found->is_near_enough ? 0 : 1;
+      spent += found->converged ? 0 : 1;
     }
     EXPECT_GT(spent, 1);
   }
@@ -282,7 +285,7 @@ TEST_P(Distances, NothingBeyondTheMaximalDistance) {
     all_nodes += all->nodes_expanded;
     const Distance nothing = within(0.9 * all->lower);
     ASSERT_FALSE(nothing.witness.has_value());
-    ASSERT_TRUE(nothing.is_near_enough);
+    ASSERT_TRUE(nothing.converged);
     ASSERT_GE(nothing.lower, 0.9 * all->lower * (1 - 1e-12));
     ASSERT_LE(nothing.lower, all->upper);
     limited_nodes += nothing.nodes_expanded;
@@ -319,7 +322,8 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Distances, testing::ValuesIn(test::all_encod
 // A known distance, with each way of scaling the world.
 TEST(Distance, KnownCases) {
   const test::CookedTree cubes = test::cook_tree(test::city(1, 2), CodecId::kWide8);
-  const Eigen::AlignedBox3d box = cubes.tree.to_object(cubes.tree.root().box);
+  const Eigen::AlignedBox3d box =
+      BoundTree::of(cubes.tree).to_object(BoundTree::of(cubes.tree).root().box);
   for (const double scale : {0x1p-300, 1e-3, 1.0, 0x1p300}) {
     Pose first = Pose::Identity();
     first.linear() *= scale;
@@ -362,7 +366,7 @@ TEST(Distance, PosesMayUndoTheScalesOfMeshes) {
     }
     const auto contact = first_contact(large.tree, shrunk, small.tree, grown);
     ASSERT_TRUE(contact.ok());
-    EXPECT_EQ(contact->has_value(), height == 0);
+    EXPECT_EQ(contact.has_value(), height == 0);
   }
 }
 
@@ -392,7 +396,7 @@ TEST(Distance, OfATreeOfOneLeafAndOneOfNodes) {
   const auto found = distance(nodes.tree, Pose::Identity(), leaf.tree, pose);
   const auto swapped = distance(leaf.tree, pose, nodes.tree, Pose::Identity());
   EXPECT_NEAR(found->upper, swapped->upper, 1e-12);
-  EXPECT_FALSE(first_contact(nodes.tree, Pose::Identity(), leaf.tree, pose)->has_value());
+  EXPECT_FALSE(first_contact(nodes.tree, Pose::Identity(), leaf.tree, pose).has_value());
 }
 
 }  // namespace

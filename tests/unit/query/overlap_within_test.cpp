@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_reference.h"
@@ -56,26 +57,26 @@ TEST_P(OverlapWithin, PairsAreCertainOrClose) {
       for (int turn = 0; turn < 12; ++turn) {
         SCOPED_TRACE(a.name + " and " + b.name + ", turn " + std::to_string(turn));
         const Pose p = pose(turn, 1), q = pose(turn / 2, 3);
-        const bool touch = first_contact(first.tree, p, second.tree, q)->has_value();
+        const bool touch = first_contact(first.tree, p, second.tree, q).has_value();
         const double apart = distance(first.tree, p, second.tree, q)->upper;
         std::uint64_t last = kUnlimitedNodes;
         const std::vector<double> distances{0, 1e-3, 0.1, 0.5, 2, 1e9};
         for (std::size_t i = 0; i < distances.size(); ++i) {
           const auto found = overlap_within(first.tree, p, second.tree, q, distances[i]);
           ASSERT_TRUE(found.ok());
-          ASSERT_EQ(found->contact.has_value(), found->overlap == Overlap::kHit);
+          ASSERT_EQ(found->contact.has_value(), found->overlap == Overlap::kOverlapping);
           ASSERT_NE(found->overlap, Overlap::kBudgetSpent);
-          if (found->overlap == Overlap::kHit) {
+          if (found->overlap == Overlap::kOverlapping) {
             ASSERT_TRUE(touch);
           }
-          if (found->overlap == Overlap::kFree) {
+          if (found->overlap == Overlap::kDisjoint) {
             ASSERT_FALSE(touch);
           }
           if (found->overlap == Overlap::kUndecided) {
             ASSERT_LT(apart, distances[i]);
           }
-          hits += found->overlap == Overlap::kHit;
-          frees += found->overlap == Overlap::kFree;
+          hits += found->overlap == Overlap::kOverlapping;
+          frees += found->overlap == Overlap::kDisjoint;
           undecided += found->overlap == Overlap::kUndecided;
           ASSERT_LE(found->nodes_expanded, last);
           last = found->nodes_expanded;
@@ -85,10 +86,10 @@ TEST_P(OverlapWithin, PairsAreCertainOrClose) {
           const auto found = overlap_within(first.tree, p, second.tree, q, 0, budget);
           ASSERT_LE(found->nodes_expanded, budget);
           ASSERT_NE(found->overlap, Overlap::kUndecided);
-          if (found->overlap == Overlap::kHit) {
+          if (found->overlap == Overlap::kOverlapping) {
             ASSERT_TRUE(touch);
           }
-          if (found->overlap == Overlap::kFree) {
+          if (found->overlap == Overlap::kDisjoint) {
             ASSERT_FALSE(touch);
           }
           spent += found->overlap == Overlap::kBudgetSpent;
@@ -124,8 +125,8 @@ TEST_P(OverlapWithin, FarCornersCountOnEitherSideOfTheOrigin) {
                              double distance) {
       return overlap_within(first.tree, here, second.tree, here, distance)->overlap;
     };
-    EXPECT_EQ(overlap(low, high, 12), Overlap::kFree) << axis;
-    EXPECT_EQ(overlap(high, low, 12), Overlap::kFree) << axis;
+    EXPECT_EQ(overlap(low, high, 12), Overlap::kDisjoint) << axis;
+    EXPECT_EQ(overlap(high, low, 12), Overlap::kDisjoint) << axis;
     EXPECT_EQ(overlap(low, high, 40), Overlap::kUndecided) << axis;
     EXPECT_EQ(overlap(high, low, 40), Overlap::kUndecided) << axis;
   }
@@ -158,9 +159,11 @@ TEST_P(OverlapWithin, BoxesAreCertainOrClose) {
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     std::vector<Triangle> triangles = test::all_triangles(cooked.tree);
     for (Triangle& t : triangles) {
-      for (auto& c : t.corner) c = cooked.tree.frame().to_object(c);  // a power of two: exact
+      for (auto& c : t.corner)
+        c = BoundTree::of(cooked.tree).frame().to_object(c);  // a power of two: exact
     }
-    const Eigen::AlignedBox3d bounds = cooked.tree.to_object(cooked.tree.root().box);
+    const Eigen::AlignedBox3d bounds =
+        BoundTree::of(cooked.tree).to_object(BoundTree::of(cooked.tree).root().box);
     for (int turn = 0; turn < 40; ++turn) {
       Eigen::Vector3d a, b;
       for (Eigen::Index k = 0; k < 3; ++k) {
@@ -187,11 +190,11 @@ TEST_P(OverlapWithin, BoxesAreCertainOrClose) {
       for (const double distance : {0.0, 1e-3, 0.1, 1.0, 1e9}) {
         const auto found = overlap_box_within(cooked.tree, box, distance);
         ASSERT_TRUE(found.ok());
-        ASSERT_EQ(found->face.has_value(), found->overlap == Overlap::kHit);
-        if (found->overlap == Overlap::kHit) {
+        ASSERT_EQ(found->face.has_value(), found->overlap == Overlap::kOverlapping);
+        if (found->overlap == Overlap::kOverlapping) {
           ASSERT_TRUE(touch);
         }
-        if (found->overlap == Overlap::kFree) {
+        if (found->overlap == Overlap::kDisjoint) {
           ASSERT_FALSE(touch);
         }
         if (found->overlap == Overlap::kUndecided) {
@@ -199,17 +202,17 @@ TEST_P(OverlapWithin, BoxesAreCertainOrClose) {
         }
         ASSERT_LE(found->nodes_expanded, last);
         last = found->nodes_expanded;
-        hits += found->overlap == Overlap::kHit;
-        frees += found->overlap == Overlap::kFree;
+        hits += found->overlap == Overlap::kOverlapping;
+        frees += found->overlap == Overlap::kDisjoint;
         undecided += found->overlap == Overlap::kUndecided;
       }
       for (const std::uint64_t budget : {0u, 1u, 3u}) {
         const auto found = overlap_box_within(cooked.tree, box, 0, budget);
         ASSERT_LE(found->nodes_expanded, budget);
-        if (found->overlap == Overlap::kHit) {
+        if (found->overlap == Overlap::kOverlapping) {
           ASSERT_TRUE(touch);
         }
-        if (found->overlap == Overlap::kFree) {
+        if (found->overlap == Overlap::kDisjoint) {
           ASSERT_FALSE(touch);
         }
         spent += found->overlap == Overlap::kBudgetSpent;

@@ -12,6 +12,7 @@
 #include "runtime/primitive/predicates.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/require.h"
 
@@ -100,13 +101,15 @@ class PairRange : public testing::Test {
   // By brute force in the first one's tree space.
   static Pairs expected(const Placed& first, const SourceMesh& first_mesh, const Placed& second,
                         const SourceMesh& second_mesh) {
-    const auto pose = RelativePose::make(first.tree, first.pose, second.tree, second.pose);
+    const auto pose = RelativePose::make(BoundTree::of(first.tree), first.pose,
+                                         BoundTree::of(second.tree), second.pose);
     EXPECT_TRUE(pose.has_value());
     Pairs pairs;
     const auto triangle = [](const Tree& tree, const SourceMesh& mesh, std::uint32_t face) {
       Triangle t;
       for (std::size_t c = 0; c < 3; ++c) {
-        t.corner[c] = tree.frame().to_tree(mesh.positions[mesh.faces[face].corner[c]]);
+        t.corner[c] =
+            BoundTree::of(tree).frame().to_tree(mesh.positions[mesh.faces[face].corner[c]]);
       }
       return t;
     };
@@ -233,8 +236,10 @@ TEST_F(PairRange, AnyAffinePose) {
     const auto relative_works = [&] {
       const CookedTree a = test::cook_tree(first, CodecId::kPlainF32);
       const CookedTree b = test::cook_tree(second, CodecId::kPlainF32);
-      return RelativePose::make(a.tree, back, b.tree, pose) &&
-             RelativePose::make(b.tree, pose, a.tree, back);
+      const BoundTree& in_a = BoundTree::of(a.tree);
+      const BoundTree& in_b = BoundTree::of(b.tree);
+      return RelativePose::make(in_a, back, in_b, pose) &&
+             RelativePose::make(in_b, pose, in_a, back);
     };
     if (!relative_works()) continue;  // cannot be undone in double, or leads beyond reach: refused
     contacts += compare(first, back, second, pose, "pose " + std::to_string(i));

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/triangle_reference.h"
@@ -22,13 +23,13 @@ using cooker::SourceMesh;
 class BruteForce {
  public:
   explicit BruteForce(const Tree& tree) {
-    const long double scale = std::ldexp(1.0L, tree.record().scale_exponent);
+    const long double scale = std::ldexp(1.0L, BoundTree::of(tree).record().scale_exponent);
     for (const Triangle& triangle : test::all_triangles(tree)) {
       Item item;
       item.center.setZero();
       for (std::size_t c = 0; c < 3; ++c) {
         item.corner[c] = scale * triangle.corner[c].cast<long double>() +
-                         tree.frame().origin.cast<long double>();
+                         BoundTree::of(tree).frame().origin.cast<long double>();
         item.center += item.corner[c] / 3;
       }
       item.radius = 0;
@@ -62,7 +63,7 @@ class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
  protected:
   // Amid the mesh, far from it, on a vertex, next to the surface.
   std::vector<Eigen::Vector3d> points(const Tree& tree, int count) {
-    const Eigen::AlignedBox3d box = tree.to_object(tree.root().box);
+    const Eigen::AlignedBox3d box = BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
     const auto coordinate = [&](double low, double high) {
       return std::uniform_real_distribution<double>(low, high)(random_);
     };
@@ -74,8 +75,8 @@ class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
         p[k] = coordinate(box.min()[k] - margin, box.max()[k] + margin);
       }
       if (i % 5 == 1) p *= 1e5;
-      if (i % 5 == 2) p = (*closest_point(tree, p))->point;
-      if (i % 5 == 3) p += (1 - 1e-6) * ((*closest_point(tree, p))->point - p);
+      if (i % 5 == 2) p = closest_point(tree, p)->point;
+      if (i % 5 == 3) p += (1 - 1e-6) * (closest_point(tree, p)->point - p);
       result.push_back(p);
     }
     return result;
@@ -87,7 +88,10 @@ class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
       SCOPED_TRACE(mesh.name);
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
       const BruteForce truth(cooked.tree);
-      const double size = cooked.tree.to_object(cooked.tree.root().box).diagonal().norm();
+      const double size = BoundTree::of(cooked.tree)
+                              .to_object(BoundTree::of(cooked.tree).root().box)
+                              .diagonal()
+                              .norm();
       for (const Eigen::Vector3d& point : points(cooked.tree, count)) {
         body(cooked.tree, point, truth.distance(point), size + point.norm());
         if (HasFatalFailure()) return;
@@ -119,7 +123,7 @@ TEST_P(ApproximatePoints, BoundsAreTrueAndAsNearAsAsked) {
         for (std::size_t i = 0; i < errors.size(); ++i) {
           SCOPED_TRACE(errors[i]);
           const auto found = closest_point(tree, point, PointOptions{errors[i], 0});
-          ASSERT_TRUE(found.ok() && found->is_near_enough);
+          ASSERT_TRUE(found.ok() && found->converged);
           check(*found, point, truth, size);
           ASSERT_LE(found->upper, found->lower * (1 + errors[i]) + 1e-12 * size);
           nodes[i] += found->nodes_expanded;
@@ -143,13 +147,13 @@ TEST_P(ApproximatePoints, BoundsAreTrueAndAsNearAsAsked) {
 TEST_P(ApproximatePoints, WithoutErrorTheyAreTheExactOnes) {
   for_each_point(
       20, [&](const Tree& tree, const Eigen::Vector3d& point, long double truth, double size) {
-        const auto exact = *closest_point(tree, point);
+        const auto exact = closest_point(tree, point);
         PointOptions unlimited;
         PointOptions enough;  // best-first to the end: ties must end the same way
         enough.node_budget = 1u << 30;
         for (const PointOptions& options : {unlimited, enough}) {
           const auto found = closest_point(tree, point, options);
-          ASSERT_TRUE(found->is_near_enough);
+          ASSERT_TRUE(found->converged);
           ASSERT_EQ(found->witness->distance, exact->distance);
           ASSERT_EQ(found->witness->point, exact->point);
           ASSERT_EQ(found->witness->face.id, exact->face.id);
@@ -173,7 +177,7 @@ TEST_P(ApproximatePoints, BudgetsEndTheSearchWithTrueBounds) {
           ASSERT_LE(found->nodes_expanded, budget);
           ASSERT_LE(found->upper - found->lower, gap);  // more nodes never tell less
           gap = found->upper - found->lower;
-          if (found->is_near_enough) continue;
+          if (found->converged) continue;
           ++spent;
           ASSERT_EQ(found->nodes_expanded, budget);
         }
@@ -193,7 +197,7 @@ TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
           options.max_distance = static_cast<double>(truth * 0.999L);
           const auto nothing = closest_point(tree, point, options);
           ASSERT_FALSE(nothing->witness.has_value());
-          ASSERT_TRUE(nothing->is_near_enough);
+          ASSERT_TRUE(nothing->converged);
           check(*nothing, point, truth, size);
           ASSERT_GE(nothing->lower, options.max_distance - 1e-12 * size);
         }

@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -49,7 +50,7 @@ class Queries : public testing::TestWithParam<CodecId> {
       options.geometry = GeometryId::kGrid;
       options.grid.bits = 12;
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
-      body(rounded(mesh, cooked.tree.record().grid_exponent), cooked.tree);
+      body(rounded(mesh, BoundTree::of(cooked.tree).record().grid_exponent), cooked.tree);
     }
   }
 
@@ -61,7 +62,7 @@ class Queries : public testing::TestWithParam<CodecId> {
   }
 
   Eigen::Vector3d point_near(const Tree& tree) {
-    const Eigen::AlignedBox3d box = tree.to_object(tree.root().box);
+    const Eigen::AlignedBox3d box = BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
     Eigen::Vector3d p;
     for (Eigen::Index k = 0; k < 3; ++k) {
       p[k] = box.min()[k] + (unit() * 1.4 - 0.2) * (box.max()[k] - box.min()[k]);
@@ -88,14 +89,14 @@ TEST_P(Queries, ClosestHitEqualsBruteForce) {
       }
       const auto hit = closest_hit(tree, ray);
       ASSERT_TRUE(hit.ok());
-      ASSERT_EQ((*hit).has_value(), best < std::numeric_limits<double>::infinity());
+      ASSERT_EQ(hit.has_value(), best < std::numeric_limits<double>::infinity());
       const auto any = any_hit(tree, ray);
-      ASSERT_EQ((*any).has_value(), (*hit).has_value());
-      if (!*hit) continue;
+      ASSERT_EQ(any.has_value(), hit.has_value());
+      if (!hit.has_value()) continue;
       ++hits;
       // The library clamps t to the triangle's own slab: equal up to the rounding of the shear.
-      ASSERT_NEAR((*hit)->t, best, 1e-12 * (1 + best));
-      ASSERT_LT((*hit)->face.id, mesh.faces.size());
+      ASSERT_NEAR(hit->t, best, 1e-12 * (1 + best));
+      ASSERT_LT(hit->face.id, mesh.faces.size());
     }
     if (mesh.faces.size() > 100 && mesh.name != "slivers" && mesh.name != "huge_among_tiny") {
       EXPECT_GT(hits, 20u);
@@ -140,10 +141,10 @@ TEST_P(Queries, SphereAndClosestPointEqualBruteForce) {
       }
       const double best = *std::min_element(distance.begin(), distance.end());
       const auto closest = closest_point(tree, p);
-      ASSERT_TRUE(closest.ok() && (*closest).has_value());
-      ASSERT_NEAR((*closest)->distance, best, 1e-9 * (1 + best));
-      ASSERT_NEAR(((*closest)->point - p).norm(), best, 1e-9 * (1 + best));
-      ASSERT_FALSE((*closest_point(tree, p, best * 0.999)).has_value() && best > 0);
+      ASSERT_TRUE(closest.ok() && closest.has_value());
+      ASSERT_NEAR(closest->distance, best, 1e-9 * (1 + best));
+      ASSERT_NEAR((closest->point - p).norm(), best, 1e-9 * (1 + best));
+      ASSERT_FALSE(closest_point(tree, p, best * 0.999).has_value() && best > 0);
 
       const double radius = best * 1.5;
       std::multiset<std::uint32_t> expected;
@@ -226,7 +227,7 @@ TEST_P(Queries, PairsEqualBruteForce) {
         const FacePairs expected = touching_pairs(a, b, pose);
         ASSERT_EQ(found_pairs(tree_a.tree, Pose::Identity(), tree_b.tree, pose), expected);
         const auto contact = first_contact(tree_a.tree, Pose::Identity(), tree_b.tree, pose);
-        ASSERT_EQ((*contact).has_value(), !expected.empty());
+        ASSERT_EQ(contact.has_value(), !expected.empty());
       }
     }
   }
@@ -266,15 +267,15 @@ TEST_P(Queries, ScalingByAPowerOfTwoScalesTheAnswers) {
     for (int i = 0; i < 100; ++i) {
       const Eigen::Vector3d from = point_near(unit_size.tree);
       const Eigen::Vector3d direction = point_near(unit_size.tree) - from;
-      const auto hit = *closest_hit(unit_size.tree, {from, direction});
-      const auto other_hit = *closest_hit(other.tree, {scale * from, scale * direction});
+      const auto hit = closest_hit(unit_size.tree, {from, direction});
+      const auto other_hit = closest_hit(other.tree, {scale * from, scale * direction});
       ASSERT_EQ(hit.has_value(), other_hit.has_value());
-      if (hit) {
+      if (hit.has_value()) {
         ASSERT_EQ(hit->face.id, other_hit->face.id);
         ASSERT_EQ(hit->t, other_hit->t);
       }
-      const auto closest = *closest_point(unit_size.tree, from);
-      const auto other_closest = *closest_point(other.tree, scale * from);
+      const auto closest = closest_point(unit_size.tree, from);
+      const auto other_closest = closest_point(other.tree, scale * from);
       ASSERT_EQ(closest->face.id, other_closest->face.id);
       ASSERT_EQ(scale * closest->distance, other_closest->distance);
     }
@@ -303,9 +304,9 @@ TEST_P(Queries, ScaledMeshesEqualBruteForce) {
           if (hit && hit->t >= 0) best = std::min(best, hit->t);
         }
       }
-      const auto hit = *closest_hit(cooked.tree, ray);
+      const auto hit = closest_hit(cooked.tree, ray);
       ASSERT_EQ(hit.has_value(), best < std::numeric_limits<double>::infinity());
-      if (hit) {
+      if (hit.has_value()) {
         ASSERT_NEAR(hit->t, best, 1e-12 * (1 + best));
       }
     }

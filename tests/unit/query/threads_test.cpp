@@ -20,8 +20,8 @@ double ask_everything(const File& file, const Tree& tree) {
   for (int i = 0; i < 200; ++i) {
     const double x = 0.01 * i - 1;
     const auto hit = closest_hit(tree, {{x, 0.3, 9}, {0.01, 0.02, -1}});
-    if (*hit) sum += (*hit)->t;
-    sum += (*closest_point(*own, {x, 2, 1}))->distance;
+    if (hit.has_value()) sum += hit->t;
+    sum += closest_point(*own, {x, 2, 1})->distance;
     const auto count = [&sum](const auto&) {
       sum += 1;
       return true;

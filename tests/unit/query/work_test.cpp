@@ -7,7 +7,9 @@
 
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
+#include "format/container.h"
 #include "runtime/query/pair_work.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/coincident.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -38,8 +40,8 @@ Outcome outcome(const Result<T>& result, const Value& value) {
   return result ? Outcome{Errc::kOk, value(*result)} : Outcome{result.code(), 0};
 }
 template <class T>
-Outcome outcome_of_hit(const Result<std::optional<T>>& result, double (*value)(const T&)) {
-  return outcome(result, [&](const std::optional<T>& found) { return found ? value(*found) : -1; });
+Outcome outcome_of_hit(const QueryResult<T>& result, double (*value)(const T&)) {
+  return {result.code(), result.has_value() ? value(*result) : result.ok() ? -1 : 0};
 }
 // Of a query with a visitor: how many it was told of.
 Outcome outcome_of_visit(const std::function<Result<Visit>(std::size_t& told)>& ask) {
@@ -126,14 +128,16 @@ class Limits : public testing::TestWithParam<CodecId> {};
 
 TEST_P(Limits, TellWhenTheyDoNotSuffice) {
   const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
-  const std::uint64_t nodes = cooked.tree.record().node_count;
+  const std::uint64_t nodes = BoundTree::of(cooked.tree).record().node_count;
   for (const LimitedQuery& query : tree_queries(cooked.tree)) {
     SCOPED_TRACE(query.name);
     const std::uint64_t least = least_limit(query);
     EXPECT_GT(least, 0u);
     const bool is_pair = std::string(query.name).find("pair") != std::string::npos ||
                          std::string(query.name).find("contact") != std::string::npos;
-    EXPECT_LE(least, is_pair ? most_pairs(cooked.tree.record(), cooked.tree.record()) : nodes);
+    EXPECT_LE(least, is_pair ? most_pairs(BoundTree::of(cooked.tree).record(),
+                                          BoundTree::of(cooked.tree).record())
+                             : nodes);
     // Everything is inside the box: every node is taken apart.
     if (std::string(query.name) == "overlap_box") {
       EXPECT_EQ(least, nodes);
@@ -148,9 +152,9 @@ TEST_P(Limits, WhatWasToldBeforeIsTrue) {
     const Result<Visit> visit =
         overlap_box(cooked.tree, everywhere(),
                     [&](const FaceRef& face) { return told.insert(face.id).second; }, {nodes});
-    if (nodes >= cooked.tree.record().node_count) continue;
+    if (nodes >= BoundTree::of(cooked.tree).record().node_count) continue;
     EXPECT_EQ(visit.code(), Errc::kWorkLimit);
-    EXPECT_LT(told.size(), cooked.tree.record().face_count);
+    EXPECT_LT(told.size(), BoundTree::of(cooked.tree).record().face_count);
     EXPECT_LE(told.size(), nodes * kWideChildren * kLeafFaces);
   }
 }
@@ -171,12 +175,12 @@ TEST(SceneLimits, CountForAllInstancesTogether) {
       {"closest_hit",
        [&](const QueryLimits& limits) {
          return outcome_of_hit<SceneRayHit>(closest_hit(scene, ray, kAllLayers, limits),
-                                            [](const SceneRayHit& hit) { return hit.hit.t; });
+                                            [](const SceneRayHit& hit) { return hit.t; });
        }},
       {"any_hit",
        [&](const QueryLimits& limits) {
          return outcome_of_hit<SceneRayHit>(any_hit(scene, ray, kAllLayers, limits),
-                                            [](const SceneRayHit& hit) { return hit.hit.t; });
+                                            [](const SceneRayHit& hit) { return hit.t; });
        }},
       {"overlap_box",
        [&](const QueryLimits& limits) {
@@ -194,7 +198,7 @@ TEST(SceneLimits, CountForAllInstancesTogether) {
        [&](const QueryLimits& limits) {
          return outcome_of_hit<SceneClosestPoint>(
              closest_point(scene, {3, 2, 1}, 1e4, kAllLayers, limits),
-             [](const SceneClosestPoint& found) { return found.closest.distance; });
+             [](const SceneClosestPoint& found) { return found.distance; });
        }},
       {"contacts",
        [&](const QueryLimits& limits) {
@@ -220,7 +224,7 @@ TEST(SceneLimits, CountForAllInstancesTogether) {
   // All is in the box: every instance and all nodes of its tree.
   std::uint64_t all = 0;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
-    all += 1 + scene.trees()[test::require(scene.info(i)).tree].record().node_count;
+    all += 1 + BoundTree::of(scene.trees()[test::require(scene.info(i)).tree]).record().node_count;
   }
   EXPECT_EQ(least_limit(queries[2]), all);
 }
@@ -287,8 +291,8 @@ TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
   for (const std::vector<std::byte>& bytes : {shared_leaves_binary(), shared_leaves_wide()}) {
     const File file = test::require(File::open(Bytes(bytes)));
     const Tree tree = test::require(Tree::bind(file));
-    const std::uint64_t most =
-        saturated_product(faces_in_leaves(tree.record()), faces_in_leaves(tree.record()));
+    const std::uint64_t most = saturated_product(faces_in_leaves(BoundTree::of(tree).record()),
+                                                 faces_in_leaves(BoundTree::of(tree).record()));
     std::uint64_t told = 0;
     const Pose here = Pose::Identity();
     const auto count = [&](const FacePair&) { return ++told > 0; };
@@ -299,7 +303,8 @@ TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
     const Result<Distance> distant = distance(tree, here, tree, apart);
     EXPECT_TRUE(distant.ok() || distant.code() == Errc::kNodeCorrupt);
     if (distant) {
-      EXPECT_LE(distant->nodes_expanded, most_pairs(tree.record(), tree.record()));
+      EXPECT_LE(distant->nodes_expanded,
+                most_pairs(BoundTree::of(tree).record(), BoundTree::of(tree).record()));
     }
   }
 }
@@ -323,7 +328,7 @@ TEST(HostileLeaves, OfATopLevelAreVisitedOnce) {
       overlap_box(scene, everywhere(), [&](const SceneFace&) { return ++told > 0; });
   // Three instances at the root and eight below each of its five nodes: 43 visits of 40 instances.
   EXPECT_EQ(visit.code(), Errc::kNodeCorrupt);
-  EXPECT_EQ(told, 40 * scene.trees()[0].record().face_count);
+  EXPECT_EQ(told, 40 * BoundTree::of(scene.trees()[0]).record().face_count);
 }
 
 // Copies of a face are told again each time that a leaf with it is met.
@@ -334,8 +339,8 @@ TEST(HostileLeaves, WithCopiesAreToldOnce) {
   {
     const File file = test::require(File::open(Bytes(bytes)));
     const Tree tree = test::require(Tree::bind(file));
-    ASSERT_TRUE(tree.has_duplicates());
-    original = tree.original_of(tree.record().face_count - 1);
+    ASSERT_TRUE(BoundTree::of(tree).has_duplicates());
+    original = BoundTree::of(tree).original_of(BoundTree::of(tree).record().face_count - 1);
   }
   const std::uint32_t leaf = std::min(original / kLeafFaces, 300 / kLeafFaces - 8);
   test::edit_records<Wide8Node>(

@@ -10,6 +10,7 @@
 
 #include "cooker/report/approximate_page.h"
 #include "cooker/report/tradeoff_page.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -26,7 +27,8 @@ constexpr double kRounding = 1e-13;
 std::vector<Triangle> in_object_space(const Tree& tree) {
   std::vector<Triangle> triangles = test::all_triangles(tree);
   for (Triangle& triangle : triangles) {
-    for (Eigen::Vector3d& corner : triangle.corner) corner = tree.frame().to_object(corner);
+    for (Eigen::Vector3d& corner : triangle.corner)
+      corner = BoundTree::of(tree).frame().to_object(corner);
   }
   return triangles;
 }

@@ -12,6 +12,7 @@
 
 #include "cooker/report/tradeoff_advice.h"
 #include "cooker/report/tradeoff_page.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -98,23 +99,24 @@ double decoded_move(int grid_bits) {
   const test::CookedTree cooked = test::cook_tree(mesh(), CodecId::kWide8, options);
   double largest = 0;
   std::size_t triangles = 0;
-  std::vector<Node> todo = {cooked.tree.root()};
+  std::vector<Node> todo = {BoundTree::of(cooked.tree).root()};
   while (!todo.empty()) {
     const Node node = todo.back();
     todo.pop_back();
     if (!node.is_leaf) {
       NodeChildren children;
-      EXPECT_EQ(cooked.tree.expand(node, children), Errc::kOk);
+      EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), Errc::kOk);
       for (std::uint32_t i = 0; i < children.count; ++i) todo.push_back(children.child[i]);
       continue;
     }
     TriangleBatch batch;
-    EXPECT_EQ(cooked.tree.leaf_triangles(node, batch), Errc::kOk);
+    EXPECT_EQ(BoundTree::of(cooked.tree).leaf_triangles(node, batch), Errc::kOk);
     for (std::uint32_t i = 0; i < batch.count; ++i, ++triangles) {
-      const Face& face = mesh().faces[cooked.tree.face_id(batch.face[i])];
+      const Face& face = mesh().faces[BoundTree::of(cooked.tree).face_id(batch.face[i])];
       if (face.is_quad()) throw std::logic_error("triangles alone are compared here");
       for (std::size_t k = 0; k < 3; ++k) {
-        const Eigen::Vector3d corner = cooked.tree.frame().to_object(batch.triangle(i).corner[k]);
+        const Eigen::Vector3d corner =
+            BoundTree::of(cooked.tree).frame().to_object(batch.triangle(i).corner[k]);
         largest = std::max(largest, (corner - mesh().positions[face.corner[k]]).norm());
       }
     }

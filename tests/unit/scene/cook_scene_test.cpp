@@ -15,8 +15,11 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
+#include "runtime/file/open_file.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/scene/bound_scene.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -113,7 +116,7 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int question
     ASSERT_EQ(hit.has_value(), std::isfinite(best)) << i;
     if (hit) {
       ++hits;
-      ASSERT_NEAR(hit->hit.t, best, 1e-9 * (1 + best));
+      ASSERT_NEAR(hit->t, best, 1e-9 * (1 + best));
     }
     const Eigen::Vector3d half = 0.03 * bounds.sizes();
     const Eigen::Vector3d middle = point(0);
@@ -140,7 +143,7 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int question
     })));
     ASSERT_EQ(found_box, in_box);
     ASSERT_EQ(found_sphere, in_sphere);
-    ASSERT_EQ(require(closest_point(scene, middle))->closest.distance, std::sqrt(nearest));
+    ASSERT_EQ(require(closest_point(scene, middle))->distance, std::sqrt(nearest));
   }
 }
 
@@ -208,7 +211,7 @@ motion = "moving"
   const CookedFileOf stripped(kLevel, CookOptions(), require(read_profile(text)));
   EXPECT_LT(stripped.report.file_bytes, whole.report.file_bytes);
   EXPECT_EQ(kept_bytes(stripped.report), stripped.report.file_bytes);
-  EXPECT_EQ(stripped.scene.moving().size(), 1u);
+  EXPECT_EQ(BoundScene::of(stripped.scene).moving().size(), 1u);
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 2000; ++i) {
@@ -218,11 +221,11 @@ motion = "moving"
     const auto b = require(closest_hit(stripped.scene, ray));
     ASSERT_EQ(a.has_value(), b.has_value());
     if (!a) continue;
-    ASSERT_EQ(a->hit.t, b->hit.t);
+    ASSERT_EQ(a->t, b->t);
     ASSERT_EQ(require(whole.scene.info(a->instance)).id,
               require(stripped.scene.info(b->instance)).id);
-    ASSERT_EQ(b->hit.face.id, kNoFaceId);
-    ASSERT_EQ(stripped.scene.material(b->instance, b->hit.face), kNoMaterial);
+    ASSERT_EQ(b->face.id, kNoFaceId);
+    ASSERT_EQ(stripped.scene.material({b->instance, b->face}), kNoMaterial);
   }
   const auto refusal = [&](const SceneOptions& options) {
     const Result<Scene> refused = Scene::bind(stripped.file, options);
@@ -276,10 +279,8 @@ TEST(CookScene, MaterialsSurviveWithoutFaceIds) {
     const auto b = require(closest_hit(stripped.scene, ray));
     ASSERT_EQ(a.has_value(), b.has_value());
     if (!a) continue;
-    const std::string name(
-        whole.scene.material_name(whole.scene.material(a->instance, a->hit.face)));
-    ASSERT_EQ(name,
-              stripped.scene.material_name(stripped.scene.material(b->instance, b->hit.face)));
+    const std::string name(whole.scene.material_name(whole.scene.material({a->instance, a->face})));
+    ASSERT_EQ(name, stripped.scene.material_name(stripped.scene.material({b->instance, b->face})));
     seen.insert(name);
   }
   EXPECT_TRUE(seen.contains("stone") && seen.contains("grass") && seen.contains("wood"));
@@ -330,7 +331,7 @@ leave_out = true
     const bool is_scenery = tree.name() == "wall" || tree.name() == "pillar";
     EXPECT_NE(tree.name(), "barrel");
     if (is_scenery) {
-      EXPECT_EQ(tree.codec(), CodecId::kWide4) << tree.name();
+      EXPECT_EQ(BoundTree::of(tree).codec(), CodecId::kWide4) << tree.name();
     }
   }
   const auto told = [&](const std::string& owner, const std::string& line) {
@@ -420,7 +421,7 @@ external = true
   const SourceScene source = require(import_scene(kLevel));
   std::vector<SceneMeshArrays> arrays;
   for (std::uint32_t tree = 0; tree < file.tree_count(); ++tree) {
-    if (file.tree_record(tree).geometry != GeometryId::kExternal) continue;
+    if (OpenFile::of(file).tree_record(tree).geometry != GeometryId::kExternal) continue;
     for (const SceneMesh& mesh : source.meshes) {
       if (mesh.mesh.name == file.tree_name(tree)) arrays.push_back({tree, arrays_of(mesh.mesh)});
     }
@@ -447,9 +448,9 @@ hidden_faces = "hidden.txt"
   const CookedFileOf cooked(kLevel, CookOptions(), require(read_profile(text)));
   for (const Tree& tree : cooked.scene.trees()) {
     if (tree.name() != "crate") continue;
-    ASSERT_EQ(tree.record().face_count, 9u);
+    ASSERT_EQ(BoundTree::of(tree).record().face_count, 9u);
     std::set<std::uint32_t> ids;
-    for (std::uint32_t face = 0; face < 9; ++face) ids.insert(tree.face_id(face));
+    for (std::uint32_t face = 0; face < 9; ++face) ids.insert(BoundTree::of(tree).face_id(face));
     EXPECT_EQ(ids, (std::set<std::uint32_t>{1, 2, 5, 6, 7, 8, 9, 10, 11}));
   }
   const auto dropped = std::ranges::find_if(cooked.report.why, [](const WhyLine& line) {
@@ -513,16 +514,16 @@ translation = [1, 0, 0]
   const CookedFileOf cooked({}, CookOptions(), require(read_profile(text)), true);
   ASSERT_EQ(cooked.scene.trees().size(), 1u);
   const Tree& tree = cooked.scene.trees()[0];
-  ASSERT_EQ(tree.record().geometry, GeometryId::kGrid);
-  EXPECT_LE(std::ldexp(0.866, tree.record().grid_exponent), 0.0005);
+  ASSERT_EQ(BoundTree::of(tree).record().geometry, GeometryId::kGrid);
+  EXPECT_LE(std::ldexp(0.866, BoundTree::of(tree).record().grid_exponent), 0.0005);
   std::set<std::array<double, 3>> border[2];
   for (std::uint32_t i = 0; i < 2; ++i) {
     const Pose pose = require(cooked.scene.pose(i));
-    const auto placed = Placement::make(tree, pose);
+    const auto placed = Placement::make(BoundTree::of(tree), pose);
     const double side = pose.translation()[0] == 0 ? 1 : 0;  // of the tile, where they meet
     for (const Triangle& triangle : test::all_triangles(tree)) {
       for (const Eigen::Vector3d& corner : triangle.corner) {
-        if (tree.frame().to_object(corner)[0] != side) continue;
+        if (BoundTree::of(tree).frame().to_object(corner)[0] != side) continue;
         const Eigen::Vector3d world = placed->to_world().apply(corner);
         border[i].insert({world[0], world[1], world[2]});
       }
@@ -554,10 +555,10 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
     const InstanceInfo info = require(scene.info(i));
     const Tree& tree = scene.trees()[info.tree];
     std::vector<std::string>& of_faces = names[info.id];
-    of_faces.resize(tree.record().face_count);
+    of_faces.resize(BoundTree::of(tree).record().face_count);
     for (std::uint32_t face = 0; face < of_faces.size(); ++face) {
-      const std::uint32_t id = tree.face_id(face);
-      of_faces[id] = scene.material_name(scene.material(i, {id, face}));
+      const std::uint32_t id = BoundTree::of(tree).face_id(face);
+      of_faces[id] = scene.material_name(scene.material({i, {id, face}}));
     }
   }
   const std::vector<std::vector<std::string>> expected{

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "cooker/proof/scene_proof.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -25,7 +26,8 @@ TEST(Materials, NumbersOfFacesHaveAsManyBytesAsTheyTake) {
     const Scene scene = test::require(Scene::bind(cooked.file, {}));
     ASSERT_EQ(scene.material_count(), count);
     for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
-      const std::uint32_t material = scene.material(0, {scene.trees()[0].face_id(face), face});
+      const std::uint32_t material =
+          scene.material({0, {BoundTree::of(scene.trees()[0]).face_id(face), face}});
       EXPECT_EQ(material, materials[face]) << count;
       EXPECT_EQ(scene.material_name(material), parts.materials[materials[face]]) << count;
     }

@@ -9,6 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
+#include "format/container.h"
+#include "runtime/file/open_file.h"
+#include "runtime/scene/bound_scene.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -62,8 +65,8 @@ TEST(SceneBind, TellsWhatWasCooked) {
     EXPECT_EQ(info.moves, source.moves);
     EXPECT_EQ(require(scene.pose(i)).matrix(), source.pose.matrix());
     EXPECT_EQ(require(scene.find_instance(source.name)), i);
-    EXPECT_EQ(scene.material(i, {9, 0}), info.tree == 0 ? 1 : kNoMaterial);
-    EXPECT_EQ(scene.material(i, {10, 0}), info.tree == 0 ? 0 : kNoMaterial);
+    EXPECT_EQ(scene.material({i, {9, 0}}), info.tree == 0 ? 1 : kNoMaterial);
+    EXPECT_EQ(scene.material({i, {10, 0}}), info.tree == 0 ? 0 : kNoMaterial);
   }
   EXPECT_EQ(ids.size(), 9u);
   EXPECT_EQ(scene.info(9).code(), Errc::kInstanceIndex);
@@ -72,12 +75,13 @@ TEST(SceneBind, TellsWhatWasCooked) {
 
 TEST(SceneBind, PosesTakeF32WhereThatLosesNothing) {
   cooker::SceneParts parts = test::random_parts(3, 1, 0, 1, 1);
-  EXPECT_EQ(cook(parts).file.section(SectionKind::kPoses).size(), 3 * 12 * sizeof(double));
+  EXPECT_EQ(OpenFile::of(cook(parts).file).section(SectionKind::kPoses).size(),
+            3 * 12 * sizeof(double));
   for (cooker::PlacedTree& placed : parts.instances) {
     placed.pose.matrix() = placed.pose.matrix().cast<float>().cast<double>();
   }
   const CookedScene cooked = cook(parts);
-  EXPECT_EQ(cooked.file.section(SectionKind::kPoses).size(), 3 * 12 * sizeof(float));
+  EXPECT_EQ(OpenFile::of(cooked.file).section(SectionKind::kPoses).size(), 3 * 12 * sizeof(float));
   const Scene scene = require(Scene::bind(cooked.file));
   for (std::uint32_t i = 0; i < 3; ++i) {
     EXPECT_EQ(require(scene.pose(i)).matrix(),
@@ -110,7 +114,7 @@ TEST(SceneBind, NamesTheLineThatLeftAPartOut) {
 // With no more than one kind in the file, queries of the others are refused, each of them.
 TEST(SceneBind, QueriesOfKindsThatWereLeftOutAreRefused) {
   const CookedScene whole = cook(random_parts());
-  const Tree tree = require(Tree::bind(whole.file));
+  const Tree tree = require(Tree::bind(whole.file, 0));
   for (const QueryKinds kept : {kRayQueries, kBoxQueries, kPointQueries, kPairQueries}) {
     SCOPED_TRACE(int{kept});
     cooker::SceneParts parts = random_parts();
@@ -238,35 +242,69 @@ TEST(SceneBind, MovedScenesAnswerAsBefore) {
   const std::vector<std::uint32_t> before = all_contacts(scene);
   Scene moved = std::move(scene);
   EXPECT_EQ(all_contacts(moved), before);
-  ASSERT_TRUE(moved.update(moved.moving().front().instance, Pose::Identity()).ok());
+  ASSERT_TRUE(moved.update(BoundScene::of(moved).moving().front().instance, Pose::Identity()).ok());
   const std::vector<std::uint32_t> updated = all_contacts(moved);
   scene = std::move(moved);
   EXPECT_EQ(all_contacts(scene), updated);
+}
+
+// An instance that is named after binding moves as one that was named in SceneOptions.
+TEST(SceneBind, InstancesCanBeMadeMovableLater) {
+  const CookedScene cooked = cook(named_parts());
+  Scene later = require(Scene::bind(cooked.file));
+  const std::uint32_t number = 0;
+  ASSERT_FALSE(require(later.info(number)).moves);
+  Pose away = Pose::Identity();
+  away.translation() = Eigen::Vector3d(3, -2, 40);
+  EXPECT_EQ(later.update(number, away).code(), Errc::kInstanceStatic);
+  EXPECT_EQ(later.make_movable(later.instance_count()).code(), Errc::kInstanceIndex);
+  ASSERT_TRUE(later.make_movable(number).ok());
+  ASSERT_TRUE(later.make_movable(number).ok());
+  EXPECT_TRUE(require(later.info(number)).moves);
+  ASSERT_TRUE(later.update(number, away).ok());
+
+  SceneOptions options;
+  options.moving = std::span(&number, 1);
+  Scene named = require(Scene::bind(cooked.file, options));
+  ASSERT_TRUE(named.update(number, away).ok());
+  int hits = 0;
+  for (int x = -20; x <= 20; ++x) {
+    const Ray ray{{0.3 * x, 0.1, 100}, {0, -0.02, -1}};
+    const auto a = require(closest_hit(later, ray)), b = require(closest_hit(named, ray));
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a) continue;
+    ++hits;
+    EXPECT_EQ(a->t, b->t);
+    EXPECT_EQ(a->instance, b->instance);
+    EXPECT_EQ(a->normal, b->normal);
+  }
+  EXPECT_GT(hits, 0);
 }
 
 // Rays are widened by the worst map of all: one that was once hard to undo does not count for ever.
 TEST(SceneBind, TheConditionIsThatOfTheInstancesAsTheyAre) {
   const CookedScene cooked = cook(named_parts());
   Scene scene = require(Scene::bind(cooked.file));
-  ASSERT_GE(scene.moving().size(), 2u);
-  const std::uint32_t first = scene.moving()[0].instance, second = scene.moving()[1].instance;
+  ASSERT_GE(BoundScene::of(scene).moving().size(), 2u);
+  const std::uint32_t first = BoundScene::of(scene).moving()[0].instance,
+                      second = BoundScene::of(scene).moving()[1].instance;
   ASSERT_TRUE(scene.update(first, Pose::Identity()).ok());
   ASSERT_TRUE(scene.update(second, Pose::Identity()).ok());
-  const double usual = scene.condition();
+  const double usual = BoundScene::of(scene).condition();
   const auto sheared = [](double by) {
     Pose pose = Pose::Identity();
     pose.linear()(0, 1) = by;
     return pose;
   };
   ASSERT_TRUE(scene.update(first, sheared(1e4)).ok());
-  const double larger = scene.condition();
+  const double larger = BoundScene::of(scene).condition();
   EXPECT_GT(larger, 1e4);
   ASSERT_TRUE(scene.update(second, sheared(1e5)).ok());
-  EXPECT_GT(scene.condition(), larger);
+  EXPECT_GT(BoundScene::of(scene).condition(), larger);
   ASSERT_TRUE(scene.update(second, Pose::Identity()).ok());
-  EXPECT_EQ(scene.condition(), larger);
+  EXPECT_EQ(BoundScene::of(scene).condition(), larger);
   ASSERT_TRUE(scene.update(first, Pose::Identity()).ok());
-  EXPECT_EQ(scene.condition(), usual);
+  EXPECT_EQ(BoundScene::of(scene).condition(), usual);
 }
 
 TEST(SceneBind, OnlyWhatMovesIsMoved) {
@@ -277,7 +315,7 @@ TEST(SceneBind, OnlyWhatMovesIsMoved) {
   EXPECT_EQ(scene.update(9, Pose::Identity()).code(), Errc::kInstanceIndex);
   Pose flat = Pose::Identity();
   flat.linear()(0, 0) = 0;
-  const std::uint32_t moving = scene.moving().front().instance;
+  const std::uint32_t moving = BoundScene::of(scene).moving().front().instance;
   const Pose kept = require(scene.pose(moving));
   EXPECT_EQ(scene.update(moving, flat).code(), Errc::kInvalidPose);
   EXPECT_EQ(require(scene.pose(moving)).matrix(), kept.matrix());
@@ -304,7 +342,7 @@ TEST(SceneBind, StaticInstancesCanBeDetached) {
   SceneOptions options;
   options.moving = std::span(&door, 1);
   Scene scene = require(Scene::bind(cooked.file, options));
-  EXPECT_EQ(require(closest_hit(scene, ray))->hit.t, hit->hit.t);
+  EXPECT_EQ(require(closest_hit(scene, ray))->t, hit->t);
   Pose away = Pose::Identity();
   away.translation() = Eigen::Vector3d(0, 30, 0);
   ASSERT_TRUE(scene.update(door, away).ok());
@@ -318,8 +356,8 @@ TEST(SceneBind, StaticInstancesCanBeDetached) {
 TEST(SceneBind, ScenesWithoutAnythingAtRestOrWithoutSceneAreTold) {
   const CookedScene cooked = cook(test::random_parts(5, 2, 1, 1, 2));
   const Scene scene = require(Scene::bind(cooked.file));
-  EXPECT_EQ(scene.record().static_count, 0u);
-  EXPECT_EQ(scene.moving().size(), 5u);
+  EXPECT_EQ(BoundScene::of(scene).record().static_count, 0u);
+  EXPECT_EQ(BoundScene::of(scene).moving().size(), 5u);
   const std::vector<std::byte> bytes = test::cook_bytes(test::sphere(4, 4), CodecId::kWide8);
   const File plain = require(File::open(bytes));
   EXPECT_EQ(Scene::bind(plain).code(), Errc::kNoScene);
@@ -330,7 +368,7 @@ TEST(SceneBind, ScenesWithoutAnythingAtRestOrWithoutSceneAreTold) {
 TEST(SceneBind, DamagedBytesAreRefusedOrAnswered) {
   const CookedScene cooked = cook(named_parts());
   std::size_t refused = 0, found = 0;
-  for (const SectionEntry& entry : cooked.file.container().sections) {
+  for (const SectionEntry& entry : OpenFile::of(cooked.file).container().sections) {
     const auto kind = static_cast<SectionKind>(entry.kind);
     if (kind < SectionKind::kScene || kind > SectionKind::kLeftOut) continue;
     for (std::uint64_t i = 0; i < entry.size; ++i) {
@@ -348,12 +386,12 @@ TEST(SceneBind, DamagedBytesAreRefusedOrAnswered) {
         }
         static_cast<void>(closest_hit(*scene, {{-9, 0.1, 0.2}, {1, 0.01, 0.02}}));
         static_cast<void>(closest_point(*scene, {0.5, 0.5, 0.5}));
-        static_cast<void>(
-            overlap_box(*scene, {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)},
-                        [&](const SceneFace& face) {
-                          static_cast<void>(scene->material(face.instance, face.face));
-                          return true;
-                        }));
+        static_cast<void>(overlap_box(*scene,
+                                      {Eigen::Vector3d::Constant(-1), Eigen::Vector3d::Constant(1)},
+                                      [&](const SceneFace& face) {
+                                        static_cast<void>(scene->material(face));
+                                        return true;
+                                      }));
         static_cast<void>(contacts(*scene, [](const ScenePair&) { return true; }));
       }
     }

@@ -9,6 +9,7 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/scene/bound_scene.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -38,7 +39,7 @@ class SceneQueries : public testing::TestWithParam<CodecId> {
       SCOPED_TRACE("as cooked");
       body(test::world_triangles(cooked_, scene_));
     }
-    for (const Scene::Moving& moving : scene_.moving()) {
+    for (const BoundScene::Moving& moving : BoundScene::of(scene_).moving()) {
       ASSERT_TRUE(scene_.update(moving.instance, test::random_pose(random_, 4, true)).ok());
     }
     SCOPED_TRACE("moved");
@@ -74,9 +75,19 @@ TEST_P(SceneQueries, ClosestHitEqualsBruteForce) {
       ASSERT_EQ(require(any_hit(scene_, ray)).has_value(), nearest != nullptr);
       if (!hit) continue;
       ++hits;
-      ASSERT_NEAR(hit->hit.t, best, 1e-12 * (1 + best));
+      ASSERT_NEAR(hit->t, best, 1e-12 * (1 + best));
       ASSERT_EQ(hit->instance, nearest->instance);
-      ASSERT_EQ(hit->hit.face.id, nearest->face);
+      ASSERT_EQ(hit->face.id, nearest->face);
+      ASSERT_LT((hit->point - (ray.origin + best * ray.direction)).norm(), 1e-9);
+      // Mirrors turn the order of the corners over, but not the surface.
+      const auto& [a, b, c] = nearest->triangle.corner;
+      const Pose pose = require(scene_.pose(hit->instance));
+      const double side = pose.linear().determinant() < 0 ? -1 : 1;
+      ASSERT_LT((hit->normal - side * (b - a).cross(c - a).normalized()).norm(), 1e-7);
+      const Triangle named = require(scene_.triangle({hit->instance, hit->face}, hit->triangle));
+      for (std::size_t k = 0; k < 3; ++k) {
+        ASSERT_LT((named.corner[k] - nearest->triangle.corner[k]).norm(), 1e-12);
+      }
     }
     EXPECT_GT(hits, 100u);
   });
@@ -149,11 +160,10 @@ TEST_P(SceneQueries, ClosestPointEqualsBruteForce) {
       }
       const auto found = require(closest_point(scene_, at));
       ASSERT_TRUE(found.has_value());
-      ASSERT_EQ(found->closest.distance, std::sqrt(best));  // to the last bit
-      ASSERT_EQ(std::tuple(require(scene_.info(found->instance)).id, found->closest.face.id),
-                first);
+      ASSERT_EQ(found->distance, std::sqrt(best));  // to the last bit
+      ASSERT_EQ(std::tuple(require(scene_.info(found->instance)).id, found->face.id), first);
       // Just within reach it is found, just beyond it is not.
-      const double distance = found->closest.distance;
+      const double distance = found->distance;
       ASSERT_TRUE(require(closest_point(scene_, at, distance * (1 + 1e-15))).has_value());
       ASSERT_FALSE(require(closest_point(scene_, at, distance * (1 - 1e-15))).has_value());
     }
@@ -165,7 +175,8 @@ TEST_P(SceneQueries, ContactsEqualEveryPairOfTrees) {
   before_and_after_moving([&](const std::vector<WorldTriangle>& /*triangles*/) {
     const auto condition = [&](std::uint32_t instance) {
       const std::uint32_t tree = require(scene_.info(instance)).tree;
-      return Placement::make(scene_.trees()[tree], require(scene_.pose(instance)))->condition();
+      return Placement::make(BoundTree::of(scene_.trees()[tree]), require(scene_.pose(instance)))
+          ->condition();
     };
     std::set<Pair> expected;
     for (std::uint32_t a = 0; a < scene_.instance_count(); ++a) {
@@ -205,7 +216,7 @@ TEST_P(SceneQueries, ContactsEqualEveryPairOfTrees) {
 
     // One instance at a time: the same pairs, those of two moving ones from both sides.
     std::set<Pair> of_each;
-    for (const Scene::Moving& moving : scene_.moving()) {
+    for (const BoundScene::Moving& moving : BoundScene::of(scene_).moving()) {
       ASSERT_EQ(require(contacts_of(scene_, moving.instance,
                                     [&](const ScenePair& pair) {
                                       EXPECT_EQ(pair.first.instance, moving.instance);
@@ -230,11 +241,11 @@ TEST_P(SceneQueries, ABodyThatIsNoPartOfTheSceneMeetsIt) {
   for (int i = 0; i < 20; ++i) {
     std::set<Pair> expected, found;
     const Pose pose = test::random_pose(random_, 4, i % 2 == 0);
-    const auto placed = Placement::make(body.tree, pose);
+    const auto placed = Placement::make(BoundTree::of(body.tree), pose);
     for (std::uint32_t other = 0; other < scene_.instance_count(); ++other) {
       const Tree& tree = scene_.trees()[require(scene_.info(other)).tree];
       const Pose at = require(scene_.pose(other));
-      const bool swap = Placement::make(tree, at)->condition() < placed->condition();
+      const bool swap = Placement::make(BoundTree::of(tree), at)->condition() < placed->condition();
       const auto add = [&](std::uint32_t of_scene, std::uint32_t of_body) {
         return expected.insert({other, of_scene, of_body}).second;
       };

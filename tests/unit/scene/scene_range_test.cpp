@@ -10,6 +10,7 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/scene/bound_scene.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -60,8 +61,8 @@ class SceneRange : public testing::TestWithParam<CodecId> {
     Answers all;
     for (int i = 0; i < 60; ++i) {
       const auto hit = require(closest_hit(scene, {point(6), point(1) / scale}));
-      all.rays.emplace_back(hit ? hit->hit.t / scale : -1, hit ? hit->instance : 0,
-                            hit ? hit->hit.face.id : 0);
+      all.rays.emplace_back(hit ? hit->t / scale : -1, hit ? hit->instance : 0,
+                            hit ? hit->face.id : 0);
       const Eigen::Vector3d middle = point(5), half = point(1).cwiseAbs();
       EXPECT_EQ(require(overlap_box(scene, Eigen::AlignedBox3d(middle - half, middle + half),
                                     list(all.boxes))),
@@ -69,9 +70,8 @@ class SceneRange : public testing::TestWithParam<CodecId> {
       EXPECT_EQ(require(overlap_sphere(scene, middle, half[0], list(all.spheres))),
                 Visit::kComplete);
       const auto closest = require(closest_point(scene, point(6))).value();
-      const Eigen::Vector3d at = closest.closest.point / scale;
-      all.points.emplace_back(at[0], at[1], at[2], closest.closest.distance / scale,
-                              closest.instance);
+      const Eigen::Vector3d at = closest.point / scale;
+      all.points.emplace_back(at[0], at[1], at[2], closest.distance / scale, closest.instance);
     }
     const auto visit = contacts(scene, [&](const ScenePair& pair) {
       all.contacts.emplace_back(pair.first.instance, pair.first.face.id, pair.second.instance,
@@ -104,7 +104,7 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
   const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
   const CookedScene cooked = scene_of_size(0, 3);
   Scene scene = require(Scene::bind(cooked.file));
-  const std::uint32_t instance = scene.moving().front().instance;
+  const std::uint32_t instance = BoundScene::of(scene).moving().front().instance;
   std::size_t nearest_there = 0;
   for (int exponent = -400; exponent <= 180; exponent += 20) {
     SCOPED_TRACE(exponent);
@@ -129,22 +129,22 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
       }
       const auto found = require(closest_point(scene, at)).value();
       const double off = 16 * std::numeric_limits<double>::epsilon() *
-                         (at.cwiseAbs().maxCoeff() + found.closest.point.cwiseAbs().maxCoeff());
-      ASSERT_NEAR(found.closest.distance, best, off);
+                         (at.cwiseAbs().maxCoeff() + found.point.cwiseAbs().maxCoeff());
+      ASSERT_NEAR(found.distance, best, off);
       nearest_there += found.instance == instance ? 1 : 0;
       // A sphere that just reaches there, or just does not.
       const auto touches = [&](double radius) {
         bool any = false;
         const auto visit = overlap_sphere(scene, at, radius, [&](const SceneFace& face) {
-          any = any || (face.instance == found.instance && face.face.id == found.closest.face.id);
+          any = any || (face.instance == found.instance && face.face.id == found.face.id);
           return true;
         });
         EXPECT_EQ(require(visit), Visit::kComplete);
         return any;
       };
-      ASSERT_TRUE(touches(found.closest.distance + off));
-      if (found.closest.distance > off) {
-        ASSERT_FALSE(touches(found.closest.distance - off));
+      ASSERT_TRUE(touches(found.distance + off));
+      if (found.distance > off) {
+        ASSERT_FALSE(touches(found.distance - off));
       }
     }
   }
@@ -172,7 +172,7 @@ TEST_P(SceneRange, SmallBoxesTouchTheLargestInstances) {
   parts.instances[1].moves = true;
   const CookedScene cooked = test::cook_scene({sheet, test::soup(20, 3)}, parts, {GetParam()});
   Scene scene = require(Scene::bind(cooked.file));
-  const std::uint32_t moving = scene.moving().front().instance;
+  const std::uint32_t moving = BoundScene::of(scene).moving().front().instance;
   for (int exponent = 0; exponent <= 180; exponent += 20) {
     SCOPED_TRACE(exponent);
     Pose pose = Pose::Identity();

@@ -10,6 +10,7 @@
 
 #include "runtime/query/ray_query.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/scene/bound_scene.h"
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/tree/dispatch.h"
 #include "runtime/walk/traversal.h"
@@ -32,13 +33,13 @@ class Level {
         scene_(test::require(Scene::bind(cooked_.file))),
         random_(seed) {
     for (std::uint32_t i = 0; i < count; ++i) {
-      const auto placed = scene_.place(i);
-      boxes_.push_back(scene_.to_frame(placed.value().bounds().value().world));
+      const auto placed = BoundScene::of(scene_).place(i);
+      boxes_.push_back(BoundScene::of(scene_).to_frame(placed.value().bounds().value().world));
     }
   }
 
-  [[nodiscard]] const TopLevel& top() const { return scene_.top_level(); }
-  [[nodiscard]] double condition() const { return scene_.condition(); }
+  [[nodiscard]] const TopLevel& top() const { return BoundScene::of(scene_).top_level(); }
+  [[nodiscard]] double condition() const { return BoundScene::of(scene_).condition(); }
   [[nodiscard]] const Box<double>& box(std::uint32_t instance) const { return boxes_[instance]; }
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
   // In the scene's frame: about some instance, in its box for `spread` 1.
@@ -166,8 +167,7 @@ TEST_P(TopLevelWalk, RaysVisitAllThatTheyMeet) {
       const double origin = from.cwiseAbs().maxCoeff();
       const double reach = largest + 16 * level.condition() * (origin + largest);
       const double s_min = i % 3 == 0 ? direction.norm() * largest * std::abs(level.unit()) : 0;
-      const TopLevelRay ray{from, direction, reach,
-                            RaySlab(from, direction, Vector3d::Constant(reach)), s_min};
+      const TopLevelRay ray{from, direction, reach, RaySlab(from, direction, reach), s_min};
       const double bound = i % 2 == 0 ? kInfinity : s_min + 2 * largest * std::abs(level.unit());
       tally.add(level.top(), level.all([&](const Box<double>& b) {
         const double key = ray.slab.key(b, s_min);

@@ -122,9 +122,9 @@ TEST(AlignmentOfScenes, ChangesNoAnswer) {
       const Eigen::Vector3d at(3.0 * i - 9, 2.0 * i - 7, 0.5 * i);
       const auto hit =
           test::require(closest_hit(scene, {at - Eigen::Vector3d(90, 0, 0), {1, 0.02, 0.01}}));
-      if (hit) add(all, hit->hit.t, hit->instance, hit->hit.face.id);
+      if (hit) add(all, hit->t, hit->instance, hit->face.id);
       const auto closest = test::require(closest_point(scene, at));
-      if (closest) all.push_back(closest->closest.distance);
+      if (closest) all.push_back(closest->distance);
       static_cast<void>(
           test::require(overlap_box(scene, {at, at + Eigen::Vector3d::Constant(4)}, keep)));
       static_cast<void>(test::require(overlap_sphere(scene, at, 3, keep)));

@@ -12,7 +12,10 @@
 #include <gtest/gtest.h>
 
 #include "format/codec_wide.h"
+#include "format/container.h"
 #include "format/grid.h"
+#include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -23,7 +26,7 @@ using Section = std::span<std::byte>;
 
 Section section_of(std::vector<std::byte>& bytes, SectionKind kind) {
   const Result<File> file = File::open(Bytes(bytes));
-  for (const SectionEntry& entry : file->container().sections) {
+  for (const SectionEntry& entry : OpenFile::of(*file).container().sections) {
     if (entry.kind == static_cast<std::uint32_t>(kind)) {
       return Section(bytes).subspan(entry.offset, entry.size);
     }
@@ -99,14 +102,15 @@ TEST_P(Corrupt, EveryQuerySaysSo) {
   for (std::size_t k = 0; k < 3; ++k) {
     place.low[k] = place.high[k] = stored[static_cast<Eigen::Index>(k)];
   }
-  const Eigen::Vector3d corner = whole.tree.to_object(place).center();
+  const Eigen::Vector3d corner = BoundTree::of(whole.tree).to_object(place).center();
   for (const auto& [query, code] : answers(*broken, whole.tree, corner)) {
     EXPECT_EQ(code, corruption.expected) << query;
   }
   if (corruption.expected == Errc::kNodeCorrupt) {
     NodeChildren children;
     children.count = 5;
-    EXPECT_EQ(broken->expand(broken->root(), children), Errc::kNodeCorrupt);
+    EXPECT_EQ(BoundTree::of(*broken).expand(BoundTree::of(*broken).root(), children),
+              Errc::kNodeCorrupt);
     EXPECT_EQ(children.count, 0u);
   }
 }
@@ -214,7 +218,7 @@ TEST(GridLeaf, EveryBitMatters) {
   const auto corners = [](const Tree& tree) {
     std::vector<double> all;
     TriangleBatch batch;
-    if (tree.leaves().read(0, 2, batch) != Errc::kOk) return all;
+    if (BoundTree::of(tree).leaves().read(0, 2, batch) != Errc::kOk) return all;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       for (const Eigen::Vector3d& corner : batch.triangle(i).corner) {
         all.insert(all.end(), corner.data(), corner.data() + 3);

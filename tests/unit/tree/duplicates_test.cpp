@@ -11,6 +11,9 @@
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
+#include "format/container.h"
+#include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/coincident.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -112,22 +115,23 @@ TEST_P(WithDuplicates, FilesAreProvenAndNameEveryFaceOnce) {
     for (const Error& finding : cooker::verify_file(cooked.file))
       ADD_FAILURE() << finding.message();
     const cooker::Duplicates duplicates = cooker::find_duplicates(mesh);
-    EXPECT_TRUE(tree.has_duplicates());
-    EXPECT_GE(tree.record().duplicate_count, duplicates.count);  // a grid may make more
-    const std::uint32_t in_leaves = faces_in_leaves(tree.record());
+    EXPECT_TRUE(BoundTree::of(tree).has_duplicates());
+    EXPECT_GE(BoundTree::of(tree).record().duplicate_count,
+              duplicates.count);  // a grid may make more
+    const std::uint32_t in_leaves = faces_in_leaves(BoundTree::of(tree).record());
     std::set<std::uint32_t> ids;
-    for (std::uint32_t face = 0; face < tree.record().face_count; ++face) {
-      ids.insert(tree.face_id(face));
-      const std::uint32_t original = tree.original_of(face);
+    for (std::uint32_t face = 0; face < BoundTree::of(tree).record().face_count; ++face) {
+      ids.insert(BoundTree::of(tree).face_id(face));
+      const std::uint32_t original = BoundTree::of(tree).original_of(face);
       ASSERT_LT(original, in_leaves);
-      const FaceRange copies = tree.duplicates_of(original);
+      const FaceRange copies = BoundTree::of(tree).duplicates_of(original);
       if (face < in_leaves) {
         EXPECT_EQ(original, face);
         continue;
       }
       EXPECT_LE(copies.first, face);
       EXPECT_LT(face, copies.last);
-      EXPECT_LT(tree.face_id(original), tree.face_id(face));
+      EXPECT_LT(BoundTree::of(tree).face_id(original), BoundTree::of(tree).face_id(face));
     }
     EXPECT_EQ(ids.size(), mesh.faces.size());
     EXPECT_EQ(*ids.rbegin() + 1, mesh.faces.size());
@@ -139,7 +143,8 @@ TEST_P(WithDuplicates, SmallestIdsAnswerAndVisitorsHearOfAll) {
     SCOPED_TRACE(mesh.name);
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     const Tree& tree = cooked.tree;
-    const Eigen::AlignedBox3d bounds = tree.to_object(tree.root().box);
+    const Eigen::AlignedBox3d bounds =
+        BoundTree::of(tree).to_object(BoundTree::of(tree).root().box);
     std::vector<std::uint32_t> met;
     const auto visit = [&](const FaceRef& face) {
       met.push_back(face.id);
@@ -172,7 +177,9 @@ TEST_P(WithDuplicates, AVisitorMayStopAmongCopies) {
   const Tree& tree = cooked.tree;
   std::size_t met = 0;
   const auto visit = [&](const auto&) { return ++met < 7; };
-  EXPECT_EQ(require(overlap_box(tree, tree.to_object(tree.root().box), visit)), Visit::kStopped);
+  EXPECT_EQ(require(overlap_box(tree, BoundTree::of(tree).to_object(BoundTree::of(tree).root().box),
+                                visit)),
+            Visit::kStopped);
   EXPECT_EQ(met, 7u);
   met = 0;
   EXPECT_EQ(require(overlap_pairs(tree, Pose::Identity(), tree, Pose::Identity(), visit)),
@@ -193,9 +200,9 @@ TEST_P(WithDuplicates, AVisitorMayStopAmongCopies) {
 TEST_P(WithDuplicates, NothingIsStoredWhereThereAreNone) {
   for (const SourceMesh& mesh : {test::torus(12, 8), test::city(9, 2), test::duplicates(1)}) {
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
-    EXPECT_FALSE(cooked.tree.has_duplicates());
-    EXPECT_EQ(cooked.tree.record().duplicate_count, 0u);
-    EXPECT_EQ(cooked.file.container().find(SectionKind::kDuplicates, 0), nullptr);
+    EXPECT_FALSE(BoundTree::of(cooked.tree).has_duplicates());
+    EXPECT_EQ(BoundTree::of(cooked.tree).record().duplicate_count, 0u);
+    EXPECT_EQ(OpenFile::of(cooked.file).container().find(SectionKind::kDuplicates, 0), nullptr);
   }
 }
 
@@ -214,7 +221,7 @@ class LyingBytes {
     std::vector<std::byte> bytes = cooked_;
     const Result<File> file = File::open(Bytes(bytes));
     const auto at = [&](SectionKind kind, std::uint32_t owner) {
-      return bytes.data() + file->container().find(kind, owner)->offset;
+      return bytes.data() + OpenFile::of(*file).container().find(kind, owner)->offset;
     };
     std::byte* const stored = at(SectionKind::kTrees, kNoOwner);
     auto record = load<TreeRecord>(stored);
@@ -242,10 +249,10 @@ class LyingBytes {
     static_cast<void>(overlap_pairs(tree, Pose::Identity(), tree, Pose::Identity(), count));
     static_cast<void>(closest_hit(tree, {{0, 0, 9}, {0, 0, -1}}));
     static_cast<void>(closest_point(tree, {0, 0, 9}));
-    for (std::uint32_t face = 0; face < tree.record().face_count; ++face) {
-      const FaceRange copies = tree.duplicates_of(face);
+    for (std::uint32_t face = 0; face < BoundTree::of(tree).record().face_count; ++face) {
+      const FaceRange copies = BoundTree::of(tree).duplicates_of(face);
       EXPECT_LE(copies.first, copies.last);
-      EXPECT_LE(copies.last, tree.record().face_count);
+      EXPECT_LE(copies.last, BoundTree::of(tree).record().face_count);
     }
   }
 
@@ -326,7 +333,7 @@ TEST_P(ExternalDuplicates, AnswersAreThoseOfStoredGeometry) {
   const test::CookedTree inside = test::cook_tree(mesh, GetParam());
   EXPECT_TRUE(cooker::verify_file(outside.file, bind.mesh).empty());
   EXPECT_TRUE(cooker::verify_file(outside.file).empty());
-  EXPECT_EQ(outside.tree.record().duplicate_count, 84u);
+  EXPECT_EQ(BoundTree::of(outside.tree).record().duplicate_count, 84u);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d at(0.04 * i - 1, 0.3, 2);
     const auto a = require(closest_point(outside.tree, at));

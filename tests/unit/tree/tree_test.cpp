@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -26,7 +27,7 @@ using Faces = std::map<std::uint32_t, std::vector<Triangle>>;
 void walk(const Tree& tree, const Node& node, std::uint32_t depth, Faces& faces) {
   if (node.is_leaf) {
     TriangleBatch batch;
-    ASSERT_EQ(tree.leaf_triangles(node, batch), Errc::kOk);
+    ASSERT_EQ(BoundTree::of(tree).leaf_triangles(node, batch), Errc::kOk);
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       const Triangle triangle = batch.triangle(i);
       for (const Eigen::Vector3d& corner : triangle.corner) {
@@ -35,14 +36,14 @@ void walk(const Tree& tree, const Node& node, std::uint32_t depth, Faces& faces)
           ASSERT_LE(corner[static_cast<Eigen::Index>(k)], node.box.high[k]);
         }
       }
-      faces[tree.face_id(batch.face[i])].push_back(triangle);
+      faces[BoundTree::of(tree).face_id(batch.face[i])].push_back(triangle);
     }
     return;
   }
   NodeChildren children;
-  ASSERT_EQ(tree.expand(node, children), Errc::kOk);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
   ASSERT_GE(children.count, 1u);
-  ASSERT_LT(depth, tree.record().depth);
+  ASSERT_LT(depth, BoundTree::of(tree).record().depth);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     const Node& child = children.child[i];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -58,11 +59,13 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
     SCOPED_TRACE(mesh.name);
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     Faces faces;
-    walk(cooked.tree, cooked.tree.root(), 0, faces);
-    for (std::uint32_t i = faces_in_leaves(cooked.tree.record()); i < mesh.faces.size(); ++i) {
-      const std::uint32_t original = cooked.tree.face_id(cooked.tree.original_of(i));
+    walk(cooked.tree, BoundTree::of(cooked.tree).root(), 0, faces);
+    for (std::uint32_t i = faces_in_leaves(BoundTree::of(cooked.tree).record());
+         i < mesh.faces.size(); ++i) {
+      const std::uint32_t original =
+          BoundTree::of(cooked.tree).face_id(BoundTree::of(cooked.tree).original_of(i));
       ASSERT_TRUE(faces.contains(original));
-      faces[cooked.tree.face_id(i)] = faces[original];
+      faces[BoundTree::of(cooked.tree).face_id(i)] = faces[original];
     }
     ASSERT_EQ(faces.size(), mesh.faces.size());
     for (const auto& [id, triangles] : faces) {
@@ -72,7 +75,7 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
         const std::size_t corner[3] = {0, half + 1, half + 2};
         for (std::size_t c = 0; c < 3; ++c) {
           // Bit for bit: the frame of an f32 mesh only scales by a power of two.
-          ASSERT_EQ(cooked.tree.frame().to_object(triangles[half].corner[c]),
+          ASSERT_EQ(BoundTree::of(cooked.tree).frame().to_object(triangles[half].corner[c]),
                     mesh.positions[source.corner[corner[c]]]);
         }
       }
@@ -85,9 +88,10 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
 TEST_P(Trees, LeavesOfMoreTrianglesThanABatchHoldsAreRefused) {
   const test::CookedTree cooked = test::cook_tree(test::soup(40, 3), GetParam());
   TriangleBatch batch;
-  EXPECT_EQ(cooked.tree.leaves().read(0, kMaxLeafTriangles, batch), Errc::kOk);
+  EXPECT_EQ(BoundTree::of(cooked.tree).leaves().read(0, kMaxLeafTriangles, batch), Errc::kOk);
   EXPECT_EQ(batch.count, kMaxLeafTriangles);
-  EXPECT_EQ(cooked.tree.leaves().read(0, kMaxLeafTriangles + 1, batch), Errc::kFaceOutOfRange);
+  EXPECT_EQ(BoundTree::of(cooked.tree).leaves().read(0, kMaxLeafTriangles + 1, batch),
+            Errc::kFaceOutOfRange);
 }
 
 // The application's own arrays of a mesh without quads.
@@ -126,10 +130,10 @@ TEST_P(Trees, ExternalGeometryAnswersAsStoredGeometryDoes) {
     const auto a = closest_hit(outside.tree, ray);
     const auto b = closest_hit(inside.tree, ray);
     ASSERT_TRUE(a.ok() && b.ok());
-    ASSERT_EQ(a->has_value(), b->has_value());
-    if (!a->has_value()) continue;
-    EXPECT_EQ((*a)->t, (*b)->t);
-    EXPECT_EQ((*a)->face.id, (*b)->face.id);
+    ASSERT_EQ(a.has_value(), b.has_value());
+    if (!a.has_value()) continue;
+    EXPECT_EQ(a->t, b->t);
+    EXPECT_EQ(a->face.id, b->face.id);
   }
 }
 
@@ -249,8 +253,8 @@ TEST_P(Trees, FaceIdsCanBeLeftOutAndAskedFor) {
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
   EXPECT_FALSE(cooked.tree.has_face_ids());
   const auto hit = closest_hit(cooked.tree, {{1, 0.01, 9}, {0, 0, -1}});
-  ASSERT_TRUE(hit.ok() && hit->has_value());
-  EXPECT_EQ((*hit)->face.id, kNoFaceId);
+  ASSERT_TRUE(hit.ok() && hit.has_value());
+  EXPECT_EQ(hit->face.id, kNoFaceId);
   BindOptions bind;
   bind.require_face_ids = true;
   EXPECT_EQ(Tree::bind(cooked.file, 0, bind).code(), Errc::kPartLeftOut);
@@ -276,11 +280,11 @@ TEST_P(Trees, DoublesFarFromTheOriginKeepTheirDigits) {
     const auto a = closest_hit(cooked.tree, {0.001 * from + offset, along});
     const auto b = closest_hit(reference.tree, {from, along});
     ASSERT_TRUE(a.ok() && b.ok());
-    ASSERT_EQ(a->has_value(), b->has_value()) << i;
-    if (!a->has_value()) continue;
+    ASSERT_EQ(a.has_value(), b.has_value()) << i;
+    if (!a.has_value()) continue;
     ++hits;
     // An ulp of the coordinates is a nanometre.
-    EXPECT_NEAR((*a)->t, 0.001 * (*b)->t, 1e-8);
+    EXPECT_NEAR(a->t, 0.001 * b->t, 1e-8);
   }
   EXPECT_GT(hits, 50);
 }
@@ -293,17 +297,18 @@ TEST_P(Trees, BoxesOfObjectSpaceHoldThePositionsOfTheSource) {
   for (const float x : mesh.positions.f32) mesh.positions.f64.push_back(1.1 * x + 0.3);
   mesh.positions.f32.clear();
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
-  ASSERT_NE(cooked.tree.frame().origin, Eigen::Vector3d::Zero());
+  ASSERT_NE(BoundTree::of(cooked.tree).frame().origin, Eigen::Vector3d::Zero());
   const std::function<void(const Node&, std::vector<Eigen::AlignedBox3d>)> walk_down =
       [&](const Node& node, std::vector<Eigen::AlignedBox3d> above) {
-        above.push_back(cooked.tree.to_object(node.box));
+        above.push_back(BoundTree::of(cooked.tree).to_object(node.box));
         NodeChildren children;
         if (!node.is_leaf) {
-          ASSERT_EQ(cooked.tree.expand(node, children), Errc::kOk);
+          ASSERT_EQ(BoundTree::of(cooked.tree).expand(node, children), Errc::kOk);
         }
         for (std::uint32_t i = 0; i < children.count; ++i) walk_down(children.child[i], above);
         for (std::uint32_t i = 0; node.is_leaf && i < node.ref.second; ++i) {
-          const cooker::Face& face = mesh.faces[cooked.tree.face_id(node.ref.first + i)];
+          const cooker::Face& face =
+              mesh.faces[BoundTree::of(cooked.tree).face_id(node.ref.first + i)];
           for (std::size_t corner = 0; corner < 3; ++corner) {
             for (const Eigen::AlignedBox3d& box : above) {
               ASSERT_TRUE(box.contains(mesh.positions[face.corner[corner]]));
@@ -311,7 +316,7 @@ TEST_P(Trees, BoxesOfObjectSpaceHoldThePositionsOfTheSource) {
           }
         }
       };
-  walk_down(cooked.tree.root(), {});
+  walk_down(BoundTree::of(cooked.tree).root(), {});
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, Trees, testing::ValuesIn(test::all_codecs()), test::test_name);

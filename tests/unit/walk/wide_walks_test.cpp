@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 
@@ -48,7 +49,9 @@ void for_each_target(Body body) {
 class Questions {
  public:
   Questions(const SourceMesh& mesh, const Tree& tree, std::uint64_t seed)
-      : mesh_(mesh), box_(tree.to_object(tree.root().box)), random_(seed) {}
+      : mesh_(mesh),
+        box_(BoundTree::of(tree).to_object(BoundTree::of(tree).root().box)),
+        random_(seed) {}
 
   std::vector<Ray> rays(int count) {
     std::vector<Ray> rays;
@@ -150,17 +153,17 @@ RayAnswer ask_ray(const Tree& tree, const Ray& ray) {
   const auto hit = closest_hit(tree, ray);
   const auto any = any_hit(tree, ray);
   EXPECT_TRUE(hit.ok() && any.ok());
-  EXPECT_EQ((*any).has_value(), (*hit).has_value());
-  if (!*hit) return {0, kNoFaceId, 0, 0, 0};
-  return {(*hit)->t, (*hit)->face.id, (*hit)->triangle, (*hit)->u, (*hit)->v};
+  EXPECT_EQ(any.has_value(), hit.has_value());
+  if (!hit.has_value()) return {0, kNoFaceId, 0, 0, 0};
+  return {hit->t, hit->face.id, hit->triangle, hit->u, hit->v};
 }
 
 using PointAnswer = std::tuple<double, std::uint32_t, double, double, double>;
 PointAnswer ask_point(const Tree& tree, const Eigen::Vector3d& point) {
   const auto closest = closest_point(tree, point);
-  EXPECT_TRUE(closest.ok() && (*closest).has_value());
-  const Eigen::Vector3d& at = (*closest)->point;
-  return {(*closest)->distance, (*closest)->face.id, at[0], at[1], at[2]};
+  EXPECT_TRUE(closest.ok() && closest.has_value());
+  const Eigen::Vector3d& at = closest->point;
+  return {closest->distance, closest->face.id, at[0], at[1], at[2]};
 }
 
 Faces ask_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
@@ -189,9 +192,9 @@ FacePairs ask_pairs(const Tree& tree, const Pose& pose) {
               }).ok());
   const auto first = first_contact(tree, Pose::Identity(), tree, pose);
   EXPECT_TRUE(first.ok());
-  EXPECT_EQ((*first).has_value(), !pairs.empty());
-  if (*first) {
-    EXPECT_TRUE(pairs.contains({(*first)->first.id, (*first)->second.id}));
+  EXPECT_EQ(first.has_value(), !pairs.empty());
+  if (first.has_value()) {
+    EXPECT_TRUE(pairs.contains({first->first.id, first->second.id}));
   }
   return pairs;
 }
@@ -207,7 +210,7 @@ void expect_same(const std::vector<Question>& questions, const Tree& plain,
     for_each_target([&](const char* target) {
       for (std::size_t i = 0; i < questions.size(); ++i) {
         ASSERT_EQ(ask(*tree, questions[i]), answers[i])
-            << codec_name(tree->codec()) << ", " << target << ", question " << i;
+            << codec_name(BoundTree::of(*tree).codec()) << ", " << target << ", question " << i;
       }
     });
   }

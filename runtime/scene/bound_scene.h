@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene of an open file, ready to be asked: placed trees under one top-level tree.
+// What a Scene is inside: the records of placed trees under one top-level tree, over mapped bytes,
+// and the poses of those that move.
 #pragma once
 
 #include <algorithm>
@@ -10,104 +11,52 @@
 #include <string_view>
 #include <vector>
 
-#include <boxtree/query.h>
+#include <boxtree/scene.h>
 
 #include "format/scene_record.h"
+#include "runtime/file/open_file.h"
 #include "runtime/scene/largest.h"
 #include "runtime/scene/moving_tree.h"
 #include "runtime/scene/placement.h"
 #include "runtime/scene/top_level.h"
-#include "runtime/tree/tree.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
 
-/// Layers of a scene, as bits.
-using LayerMask = std::uint32_t;
-inline constexpr LayerMask kAllLayers = 0xffffffffu;
-
-/// The application's arrays for one tree with external geometry.
-struct SceneMeshArrays {
-  std::uint32_t tree;
-  MeshArrays arrays;
-};
-
-struct SceneOptions {
-  /// What the application will ask. A kind that the profile left out is refused here, and named.
-  QueryKinds queries = 0;
-  /// Refuse a scene without these [default false] rather than answer kNoFaceId, kNoMaterial or an
-  /// empty name later: a tree without face ids, no material at all, no instance with a name.
-  bool require_face_ids = false;
-  bool require_materials = false;
-  bool require_names = false;
-  /// For trees with external geometry.
-  std::span<const SceneMeshArrays> meshes = {};
-  /// Static instances that update() shall be allowed to move: doors, say. The others that move are
-  /// known from the file.
-  std::span<const std::uint32_t> moving = {};
-};
-
-/// What the file says of one instance.
-struct InstanceInfo {
-  std::string_view name;  // empty when it has none, or names were left out
-  std::uint32_t tree;
-  std::uint32_t id;  // number in the source, depth first
-  std::uint32_t layer;
-  bool moves;
-};
-
-/// One scene. Points into the bytes of its File. Instances are numbered from 0 in the order of the
-/// file. Queries on a scene that is not being updated are safe from many threads at once; update()
-/// needs the scene for itself. The file's bytes are never written: poses of moving instances, and
-/// the tree over them, live in the Scene. Move-only.
-class Scene {
+/// See Scene, which documents what both have. Move-only.
+class BoundScene {
  public:
-  /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows
-  /// with the number of trees and moving instances alone.
-  /// Errors: kNoScene, kPartLeftOut (naming the part and the line of the profile),
-  /// kInstanceIndex, kRecordInvalid, kSectionMissing, kSectionSize, and those of Tree::bind.
-  static Result<Scene> bind(const File& file, const SceneOptions& options = {});
-  /// A scene must not outlive its file.
-  static Result<Scene> bind(const File&& file, const SceneOptions& options = {}) = delete;
+  static Result<Scene> bind(const File& file, const SceneOptions& options);
 
-  Scene(Scene&&) noexcept = default;
-  Scene& operator=(Scene&&) noexcept = default;
-  ~Scene() = default;
+  /// What is inside of a Scene.
+  [[nodiscard]] static const BoundScene& of(const Scene& scene) noexcept { return *scene.bound_; }
+
+  BoundScene(BoundScene&&) noexcept = default;
+  BoundScene& operator=(BoundScene&&) noexcept = default;
+  ~BoundScene() = default;
 
   [[nodiscard]] std::uint32_t instance_count() const noexcept { return record().instance_count; }
   [[nodiscard]] std::span<const Tree> trees() const noexcept { return trees_; }
   [[nodiscard]] QueryKinds query_kinds() const noexcept { return record().query_kinds; }
 
-  /// Error: kInstanceIndex; kRecordInvalid where the bytes of the instance are corrupt.
   [[nodiscard]] Result<InstanceInfo> info(std::uint32_t number) const;
-  /// The number of the instance with that name, the first if several share it; O(instances).
-  /// Error: kInstanceIndex.
   [[nodiscard]] Result<std::uint32_t> find_instance(std::string_view name) const;
-  /// Its pose, object space to world: as last given to update(), else as in the file. Errors as for
-  /// info().
   [[nodiscard]] Result<Pose> pose(std::uint32_t number) const;
-  /// Name of a layer; empty when it has none.
   [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t layer_count() const noexcept { return record().layer_count; }
-
-  /// The material of a face of an instance's tree; kNoMaterial without materials. Precondition: the
-  /// face came from an answer for that instance.
-  [[nodiscard]] std::uint32_t material(std::uint32_t number, const FaceRef& face) const noexcept;
-  /// Name of a material; empty when it has none.
+  [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half) const;
+  [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t material_count() const noexcept { return record().material_count; }
-
-  /// Gives a moving instance another pose and refits the tree over the moving ones; O(log) of their
-  /// number, no allocation. Errors: kInstanceIndex, kInstanceStatic, kInvalidPose (then nothing
-  /// has changed).
+  Status make_movable(std::uint32_t instance);
   Status update(std::uint32_t instance, const Pose& pose);
-  /// Builds the tree over moving instances anew, for after many of them have gone far. Allocates.
   void rebuild();
 
   // What the queries read. They compare in units of the scene: world coordinates times the power of
   // two of frame(), so that squares of distances neither overflow nor underflow, however large or
   // small the world is.
   struct Placed {
-    const Tree* tree;
+    const BoundTree* tree;
     Pose pose;            // to the world
     Placement placement;  // to units of the scene
     std::uint32_t id;
@@ -155,7 +104,7 @@ class Scene {
   [[nodiscard]] double to_world(double length) const noexcept { return length * frame_.scale; }
   /// A tree placed by a pose, in units of the scene. Nothing when it is not finite, cannot be
   /// undone or leads beyond reach.
-  [[nodiscard]] std::optional<Placement> place_in_units(const Tree& tree,
+  [[nodiscard]] std::optional<Placement> place_in_units(const BoundTree& tree,
                                                         const Pose& pose) const noexcept;
   /// A point or box of these units in the space of both trees. Rounded to nearest, which is
   /// monotone: boxes that share a point still do.
@@ -165,12 +114,12 @@ class Scene {
   [[nodiscard]] Box<double> to_frame(const Box<double>& units) const noexcept;
 
  private:
-  Scene() = default;
+  BoundScene() = default;
   Status bind_sections(const File& file);
   Status bind_trees(const File& file, const SceneOptions& options);
   Status check_parts(const SceneOptions& options) const;
   Status check_materials(const File& file);
-  Status bind_moving(const SceneOptions& options);
+  Status bind_moving(std::vector<std::uint32_t> numbers);
   [[nodiscard]] bool has_names() const noexcept;
   [[nodiscard]] Error left_out(Part part, std::uint32_t owner, const std::string& what) const;
   [[nodiscard]] std::string_view text(std::uint32_t offset, std::uint32_t size) const noexcept;

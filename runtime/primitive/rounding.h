@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From double to float, away from the answer that must not be lost.
+// What one operation can lose, and the way from double to float that loses no answer. Every bound
+// on rounding in the runtime is a multiple of these; docs/GUARANTEES.md lists where each is
+// derived.
 #pragma once
 
 #include <bit>
@@ -7,6 +9,13 @@
 #include <limits>
 
 namespace boxtree {
+
+/// Unit roundoffs: an operation to nearest is off by at most this share of its result, unless that
+/// is subnormal.
+inline constexpr double kRoundoffF32 = 0x1p-24;
+inline constexpr double kRoundoffF64 = 0x1p-53;
+static_assert(kRoundoffF32 == std::numeric_limits<float>::epsilon() / 2 &&
+              kRoundoffF64 == std::numeric_limits<double>::epsilon() / 2);
 
 /// A float that is not below x and, but for x = 0, at most two steps above it; infinity beyond the
 /// largest. Not for NaN.

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: MIT
-// A tree of an open file, ready to be asked: binding checks the record and its sections once, after
-// which every query reads straight from the mapped bytes.
+// What a Tree is inside: record, frame, codec and leaves over mapped bytes, for the queries and for
+// those who check and export trees.
 #pragma once
 
 #include <array>
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <string_view>
 
 #include <Eigen/Geometry>
 
-#include <boxtree/file.h>
+#include <boxtree/tree.h>
 
 #include "format/children.h"
 #include "format/tree_record.h"
@@ -19,18 +18,6 @@
 #include "runtime/tree/geometry.h"
 
 namespace boxtree {
-
-/// Stands for the id of a face in trees that were cooked without ids.
-inline constexpr std::uint32_t kNoFaceId = 0xffffffffu;
-
-struct BindOptions {
-  /// The application's arrays, for trees with external geometry; ignored otherwise.
-  std::optional<MeshArrays> mesh;
-  /// Compare the arrays' content with the hash in the file [default false]: reads all of them.
-  bool verify_mesh = false;
-  /// Refuse a tree without face ids [default false] rather than report kNoFaceId later.
-  bool require_face_ids = false;
-};
 
 /// The parts of one tree, wherever they lie; a part that is not there is empty.
 struct TreeParts {
@@ -63,21 +50,14 @@ struct NodeChildren {
 };
 
 /// One tree. Points into the bytes of its File and, with external geometry, into the application's
-/// arrays; cheap to copy; immutable, so safe to query from many threads at once.
-class Tree {
+/// arrays; cheap to copy; immutable.
+class BoundTree {
  public:
-  /// Checks record and section sizes of tree `index` and prepares it for queries; cost does not
-  /// depend on its size, except with BindOptions::verify_mesh.
-  /// Errors: kTreeIndex, codes 30..32, kSectionMissing, kSectionSize, kPartLeftOut,
-  /// kExternalMeshNeeded, kExternalMeshMismatch.
-  static Result<Tree> bind(const File& file, std::uint32_t index = 0,
-                           const BindOptions& options = {});
-  /// A tree must not outlive its file.
-  static Result<Tree> bind(const File&& file, std::uint32_t index = 0,
-                           const BindOptions& options = {}) = delete;
-
-  /// The same for parts that are not in a file (yet). `index` only serves messages.
+  /// See Tree::bind. `index` only serves messages.
   static Result<Tree> bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options);
+
+  /// What is inside of a Tree.
+  [[nodiscard]] static const BoundTree& of(const Tree& tree) noexcept;
 
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
   [[nodiscard]] CodecId codec() const noexcept { return record_.codec; }
@@ -86,6 +66,12 @@ class Tree {
   [[nodiscard]] bool empty() const noexcept { return record_.root == RootKind::kEmpty; }
   /// Whether the root is a node: not so for trees without faces, or of one leaf.
   [[nodiscard]] bool has_nodes() const noexcept { return record_.root == RootKind::kSubtree; }
+  /// The root box rounded outward to float, which changes nothing but where a tree of f64 is a
+  /// single leaf: cookers store values of the codec's scalar.
+  [[nodiscard]] const Box<float>& root_f32() const noexcept { return root_f32_; }
+  /// Largest magnitude of any box coordinate, on each axis and on all.
+  [[nodiscard]] const Eigen::Vector3d& reach() const noexcept { return reach_; }
+  [[nodiscard]] double largest_reach() const noexcept { return largest_reach_; }
   /// Whether it has nodes that filters in single precision may be used for; see float_range.h.
   [[nodiscard]] bool has_float_nodes() const noexcept { return has_float_nodes_; }
   [[nodiscard]] bool has_face_ids() const noexcept;
@@ -100,6 +86,9 @@ class Tree {
   /// Triangles of a leaf, in tree space; TriangleBatch::face counts faces in this tree's order.
   /// kFaceOutOfRange, kVertexOutOfRange or kVertexNotFinite when its bytes are corrupt.
   [[nodiscard]] Errc leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept;
+
+  /// A triangle of a face, in tree space; see Tree::triangle.
+  [[nodiscard]] Result<Triangle> triangle(const FaceRef& face, std::uint32_t half) const;
 
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
   /// Precondition: face < record().face_count.
@@ -118,8 +107,8 @@ class Tree {
   /// The same tree, of whose faces visitors hear of originals alone: where copies say nothing new,
   /// as in contacts that push bodies apart.
   [[nodiscard]] Tree without_duplicates() const noexcept {
-    Tree tree = *this;
-    tree.duplicates_ = nullptr;
+    Tree tree(*this);
+    inside(tree).duplicates_ = nullptr;
     return tree;
   }
 
@@ -134,7 +123,8 @@ class Tree {
   [[nodiscard]] NodeRef root_ref() const noexcept;
 
  private:
-  Tree() = default;
+  BoundTree() = default;
+  [[nodiscard]] static BoundTree& inside(Tree& tree) noexcept;
   Status bind_nodes(const TreeParts& parts, const std::string& place);
   Status bind_stored_geometry(const TreeParts& parts, const std::string& place);
   Status bind_grid(const TreeParts& parts, const std::string& place);
@@ -150,7 +140,14 @@ class Tree {
   const std::byte* face_ids_ = nullptr;
   const std::byte* duplicates_ = nullptr;  // the original of each, ascending
   LeafReader leaves_;
+  // What every query needs, computed when the tree is bound.
+  Eigen::Vector3d reach_ = Eigen::Vector3d::Zero();
+  double largest_reach_ = 0;
+  Box<float> root_f32_{};
   bool has_float_nodes_ = false;
 };
+
+/// A tree of parts that are not in a file (yet). Errors: as Tree::bind.
+[[nodiscard]] Result<Tree> bind_parts(const TreeParts& parts, const BindOptions& options = {});
 
 }  // namespace boxtree

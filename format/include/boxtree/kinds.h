@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What a file and the programs that read it share: bytes, kinds of queries, ways to compress, and
+// what stands for "none". Values are pinned.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+namespace boxtree {
+
+/// Read-only bytes of any alignment.
+using Bytes = std::span<const std::byte>;
+
+/// Kinds of queries, as bits: what a scene is queried for, what its instances answer.
+using QueryKinds = std::uint8_t;
+inline constexpr QueryKinds kRayQueries = 1;
+inline constexpr QueryKinds kBoxQueries = 2;    // boxes and spheres
+inline constexpr QueryKinds kPointQueries = 4;  // closest points
+inline constexpr QueryKinds kPairQueries = 8;   // contacts
+inline constexpr QueryKinds kAllQueries = 15;
+
+/// The id of a face in trees that were cooked without ids, and of no face.
+inline constexpr std::uint32_t kNoFaceId = 0xffffffffu;
+
+/// The material of a face in files or trees without materials.
+inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
+
+/// How a file that is compressed as a whole is compressed.
+enum class BlobMethod : std::uint32_t {
+  kLzma = 1,  // an .xz stream
+  kZstd = 2,  // a zstd frame
+};
+
+}  // namespace boxtree

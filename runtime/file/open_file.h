@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// What a File is inside: the mapping, the checked section table and the sections it leads to.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string_view>
+
+#include <boxtree/file.h>
+
+#include "format/container.h"
+#include "format/tree_record.h"
+#include "runtime/file/mapping.h"
+
+namespace boxtree {
+
+/// A file whose header, section table and tree table have been checked.
+class OpenFile {
+ public:
+  /// Checks what File::open does, over memory of the caller or memory that it takes over.
+  static Result<File> open(Bytes memory, const OpenOptions& options);
+  static Result<File> open(Mapping owned, const OpenOptions& options);
+
+  /// What is inside of a File.
+  [[nodiscard]] static const OpenFile& of(const File& file) noexcept { return *file.open_; }
+
+  [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
+  [[nodiscard]] const Container& container() const noexcept { return container_; }
+  [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }
+
+  /// The record of tree `index`, not yet checked (BoundTree::bind checks it). Precondition:
+  /// index < tree_count().
+  [[nodiscard]] TreeRecord tree_record(std::uint32_t index) const noexcept;
+
+  /// Name of tree `index`, empty if it has none or the record points outside the names section.
+  [[nodiscard]] std::string_view tree_name(std::uint32_t index) const noexcept;
+
+  /// Bytes of a section; empty when the file has none of that kind and owner.
+  [[nodiscard]] Bytes section(SectionKind kind, std::uint32_t owner = kNoOwner) const noexcept;
+
+  /// Whether the bytes of every section have the checksum of the section table.
+  [[nodiscard]] Status verify_checksums() const;
+
+ private:
+  OpenFile() = default;
+  static Result<File> check(std::unique_ptr<OpenFile> file, const OpenOptions& options);
+
+  Mapping mapping_;
+  Bytes bytes_;
+  Container container_;
+  std::uint32_t tree_count_ = 0;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,204 @@
+// SPDX-License-Identifier: MIT
+// What a scene says of its instances, and moving them.
+#include "runtime/scene/bound_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "format/message.h"
+#include "runtime/query/float_state.h"
+#include "runtime/tree/dispatch.h"
+
+namespace boxtree {
+namespace {
+
+Pose pose_of(const std::byte* numbers, std::uint32_t bytes) noexcept {
+  Pose pose;
+  for (std::size_t row = 0; row < 3; ++row) {
+    for (std::size_t column = 0; column < 4; ++column) {
+      const std::size_t i = 4 * row + column;
+      pose.matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) =
+          bytes == sizeof(float) ? double{load<float>(numbers, i)} : load<double>(numbers, i);
+    }
+  }
+  pose.makeAffine();
+  return pose;
+}
+
+}  // namespace
+
+void BoundScene::rebuild() {
+  if (moving_.empty()) return;
+  const DefaultFloatState state;
+  std::vector<Box<double>> boxes;
+  boxes.reserve(moving_.size());
+  for (const Moving& moving : moving_) boxes.push_back(to_frame(moving.bounds.world));
+  moving_tree_.build(boxes);
+}
+
+Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
+  const DefaultFloatState state;
+  if (instance >= instance_count()) return Errc::kInstanceIndex;
+  const Moving* found = find_moving(instance);
+  if (found == nullptr) return Errc::kInstanceStatic;
+  Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
+  const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
+  if (!placement) return Errc::kInvalidPose;
+  const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
+  if (!bounds || !(to_world(bounds->magnitude) <= kReach)) return Errc::kInvalidPose;
+  moving.placed.pose = pose;
+  moving.placed.placement = *placement;
+  moving.bounds = *bounds;
+  const auto number = static_cast<std::uint32_t>(found - moving_.data());
+  conditions_.set(number, bounds->condition);
+  moving_tree_.refit(number, to_frame(bounds->world));
+  return {};
+}
+
+Result<InstanceInfo> BoundScene::info(std::uint32_t number) const {
+  if (number >= instance_count()) {
+    return error_with(Errc::kInstanceIndex, {}, "instance # of #", {number, instance_count()});
+  }
+  const std::optional<InstanceRecord> record = record_of(number);
+  if (!record) return error_with(Errc::kRecordInvalid, {}, "instance #: its record", {number});
+  return InstanceInfo{text(record->name_offset, record->name_bytes), record->tree, record->id,
+                      record->layer, find_moving(number) != nullptr};
+}
+
+Result<std::uint32_t> BoundScene::find_instance(std::string_view name) const {
+  for (std::uint32_t i = 0; i < instance_count(); ++i) {
+    const InstanceRecord record = instance(i);
+    if (text(record.name_offset, record.name_bytes) == name) return i;
+  }
+  return Error{Errc::kInstanceIndex, "no instance is named \"" + std::string(name) + "\""};
+}
+
+Result<Pose> BoundScene::pose(std::uint32_t number) const {
+  const Result<InstanceInfo> known = info(number);
+  if (!known) return known.error();
+  const Moving* moving = find_moving(number);
+  return moving != nullptr ? moving->placed.pose : stored_pose(number);
+}
+
+std::string_view BoundScene::layer_name(std::uint32_t number) const noexcept {
+  if (number >= layer_count()) return {};
+  const LayerRecord record = layer(number);
+  return text(record.name_offset, record.name_bytes);
+}
+
+std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
+  if (of.instance >= instance_count()) return kNoMaterial;
+  const FaceRef& face = of.face;
+  const std::uint32_t tree = instance(of.instance).tree;
+  if (tree >= trees_.size()) return kNoMaterial;
+  const TreeMaterials& materials = materials_of_tree_[tree];
+  if (materials.faces != nullptr) {
+    if (face.index >= trees_[tree].face_count()) return kNoMaterial;
+    return load_number(materials.faces, static_cast<std::uint8_t>(materials.number_bytes),
+                       face.index);
+  }
+  // One run is of all faces, whatever their ids; else the last one that starts at or before it.
+  std::uint32_t first = 0;
+  std::uint32_t count = materials.run_count;
+  if (count == 0) return kNoMaterial;
+  if (count > 1 && face.id == kNoFaceId) return kNoMaterial;
+  while (count > 1) {
+    const std::uint32_t half = count / 2;
+    const bool is_right = load<MaterialRun>(materials.runs, first + half).first_face <= face.id;
+    first += is_right ? half : 0;
+    count = is_right ? count - half : half;
+  }
+  return load<MaterialRun>(materials.runs, first).material;
+}
+
+Result<Triangle> BoundScene::triangle(const SceneFace& face, std::uint32_t half) const {
+  const Result<InstanceInfo> known = info(face.instance);
+  if (!known) return known.error();
+  const BoundTree& tree = BoundTree::of(trees_[known->tree]);
+  const Result<Triangle> triangle = tree.triangle(face.face, half);
+  if (!triangle) return triangle;
+  const Moving* moving = find_moving(face.instance);
+  const Pose pose = moving != nullptr ? moving->placed.pose : stored_pose(face.instance);
+  return Placement::map_to_world(tree.frame(), pose).apply(*triangle);
+}
+
+std::string_view BoundScene::material_name(std::uint32_t number) const noexcept {
+  if (number >= material_count()) return {};
+  const auto record = load<MaterialRecord>(materials_, number);
+  return text(record.name_offset, record.name_bytes);
+}
+
+std::optional<PlacementBounds> BoundScene::Placed::bounds() const noexcept {
+  return placement.bounds(root_box<double>(*tree));
+}
+
+std::optional<InstanceRecord> BoundScene::record_of(std::uint32_t number) const noexcept {
+  const InstanceRecord record = instance(number);
+  if (record.tree >= trees_.size() || record.layer >= layer_count()) return std::nullopt;
+  return record;
+}
+
+std::optional<BoundScene::Placed> BoundScene::place(std::uint32_t number) const noexcept {
+  const std::optional<InstanceRecord> record = record_of(number);
+  return record ? place(number, *record) : std::nullopt;
+}
+
+std::optional<BoundScene::Placed> BoundScene::place(std::uint32_t number,
+                                                    const InstanceRecord& record) const noexcept {
+  const BoundTree& tree = BoundTree::of(trees_[record.tree]);
+  const Pose pose = stored_pose(number);
+  const std::optional<Placement> placement = place_in_units(tree, pose);
+  if (!placement) return std::nullopt;
+  return Placed{&tree, pose, *placement, record.id, record.layer};
+}
+
+std::optional<BoundScene::Placed> BoundScene::place_now(std::uint32_t number) const noexcept {
+  const Moving* moving = find_moving(number);
+  return moving != nullptr ? moving->placed : place(number);
+}
+
+bool BoundScene::is_detached(std::uint32_t number) const noexcept {
+  return has_detached_ && find_moving(number) != nullptr;
+}
+
+LayerRecord BoundScene::layer(std::uint32_t number) const noexcept {
+  return load<LayerRecord>(layers_, number);
+}
+
+std::optional<Placement> BoundScene::place_in_units(const BoundTree& tree,
+                                                    const Pose& pose) const noexcept {
+  Pose scaled = pose;
+  scaled.affine() *= frame_.inverse_scale;
+  return is_within_reach(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
+}
+
+Box<double> BoundScene::to_frame(const Box<double>& units) const noexcept {
+  const Eigen::Vector3d low = to_frame(Eigen::Vector3d(units.low[0], units.low[1], units.low[2]));
+  const Eigen::Vector3d high =
+      to_frame(Eigen::Vector3d(units.high[0], units.high[1], units.high[2]));
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+std::string_view BoundScene::text(std::uint32_t offset, std::uint32_t size) const noexcept {
+  if (!in_range(offset, size, names_.size())) return {};
+  return {reinterpret_cast<const char*>(names_.data()) + offset, size};
+}
+
+InstanceRecord BoundScene::instance(std::uint32_t number) const noexcept {
+  return load<InstanceRecord>(instances_, number);
+}
+
+Pose BoundScene::stored_pose(std::uint32_t number) const noexcept {
+  return pose_of(poses_ + std::size_t{number} * kNumbersOfPose * record().pose_bytes,
+                 record().pose_bytes);
+}
+
+const BoundScene::Moving* BoundScene::find_moving(std::uint32_t number) const noexcept {
+  const auto place = std::lower_bound(
+      moving_.begin(), moving_.end(), number,
+      [](const Moving& moving, std::uint32_t value) { return moving.instance < value; });
+  return place != moving_.end() && place->instance == number ? &*place : nullptr;
+}
+
+}  // namespace boxtree

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// A bound tree: its root, and what lies below a node.
+#include "runtime/tree/bound_tree.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <new>
+#include <variant>
+
+#include "format/message.h"
+#include "runtime/tree/dispatch.h"
+
+namespace boxtree {
+
+const BoundTree& BoundTree::of(const Tree& tree) noexcept {
+  static_assert(sizeof(BoundTree) <= Tree::kBytes && alignof(BoundTree) <= alignof(Tree));
+  return *std::launder(reinterpret_cast<const BoundTree*>(tree.storage_));
+}
+
+BoundTree& BoundTree::inside(Tree& tree) noexcept {
+  return *std::launder(reinterpret_cast<BoundTree*>(tree.storage_));
+}
+
+bool BoundTree::has_face_ids() const noexcept {
+  return face_ids_ != nullptr || (record_.flags & kTreeFacesInSourceOrder) != 0;
+}
+
+NodeRef BoundTree::root_ref() const noexcept {
+  if (record_.root == RootKind::kLeaf) return {0, faces_in_leaves(record_)};
+  return std::visit([this](const auto& codec) { return codec.root(record_); }, codec_);
+}
+
+Node BoundTree::root() const noexcept {
+  return {{record_.root_low, record_.root_high}, root_ref(), record_.root == RootKind::kLeaf};
+}
+
+Errc BoundTree::expand(const Node& node, NodeChildren& out) const noexcept {
+  out.count = 0;
+  return with_codec(*this, [&]<class C>(const C& codec) {
+    typename C::Children children;
+    if (!codec.expand(node.ref, box_cast<typename C::Scalar>(node.box), children)) {
+      return Errc::kNodeCorrupt;
+    }
+    for (std::uint32_t i = 0; i < children.count; ++i) {
+      out.child[i] = {box_cast<double>(children.box(i)), children.ref[i], children.is_leaf(i)};
+    }
+    out.count = children.count;
+    return Errc::kOk;
+  });
+}
+
+Errc BoundTree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept {
+  return leaves_.read(leaf.ref.first, leaf.ref.second, out);
+}
+
+Result<Triangle> BoundTree::triangle(const FaceRef& face, std::uint32_t half) const {
+  if (face.index >= record_.face_count) {
+    return error_with(Errc::kInvalidQuery, {}, "face # of #", {face.index, record_.face_count});
+  }
+  TriangleBatch batch;
+  // Copies are equal to the last bit, so one reading serves them all.
+  const Errc error = leaves_.read(original_of(face.index), 1, batch);
+  if (error != Errc::kOk) return error;
+  if (half >= batch.count) {
+    return error_with(Errc::kInvalidQuery, {}, "half # of face #, which has #",
+                      {half, face.index, batch.count});
+  }
+  return batch.triangle(half);
+}
+
+std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
+  if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
+  if (face_ids_ == nullptr) return kNoFaceId;
+  return load_number(face_ids_, record_.face_id_bytes, face);
+}
+
+FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
+  const std::uint32_t originals = faces_in_leaves(record_);
+  if (duplicates_ == nullptr) return {originals, originals};
+  // The first whose original is not below `limit`.
+  const auto from = [this](std::uint32_t limit) {
+    std::uint32_t low = 0;
+    std::uint32_t high = record_.duplicate_count;
+    while (low < high) {
+      const std::uint32_t middle = low + (high - low) / 2;
+      const bool below = load_number(duplicates_, record_.duplicate_bytes, middle) < limit;
+      (below ? low : high) = below ? middle + 1 : middle;
+    }
+    return low;
+  };
+  const std::uint32_t first = from(face);
+  return {originals + first, originals + std::max(first, from(face + 1))};
+}
+
+std::uint32_t BoundTree::original_of(std::uint32_t face) const noexcept {
+  const std::uint32_t originals = faces_in_leaves(record_);
+  if (duplicates_ == nullptr || face < originals) return face;
+  return load_number(duplicates_, record_.duplicate_bytes, face - originals);
+}
+
+Eigen::AlignedBox3d BoundTree::to_object(const Box<double>& box) const noexcept {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d low;
+  Eigen::Vector3d high;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
+    low[axis] = box.low[k] * frame_.scale;
+    high[axis] = box.high[k] * frame_.scale;
+    if (frame_.origin[axis] == 0) continue;  // scaling by a power of two did not round
+    // Two roundings: a position whose difference from the origin was rounded into the box may lie
+    // less than an ulp of that difference outside, far more than one of its own near zero; and
+    // adding the origin rounds again.
+    low[axis] = std::nextafter(low[axis], -kInfinity) + frame_.origin[axis];
+    high[axis] = std::nextafter(high[axis], kInfinity) + frame_.origin[axis];
+    low[axis] = std::nextafter(low[axis], -kInfinity);
+    high[axis] = std::nextafter(high[axis], kInfinity);
+  }
+  return {low, high};
+}
+
+}  // namespace boxtree
