@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: MIT
+// What each query takes of the stack, by painting one and looking how far down it was used: what
+// the headers state is held for every codec, on deep trees.
+#include <cstddef>
+#include <cstring>
+#include <functional>
+#include <pthread.h>
+#include <string>
+#include <sys/mman.h>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/boxtree.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/scenes.h"
+
+namespace boxtree {
+namespace {
+
+constexpr std::size_t kStackBytes = std::size_t{4} << 20;
+constexpr unsigned char kPaint = 0xa5;
+
+// The bytes of a stack that `work` uses.
+std::size_t bytes_used(const std::function<void()>& work) {
+  void* const memory = ::mmap(nullptr, kStackBytes, PROT_READ | PROT_WRITE,
+                              MAP_PRIVATE | MAP_ANONYMOUS | MAP_STACK, -1, 0);
+  if (memory == MAP_FAILED) return kStackBytes;
+  std::memset(memory, kPaint, kStackBytes);
+  pthread_attr_t attributes;
+  pthread_attr_init(&attributes);
+  pthread_attr_setstack(&attributes, memory, kStackBytes);
+  pthread_t thread;
+  const auto run = [](void* argument) -> void* {
+    (*static_cast<const std::function<void()>*>(argument))();
+    return nullptr;
+  };
+  const int failed =
+      pthread_create(&thread, &attributes, run, const_cast<void*>(static_cast<const void*>(&work)));
+  pthread_attr_destroy(&attributes);
+  if (failed == 0) pthread_join(thread, nullptr);
+  const auto* const bytes = static_cast<const unsigned char*>(memory);
+  std::size_t untouched = 0;
+  while (untouched < kStackBytes && bytes[untouched] == kPaint) ++untouched;
+  ::munmap(memory, kStackBytes);
+  return failed == 0 ? kStackBytes - untouched : kStackBytes;
+}
+
+bool is_instrumented() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(NDEBUG)
+  return true;
+#elif defined(__has_feature)
+#if __has_feature(address_sanitizer)
+  return true;
+#endif
+#endif
+  return false;
+}
+
+class Stack : public testing::TestWithParam<CodecId> {
+ protected:
+  void SetUp() override {
+    if (is_instrumented()) GTEST_SKIP() << "frames of sanitizers and of -Og are larger";
+  }
+
+  // The thread's own start is not the query's.
+  static void expect_at_most(std::size_t kilobytes, const std::string& name,
+                             const std::function<void()>& query) {
+    const std::size_t idle = bytes_used([] {});
+    const std::size_t used = bytes_used(query) - idle;
+    EXPECT_LE(used, kilobytes << 10) << name;
+    RecordProperty(name, static_cast<int>(used));
+  }
+};
+
+TEST_P(Stack, OfQueriesOfATreeIsAsDocumented) {
+  const test::CookedTree cooked = test::cook_tree(test::terrain(120, 3), GetParam());
+  const Tree& tree = cooked.tree;
+  const Eigen::Vector3d middle = tree.bounds().center();
+  const Ray ray{middle + Eigen::Vector3d(0.1, 0.2, 50), {0.001, 0.002, -1}};
+  const auto all = [](const auto&) { return true; };
+  expect_at_most(64, "closest_hit", [&] { EXPECT_TRUE(closest_hit(tree, ray).ok()); });
+  expect_at_most(64, "any_hit", [&] { EXPECT_TRUE(any_hit(tree, ray).ok()); });
+  expect_at_most(64, "overlap_box",
+                 [&] { EXPECT_TRUE(overlap_box(tree, tree.bounds(), all).ok()); });
+  expect_at_most(64, "overlap_sphere",
+                 [&] { EXPECT_TRUE(overlap_sphere(tree, middle, 1e3, all).ok()); });
+  expect_at_most(64, "closest_point",
+                 [&] { EXPECT_TRUE(closest_point(tree, middle + Eigen::Vector3d(0, 0, 9)).ok()); });
+  expect_at_most(64, "traverse", [&] { EXPECT_TRUE(traverse(tree, all, all).ok()); });
+  Pose pose = Pose::Identity();
+  pose.translation() = Eigen::Vector3d(0.3, 0.2, 0.05);
+  const Pose here = Pose::Identity();
+  // These say on their pages that they take more.
+  expect_at_most(320, "first_contact",
+                 [&] { EXPECT_TRUE(first_contact(tree, here, tree, pose).ok()); });
+  expect_at_most(320, "overlap_pairs",
+                 [&] { EXPECT_TRUE(overlap_pairs(tree, here, tree, pose, all).ok()); });
+  expect_at_most(192, "overlap_within",
+                 [&] { EXPECT_TRUE(overlap_within(tree, here, tree, pose, 0).ok()); });
+  expect_at_most(64, "overlap_box_within", [&] {
+    EXPECT_TRUE(overlap_box_within(tree, Eigen::AlignedBox3d(middle, middle), 0).ok());
+  });
+  PointOptions budget;
+  budget.node_budget = 1000;
+  expect_at_most(160, "closest_point with a budget",
+                 [&] { EXPECT_TRUE(closest_point(tree, middle, budget).ok()); });
+  pose.translation() = Eigen::Vector3d(0, 0, 40);
+  const test::CookedTree other = test::cook_tree(test::terrain(60, 4), CodecId::kPackedF64);
+  expect_at_most(320, "overlap_pairs of two codecs",
+                 [&] { EXPECT_TRUE(overlap_pairs(tree, here, other.tree, here, all).ok()); });
+  expect_at_most(512, "distance", [&] { EXPECT_TRUE(distance(tree, here, tree, pose).ok()); });
+}
+
+INSTANTIATE_TEST_SUITE_P(Codecs, Stack, testing::ValuesIn(test::all_codecs()), test::test_name);
+
+TEST(StackOfScenes, IsAsDocumented) {
+  if (is_instrumented()) GTEST_SKIP() << "frames of sanitizers and of -Og are larger";
+  const test::CookedScene cooked =
+      test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));
+  const Scene scene = test::require(Scene::bind(cooked.file));
+  const std::size_t idle = bytes_used([] {});
+  const auto all = [](const auto&) { return true; };
+  const auto expect = [&](std::size_t kilobytes, const char* name,
+                          const std::function<void()>& query) {
+    EXPECT_LE(bytes_used(query) - idle, kilobytes << 10) << name;
+  };
+  expect(64, "closest_hit", [&] {
+    EXPECT_TRUE(closest_hit(scene, {{-200, 0.3, 0.2}, {1, 0, 0}}).ok());
+  });
+  expect(64, "overlap_sphere", [&] {
+    EXPECT_TRUE(overlap_sphere(scene, {0, 0, 0}, 1e3, all).ok());
+  });
+  expect(64, "closest_point", [&] { EXPECT_TRUE(closest_point(scene, {3, 2, 1}).ok()); });
+  expect(352, "contacts", [&] { EXPECT_TRUE(contacts(scene, all).ok()); });
+}
+
+}  // namespace
+}  // namespace boxtree
