@@ -109,7 +109,9 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
     return error_with(Errc::kFeatureUnsupported, place, "flags #; this reader knows those of #",
                       {record.flags, kTreeKnownFlags});
   }
-  const auto invalid = [&](const char* what) { return Error{Errc::kRecordInvalid, place + what}; };
+  const auto invalid = [&](const char* what) {
+    return error_with(Errc::kRecordInvalid, place, what);
+  };
   if (!counts_fit(record) || !leaves_fit(record) || !duplicates_fit(record)) {
     return invalid("counts contradict each other or exceed the limits");
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "runtime/file/section.h"
 
+#include "format/message.h"
 #include "format/tree_record.h"
 
 namespace boxtree {
@@ -14,9 +15,9 @@ Result<const std::byte*> sized_section(Bytes section, SectionKind kind, std::str
   const std::uint64_t expected = count * element;
   if (section.size() == expected) return section.data();
   const std::string where = std::string(place) + section_text(kind);
-  if (section.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
-  return Error{Errc::kSectionSize,
-               where + ": " + section_size_error(section.size(), expected).detail};
+  if (section.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
+  return error_with(Errc::kSectionSize, where + ": ",
+                    section_size_error(section.size(), expected).detail);
 }
 
 }  // namespace boxtree

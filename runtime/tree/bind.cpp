@@ -78,7 +78,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
 Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
   const std::string where = place + section_text(SectionKind::kNodes);
-  if (parts.nodes.empty()) return Error{Errc::kSectionMissing, where + " is absent"};
+  if (parts.nodes.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
   Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
   if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
   codec_ = *codec;
@@ -108,8 +108,8 @@ Status BoundTree::bind_grid(const TreeParts& parts, const std::string& place) {
                                       clusters_of(record_.face_count), sizeof(ClusterRecord));
   if (!clusters) return clusters.error();
   if (record_.face_count > 0 && parts.vertices.empty()) {
-    return Error{Errc::kSectionMissing,
-                 place + section_text(SectionKind::kVertices) + " is absent"};
+    return error_with(Errc::kSectionMissing, place,
+                      section_text(SectionKind::kVertices) + " is absent");
   }
   const GridView grid{*clusters, parts.vertices, record_.face_count, record_.corners_per_face};
   leaves_ =
@@ -118,7 +118,7 @@ Status BoundTree::bind_grid(const TreeParts& parts, const std::string& place) {
 }
 
 Status BoundTree::bind_external_geometry(const std::string& place, const BindOptions& options) {
-  if (!options.mesh) return Error{Errc::kExternalMeshNeeded, place + "no mesh was given"};
+  if (!options.mesh) return error_with(Errc::kExternalMeshNeeded, place, "no mesh was given");
   const MeshArrays& mesh = *options.mesh;
   if (!are_readable(mesh)) {
     return error_with(Errc::kExternalMeshMismatch, place,
@@ -135,7 +135,7 @@ Status BoundTree::bind_external_geometry(const std::string& place, const BindOpt
     const Result<std::uint64_t> hash = geometry_hash(mesh);
     if (!hash) return hash.error();
     if (*hash != record_.geometry_hash) {
-      return Error{Errc::kExternalMeshMismatch, place + "the mesh's content differs"};
+      return error_with(Errc::kExternalMeshMismatch, place, "the mesh's content differs");
     }
   }
   leaves_ = LeafReader(mesh, frame_);
@@ -153,7 +153,7 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
     leaves_.set_order(face_ids_, record_.face_id_bytes);
   }
   if (options.require_face_ids && !has_face_ids() && !empty()) {
-    return Error{Errc::kPartLeftOut, place + "face ids were left out when it was cooked"};
+    return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
   }
   return {};
 }

@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "format/message.h"
+
 namespace boxtree {
 namespace {
 
@@ -20,9 +22,9 @@ Result<AnyCodec> bind_one_of(CodecList<Ids...>, const TreeRecord& record, Bytes 
   Bind bind = nullptr;
   ((record.codec == Ids ? void(bind = bind_as<typename CodecOf<Ids>::type>) : void()), ...);
   if (bind != nullptr) return bind(record, nodes);
-  return Error{Errc::kCodecUnsupported, "codec " + std::string(codec_name(record.codec)) +
-                                            " was left out of this build, which has " +
-                                            std::string(kBuiltCodecNames)};
+  const std::string name = "codec " + std::string(codec_name(record.codec));
+  return error_with(Errc::kCodecUnsupported, name,
+                    " was left out of this build, which has " BOXTREE_CODEC_NAMES);
 }
 
 }  // namespace

@@ -22,7 +22,6 @@ struct CodecList {};
 
 /// The codecs whose trees can be bound.
 using BuiltCodecs = CodecList<BOXTREE_CODEC_IDS>;
-inline constexpr std::string_view kBuiltCodecNames = BOXTREE_CODEC_NAMES;
 
 /// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
