@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What every leaf predicate asks of a triangle.
+// What leaf predicates need to know of a triangle.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -53,8 +53,8 @@ void far_from_origin(Run& run) {
   };
   std::vector<Eigen::Vector3d> shifts;
   for (int i = 0; i < 20; ++i) shifts.emplace_back(100 * unit(), 100 * unit(), 100 * unit());
-  const auto visits = [&](const Tree& asked) {
-    const BoundTree& tree = BoundTree::of(asked);
+  const auto visits = [&](const Tree& queried) {
+    const BoundTree& tree = BoundTree::of(queried);
     std::uint64_t count = 0;
     for (const Eigen::Vector3d& shift : shifts) {
       Pose pose = Pose::Identity();
