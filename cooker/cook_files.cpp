@@ -9,7 +9,7 @@
 #include "cooker/write/blob_writer.h"
 #include "cooker/write/outputs.h"
 #include "format/limits.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

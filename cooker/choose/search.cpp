@@ -14,8 +14,8 @@
 #include "cooker/build/face_boxes.h"
 #include "cooker/import/mesh_arrays.h"
 #include "format/limits.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/triangle.h"
-#include "runtime/query/float_state.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {

@@ -17,7 +17,7 @@
 #include "cooker/scene/scene_source.h"
 #include "cooker/write/blob_writer.h"
 #include "format/container.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "cooker/scene/plan_meshes.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -12,7 +12,7 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/profile_fields.h"
 #include "cooker/scene/profile_pose.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {

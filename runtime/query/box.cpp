@@ -2,7 +2,7 @@
 // Box queries over any codec.
 #include <boxtree/overlap.h>
 
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/walk_tree.h"
 

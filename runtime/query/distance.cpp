@@ -3,8 +3,8 @@
 
 #include <boxtree/distance.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/query/distance_walk.h"
-#include "runtime/query/float_state.h"
 #include "runtime/tree/dispatch.h"
 #include "runtime/walk/erased_codec.h"
 

@@ -10,9 +10,9 @@
 
 #include <boxtree/overlap.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/rounding.h"
-#include "runtime/query/float_state.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/query/shape_query.h"

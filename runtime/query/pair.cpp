@@ -2,7 +2,7 @@
 // Pair queries: one instance of the walk for each codec, and one for pairs of different codecs.
 #include <variant>
 
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/query/pair_query.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/pair_walks.h"

@@ -7,9 +7,9 @@
 
 #include <boxtree/closest.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
-#include "runtime/query/float_state.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/walk/erased_codec.h"

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
-#include "runtime/query/float_state.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/walk/walk_tree.h"
 

@@ -2,7 +2,7 @@
 // Traversals by the application: one walk for all codecs.
 #include <boxtree/traverse.h>
 
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/traversal.h"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "format/message.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/tree/dispatch.h"
 
 namespace boxtree {
@@ -113,6 +113,7 @@ std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
 }
 
 Result<Triangle> BoundScene::triangle(const SceneFace& face, std::uint32_t half) const {
+  const DefaultFloatState state;
   const Result<InstanceInfo> known = info(face.instance);
   if (!known) return known.error();
   const BoundTree& tree = BoundTree::of(trees_[known->tree]);

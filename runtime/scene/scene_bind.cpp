@@ -6,7 +6,7 @@
 
 #include "format/message.h"
 #include "runtime/file/section.h"
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/scene/bound_scene.h"
 
 namespace boxtree {

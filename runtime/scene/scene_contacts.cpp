@@ -2,7 +2,7 @@
 // Contacts in a scene: candidates by their boxes in the world, then tree against tree.
 #include <boxtree/scene.h>
 
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/query/pair_query.h"
 #include "runtime/scene/scene_walk.h"
 

@@ -4,8 +4,8 @@
 
 #include <boxtree/scene.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
-#include "runtime/query/float_state.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/scene/scene_walk.h"
 

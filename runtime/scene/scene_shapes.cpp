@@ -4,8 +4,8 @@
 
 #include <boxtree/scene.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/primitive/rounding.h"
-#include "runtime/query/float_state.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/scene/placed_box.h"

@@ -6,6 +6,7 @@
 
 #include <boxtree/tree.h>
 
+#include "runtime/primitive/float_state.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
@@ -43,12 +44,14 @@ bool Tree::has_face_ids() const noexcept {
 }
 
 Eigen::AlignedBox3d Tree::bounds() const noexcept {
+  const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(*this);
   if (tree.empty()) return {};
   return tree.to_object({tree.record().root_low, tree.record().root_high});
 }
 
 Result<Triangle> Tree::triangle(const FaceRef& face, std::uint32_t half) const {
+  const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(*this);
   Result<Triangle> triangle = tree.triangle(face, half);
   if (!triangle) return triangle;

@@ -2,6 +2,7 @@
 // What answers say beyond which face: nothing, errors, points and normals, and the way back to the
 // triangle; and traversals of the application's own.
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -16,6 +17,7 @@
 
 #include "cooker/write/file_writer.h"
 #include "tests/support/cooked.h"
+#include "tests/support/float_state.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -200,6 +202,33 @@ TEST(Bind, ATreeIsTakenOnlyWhereThereIsOne) {
   EXPECT_NE(tree.error().detail.find("2 trees"), std::string::npos);
   EXPECT_TRUE(Tree::bind(file, 1).ok());
   EXPECT_EQ(Tree::bind(file, 2).code(), Errc::kTreeIndex);
+}
+
+// As queries do: triangles and bounds are the same bits whatever rounding the caller has set.
+TEST(Triangles, DoNotDependOnTheFloatStateOfTheCaller) {
+  SourceMesh mesh = test::torus(12, 8);
+  mesh.positions.precision = cooker::Precision::kF64;
+  for (const float x : mesh.positions.f32) mesh.positions.f64.push_back(x / 3.0 + 1000.1);
+  mesh.positions.f32.clear();
+  const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kPackedF64);
+  const test::CookedScene placed =
+      test::cook_scene({test::torus(12, 8)}, test::random_parts(5, 1, 1, 1, 7));
+  const Scene scene = test::require(Scene::bind(placed.file));
+  const auto corners = [&] {
+    std::vector<Eigen::Vector3d> all = {cooked.tree.bounds().min(), cooked.tree.bounds().max()};
+    for (std::uint32_t index = 0; index < cooked.tree.face_count(); ++index) {
+      const FaceRef face{kNoFaceId, index};
+      const Triangle alone = test::require(cooked.tree.triangle(face));
+      const Triangle in_world = test::require(scene.triangle({index % 5, face}));
+      all.insert(all.end(), alone.corner.begin(), alone.corner.end());
+      all.insert(all.end(), in_world.corner.begin(), in_world.corner.end());
+    }
+    return all;
+  };
+  const std::vector<Eigen::Vector3d> expected = corners();
+  const test::RoundingMode<FE_UPWARD> upward;
+  const std::vector<Eigen::Vector3d> found = corners();
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(found[i], expected[i]) << i;
 }
 
 TEST(Tree, SaysWhatItIs) {

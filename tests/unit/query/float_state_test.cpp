@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "runtime/query/float_state.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree {
 namespace {
