@@ -1,12 +1,15 @@
-# Installation: find_package(boxtree CONFIG) gives boxtree::format and boxtree::runtime, the program
-# boxtree::cli, and boxtree_add_cooked_assets(); find_package(boxtree CONFIG COMPONENTS blob) adds
-# boxtree::blob, which alone needs liblzma and zstd. Codecs and queries are components, too: one that
-# was left out is not found.
+# Installation: find_package(boxtree CONFIG) gives boxtree::format, boxtree::runtime and boxtree::paper,
+# the program boxtree::cli, and boxtree_add_cooked_assets(); find_package(boxtree CONFIG COMPONENTS
+# blob) adds boxtree::blob, which alone needs liblzma and zstd. Codecs and queries are components, too:
+# one that was left out is not found.
 include(CMakePackageConfigHelpers)
 
 set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
 install(TARGETS boxtree_format boxtree_runtime EXPORT boxtreeTargets
         ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(TARGET boxtree_paper)
+  install(TARGETS boxtree_paper EXPORT boxtreeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+endif()
 if(BOXTREE_BLOB)
   install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})

@@ -10,8 +10,8 @@
 
 #include "cooker/build/splitter.h"
 #include "cooker/encode/encoders.h"
-#include "runtime/tree/dispatch.h"
 #include "runtime/tree/frame.h"
+#include "runtime/tree/root_box.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/query/distance_walk.h"
-#include "runtime/tree/dispatch.h"
+#include "runtime/tree/root_box.h"
 #include "runtime/walk/erased_codec.h"
 
 namespace boxtree {

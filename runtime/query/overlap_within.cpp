@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <type_traits>
 
 #include <boxtree/overlap.h>
 
@@ -69,10 +68,7 @@ struct Watcher {
 
 // Whether nodes have at most two children; a tree without nodes may be taken for either.
 bool is_binary(const BoundTree& tree) noexcept {
-  return with_codec(tree, [](const auto& codec) {
-    return std::remove_cvref_t<decltype(codec)>::Children::kWidth ==
-           ErasedBinaryCodec::Children::kWidth;
-  });
+  return tree.codec_functions().width <= ErasedBinaryCodec::Children::kWidth;
 }
 
 template <Codec C>

@@ -1,23 +1,31 @@
 // SPDX-License-Identifier: MIT
-// Pair queries: one instance of the walk for each codec, and one for pairs of different codecs.
-#include <variant>
-
+// Pair queries: walks for two trees of one codec, and one for pairs of different codecs.
 #include "runtime/primitive/float_state.h"
 #include "runtime/query/pair_query.h"
 #include "runtime/query/pair_walk.h"
-#include "runtime/query/pair_walks.h"
-#include "runtime/walk/erased_codec.h"
+#include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
 namespace {
 
-// Trees of different codecs. A function of its own, because its stack of boxes in double is the
+// Trees of different codecs, or of none. A function of its own, because its stack of boxes in double is the
 // largest of all walks.
 [[gnu::noinline]] Result<Visit> walk_erased(const BoundTree& first, const BoundTree& second,
                                             const RelativePose& pose, PairVisitor visitor,
                                             PairBound& bound) {
   return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor, bound)
       .run();
+}
+
+Result<Visit> walk_wide_nodes(const BoundTree& first, const BoundTree& second,
+                              const RelativePose& pose, PairVisitor visitor, PairBound& bound) {
+  if constexpr (kHasWideCodecs && kWalksByVectors) {
+    return walk_wide_pairs(first, second, pose, visitor, bound);
+  } else {
+    return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
+      return PairWalk(first, codec, second, second.nodes().as<C>(), pose, visitor, bound).run();
+    });
+  }
 }
 
 }  // namespace
@@ -29,13 +37,12 @@ Result<Visit> visit_pairs(const BoundTree& first, const Pose& first_pose, const 
   if (!pose) return Errc::kInvalidPose;
   PairBound bound(first, second, &work);
   // Not by their records: a tree without nodes has none of any codec.
-  if (first.codec_view().index() != second.codec_view().index()) {
-    return walk_erased(first, second, *pose, visitor, bound);
+  const CodecFunctions& codec = first.codec_functions();
+  if (codec.id == second.codec_functions().id) {
+    if (has_wide_nodes(first)) return walk_wide_nodes(first, second, *pose, visitor, bound);
+    if (codec.walks != nullptr) return codec.walks->pairs(first, second, *pose, visitor, bound);
   }
-  return with_codec(first, [&]<class C>(const C& codec) {
-    return walk_pairs(first, codec, second, std::get<C>(second.codec_view()), *pose, visitor,
-                      bound);
-  });
+  return walk_erased(first, second, *pose, visitor, bound);
 }
 
 Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tree& second,

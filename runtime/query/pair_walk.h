@@ -240,4 +240,8 @@ class PairWalk {
   std::size_t size_ = 0;
 };
 
+/// The walk by vectors. Precondition: both trees have nodes of the same wide codec.
+Result<Visit> walk_wide_pairs(const BoundTree& first, const BoundTree& second,
+                              const RelativePose& pose, PairVisitor visitor, PairBound& bound);
+
 }  // namespace boxtree

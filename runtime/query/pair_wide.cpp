@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Two trees of the wide codecs: one box against eight.
 #include "runtime/query/pair_filter.h"
-#include "runtime/query/pair_walks.h"
+#include "runtime/query/pair_walk.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/targets.h"
+#include "runtime/walk/walk_tree.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "runtime/query/pair_wide.cpp"
@@ -268,7 +269,7 @@ Result<Visit> walk(const BoundTree& first, const WideCodec<Node>& first_codec,
 Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                         const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
-    return walk(first, codec, second, std::get<C>(second.codec_view()), pose, filter, visitor,
+    return walk(first, codec, second, second.nodes().as<C>(), pose, filter, visitor,
                 bound);
   });
 }

@@ -120,8 +120,7 @@ double length_above(const Eigen::Vector3d& v) noexcept {
 }  // namespace
 
 Errc find_nearest(const BoundTree& tree, PointQuery& query) {
-  const Errc walked =
-      with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
+  const Errc walked = walk_nearest(tree, query);
   return walked != Errc::kOk ? walked : query.error;
 }
 
@@ -163,7 +162,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   double left = std::numeric_limits<double>::infinity();  // squared: of what was not looked at
   Errc walked;
   if (options.node_budget == kUnlimitedNodes) {
-    walked = with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
+    walked = walk_nearest(tree, query);
   } else {
     BestFirst walk(tree, query, options.node_budget);
     walked = walk.run();

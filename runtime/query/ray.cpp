@@ -39,8 +39,7 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
   if (tree.empty() || misses) return Errc::kOk;
   WalkBound nodes(tree.record().node_count, &work);
   RayQuery query(tree, nodes, in_tree, stop_at_first, hit);
-  const Errc walked =
-      with_codec(tree, [&](const auto& codec) { return walk_nearest(tree, codec, query); });
+  const Errc walked = walk_nearest(tree, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
   if (hit.is_hit) hit.t = parameter_of(ray, hit.t, query.parameter_exponent);

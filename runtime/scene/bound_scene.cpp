@@ -8,7 +8,7 @@
 
 #include "format/message.h"
 #include "runtime/primitive/float_state.h"
-#include "runtime/tree/dispatch.h"
+#include "runtime/tree/root_box.h"
 
 namespace boxtree {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "format/children.h"
 #include "format/tree_record.h"
-#include "runtime/tree/codecs.h"
+#include "runtime/tree/bound_codec.h"
 
 namespace boxtree {
 

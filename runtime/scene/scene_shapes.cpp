@@ -64,7 +64,7 @@ struct WorldBox {
   [[nodiscard]] Result<Visit> ask(const BoundScene::Placed& placed, const FacesOfInstance& faces,
                                   QueryWork& work) const {
     const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
-    return visit_faces_compactly(*placed.tree, query, faces, work);
+    return visit_faces(*placed.tree, query, faces, work);
   }
 };
 

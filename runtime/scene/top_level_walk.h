@@ -10,7 +10,7 @@
 
 #include "runtime/query/ray_slab.h"
 #include "runtime/scene/top_level.h"
-#include "runtime/tree/codecs.h"
+#include "runtime/tree/bound_codec.h"
 
 namespace boxtree {
 

@@ -7,8 +7,8 @@
 #include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
 #include "runtime/tree/bound_tree.h"
-#include "runtime/tree/dispatch.h"
 #include "runtime/tree/float_range.h"
+#include "runtime/tree/root_box.h"
 
 namespace boxtree {
 namespace {
@@ -79,9 +79,12 @@ Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
   const std::string where = place + section_text(SectionKind::kNodes);
   if (parts.nodes.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
-  Result<AnyCodec> codec = bind_codec(record_, parts.nodes);
-  if (!codec) return Error{codec.code(), where + ": " + codec.error().detail};
-  codec_ = *codec;
+  const Result<const CodecFunctions*> functions = find_codec_functions(record_.codec);
+  if (!functions) return Error{functions.code(), where + ": " + functions.error().detail};
+  const Result<BoundCodec> nodes = (*functions)->bind(record_, parts.nodes);
+  if (!nodes) return Error{nodes.code(), where + ": " + nodes.error().detail};
+  functions_ = *functions;
+  nodes_ = *nodes;
   has_float_nodes_ = is_in_float_range({record_.root_low, record_.root_high});
   return {};
 }

@@ -6,10 +6,8 @@
 #include <cmath>
 #include <limits>
 #include <new>
-#include <variant>
 
 #include "format/message.h"
-#include "runtime/tree/dispatch.h"
 
 namespace boxtree {
 
@@ -28,7 +26,7 @@ bool BoundTree::has_face_ids() const noexcept {
 
 NodeRef BoundTree::root_ref() const noexcept {
   if (record_.root == RootKind::kLeaf) return {0, faces_in_leaves(record_)};
-  return std::visit([this](const auto& codec) { return codec.root(record_); }, codec_);
+  return functions_->root(nodes_, record_);
 }
 
 Node BoundTree::root() const noexcept {
@@ -37,17 +35,13 @@ Node BoundTree::root() const noexcept {
 
 Errc BoundTree::expand(const Node& node, NodeChildren& out) const noexcept {
   out.count = 0;
-  return with_codec(*this, [&]<class C>(const C& codec) {
-    typename C::Children children;
-    if (!codec.expand(node.ref, box_cast<typename C::Scalar>(node.box), children)) {
-      return Errc::kNodeCorrupt;
-    }
-    for (std::uint32_t i = 0; i < children.count; ++i) {
-      out.child[i] = {box_cast<double>(children.box(i)), children.ref[i], children.is_leaf(i)};
-    }
-    out.count = children.count;
-    return Errc::kOk;
-  });
+  AnyChildren children;
+  if (!functions_->expand(nodes_, node.ref, node.box, children)) return Errc::kNodeCorrupt;
+  for (std::uint32_t i = 0; i < children.count; ++i) {
+    out.child[i] = {children.box(i), children.ref[i], children.is_leaf(i)};
+  }
+  out.count = children.count;
+  return Errc::kOk;
 }
 
 Errc BoundTree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept {

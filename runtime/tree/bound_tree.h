@@ -14,7 +14,7 @@
 
 #include "format/children.h"
 #include "format/tree_record.h"
-#include "runtime/tree/codecs.h"
+#include "runtime/tree/bound_codec.h"
 #include "runtime/tree/geometry.h"
 
 namespace boxtree {
@@ -117,7 +117,9 @@ class BoundTree {
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
 
   // What the query templates read.
-  [[nodiscard]] const AnyCodec& codec_view() const noexcept { return codec_; }
+  /// Those of the codec of its nodes, or kNoCodec.
+  [[nodiscard]] const CodecFunctions& codec_functions() const noexcept { return *functions_; }
+  [[nodiscard]] const BoundCodec& nodes() const noexcept { return nodes_; }
   [[nodiscard]] const LeafReader& leaves() const noexcept { return leaves_; }
   /// The root's reference: all nodes in the terms of the codec, or the only leaf.
   [[nodiscard]] NodeRef root_ref() const noexcept;
@@ -136,7 +138,8 @@ class BoundTree {
   TreeRecord record_{};
   Frame frame_;
   std::string_view name_;
-  AnyCodec codec_;
+  BoundCodec nodes_;
+  const CodecFunctions* functions_ = &kNoCodec;
   const std::byte* face_ids_ = nullptr;
   const std::byte* duplicates_ = nullptr;  // the original of each, ascending
   LeafReader leaves_;

@@ -7,12 +7,11 @@
 #include <cstdint>
 
 #include "runtime/tree/bound_tree.h"
-#include "runtime/tree/dispatch.h"
 
 namespace boxtree {
 
-/// Any codec, found out at every node, so that the number of instantiations grows neither with the
-/// codecs nor with their square.
+/// Any codec by its functions, one indirect call a node, so that the number of instantiations grows
+/// neither with the codecs nor with their square.
 template <std::size_t Width>
 struct ErasedCodecOf {
   using Scalar = double;
@@ -24,26 +23,22 @@ struct ErasedCodecOf {
   static Result<ErasedCodecOf> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }
 
-  // Boxes of f32 codecs come and go through double unchanged.
+  // False, too, where a node has more children than there is room for.
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
-    return with_codec(*tree, [&]<class C>([[maybe_unused]] const C& codec) {
-      if constexpr (C::Children::kWidth > Width) {
+    const CodecFunctions& functions = tree->codec_functions();
+    if constexpr (Width == AnyChildren::kWidth) {
+      return functions.expand(tree->nodes(), ref, box, out);
+    } else {
+      AnyChildren children;
+      if (!functions.expand(tree->nodes(), ref, box, children) || children.count > Width) {
         return false;
-      } else {
-        typename C::Children children;
-        if (!codec.expand(ref, box_cast<typename C::Scalar>(box), children)) return false;
-        out.count = children.count;
-        out.leaf_mask = children.leaf_mask;
-        for (std::uint32_t i = 0; i < children.count; ++i) {
-          for (std::size_t k = 0; k < 3; ++k) {
-            out.low[k][i] = children.low[k][i];
-            out.high[k][i] = children.high[k][i];
-          }
-          out.ref[i] = children.ref[i];
-        }
-        return true;
       }
-    });
+      out.clear();
+      for (std::uint32_t i = 0; i < children.count; ++i) {
+        out.add(children.box(i), children.ref[i], children.is_leaf(i));
+      }
+      return true;
+    }
   }
 };
 using ErasedCodec = ErasedCodecOf<kWideChildren>;

@@ -19,7 +19,7 @@
 
 #include "format/limits.h"
 #include "runtime/tree/bound_tree.h"
-#include "runtime/tree/dispatch.h"
+#include "runtime/tree/root_box.h"
 #include "runtime/walk/face_copies.h"
 #include "runtime/walk/work.h"
 

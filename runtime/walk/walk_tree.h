@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// How a query walks a tree: any codec by the templates of traversal.h, the wide ones by walks
-// of their own, eight children at a time, where there are vectors. Both give the same answers.
+// How a query walks a tree: the wide codecs by walks of their own, eight children at a time, where
+// there are vectors; the others by the templates of traversal.h. All give the same answers.
 #pragma once
 
 #include "format/codec_wide.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/codec_walks.h"
 #include "runtime/walk/erased_codec.h"
 #include "runtime/walk/face_visit.h"
 #include "runtime/walk/traversal.h"
@@ -13,52 +14,63 @@
 namespace boxtree {
 
 /// Whether trees of a wide codec can be bound.
-inline constexpr bool kHasWideCodecs = []<CodecId... Ids>(CodecList<Ids...>) {
-  return (is_wide(Ids) || ...);
+inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
+
+/// Whether the nodes of a tree are those of a wide codec.
+[[nodiscard]] inline bool has_wide_nodes(const BoundTree& tree) noexcept {
+  return kHasWideCodecs && is_wide(tree.codec_functions().id);
 }
-(BuiltCodecs());
 
-/// Whether trees of a codec are walked by vectors.
-template <Codec C>
-inline constexpr bool kIsWalkedByVectors = false;
-template <class Node>
-inline constexpr bool kIsWalkedByVectors<WideCodec<Node>> = kWalksByVectors;
-
-/// Calls `visitor` with the codec of a tree, one of the wide ones.
+/// Calls `visitor` with the codec of a tree that has wide nodes.
 template <class Answer, class Visitor>
-Answer with_wide_codec(const BoundTree& tree, const Visitor& visitor) {
-  return with_codec(tree, [&]<class C>([[maybe_unused]] const C& codec) -> Answer {
-    if constexpr (kIsWalkedByVectors<C>) {
-      return visitor(codec);
-    } else {
-      return Errc::kInternal;
-    }
-  });
+Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
+                       [[maybe_unused]] const Visitor& visitor) {
+#if BOXTREE_HAS_WIDE8
+  if (tree.codec_functions().id == CodecId::kWide8) {
+    return visitor(tree.nodes().as<WideCodec<Wide8Node>>());
+  }
+#endif
+#if BOXTREE_HAS_WIDE4
+  if (tree.codec_functions().id == CodecId::kWide4) {
+    return visitor(tree.nodes().as<WideCodec<Wide4Node>>());
+  }
+#endif
+  return Errc::kInternal;
 }
 
 // Queries that the wide codecs walk by vectors have a function of their own, in query/*_wide.cpp:
-//   Errc walk_wide(const BoundTree& tree, QUERY& query);   Precondition: the codec of `tree` is a
-//   wide one.
+//   Errc walk_wide(const BoundTree& tree, QUERY& query);   Precondition: the tree has wide nodes.
+
+/// The walk of a query over a tree of any codec. `plain`: walks by one codec, of traversal.h.
+template <class Query, class Plain>
+Errc walk_tree(const BoundTree& tree, Query& query, const Plain& plain) {
+  if constexpr (kHasWideCodecs && kWalksByVectors) {
+    if (has_wide_nodes(tree)) return walk_wide(tree, query);
+  }
+  if constexpr (kHasCodecWalks<Query>) {
+    if constexpr (!kWalksByVectors) {
+      if (has_wide_nodes(tree)) return with_wide_codec<Errc>(tree, plain);
+    }
+    if (const CodecWalks* own = tree.codec_functions().walks) {
+      return (own->*kWalkOf<Query>)(tree, query);
+    }
+  }
+  return plain(ErasedCodec{&tree});
+}
 
 /// Visits what can matter to the query, from near to far. Returns kNodeCorrupt or kDepthExceeded
 /// for corrupt nodes; the query holds the errors of leaves.
-template <Codec C, class Query>
-Errc walk_nearest(const BoundTree& tree, const C& codec, Query& query) {
-  if constexpr (kIsWalkedByVectors<C>) {
-    return walk_wide(tree, query);
-  } else {
-    return traverse_nearest(tree, codec, query);
-  }
+template <class Query>
+Errc walk_nearest(const BoundTree& tree, Query& query) {
+  return walk_tree(tree, query,
+                   [&](const auto& codec) { return traverse_nearest(tree, codec, query); });
 }
 
 /// Visits the faces that touch the shape; errors likewise.
-template <Codec C, class Shape>
-Errc walk_overlap(const BoundTree& tree, const C& codec, FaceWalk<Shape>& walk) {
-  if constexpr (kIsWalkedByVectors<C>) {
-    return walk_wide(tree, walk);
-  } else {
-    return traverse_overlap(tree, codec, walk);
-  }
+template <class Shape>
+Errc walk_overlap(const BoundTree& tree, FaceWalk<Shape>& walk) {
+  return walk_tree(tree, walk,
+                   [&](const auto& codec) { return traverse_overlap(tree, codec, walk); });
 }
 
 /// Visits each face once of which some triangle touches the shape.
@@ -67,21 +79,7 @@ Result<Visit> visit_faces(const BoundTree& tree, const Shape& shape,
                           typename Shape::Visitor visitor, QueryWork& work) {
   WalkBound nodes(tree.record().node_count, &work);
   FaceWalk<Shape> walk{tree, shape, visitor, nodes};
-  const Errc walked =
-      with_codec(tree, [&](const auto& codec) { return walk_overlap(tree, codec, walk); });
-  return outcome_of(walked, walk);
-}
-
-/// The same without a walk of its own for each codec: by vectors, and one walk for all others.
-template <class Shape>
-Result<Visit> visit_faces_compactly(const BoundTree& tree, const Shape& shape,
-                                    typename Shape::Visitor visitor, QueryWork& work) {
-  WalkBound nodes(tree.record().node_count, &work);
-  FaceWalk<Shape> walk{tree, shape, visitor, nodes};
-  if constexpr (kWalksByVectors && kHasWideCodecs) {
-    if (is_wide(tree.codec())) return outcome_of(walk_wide(tree, walk), walk);
-  }
-  return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, walk), walk);
+  return outcome_of(walk_overlap(tree, walk), walk);
 }
 
 }  // namespace boxtree

@@ -8,6 +8,7 @@
 #include "cooker/choose/measure.h"
 #include "cooker/cook.h"
 #include "cooker/report/scratch_file.h"
+#include "runtime/paper/any_codec.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/bench/subject.h"

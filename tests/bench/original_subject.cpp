@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "format/binary_node.h"
 #include "runtime/query/ray_slab.h"
 #include "runtime/query/relative_pose.h"
 #include "runtime/walk/traversal.h"

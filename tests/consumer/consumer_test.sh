@@ -72,4 +72,32 @@ cmake --build "$work/blob/build" >"$work/log" || { cat "$work/log"; fail "blob: 
 "$work/prefix/bin/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/level.bxt" \
   --codec blob-zstd -q
 "$work/blob/build/blob_user" "$work/level.bxt" || fail "blob: not opened"
+
+# The codecs of the paper are there for those who link them.
+mkdir "$work/paper"
+cat >"$work/paper/CMakeLists.txt" <<'CMAKE'
+cmake_minimum_required(VERSION 3.25)
+project(paper_user LANGUAGES CXX)
+find_package(boxtree CONFIG REQUIRED)
+add_executable(paper_user main.cpp)
+target_link_libraries(paper_user PRIVATE boxtree::paper)
+CMAKE
+cat >"$work/paper/main.cpp" <<'CODE'
+#include <boxtree/boxtree.h>
+#include <boxtree/paper.h>
+int main(int, char** argv) {
+  const auto file = boxtree::File::open(argv[1]);
+  if (!file) return 1;
+  if (boxtree::Tree::bind(*file).code() != boxtree::Errc::kCodecUnsupported) return 2;
+  boxtree::use_paper_codecs();
+  const auto tree = boxtree::Tree::bind(*file);
+  return tree.ok() && boxtree::closest_hit(*tree, {{0, 0, 10}, {0, 0, -1}}) ? 0 : 3;
+}
+CODE
+cmake -S "$work/paper" -B "$work/paper/build" -DCMAKE_PREFIX_PATH="$work/prefix" \
+  -DCMAKE_CXX_COMPILER="$compiler" >/dev/null
+cmake --build "$work/paper/build" >"$work/log" || { cat "$work/log"; fail "paper: build failed"; }
+"$work/prefix/bin/boxtree" cook "$source/samples/meshes/level.obj" -o "$work/level.bxt" \
+  --codec plain-f32 -q
+"$work/paper/build/paper_user" "$work/level.bxt" || fail "paper: no answer, status $?"
 echo "consumer: as expected"

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 
+#include "format/codec_packed.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"

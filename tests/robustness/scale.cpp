@@ -4,6 +4,7 @@
 #include <cmath>
 #include <random>
 
+#include "runtime/paper/any_codec.h"
 #include "runtime/query/pair_walk.h"
 #include "tests/robustness/brute_force.h"
 #include "tests/robustness/mesh_kinds.h"

@@ -3,9 +3,9 @@
 # Sizes of the runtime in linked and stripped programs of few lines, code and data, less those of an
 # empty program: whole and small. The small one reads wide4 and answers rays, holds no other walk
 # and no decompressor, and says so of a file that it cannot read.
-#   size_test.sh SOURCE BOXTREE WHOLE EMPTY     WHOLE: programs/whole.cpp of the build under test
+#   size_test.sh SOURCE BOXTREE WHOLE RUNTIME EMPTY    the last three: programs/ of the build under test
 set -euo pipefail
-source=$1 boxtree=$2 whole=$3 empty=$4
+source=$1 boxtree=$2 whole=$3 runtime=$4 empty=$5
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "size: $*"; exit 1; }
@@ -34,12 +34,14 @@ ray_only=(-DPROGRAM=ray -DBOXTREE_CODECS=wide4 -DBOXTREE_QUERIES=ray -DBOXTREE_B
 built small -DCMAKE_BUILD_TYPE=MinSizeRel -DBOXTREE_SIMD=OFF "${ray_only[@]}"
 built small-fast -DCMAKE_BUILD_TYPE=Release "${ray_only[@]}"
 built whole-small -DCMAKE_BUILD_TYPE=MinSizeRel -DPROGRAM=whole
-smaller 'whole runtime' "$whole" $((860 * 1024))
-smaller 'whole runtime, MinSizeRel' "$work/whole-small/program" $((400 * 1024))
+smaller 'every query' "$runtime" $((860 * 1024))
+echo "the same with boxtree::paper and boxtree::blob: $(($(bytes "$whole") - less)) bytes"
+smaller 'every query and library, MinSizeRel' "$work/whole-small/program" $((400 * 1024))
 smaller 'rays of wide4' "$work/small-fast/program" $((120 * 1024))
 smaller 'rays of wide4, MinSizeRel without vectors' "$work/small/program" $((60 * 1024))
 
-# What was left out is in none of the small programs, and the same list finds it in the whole one.
+# What was left out is in none of the small programs, and the same list finds it in the whole one. The
+# runtime has no codec of the paper and no decompressor of its own.
 left_out='PairWalk|DistanceWalk|walk_wide_pairs|triangles_intersect|triangle_distance|PointQuery|BoxQuery|SphereQuery|PackedCodec|PlainCodec|Wide8Node|lzma_|ZSTD_|decompress'
 for name in small small-fast; do
   nm -C "$work/$name/program" >"$work/symbols"
@@ -48,6 +50,8 @@ for name in small small-fast; do
   ldd "$work/$name/program" >"$work/libraries"
   if grep -E 'lzma|zstd' "$work/libraries"; then fail "$name: needs a decompressor"; fi
 done
+nm -C "$runtime" >"$work/symbols"
+if grep -E 'PackedCodec|PlainCodec|lzma_|ZSTD_' "$work/symbols"; then fail "the runtime has a codec of the paper"; fi
 nm -C "$whole" >"$work/symbols"
 IFS='|' read -ra names <<<"$left_out"
 for name in "${names[@]}"; do
@@ -83,6 +87,12 @@ for name in small small-fast; do
 done
 "$boxtree" cook "$work/square.obj" -o "$work/blob.bxt" --codec blob-zstd -q
 "$whole" "$work/blob.bxt" >/dev/null || fail "the whole runtime does not answer"
+"$runtime" "$work/wide4.bxt" >/dev/null || fail "the runtime does not answer"
+said=$("$runtime" "$work/packed-f16.bxt") && fail "the runtime answered of a codec of the paper"
+case $said in
+  *'codec packed-f16 is one of boxtree::paper: link it and call use_paper_codecs()'*) ;;
+  *) fail "unclear: '$said'" ;;
+esac
 
 # Scenes need no wide codec.
 built scene -DCMAKE_BUILD_TYPE=MinSizeRel -DBOXTREE_SIMD=OFF -DPROGRAM=scene \

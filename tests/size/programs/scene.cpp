@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Runs every query of a scene: on a runtime of one codec it has to link all the
-// same.
+// Runs every query of a scene: on a runtime of one codec, of the paper, it has to link all the same.
 #include <cstdio>
 
 #include <boxtree/boxtree.h>
+#include <boxtree/paper.h>
 
 int main(int, char** argv) {
   using namespace boxtree;
+  use_paper_codecs();
   const auto file = File::open(argv[1]);
   if (!file) return std::puts(file.error().detail.c_str()), 1;
   const auto scene = Scene::bind(*file);

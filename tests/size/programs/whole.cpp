@@ -1,55 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Asks every query there is of a file, mapped or compressed, and of its scene if it has one.
-#include <cstdio>
-
 #include <boxtree/blob.h>
-#include <boxtree/boxtree.h>
+#include <boxtree/paper.h>
 
-namespace {
-
-const Eigen::AlignedBox3d kBox{Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
-const boxtree::Ray kRay{{0, 0, 10}, {0, 0, -1}};
-
-bool ask(const boxtree::Tree& tree) {
-  const boxtree::Pose pose = boxtree::Pose::Identity();
-  int faces = 0;
-  const auto count = [&faces](const boxtree::FaceRef&) { return ++faces > 0; };
-  const bool all = boxtree::closest_hit(tree, kRay).ok() && boxtree::any_hit(tree, kRay).ok() &&
-                   boxtree::overlap_box(tree, kBox, count).ok() &&
-                   boxtree::overlap_sphere(tree, {0, 0, 0}, 1, count).ok() &&
-                   boxtree::closest_point(tree, {0, 0, 0}, 1.0).ok() &&
-                   boxtree::closest_point(tree, {0, 0, 0}, boxtree::PointOptions()).ok() &&
-                   boxtree::first_contact(tree, pose, tree, pose).ok() &&
-                   boxtree::distance(tree, pose, tree, pose).ok() &&
-                   boxtree::overlap_within(tree, pose, tree, pose, 1).ok() &&
-                   boxtree::overlap_box_within(tree, kBox, 1).ok();
-  std::printf("%d faces\n", faces);
-  return all;
-}
-
-bool ask(boxtree::Scene& scene, const boxtree::Tree& tree) {
-  const boxtree::Pose pose = boxtree::Pose::Identity();
-  const auto face = [](const boxtree::SceneFace&) { return true; };
-  const auto pair = [](const boxtree::ScenePair&) { return true; };
-  static_cast<void>(scene.update(0, pose));
-  return boxtree::closest_hit(scene, kRay).ok() && boxtree::any_hit(scene, kRay).ok() &&
-         boxtree::overlap_box(scene, kBox, face).ok() &&
-         boxtree::overlap_sphere(scene, {0, 0, 0}, 1, face).ok() &&
-         boxtree::closest_point(scene, {0, 0, 0}).ok() && boxtree::contacts(scene, pair).ok() &&
-         boxtree::overlap_pairs(scene, tree, pose, pair).ok();
-}
-
-}  // namespace
+#include "ask.h"
 
 int main(int, char** argv) {
+  boxtree::use_paper_codecs();
   auto file = boxtree::File::open(argv[1]);
   if (!file && file.code() == boxtree::Errc::kFeatureUnsupported)
     file = boxtree::open_blob(argv[1]);
   if (!file) return std::puts(file.error().detail.c_str()), 1;
-  const auto tree = boxtree::Tree::bind(*file);
-  if (!tree) return std::puts(tree.error().detail.c_str()), 1;
-  bool all = ask(*tree);
-  auto scene = boxtree::Scene::bind(*file);
-  if (scene) all = all && ask(*scene, *tree);
-  return all ? 0 : 1;
+  return ask(*file);
 }

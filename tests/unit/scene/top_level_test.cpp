@@ -12,7 +12,7 @@
 #include "runtime/query/relative_pose.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/scene/top_level_walk.h"
-#include "runtime/tree/dispatch.h"
+#include "runtime/tree/root_box.h"
 #include "runtime/walk/traversal.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "format/bits.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
 #include "format/grid.h"

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: MIT
-// From a tree to the type of its codec: once, at the entry of a query, never per node.
+// Where a walk begins: the box of the root, in the scalar of the walk.
 #pragma once
 
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <type_traits>
-#include <utility>
-#include <variant>
 
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree {
-
-/// Calls `visitor` with the codec of `tree`.
-template <class Visitor>
-decltype(auto) with_codec(const BoundTree& tree, Visitor&& visitor) {
-  return std::visit(std::forward<Visitor>(visitor), tree.codec_view());
-}
 
 /// The smallest box in another scalar that holds `exact`.
 template <class S>

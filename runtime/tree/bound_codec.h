@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// The nodes of a tree in one codec or another, behind one type: what a bound tree holds. Which
+// codecs there are is known when a tree is bound and not when the runtime is compiled: the wide ones
+// are its own, those of the paper come from boxtree::paper.
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <new>
+#include <span>
+#include <string>
+#include <type_traits>
+
+#include <boxtree/configuration.h>
+
+#include "format/bytes.h"
+#include "format/children.h"
+#include "format/codec.h"
+#include "format/codec_wide.h"
+#include "format/tree_record.h"
+
+namespace boxtree {
+
+struct CodecWalks;
+
+/// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
+inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
+
+/// What a tree and its queries ask of a codec. `bind` checks what can be checked without reading
+/// nodes; `expand` is the one question of a traversal. Whatever the bytes, neither reads outside
+/// the section given to `bind`.
+template <class C>
+concept Codec = requires(const C& codec, const TreeRecord& record, Bytes section, NodeRef ref,
+                         const Box<typename C::Scalar>& box, typename C::Children& out) {
+  { C::bind(record, section) } -> std::same_as<Result<C>>;
+  { codec.root(record) }
+  noexcept->std::same_as<NodeRef>;
+  { codec.expand(ref, box, out) }
+  noexcept->std::same_as<bool>;
+};
+
+/// Some codec over the nodes of one tree, or none. Cheap to copy.
+class BoundCodec {
+ public:
+  BoundCodec() noexcept = default;
+  template <Codec C>
+  explicit BoundCodec(const C& codec) noexcept {
+    static_assert(std::is_trivially_copyable_v<C> && std::is_trivially_destructible_v<C>);
+    static_assert(sizeof(C) <= kBytes && alignof(C) <= kAlignment);
+    std::construct_at(reinterpret_cast<C*>(storage_), codec);
+  }
+
+  /// Precondition: made of a C.
+  template <Codec C>
+  [[nodiscard]] const C& as() const noexcept {
+    return *std::launder(reinterpret_cast<const C*>(storage_));
+  }
+
+ private:
+  static constexpr std::size_t kBytes = 112;  // of the largest, PackedCodec
+  static constexpr std::size_t kAlignment = 8;
+  alignas(kAlignment) std::byte storage_[kBytes] = {};
+};
+
+/// Children of a node of any codec. Boxes of f32 codecs come and go through double unchanged.
+using AnyChildren = ChildSet<kWideChildren, double>;
+
+/// What is asked of a codec whose type the caller does not know.
+struct CodecFunctions {
+  CodecId id;
+  std::uint32_t width;  // children that a node has at most
+  Result<BoundCodec> (*bind)(const TreeRecord& record, Bytes nodes);
+  NodeRef (*root)(const BoundCodec& codec, const TreeRecord& record) noexcept;
+  bool (*expand)(const BoundCodec& codec, NodeRef ref, const Box<double>& box,
+                 AnyChildren& out) noexcept;
+  /// Walks compiled for it (runtime/walk/codec_walks.h); null: it is walked by expand(), or by
+  /// vectors.
+  const CodecWalks* walks;
+};
+
+/// The functions of codec C.
+template <Codec C>
+[[nodiscard]] constexpr CodecFunctions functions_of(CodecId id,
+                                                    const CodecWalks* walks = nullptr) noexcept {
+  return {id, C::Children::kWidth,
+          [](const TreeRecord& record, Bytes nodes) -> Result<BoundCodec> {
+            const Result<C> codec = C::bind(record, nodes);
+            if (!codec) return codec.error();
+            return BoundCodec(*codec);
+          },
+          [](const BoundCodec& codec, const TreeRecord& record) noexcept {
+            return codec.as<C>().root(record);
+          },
+          [](const BoundCodec& codec, NodeRef ref, const Box<double>& box,
+             AnyChildren& out) noexcept {
+            typename C::Children children;
+            if (!codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children)) {
+              return false;
+            }
+            out.count = children.count;
+            out.leaf_mask = children.leaf_mask;
+            for (std::uint32_t i = 0; i < children.count; ++i) {
+              for (std::size_t k = 0; k < 3; ++k) {
+                out.low[k][i] = children.low[k][i];
+                out.high[k][i] = children.high[k][i];
+              }
+              out.ref[i] = children.ref[i];
+            }
+            return true;
+          },
+          walks};
+}
+
+/// The functions of a tree that has no nodes: its expand() finds every reference corrupt.
+extern const CodecFunctions kNoCodec;
+
+using CodecSet = std::span<const CodecFunctions* const>;
+
+/// Lets trees of these codecs be bound from now on, in place of any that were added before. They
+/// and what they point to stay for good. Thread-safe.
+void add_codecs(const CodecSet& codecs) noexcept;
+
+/// The functions of a codec. kCodecUnsupported, and what to do about it, when it was left out of
+/// this build or is in a library that the program does not use.
+Result<const CodecFunctions*> find_codec_functions(CodecId id);
+
+}  // namespace boxtree

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: MIT
+// Every query there is, each once.
+#pragma once
+
+#include <cstdio>
+
+#include <boxtree/boxtree.h>
+
+inline const Eigen::AlignedBox3d kBox{Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
+inline const boxtree::Ray kRay{{0, 0, 10}, {0, 0, -1}};
+
+inline bool ask(const boxtree::Tree& tree) {
+  const boxtree::Pose pose = boxtree::Pose::Identity();
+  int faces = 0;
+  const auto count = [&faces](const boxtree::FaceRef&) { return ++faces > 0; };
+  const bool all = boxtree::closest_hit(tree, kRay).ok() && boxtree::any_hit(tree, kRay).ok() &&
+                   boxtree::overlap_box(tree, kBox, count).ok() &&
+                   boxtree::overlap_sphere(tree, {0, 0, 0}, 1, count).ok() &&
+                   boxtree::closest_point(tree, {0, 0, 0}, 1.0).ok() &&
+                   boxtree::closest_point(tree, {0, 0, 0}, boxtree::PointOptions()).ok() &&
+                   boxtree::first_contact(tree, pose, tree, pose).ok() &&
+                   boxtree::distance(tree, pose, tree, pose).ok() &&
+                   boxtree::overlap_within(tree, pose, tree, pose, 1).ok() &&
+                   boxtree::overlap_box_within(tree, kBox, 1).ok();
+  std::printf("%d faces\n", faces);
+  return all;
+}
+
+inline bool ask(boxtree::Scene& scene, const boxtree::Tree& tree) {
+  const boxtree::Pose pose = boxtree::Pose::Identity();
+  const auto face = [](const boxtree::SceneFace&) { return true; };
+  const auto pair = [](const boxtree::ScenePair&) { return true; };
+  static_cast<void>(scene.update(0, pose));
+  return boxtree::closest_hit(scene, kRay).ok() && boxtree::any_hit(scene, kRay).ok() &&
+         boxtree::overlap_box(scene, kBox, face).ok() &&
+         boxtree::overlap_sphere(scene, {0, 0, 0}, 1, face).ok() &&
+         boxtree::closest_point(scene, {0, 0, 0}).ok() && boxtree::contacts(scene, pair).ok() &&
+         boxtree::overlap_pairs(scene, tree, pose, pair).ok();
+}
+
+// The status of the program.
+inline int ask(const boxtree::File& file) {
+  const auto tree = boxtree::Tree::bind(file);
+  if (!tree) return std::puts(tree.error().detail.c_str()), 1;
+  bool all = ask(*tree);
+  auto scene = boxtree::Scene::bind(file);
+  if (scene) all = all && ask(*scene, *tree);
+  return all ? 0 : 1;
+}
