@@ -15,7 +15,6 @@ class Scan {
   explicit Scan(std::string_view text) : text_(text) {}
 
   std::optional<TomlFault> run() {
-    constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
     if (text_.starts_with(kByteOrderMark)) at_ = kByteOrderMark.size();
     while (at_ < text_.size() && !fault_) step();
     if (!fault_ && is_header_) end_of_line();
@@ -23,6 +22,8 @@ class Scan {
   }
 
  private:
+  static constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+
   void step() {
     const char c = text_[at_++];
     switch (c) {
@@ -38,6 +39,7 @@ class Scan {
         return;
       case '"':
       case '\'':
+        if (!may_begin_string()) add("a string stands by itself, not beside a word or another string");
         has_begun_ = true;
         pass_string(c);
         return;
@@ -84,6 +86,15 @@ class Scan {
     if (depth_ == 0) has_begun_ = is_value_ = is_header_ = false;
   }
 
+  // Whether the quote before at_ is where a token begins: elsewhere the parser takes it, and what
+  // follows, for a part of a bare value.
+  [[nodiscard]] bool may_begin_string() const {
+    constexpr std::string_view kBefore = " \t\r\n=[{,.";
+    const std::string_view before = text_.substr(0, at_ - 1);
+    return before.empty() || before == kByteOrderMark ||
+           kBefore.find(before.back()) != std::string_view::npos;
+  }
+
   // Behind the first quote. A string of one line that has no end leaves the rest of it to the
   // parser.
   void pass_string(char quote) {
@@ -103,6 +114,8 @@ class Scan {
       at_ += escapes ? std::size_t{2} : 1;
     }
     at_ = std::min(at_ + 3, text_.size());
+    // One or two quotes more belong to the string.
+    for (int i = 0; i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
   }
 
   void add(std::string what) {

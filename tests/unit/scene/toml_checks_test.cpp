@@ -55,6 +55,24 @@ TEST(TomlChecks, NamesOfTablesEndOnTheirLine) {
   EXPECT_EQ(parse_toml("[[\nob", "t").code(), Errc::kProfileInvalid);
 }
 
+// Found by the fuzzer: toml++ takes a quote behind a bare word for a part of it, and then looks at
+// what the quotes hold, where characters beyond ASCII lead it to undefined behaviour.
+TEST(TomlChecks, StringsStandByThemselves) {
+  const std::string beside = ": a string stands by itself, not beside a word or another string";
+  EXPECT_EQ(fault("e = [7\":..\"St\"\xcb\x9c"), "1" + beside);
+  EXPECT_EQ(fault("a = 1\nb = 7'x'\n"), "2" + beside);
+  EXPECT_EQ(fault("a\"b\" = 1\n"), "1" + beside);
+  EXPECT_EQ(fault("a = \"b\"'c'\n"), "1" + beside);
+  EXPECT_EQ(fault("a = [1]\"c\"\n"), "1" + beside);
+  for (const std::string text :
+       {"\"a\" = 1\n", "\xef\xbb\xbf'a' = 1\n", "a.'b'.\"c\" = 1\n", "['a'.\"b\"]\n",
+        "a=['b',\"c\"]\n", "a={'b'='c',\"d\"=1}\n", "a = \"\"\"b\"\"\"\"\n",
+        "a = '''b'''''\nc = 'd'\n", "a = [\n\t'b',\r\n'c']\n"}) {
+    EXPECT_EQ(fault(text), "") << text;
+    EXPECT_TRUE(parse_toml(text, "t").ok()) << text;
+  }
+}
+
 TEST(TomlChecks, OtherTextsAreLeftToTheParser) {
   const std::string dots(1000, '.');
   for (const std::string& text :
