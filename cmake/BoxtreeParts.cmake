@@ -5,12 +5,8 @@ set(BOXTREE_ALL_CODECS plain-f32 plain-f16 packed-f32 packed-f16 packed-f64 dedu
 set(BOXTREE_ALL_QUERIES ray box sphere point pair distance within scene)
 set(BOXTREE_CODECS all CACHE STRING "Codecs that the runtime reads: all, or some of ${BOXTREE_ALL_CODECS}")
 set(BOXTREE_QUERIES all CACHE STRING "Queries that it answers: all, or some of ${BOXTREE_ALL_QUERIES}")
-# AVX-512 gains at most 3 % of the time: not worth its code where size is what counts.
-set(default_sets sse4 avx2 avx512)
-if(CMAKE_BUILD_TYPE STREQUAL MinSizeRel)
-  set(default_sets sse4 avx2)
-endif()
-set(BOXTREE_INSTRUCTION_SETS "${default_sets}" CACHE STRING
+# AVX-512 gains at most 3 % of the time and takes as much code as AVX2: whoever wants it asks for it.
+set(BOXTREE_INSTRUCTION_SETS sse4 avx2 CACHE STRING
     "On x86-64, vectors that walks of the wide codecs are compiled for: some of sse4 avx2 avx512")
 option(BOXTREE_BLOB "Build boxtree::blob, which opens files that are compressed whole" ON)
 # Walks by Highway; only a build of other sources than runtime/CMakeLists.txt lists says otherwise.

@@ -28,10 +28,7 @@ void read_positions(const GridOffsets& offsets, const std::byte* bytes, const Gr
 bool decode_grid_leaf(const GridView& grid, std::uint32_t leaf, GridLeaf& out) noexcept {
   GridLeafFaces faces;
   GridOffsets offsets;
-  const bool is_sound = grid.corners_per_face == 4
-                            ? read_grid_faces<true>(grid, leaf, faces, offsets)
-                            : read_grid_faces<false>(grid, leaf, faces, offsets);
-  if (!is_sound) return false;
+  if (!read_grid_faces(grid, leaf, grid.corners_per_face == 4, faces, offsets)) return false;
   out.vertex_count = faces.vertex_count;
   out.face_count = faces.face_count;
   out.corner = faces.corner;

@@ -197,15 +197,14 @@ BOXTREE_ALWAYS_INLINE std::uint32_t take_triangle(LeafBits& bits, LeafVertices& 
 }
 
 // The triangle after `previous`, or the first of a quad; false for a code that is none.
-template <bool kMayBeQuad>
-BOXTREE_ALWAYS_INLINE bool take_next(LeafBits& bits, LeafVertices& vertices,
+BOXTREE_ALWAYS_INLINE bool take_next(LeafBits& bits, LeafVertices& vertices, bool may_be_quad,
                                      std::uint32_t& corners) {
   const std::uint32_t step = bits.take(StripStep::kBits);
   if (step >= StripStep::kApart) {
     if (step > StripStep::kApart) return false;
     bits.refill();
     corners = take_triangle(bits, vertices);
-    if (!kMayBeQuad) bits.refill();
+    if (!may_be_quad) bits.refill();
     return true;
   }
   const std::uint32_t edge = turned(corners, kStripTurns[step].before);
@@ -226,10 +225,10 @@ BOXTREE_ALWAYS_INLINE std::array<std::uint8_t, 4> with_fourth(std::uint32_t corn
 }  // namespace grid_detail
 
 /// Reads the faces of leaf `leaf` and where its cluster's offsets lie. Otherwise as
-/// decode_grid_leaf; the vertices named are vertices of the cluster. `place` may be null.
-template <bool kMayBeQuad>
+/// decode_grid_leaf; the vertices named are vertices of the cluster. `may_be_quad`: whether a face
+/// of the store has four corners, a constant where it matters. `place` may be null.
 BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
-                                           GridLeafFaces& out, GridOffsets& offsets,
+                                           bool may_be_quad, GridLeafFaces& out, GridOffsets& offsets,
                                            GridLeafBits* place = nullptr) noexcept {
   using namespace grid_detail;
   std::uint32_t vertex_count = 0;
@@ -241,14 +240,14 @@ BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t l
   if (first_new > vertex_count) return false;
   LeafVertices vertices(first_new, vertex_count, out);
   out.face_count = std::min(kLeafFaces, grid.face_count - leaf * kLeafFaces);
-  bool is_quad = kMayBeQuad && bits.take(1) != 0;
+  bool is_quad = may_be_quad && bits.take(1) != 0;
   std::uint32_t corners = take_triangle(bits, vertices);
   out.corner[0] = with_fourth(corners, is_quad, bits, vertices);
-  constexpr std::uint32_t kRefills = kMayBeQuad ? 0xff : 0b10010010;  // before which faces
+  const std::uint32_t refills = may_be_quad ? 0xff : 0b10010010;  // before which faces
   for (std::uint32_t f = 1; f < out.face_count; ++f) {
-    if (((kRefills >> f) & 1u) != 0) bits.refill();
-    is_quad = kMayBeQuad && bits.take(1) != 0;
-    if (!take_next<kMayBeQuad>(bits, vertices, corners)) return false;
+    if (((refills >> f) & 1u) != 0) bits.refill();
+    is_quad = may_be_quad && bits.take(1) != 0;
+    if (!take_next(bits, vertices, may_be_quad, corners)) return false;
     out.corner[f] = with_fourth(corners, is_quad, bits, vertices);
   }
   out.vertex_count = vertices.count();

@@ -66,7 +66,8 @@ Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
   static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
   WalkBound nodes(tree.record().node_count);
   RayCandidate hit;
-  Listening query{RayQuery(tree, nodes, RayInTree(tree, ray, exponent), false, hit), &counts};
+  Listening query{RayQuery(tree, ray, exponent, nodes, false, hit), &counts};
+  if (tree.empty() || !query.enters_root()) return Errc::kOk;
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
 }

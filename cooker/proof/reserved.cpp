@@ -131,10 +131,8 @@ bool check_leaves_of_cluster(const GridView& grid, std::uint32_t n, std::uint64_
     GridLeafFaces faces;
     GridOffsets offsets;
     GridLeafBits place;
-    const bool is_read = grid.corners_per_face == 4
-                             ? read_grid_faces<true>(grid, leaf, faces, offsets, &place)
-                             : read_grid_faces<false>(grid, leaf, faces, offsets, &place);
-    if (!is_read) return false;
+    const bool may_be_quad = grid.corners_per_face == 4;
+    if (!read_grid_faces(grid, leaf, may_be_quad, faces, offsets, &place)) return false;
     check.expect(place.begin >= last_bit && are_zero(grid.bytes, last_bit, place.begin), "leaf ",
                  leaf, "the bits before it");
     last_bit = place.end;

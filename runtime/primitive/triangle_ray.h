@@ -12,6 +12,7 @@ namespace boxtree {
 /// A ray prepared for tests against many triangles: the shear that turns the direction into an
 /// axis.
 struct RayShear {
+  RayShear() noexcept = default;  // of no ray yet
   /// Precondition: direction is finite and not zero.
   RayShear(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) noexcept;
 

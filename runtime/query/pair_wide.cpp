@@ -179,7 +179,8 @@ class WidePairWalk {
     return take_apart(second, to, depth);
   }
 
-  HWY_INLINE bool take_apart(const PairPart& parent, PairChildren& to, std::size_t depth) {
+  // Called from four places of choose() and compiled once.
+  HWY_NOINLINE bool take_apart(const PairPart& parent, PairChildren& to, std::size_t depth) {
     const WideCodec<Node>& codec = *codec_[to.side];
     const NodeView<Node> node(codec, parent.number);
     to.links = node.links();

@@ -26,37 +26,20 @@ Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 #else
-// The query of NearestWalk over the faces of one tree.
-template <class Node>
-class PointFaces {
+// The leaves near a point: the same for both codecs, and compiled once.
+class PointLeaves {
  public:
-  PointFaces(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
-      : codec_(codec),
-        query_(query),
-        filter_(tree.largest_reach(), query.point),
-        prefetch_(tree, codec),
-        leaf_(tree) {
+  PointLeaves(const BoundTree& tree, PointQuery& query, const PointFilter& filter)
+      : query_(query), filter_(filter), leaf_(tree) {
     set_bound();
   }
 
+  /// Squared distances above it cannot improve the answer.
   [[nodiscard]] float bound() const { return bound_; }
-  [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
 
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
-    key = nearest_squared(filter_, boxes);
-    return bits_of(hn::Le(key, hn::Set(Floats(), bound_)));
-  }
-
-  HWY_INLINE void expanding(const WideLinks& links, std::uint32_t passing) {
-    ++query_.nodes_expanded;
-    prefetch_.leaves(links, passing & ~links.inner_mask);
-    prefetch_.nodes(links, passing & links.inner_mask);
-  }
-
-  bool leaf(std::uint32_t number) {
-    ++query_.nodes_expanded;
-    const std::uint32_t first = number * kLeafFaces;
-    if (!leaf_.load(first, std::min(kLeafFaces, codec_.face_count - first))) {
+  /// Whether to go on.
+  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
       query_.error = leaf_.error();
       return false;
     }
@@ -93,13 +76,50 @@ class PointFaces {
     distance_ = float_above(std::sqrt(query_.best)) * static_cast<float>(1 + 2 * kRoundoffF32);
   }
 
+  PointQuery& query_;
+  const PointFilter& filter_;
+  float bound_;     // of squared distances
+  float distance_;  // of distances
+  LeafFloats leaf_;
+};
+
+// The query of NearestWalk over the faces of one tree.
+template <class Node>
+class PointFaces {
+ public:
+  PointFaces(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
+      : codec_(codec),
+        query_(query),
+        filter_(tree.largest_reach(), query.point),
+        prefetch_(tree, codec),
+        leaves_(tree, query, filter_) {}
+
+  [[nodiscard]] float bound() const { return leaves_.bound(); }
+  [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
+
+  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+    key = nearest_squared(filter_, boxes);
+    return bits_of(hn::Le(key, hn::Set(Floats(), leaves_.bound())));
+  }
+
+  HWY_INLINE void expanding(const WideLinks& links, std::uint32_t passing) {
+    ++query_.nodes_expanded;
+    prefetch_.leaves(links, passing & ~links.inner_mask);
+    prefetch_.nodes(links, passing & links.inner_mask);
+  }
+
+  bool leaf(std::uint32_t number) {
+    ++query_.nodes_expanded;
+    const std::uint32_t first = number * kLeafFaces;
+    return leaves_.visit(first, std::min(kLeafFaces, codec_.face_count - first));
+  }
+
+ private:
   const WideCodec<Node>& codec_;
   PointQuery& query_;
   const PointFilter filter_;
   const Prefetch<Node> prefetch_;
-  float bound_;     // of squared distances
-  float distance_;  // of distances
-  LeafFloats leaf_;
+  PointLeaves leaves_;
 };
 
 template <class Node>

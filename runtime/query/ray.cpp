@@ -31,14 +31,10 @@ int direction_exponent(const Eigen::Vector3d& direction) noexcept {
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit) {
   if (!is_valid(ray)) return Errc::kInvalidQuery;
-  const RayInTree in_tree(tree, ray, direction_exponent(ray.direction));
-  if (!is_within_reach(in_tree.origin)) return Errc::kInvalidQuery;
-  // The walks test the root, too; but rays that miss it are done before anything else is computed.
-  const double key = in_tree.key(root_box<double>(tree));
-  const bool misses = !(key <= in_tree.t_max) || key == std::numeric_limits<double>::infinity();
-  if (tree.empty() || misses) return Errc::kOk;
   WalkBound nodes(tree.record().node_count, &work);
-  RayQuery query(tree, nodes, in_tree, stop_at_first, hit);
+  RayQuery query(tree, ray, direction_exponent(ray.direction), nodes, stop_at_first, hit);
+  if (!is_within_reach(query.origin)) return Errc::kInvalidQuery;
+  if (tree.empty() || !query.enters_root()) return Errc::kOk;
   const Errc walked = walk_nearest(tree, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;

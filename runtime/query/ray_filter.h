@@ -73,17 +73,17 @@ struct RayFilter : RayBoxFilter {
     return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * query.tree.largest_reach();
   }
 
-  /// `enter`: where the query's slab test enters the root box. Precondition: is_near(query).
-  RayFilter(const RayQuery& query, double enter) noexcept
-      : RayFilter(query, enter, query.tree.largest_reach()) {}
+  /// Precondition: is_near(query), which enters the root box.
+  explicit RayFilter(const RayQuery& query) noexcept
+      : RayFilter(query, query.tree.largest_reach()) {}
 
   std::array<float, 3> margins;  // of both planes of an axis
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;
 
  private:
-  RayFilter(const RayQuery& query, double enter, double reach) noexcept
-      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(enter, query.t_min),
+  RayFilter(const RayQuery& query, double reach) noexcept
+      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
                      rounding(reach) +
                          8.0 * query.tree.record().depth * kRoundoffF32 * (2 * reach) +
                          given_away(query.origin, reach)) {

@@ -75,14 +75,22 @@ struct RayInTree {
 
 /// A query of traverse_nearest. `best`: where the answer is put, no hit yet.
 struct RayQuery : RayInTree {
-  RayQuery(const BoundTree& queried, WalkBound& bound, const RayInTree& ray, bool stop_at_first,
-           RayCandidate& best) noexcept
-      : RayInTree(ray),
+  RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
+           bool stop_at_first, RayCandidate& best) noexcept
+      : RayInTree(queried, ray, direction_exponent),
         tree(queried),
         nodes(bound),
-        shear(origin, direction),
         any(stop_at_first),
         hit(best) {}
+
+  /// Whether the ray meets the root box, and only then is it made ready for what is inside. Comes
+  /// before any walk.
+  [[nodiscard]] bool enters_root() noexcept {
+    enter = key(tree.root_f32());
+    if (!(enter <= t_max) || enter == std::numeric_limits<double>::infinity()) return false;
+    shear = RayShear(origin, direction);
+    return true;
+  }
 
   [[nodiscard]] double bound() const noexcept { return t_max; }
 
@@ -114,6 +122,7 @@ struct RayQuery : RayInTree {
 
   const BoundTree& tree;
   WalkBound& nodes;
+  double enter;  // where it meets the root box
   RayShear shear;
   bool any;
   RayCandidate& hit;

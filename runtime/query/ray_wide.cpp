@@ -33,84 +33,17 @@ struct RayChildren {
   WideLinks links;
 };
 
-template <class Node>
-class RayWalk {
+// The leaves that a ray meets: the same for both codecs, and compiled once.
+class RayLeaves {
  public:
-  RayWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query,
-          const RayFilter& filter)
-      : codec_(codec), query_(query), filter_(filter), prefetch_(tree, codec), leaf_(tree) {
-    bound_ = filter.bound(query.t_max);
-  }
+  RayLeaves(const BoundTree& tree, RayQuery& query, const RayFilter& filter)
+      : query_(query), filter_(filter), leaf_(tree), bound_(filter.bound(query.t_max)) {}
 
-  // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
-  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
-  Errc run(const Box<float>& root) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::array<float, 2> side = {root.low[k], root.high[k]};
-      const std::uint32_t near_high = filter_.near_high[k];
-      open_[0].near[k][0] =
-          (side[near_high] - filter_.origin[k]) * filter_.inverse[k] - filter_.margin[k];
-      open_[0].far[k][0] =
-          (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
-    }
-    typename decltype(waiting_)::Child at{0, 0};
-    std::uint32_t number = 0;
-    HWY_ALIGN float enter[kWideChildren];
-    for (;;) {
-      const NodeView<Node> node(codec_, number);
-      const WideLinks links = node.links();
-      if (!query_.nodes.take_one()) return query_.nodes.error();
-      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
-      if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
-      RayChildren& children = open_[at.depth + 1];
-      const std::uint32_t passing =
-          meet(node, open_[at.depth], at.number, children, enter) & ((1u << links.child_count) - 1);
-      children.links = links;
-      prefetch_.leaves(links, passing & ~links.inner_mask);
-      prefetch_.nodes(links, passing & links.inner_mask);
-      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
-        const std::uint32_t i = take_smallest(leaves, enter);
-        if (enter[i] > bound_) break;
-        const std::uint32_t face = first_face(links, i);
-        if (!visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
-      }
-      waiting_.push(passing & links.inner_mask, enter, at.depth + 1);
-      if (!waiting_.pop(bound_, at)) return Errc::kOk;
-      number = node_number(open_[at.depth].links, at.number);
-    }
-  }
+  /// Parameters above it cannot improve the answer.
+  [[nodiscard]] float bound() const { return bound_; }
 
- private:
-  // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
-  // widened by the margins; the steps between its planes are those of the box itself.
-  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const RayChildren& parent,
-                                std::uint32_t child, RayChildren& out, float* enters) const {
-    const Floats d;
-    std::uint32_t passing = 0;
-    for (std::size_t part = 0; part < kParts; ++part) {
-      FloatVector enter = hn::Zero(d);
-      FloatVector leave = hn::Set(d, bound_);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const FloatVector near_of_box = hn::Set(d, parent.near[k][child]);
-        const FloatVector far_of_box = hn::Set(d, parent.far[k][child]);
-        const FloatVector step =
-            hn::Mul(hn::Sub(hn::Sub(far_of_box, near_of_box), hn::Set(d, filter_.margins[k])),
-                    hn::Set(d, 1 / Node::kStepsOfExtent));
-        const std::uint32_t near_high = filter_.near_high[k];
-        const FloatVector near = hn::MulAdd(node.steps(near_high, k, part), step, near_of_box);
-        const FloatVector far = hn::NegMulAdd(node.steps(1 - near_high, k, part), step, far_of_box);
-        hn::Store(near, d, out.near[k] + part * kLanes);
-        hn::Store(far, d, out.far[k] + part * kLanes);
-        enter = hn::Max(enter, near);
-        leave = hn::Min(leave, far);
-      }
-      hn::Store(enter, d, enters + part * kLanes);
-      passing |= bits_of(hn::Le(enter, leave)) << (part * kLanes);
-    }
-    return passing;
-  }
-
-  HWY_INLINE bool visit_leaf(std::uint32_t first, std::uint32_t count) {
+  /// Whether to go on.
+  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
     if (!leaf_.load(first, count)) {
       query_.error = leaf_.error();
       return false;
@@ -137,6 +70,7 @@ class RayWalk {
     return !query_.is_done();
   }
 
+ private:
   // Bit i: the ray misses triangle i beyond doubt. The test of triangle_ray.h in float: an area of
   // corners at most `size` from the ray, each coordinate off by at most 3 error, is off by less
   // than 8 (size + 3 error) 3 error.
@@ -173,24 +107,103 @@ class RayWalk {
     return bits_of(hn::Or(apart, beyond));
   }
 
+  RayQuery& query_;
+  const RayFilter& filter_;
+  LeafFloats leaf_;
+  float bound_;
+};
+
+template <class Node>
+class RayWalk {
+ public:
+  RayWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query,
+          const RayFilter& filter)
+      : codec_(codec),
+        query_(query),
+        filter_(filter),
+        prefetch_(tree, codec),
+        leaves_(tree, query, filter) {}
+
+  // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
+  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
+  Errc run(const Box<float>& root) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::array<float, 2> side = {root.low[k], root.high[k]};
+      const std::uint32_t near_high = filter_.near_high[k];
+      open_[0].near[k][0] =
+          (side[near_high] - filter_.origin[k]) * filter_.inverse[k] - filter_.margin[k];
+      open_[0].far[k][0] =
+          (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
+    }
+    typename decltype(waiting_)::Child at{0, 0};
+    std::uint32_t number = 0;
+    HWY_ALIGN float enter[kWideChildren];
+    for (;;) {
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      if (!query_.nodes.take_one()) return query_.nodes.error();
+      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
+      RayChildren& children = open_[at.depth + 1];
+      const std::uint32_t passing =
+          meet(node, open_[at.depth], at.number, children, enter) & ((1u << links.child_count) - 1);
+      children.links = links;
+      prefetch_.leaves(links, passing & ~links.inner_mask);
+      prefetch_.nodes(links, passing & links.inner_mask);
+      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
+        const std::uint32_t i = take_smallest(leaves, enter);
+        if (enter[i] > leaves_.bound()) break;
+        const std::uint32_t face = first_face(links, i);
+        if (!leaves_.visit(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
+      }
+      waiting_.push(passing & links.inner_mask, enter, at.depth + 1);
+      if (!waiting_.pop(leaves_.bound(), at)) return Errc::kOk;
+      number = node_number(open_[at.depth].links, at.number);
+    }
+  }
+
+ private:
+  // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
+  // widened by the margins; the steps between its planes are those of the box itself.
+  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const RayChildren& parent,
+                                std::uint32_t child, RayChildren& out, float* enters) const {
+    const Floats d;
+    std::uint32_t passing = 0;
+    for (std::size_t part = 0; part < kParts; ++part) {
+      FloatVector enter = hn::Zero(d);
+      FloatVector leave = hn::Set(d, leaves_.bound());
+      for (std::size_t k = 0; k < 3; ++k) {
+        const FloatVector near_of_box = hn::Set(d, parent.near[k][child]);
+        const FloatVector far_of_box = hn::Set(d, parent.far[k][child]);
+        const FloatVector step =
+            hn::Mul(hn::Sub(hn::Sub(far_of_box, near_of_box), hn::Set(d, filter_.margins[k])),
+                    hn::Set(d, 1 / Node::kStepsOfExtent));
+        const std::uint32_t near_high = filter_.near_high[k];
+        const FloatVector near = hn::MulAdd(node.steps(near_high, k, part), step, near_of_box);
+        const FloatVector far = hn::NegMulAdd(node.steps(1 - near_high, k, part), step, far_of_box);
+        hn::Store(near, d, out.near[k] + part * kLanes);
+        hn::Store(far, d, out.far[k] + part * kLanes);
+        enter = hn::Max(enter, near);
+        leave = hn::Min(leave, far);
+      }
+      hn::Store(enter, d, enters + part * kLanes);
+      passing |= bits_of(hn::Le(enter, leave)) << (part * kLanes);
+    }
+    return passing;
+  }
+
   const WideCodec<Node>& codec_;
   RayQuery& query_;
   const RayFilter& filter_;
   const Prefetch<Node> prefetch_;
-  float bound_;
-  LeafFloats leaf_;
+  RayLeaves leaves_;
   Waiting<WideCodec<Node>::kDepthLimit + 1> waiting_;
   std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
 };
 
 template <class Node>
 Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query) {
-  const Box<float> root = root_box<float>(tree);
-  const SlabInterval at = query.slab.intersect(root);
-  if (!(at.enter <= at.leave && at.leave >= query.t_min && at.enter <= query.t_max)) {
-    return Errc::kOk;
-  }
-  return RayWalk<Node>(tree, codec, query, RayFilter(query, at.enter)).run(root);
+  return RayWalk<Node>(tree, codec, query, RayFilter(query)).run(tree.root_f32());
 }
 
 Errc walk_ray(const BoundTree& tree, RayQuery& query) {

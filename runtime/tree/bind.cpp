@@ -72,6 +72,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   }
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
+  tree.leaves_.prepare_floats(tree.largest_reach_);
   return bound;
 }
 
@@ -79,12 +80,8 @@ Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
   if (record_.root != RootKind::kSubtree) return {};
   const std::string where = place + section_text(SectionKind::kNodes);
   if (parts.nodes.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
-  const Result<const CodecFunctions*> functions = find_codec_functions(record_.codec);
-  if (!functions) return Error{functions.code(), where + ": " + functions.error().detail};
-  const Result<BoundCodec> nodes = (*functions)->bind(record_, parts.nodes);
-  if (!nodes) return Error{nodes.code(), where + ": " + nodes.error().detail};
-  functions_ = *functions;
-  nodes_ = *nodes;
+  const Status status = bind_codec(record_, parts.nodes, functions_, nodes_);
+  if (!status) return Error{status.code(), where + ": " + status.error().detail};
   has_float_nodes_ = is_in_float_range({record_.root_low, record_.root_high});
   return {};
 }

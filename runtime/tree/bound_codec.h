@@ -71,7 +71,7 @@ using AnyChildren = ChildSet<kWideChildren, double>;
 struct CodecFunctions {
   CodecId id;
   std::uint32_t width;  // children that a node has at most
-  Result<BoundCodec> (*bind)(const TreeRecord& record, Bytes nodes);
+  Status (*bind)(const TreeRecord& record, Bytes nodes, BoundCodec& out);
   NodeRef (*root)(const BoundCodec& codec, const TreeRecord& record) noexcept;
   bool (*expand)(const BoundCodec& codec, NodeRef ref, const Box<double>& box,
                  AnyChildren& out) noexcept;
@@ -85,10 +85,11 @@ template <Codec C>
 [[nodiscard]] constexpr CodecFunctions functions_of(CodecId id,
                                                     const CodecWalks* walks = nullptr) noexcept {
   return {id, C::Children::kWidth,
-          [](const TreeRecord& record, Bytes nodes) -> Result<BoundCodec> {
+          [](const TreeRecord& record, Bytes nodes, BoundCodec& out) -> Status {
             const Result<C> codec = C::bind(record, nodes);
             if (!codec) return codec.error();
-            return BoundCodec(*codec);
+            out = BoundCodec(*codec);
+            return {};
           },
           [](const BoundCodec& codec, const TreeRecord& record) noexcept {
             return codec.as<C>().root(record);
@@ -122,8 +123,10 @@ using CodecSet = std::span<const CodecFunctions* const>;
 /// and what they point to stay for good. Thread-safe.
 void add_codecs(const CodecSet& codecs) noexcept;
 
-/// The functions of a codec. kCodecUnsupported, and what to do about it, when it was left out of
-/// this build or is in a library that the program does not use.
-Result<const CodecFunctions*> find_codec_functions(CodecId id);
+/// Binds the nodes of a tree in the codec that its record states. Errors: those of the codec's bind;
+/// kCodecUnsupported, and what to do about it, when it was left out of this build or is in a library
+/// that the program does not use.
+Status bind_codec(const TreeRecord& record, Bytes nodes, const CodecFunctions*& functions,
+                  BoundCodec& codec);
 
 }  // namespace boxtree

@@ -2,8 +2,6 @@
 // From a codec's number to its functions.
 #include <array>
 #include <atomic>
-#include <string>
-#include <string_view>
 
 #include "format/message.h"
 #include "runtime/tree/bound_codec.h"
@@ -36,12 +34,24 @@ const CodecFunctions* find_in(CodecSet codecs, CodecId id) noexcept {
   return nullptr;
 }
 
+constexpr bool is_built(CodecId id) noexcept {
+  constexpr std::uint32_t kBuilt =
+      BOXTREE_HAS_PLAIN_F32 << static_cast<unsigned>(CodecId::kPlainF32) |
+      BOXTREE_HAS_PLAIN_F16 << static_cast<unsigned>(CodecId::kPlainF16) |
+      BOXTREE_HAS_PACKED_F32 << static_cast<unsigned>(CodecId::kPackedF32) |
+      BOXTREE_HAS_PACKED_F16 << static_cast<unsigned>(CodecId::kPackedF16) |
+      BOXTREE_HAS_PACKED_F64 << static_cast<unsigned>(CodecId::kPackedF64) |
+      BOXTREE_HAS_DEDUP << static_cast<unsigned>(CodecId::kDedup);
+  const auto bit = static_cast<unsigned>(id);
+  return bit < 32 && ((kBuilt >> bit) & 1u) != 0;
+}
+
 }  // namespace
 
 const CodecFunctions kNoCodec = {
     CodecId{},
     2,
-    [](const TreeRecord&, Bytes) -> Result<BoundCodec> { return Errc::kInternal; },
+    [](const TreeRecord&, Bytes, BoundCodec&) -> Status { return Errc::kInternal; },
     [](const BoundCodec&, const TreeRecord&) noexcept { return NodeRef{0, 0}; },
     [](const BoundCodec&, NodeRef, const Box<double>&, AnyChildren&) noexcept { return false; },
     nullptr};
@@ -50,17 +60,19 @@ void add_codecs(const CodecSet& codecs) noexcept {
   added.store(&codecs, std::memory_order_release);
 }
 
-Result<const CodecFunctions*> find_codec_functions(CodecId id) {
-  if (const CodecFunctions* own = find_in(kOwnCodecs, id)) return own;
-  if (const CodecSet* codecs = added.load(std::memory_order_acquire)) {
-    if (const CodecFunctions* found = find_in(*codecs, id)) return found;
+Status bind_codec(const TreeRecord& record, Bytes nodes, const CodecFunctions*& functions,
+                  BoundCodec& codec) {
+  const CodecFunctions* found = find_in(kOwnCodecs, record.codec);
+  const CodecSet* others = added.load(std::memory_order_acquire);
+  if (found == nullptr && others != nullptr) found = find_in(*others, record.codec);
+  if (found == nullptr) {
+    return error_with(Errc::kCodecUnsupported, codec_name(record.codec),
+                      is_built(record.codec)
+                          ? " is a codec of boxtree::paper: link it and call use_paper_codecs()"
+                          : " was left out of this build, which has " BOXTREE_CODEC_NAMES);
   }
-  const std::string name(codec_name(id));
-  constexpr std::string_view kBuilt = " " BOXTREE_CODEC_NAMES " ";
-  const bool is_built = kBuilt.find(" " + name + " ") != std::string_view::npos;
-  return error_with(Errc::kCodecUnsupported, "codec " + name,
-                    is_built ? " is one of boxtree::paper: link it and call use_paper_codecs()"
-                             : " was left out of this build, which has " BOXTREE_CODEC_NAMES);
+  functions = found;
+  return found->bind(record, nodes, codec);
 }
 
 }  // namespace boxtree

@@ -2,6 +2,9 @@
 // Leaf geometry: corner numbers to positions to tree space, every number checked before it is used.
 #include "runtime/tree/geometry.h"
 
+#include <cmath>
+#include <limits>
+
 namespace boxtree {
 
 std::array<std::uint32_t, 4> face_of(const MeshArrays& mesh, std::uint32_t face) noexcept {
@@ -24,6 +27,24 @@ Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexce
   }
   const auto p = load<std::array<float, 3>>(place);
   return {p[0], p[1], p[2]};
+}
+
+void LeafReader::prepare_floats(double reach) noexcept {
+  floats_.rounding =
+      float_above(reach * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()});
+  if (is_grid()) {
+    floats_.scale = static_cast<float>(grid_step_);
+    floats_.is_direct = mesh_.corners_per_face == 3;
+    return;
+  }
+  // Three times the number of a vertex fits into 32 bits.
+  constexpr std::uint32_t kMaxVertices32 = 1u << 30;
+  floats_.scale = static_cast<float>(frame_.inverse_scale);
+  const bool is_exact = double{floats_.scale} == frame_.inverse_scale &&
+                        std::isnormal(floats_.scale) && frame_.origin.isZero(0);
+  floats_.is_direct = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
+                      mesh_.position_stride == 3 * sizeof(float) && is_in_tree_order() &&
+                      mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxVertices32;
 }
 
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {

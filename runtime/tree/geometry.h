@@ -12,6 +12,7 @@
 #include "format/bytes.h"
 #include "format/grid.h"
 #include "format/limits.h"
+#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/tree/frame.h"
 
@@ -45,6 +46,13 @@ struct TriangleBatch {
   }
 };
 
+/// What walks by vectors ask of a store once a query, computed when a tree is bound.
+struct FloatLeaves {
+  float scale = 1;         // of stored coordinates, to tree space
+  float rounding = 0;      // how far a coordinate is off once rounded to float
+  bool is_direct = false;  // full leaves of triangles can be scaled as they are stored
+};
+
 /// Reads leaves of one tree. A quad gives the triangles (0,1,2) and (0,2,3) of the same face.
 class LeafReader {
  public:
@@ -63,6 +71,10 @@ class LeafReader {
     order_ = order;
     order_bytes_ = bytes;
   }
+
+  /// Comes last: `reach` is the largest magnitude of a coordinate in tree space.
+  void prepare_floats(double reach) noexcept;
+  [[nodiscard]] const FloatLeaves& floats() const noexcept { return floats_; }
 
   /// The arrays; with a grid, counts alone.
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
@@ -93,6 +105,7 @@ class LeafReader {
   double grid_step_ = 0;
   const std::byte* order_ = nullptr;  // or null: the mesh is in the order of the tree
   std::uint8_t order_bytes_ = 0;
+  FloatLeaves floats_;
 };
 
 }  // namespace boxtree

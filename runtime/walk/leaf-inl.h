@@ -21,29 +21,15 @@ namespace boxtree::HWY_NAMESPACE {
 /// nearest, see corner_error(). Exact triangles come from with_triangle().
 class LeafFloats {
  public:
-  explicit LeafFloats(const BoundTree& tree) : reader_(tree.leaves()), mesh_(reader_.mesh()) {
-    const Frame& frame = reader_.frame();
-    scale_ = static_cast<float>(frame.inverse_scale);
-    const bool is_exact =
-        double{scale_} == frame.inverse_scale && std::isnormal(scale_) && frame.origin.isZero(0);
-    rounding_ = float_above(tree.largest_reach() * 2 * kRoundoffF32 +
-                            double{std::numeric_limits<float>::min()});
-    direct_ = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
-              mesh_.position_stride == kStride && reader_.is_in_tree_order() &&
-              mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxDirectVertices;
-    if (reader_.is_grid()) {
-      scale_ = static_cast<float>(reader_.grid_step());
-      direct_ = mesh_.corners_per_face == 3;
-    }
-  }
+  explicit LeafFloats(const BoundTree& tree)
+      : reader_(tree.leaves()), mesh_(reader_.mesh()), floats_(reader_.floats()) {}
 
   /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
   /// error().
   bool load(std::uint32_t first, std::uint32_t count) {
     first_ = first;
     count_ = count;
-    is_direct_ =
-        direct_ && count == kLeafFaces && in_range(first, count, mesh_.face_count) && gather();
+    is_direct_ = floats_.is_direct && count == kLeafFaces && in_range(first, count, mesh_.face_count) && gather();
     return is_direct_ || convert();
   }
 
@@ -51,7 +37,7 @@ class LeafFloats {
   /// what underflows; half an ulp of the largest otherwise.
   [[nodiscard]] float corner_error() const {
     const bool is_exact = is_direct_ && !reader_.is_grid();
-    return is_exact ? std::numeric_limits<float>::min() : rounding_;
+    return is_exact ? std::numeric_limits<float>::min() : floats_.rounding;
   }
 
   /// Triangles of the leaf; lanes from there on are unspecified.
@@ -124,9 +110,6 @@ class LeafFloats {
 
  private:
   static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
-  static constexpr std::size_t kStride = 3 * sizeof(float);
-  // Three times the number of a vertex fits into 32 bits.
-  static constexpr std::uint32_t kMaxDirectVertices = 1u << 30;
 
   HWY_INLINE bool gather() {
     if (reader_.is_grid()) return gather_grid();
@@ -139,7 +122,7 @@ class LeafFloats {
   HWY_INLINE bool gather_grid() {
     GridOffsets offsets;
     if (first_ % kLeafFaces != 0 ||
-        !read_grid_faces<false>(reader_.grid(), first_ / kLeafFaces, grid_faces_, offsets)) {
+        !read_grid_faces(reader_.grid(), first_ / kLeafFaces, false, grid_faces_, offsets)) {
       return false;
     }
     read_grid_points(offsets);
@@ -208,7 +191,7 @@ class LeafFloats {
   template <class Number, class Start>
   HWY_INLINE void transpose(const Number* rows, const Start& start, std::size_t corner) {
     const hn::Rebind<Number, Floats> d;
-    const FloatVector scale = hn::Set(Floats(), scale_);
+    const FloatVector scale = hn::Set(Floats(), floats_.scale);
     const hn::Repartition<std::uint64_t, Floats> pairs;
     for (std::size_t part = 0; part < kParts; ++part) {
       const std::size_t face = part * kLanes;
@@ -263,10 +246,8 @@ class LeafFloats {
 
   const LeafReader& reader_;
   const MeshArrays& mesh_;
-  float scale_;
-  float rounding_;
-  bool direct_;     // leaves that do not hold the last vertex can be gathered
-  bool is_direct_;  // this one was
+  const FloatLeaves& floats_;
+  bool is_direct_;  // whether the leaf was gathered as it is stored
   std::uint32_t first_ = 0;
   std::uint32_t count_ = 0;
   Errc error_ = Errc::kOk;

@@ -35,6 +35,64 @@ HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& trian
   return verdict;
 }
 
+/// The leaves that a shape meets: the same for both codecs, and compiled once. Each returns whether to
+/// go on.
+template <class Shape, class Filter>
+class OverlapLeaves {
+ public:
+  OverlapLeaves(const BoundTree& tree, FaceWalk<Shape>& walk, const Filter& filter)
+      : walk_(walk), filter_(filter), leaf_(tree) {}
+
+  /// Faces `first` to first + count - 1, unread.
+  bool report(std::uint32_t first, std::uint32_t count) {
+    for (std::uint32_t face = first; face < first + count; ++face) {
+      if (!walk_.report(face)) return false;
+    }
+    return true;
+  }
+
+  /// Those that touch the shape.
+  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
+    if (!leaf_.load(first, count)) {
+      walk_.error = leaf_.error();
+      return false;
+    }
+    std::uint32_t reported = kNoFaceId;  // halves of a quad stand side by side
+    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
+      std::uint32_t touched = 0, certain = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        const Verdict verdict = filter_.judge(leaf_.triangles(group, part));
+        touched |= verdict.touched << (part * kLanes);
+        certain |= verdict.inside << (part * kLanes);
+      }
+      const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
+        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
+        if (leaf_.face(lane) == reported) return true;
+        if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
+        reported = leaf_.face(lane);
+        return walk_.report(reported);
+      });
+      if (!go_on) return false;
+    }
+    return true;
+  }
+
+ private:
+  bool touches(std::uint32_t lane) {
+    bool touched = false;
+    const bool read = leaf_.with_triangle(
+        lane, [&](const Triangle& triangle, std::uint32_t /*face*/, std::uint32_t /*half*/) {
+          touched = walk_.shape.overlaps(bounds_of(triangle)) && walk_.shape.touches(triangle);
+        });
+    if (!read) walk_.error = leaf_.error();
+    return touched;
+  }
+
+  FaceWalk<Shape>& walk_;
+  const Filter& filter_;
+  LeafFloats leaf_;
+};
+
 template <class Node, class Shape, class Filter>
 class OverlapWalk {
  public:
@@ -43,7 +101,7 @@ class OverlapWalk {
         walk_(walk),
         filter_(tree, walk.shape),
         prefetch_(tree, codec),
-        leaf_(tree) {}
+        leaves_(tree, walk, filter_) {}
 
   Errc run(const Box<float>& root) {
     Box<float> box = root;
@@ -63,8 +121,8 @@ class OverlapWalk {
       const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
         const std::uint32_t first = first_face(links, i);
         const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
-        return ((verdict.inside >> i) & 1u) != 0 ? report_all(first, count)
-                                                 : visit_leaf(first, count);
+        return ((verdict.inside >> i) & 1u) != 0 ? leaves_.report(first, count)
+                                                 : leaves_.visit(first, count);
       });
       if (!go_on) return Errc::kOk;
       children.waiting = verdict.touched & links.inner_mask;
@@ -105,53 +163,11 @@ class OverlapWalk {
     return verdict;
   }
 
-  bool report_all(std::uint32_t first, std::uint32_t count) {
-    for (std::uint32_t face = first; face < first + count; ++face) {
-      if (!walk_.report(face)) return false;
-    }
-    return true;
-  }
-
-  bool visit_leaf(std::uint32_t first, std::uint32_t count) {
-    if (!leaf_.load(first, count)) {
-      walk_.error = leaf_.error();
-      return false;
-    }
-    std::uint32_t reported = kNoFaceId;  // halves of a quad stand side by side
-    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
-      std::uint32_t touched = 0, certain = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        const Verdict verdict = filter_.judge(leaf_.triangles(group, part));
-        touched |= verdict.touched << (part * kLanes);
-        certain |= verdict.inside << (part * kLanes);
-      }
-      const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
-        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
-        if (leaf_.face(lane) == reported) return true;
-        if (((certain >> i) & 1u) == 0 && !touches(lane)) return walk_.error == Errc::kOk;
-        reported = leaf_.face(lane);
-        return walk_.report(reported);
-      });
-      if (!go_on) return false;
-    }
-    return true;
-  }
-
-  bool touches(std::uint32_t lane) {
-    bool touched = false;
-    const bool read = leaf_.with_triangle(
-        lane, [&](const Triangle& triangle, std::uint32_t /*face*/, std::uint32_t /*half*/) {
-          touched = walk_.shape.overlaps(bounds_of(triangle)) && walk_.shape.touches(triangle);
-        });
-    if (!read) walk_.error = leaf_.error();
-    return touched;
-  }
-
   const WideCodec<Node>& codec_;
   FaceWalk<Shape>& walk_;
   const Filter filter_;
   const Prefetch<Node> prefetch_;
-  LeafFloats leaf_;
+  OverlapLeaves<Shape, Filter> leaves_;
   std::array<Children, WideCodec<Node>::kDepthLimit> open_;
 };
 

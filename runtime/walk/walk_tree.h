@@ -16,12 +16,18 @@ namespace boxtree {
 /// Whether trees of a wide codec can be bound.
 inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
 
+/// Whether trees of other codecs can be, with boxtree::paper.
+inline constexpr bool kHasOtherCodecs = BOXTREE_HAS_PLAIN_F32 || BOXTREE_HAS_PLAIN_F16 ||
+                                        BOXTREE_HAS_PACKED_F32 || BOXTREE_HAS_PACKED_F16 ||
+                                        BOXTREE_HAS_PACKED_F64 || BOXTREE_HAS_DEDUP;
+
 /// Whether the nodes of a tree are those of a wide codec.
 [[nodiscard]] inline bool has_wide_nodes(const BoundTree& tree) noexcept {
   return kHasWideCodecs && is_wide(tree.codec_functions().id);
 }
 
-/// Calls `visitor` with the codec of a tree that has wide nodes.
+/// Calls `visitor` with the codec of a tree that has wide nodes. Where there are no other codecs the
+/// tree may be without nodes, too: one of these does for it.
 template <class Answer, class Visitor>
 Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
                        [[maybe_unused]] const Visitor& visitor) {
@@ -35,6 +41,11 @@ Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
     return visitor(tree.nodes().as<WideCodec<Wide4Node>>());
   }
 #endif
+#if BOXTREE_HAS_WIDE4
+  if constexpr (!kHasOtherCodecs) return visitor(WideCodec<Wide4Node>());
+#elif BOXTREE_HAS_WIDE8
+  if constexpr (!kHasOtherCodecs) return visitor(WideCodec<Wide8Node>());
+#endif
   return Errc::kInternal;
 }
 
@@ -47,15 +58,19 @@ Errc walk_tree(const BoundTree& tree, Query& query, const Plain& plain) {
   if constexpr (kHasWideCodecs && kWalksByVectors) {
     if (has_wide_nodes(tree)) return walk_wide(tree, query);
   }
-  if constexpr (kHasCodecWalks<Query>) {
+  if constexpr (kHasCodecWalks<Query> && !kHasOtherCodecs && !kWalksByVectors) {
+    return with_wide_codec<Errc>(tree, plain);
+  } else if constexpr (kHasCodecWalks<Query>) {
     if constexpr (!kWalksByVectors) {
       if (has_wide_nodes(tree)) return with_wide_codec<Errc>(tree, plain);
     }
     if (const CodecWalks* own = tree.codec_functions().walks) {
       return (own->*kWalkOf<Query>)(tree, query);
     }
+    return plain(ErasedCodec{&tree});
+  } else {
+    return plain(ErasedCodec{&tree});
   }
-  return plain(ErasedCodec{&tree});
 }
 
 /// Visits what can matter to the query, from near to far. Returns kNodeCorrupt or kDepthExceeded

@@ -184,9 +184,8 @@ TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
       GridLeafFaces faces;
       GridOffsets offsets;
       GridLeafBits place;
-      ASSERT_TRUE(record.corners_per_face == 4
-                      ? read_grid_faces<true>(grid, leaf, faces, offsets, &place)
-                      : read_grid_faces<false>(grid, leaf, faces, offsets, &place));
+      const bool may_be_quad = record.corners_per_face == 4;
+      ASSERT_TRUE(read_grid_faces(grid, leaf, may_be_quad, faces, offsets, &place));
       EXPECT_EQ(place.begin % 8, 0u);
       for (std::uint64_t bit = place.end; bit % 8 != 0; ++bit, ++gaps) {
         EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, bit / 8, 1u << (bit % 8))) << leaf;

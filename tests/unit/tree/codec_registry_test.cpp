@@ -35,9 +35,9 @@ std::vector<double> answers(const Tree& tree) {
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d from = point();
     const auto hit = closest_hit(tree, {from, point() - from});
-    out.insert(out.end(), {hit ? hit->t : -1, hit ? double{hit->face.id} : -1});
+    out.insert(out.end(), {hit ? hit->t : -1, hit ? static_cast<double>(hit->face.id) : -1});
     const auto near = closest_point(tree, from);
-    out.insert(out.end(), {near->distance, double{near->face.id}});
+    out.insert(out.end(), {near->distance, static_cast<double>(near->face.id)});
     std::vector<std::uint32_t> box, sphere;
     const auto keep = [](std::vector<std::uint32_t>& faces) {
       return [&faces](const FaceRef& face) {
@@ -74,7 +74,7 @@ TEST(CodecRegistry, ACodecWithoutWalksOfItsOwnIsWalkedByItsFunctions) {
     ASSERT_NE(BoundTree::of(*with).codec_functions().walks, nullptr);
     ASSERT_EQ(BoundTree::of(*without).codec_functions().walks, nullptr);
     const std::vector<double> expected = answers(*with);
-    EXPECT_GT(expected.size(), 1000u);
+    EXPECT_GT(expected.size(), 500u);
     EXPECT_EQ(answers(*without), expected) << codec_name(codec);
   }
 }
@@ -85,7 +85,7 @@ TEST(CodecRegistry, ACodecOfAnUnusedLibraryNamesIt) {
   const Result<Tree> tree = Tree::bind(cooked.file);
   use_paper_codecs();
   ASSERT_EQ(tree.code(), Errc::kCodecUnsupported);
-  EXPECT_NE(tree.error().detail.find("codec dedup is one of boxtree::paper: link it and call "
+  EXPECT_NE(tree.error().detail.find("dedup is a codec of boxtree::paper: link it and call "
                                      "use_paper_codecs()"),
             std::string::npos)
       << tree.error().detail;
