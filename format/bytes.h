@@ -44,17 +44,31 @@ template <class T>
   return largest <= 0xffff ? 2 : 4;
 }
 
-/// Number `index` of an array of numbers of 1, 2 or 4 bytes each.
-[[nodiscard]] inline std::uint32_t load_number(const std::byte* numbers, std::uint8_t bytes,
-                                               std::size_t index) noexcept {
-  switch (bytes) {
-    case 1:
-      return load<std::uint8_t>(numbers, index);
-    case 2:
-      return load<std::uint16_t>(numbers, index);
-    default:
-      return load<std::uint32_t>(numbers, index);
+/// Numbers of 1, 2 or 4 bytes each, wherever they lie: the one way to read face ids, copies of faces
+/// and materials. May be of nothing.
+class NumberView {
+ public:
+  NumberView() noexcept = default;
+  NumberView(const std::byte* numbers, std::uint8_t bytes) noexcept
+      : numbers_(numbers), bytes_(bytes) {}
+
+  explicit operator bool() const noexcept { return numbers_ != nullptr; }
+
+  /// Precondition: there is such a number.
+  [[nodiscard]] std::uint32_t operator[](std::size_t index) const noexcept {
+    switch (bytes_) {
+      case 1:
+        return load<std::uint8_t>(numbers_, index);
+      case 2:
+        return load<std::uint16_t>(numbers_, index);
+      default:
+        return load<std::uint32_t>(numbers_, index);
+    }
   }
-}
+
+ private:
+  const std::byte* numbers_ = nullptr;
+  std::uint8_t bytes_ = 0;
+};
 
 }  // namespace boxtree

@@ -162,8 +162,9 @@ class SceneWalk {
       }
       const Bytes faces = OpenFile::of(file_).section(SectionKind::kFaceMaterials, tree);
       const std::uint8_t bytes = material_number_bytes(count);
+      const NumberView numbers(faces.data(), bytes);
       for (std::size_t face = 0; face < faces.size() / bytes; ++face) {
-        if (load_number(faces.data(), bytes, face) >= count) {
+        if (numbers[face] >= count) {
           add(Errc::kRecordInvalid, what + "face " + std::to_string(face));
         }
       }

@@ -93,10 +93,9 @@ std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
   const std::uint32_t tree = instance(of.instance).tree;
   if (tree >= trees_.size()) return kNoMaterial;
   const TreeMaterials& materials = materials_of_tree_[tree];
-  if (materials.faces != nullptr) {
+  if (materials.faces) {
     if (face.index >= trees_[tree].face_count()) return kNoMaterial;
-    return load_number(materials.faces, static_cast<std::uint8_t>(materials.number_bytes),
-                       face.index);
+    return materials.faces[face.index];
   }
   // One run is of all faces, whatever their ids; else the last one that starts at or before it.
   std::uint32_t first = 0;

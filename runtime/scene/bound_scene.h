@@ -130,8 +130,7 @@ class BoundScene {
   struct TreeMaterials {
     const std::byte* runs = nullptr;  // MaterialRun[], or
     std::uint32_t run_count = 0;
-    const std::byte* faces = nullptr;  // a number of each face
-    std::uint32_t number_bytes = 0;
+    NumberView faces;  // a number of each face, or of nothing
   };
 
   TopLevel top_;

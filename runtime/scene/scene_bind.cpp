@@ -105,7 +105,7 @@ Status BoundScene::check_materials(const File& opened) {
     }
     materials_of_tree_[i] = {runs.data(),
                              static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
-                             faces.empty() ? nullptr : faces.data(), number_bytes};
+                             faces.empty() ? NumberView() : NumberView(faces.data(), number_bytes)};
   }
   return {};
 }

@@ -148,10 +148,8 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
       sized_section(parts.face_ids, SectionKind::kFaceIds, place,
                     record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
   if (!ids) return ids.error();
-  if (record_.face_id_bytes != 0) face_ids_ = *ids;
-  if (record_.geometry == GeometryId::kExternal && face_ids_ != nullptr) {
-    leaves_.set_order(face_ids_, record_.face_id_bytes);
-  }
+  if (record_.face_id_bytes != 0) face_ids_ = {*ids, record_.face_id_bytes};
+  if (record_.geometry == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
   }
@@ -162,7 +160,7 @@ Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& pla
   const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
                                        record_.duplicate_count, record_.duplicate_bytes);
   if (!originals) return originals.error();
-  if (record_.duplicate_count != 0) duplicates_ = *originals;
+  if (record_.duplicate_count != 0) duplicates_ = {*originals, record_.duplicate_bytes};
   return {};
 }
 

@@ -21,7 +21,7 @@ BoundTree& BoundTree::inside(Tree& tree) noexcept {
 }
 
 bool BoundTree::has_face_ids() const noexcept {
-  return face_ids_ != nullptr || (record_.flags & kTreeFacesInSourceOrder) != 0;
+  return bool{face_ids_} || (record_.flags & kTreeFacesInSourceOrder) != 0;
 }
 
 NodeRef BoundTree::root_ref() const noexcept {
@@ -65,20 +65,19 @@ Result<Triangle> BoundTree::triangle(const FaceRef& face, std::uint32_t half) co
 
 std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
   if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
-  if (face_ids_ == nullptr) return kNoFaceId;
-  return load_number(face_ids_, record_.face_id_bytes, face);
+  return face_ids_ ? face_ids_[face] : kNoFaceId;
 }
 
 FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
   const std::uint32_t originals = faces_in_leaves(record_);
-  if (duplicates_ == nullptr) return {originals, originals};
+  if (!duplicates_) return {originals, originals};
   // The first whose original is not below `limit`.
   const auto from = [this](std::uint32_t limit) {
     std::uint32_t low = 0;
     std::uint32_t high = record_.duplicate_count;
     while (low < high) {
       const std::uint32_t middle = low + (high - low) / 2;
-      const bool below = load_number(duplicates_, record_.duplicate_bytes, middle) < limit;
+      const bool below = duplicates_[middle] < limit;
       (below ? low : high) = below ? middle + 1 : middle;
     }
     return low;
@@ -89,8 +88,7 @@ FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
 
 std::uint32_t BoundTree::original_of(std::uint32_t face) const noexcept {
   const std::uint32_t originals = faces_in_leaves(record_);
-  if (duplicates_ == nullptr || face < originals) return face;
-  return load_number(duplicates_, record_.duplicate_bytes, face - originals);
+  return duplicates_ && face >= originals ? duplicates_[face - originals] : face;
 }
 
 Eigen::AlignedBox3d BoundTree::to_object(const Box<double>& box) const noexcept {

@@ -95,7 +95,7 @@ class BoundTree {
   [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
 
   /// Whether some faces stand in no leaf because they are copies of others.
-  [[nodiscard]] bool has_duplicates() const noexcept { return duplicates_ != nullptr; }
+  [[nodiscard]] bool has_duplicates() const noexcept { return bool{duplicates_}; }
   /// The copies of a face that is in a leaf: the same triangles, to the bit, and larger ids.
   /// Visitors of the queries are told of them; traversals that read leaves themselves meet the
   /// original alone. Corrupt bytes may state any copies, for several faces the same.
@@ -108,7 +108,7 @@ class BoundTree {
   /// as in contacts that push bodies apart.
   [[nodiscard]] Tree without_duplicates() const noexcept {
     Tree tree(*this);
-    inside(tree).duplicates_ = nullptr;
+    inside(tree).duplicates_ = {};
     return tree;
   }
 
@@ -140,8 +140,8 @@ class BoundTree {
   std::string_view name_;
   BoundCodec nodes_;
   const CodecFunctions* functions_ = &kNoCodec;
-  const std::byte* face_ids_ = nullptr;
-  const std::byte* duplicates_ = nullptr;  // the original of each, ascending
+  NumberView face_ids_;
+  NumberView duplicates_;  // the original of each, ascending
   LeafReader leaves_;
   // What every query needs, computed when the tree is bound.
   Eigen::Vector3d reach_ = Eigen::Vector3d::Zero();

@@ -95,7 +95,7 @@ Errc LeafReader::read_as(std::uint32_t first, std::uint32_t count,
   const std::uint32_t corners_per_face = mesh_.corners_per_face;
   std::uint32_t triangles = 0;
   for (std::uint32_t f = first; f < first + count; ++f) {
-    const std::uint32_t stored = order_ == nullptr ? f : load_number(order_, order_bytes_, f);
+    const std::uint32_t stored = order_ ? order_[f] : f;
     if (stored >= mesh_.face_count) return Errc::kFaceOutOfRange;
     const std::byte* const face =
         mesh_.corners + std::size_t{stored} * corners_per_face * sizeof(Corner);

@@ -65,12 +65,9 @@ class LeafReader {
     mesh_.corners_per_face = grid.corners_per_face;
   }
 
-  /// From now on face n of the tree is face order[n] of the mesh, numbers of `bytes` (1, 2 or 4)
-  /// each: for arrays of an application, whose order is not the tree's.
-  void set_order(const std::byte* order, std::uint8_t bytes) noexcept {
-    order_ = order;
-    order_bytes_ = bytes;
-  }
+  /// From now on face n of the tree is face order[n] of the mesh: for arrays of an application, whose
+  /// order is not the tree's.
+  void set_order(NumberView order) noexcept { order_ = order; }
 
   /// Comes last: `reach` is the largest magnitude of a coordinate in tree space.
   void prepare_floats(double reach) noexcept;
@@ -83,7 +80,7 @@ class LeafReader {
   [[nodiscard]] double grid_step() const noexcept { return grid_step_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   /// Whether face n of the tree is face n of the mesh.
-  [[nodiscard]] bool is_in_tree_order() const noexcept { return order_ == nullptr; }
+  [[nodiscard]] bool is_in_tree_order() const noexcept { return !order_; }
 
   /// Triangles of faces [first, first + count). On corrupt bytes kFaceOutOfRange (also when the
   /// leaf holds more than kMaxLeafTriangles), kVertexOutOfRange or kVertexNotFinite.
@@ -103,8 +100,7 @@ class LeafReader {
   Frame frame_;
   GridView grid_;
   double grid_step_ = 0;
-  const std::byte* order_ = nullptr;  // or null: the mesh is in the order of the tree
-  std::uint8_t order_bytes_ = 0;
+  NumberView order_;  // of nothing: the mesh is in the order of the tree
   FloatLeaves floats_;
 };
 
