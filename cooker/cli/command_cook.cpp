@@ -1,23 +1,19 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
-#include <array>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <memory>
 #include <sys/resource.h>
 
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include "cooker/choose/cost_file.h"
 #include "cooker/cli/cook_report.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/step_printer.h"
-#include "cooker/scene/cook_scene.h"
-#include "cooker/write/outputs.h"
+#include "cooker/shell/cook_job.h"
 #include "format/grid.h"
 
 namespace boxtree::cooker {
@@ -26,18 +22,11 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 struct Arguments {
-  std::vector<std::filesystem::path> inputs;
-  std::filesystem::path output;
+  CookJob job;
   std::string codec = "auto";
   std::string goal = "balance";
   std::string builder = "sah";
   std::string widths = "exact";
-  std::filesystem::path depfile;
-  std::filesystem::path profile;
-  std::filesystem::path costs;
-  CookOptions options;
-  bool scene = false;
-  bool flatten = false;
   bool why = false;
   bool candidates = false;
   bool exact = false;
@@ -51,82 +40,15 @@ struct Arguments {
   int jobs = tbb::task_arena::automatic;
 };
 
-// Make syntax: spaces, '#' and '$' in names are escaped, as gcc -MD does.
-std::string make_name(const std::filesystem::path& path) {
-  std::string out;
-  for (const char c : path.string()) {
-    if (c == ' ' || c == '#' || c == '\\') out += '\\';
-    if (c == '$') out += '$';
-    out += c;
-  }
-  return out;
-}
-
-const CookReport& trees_of(const CookedFile& cooked) {
-  const auto* scene = std::get_if<SceneReport>(&cooked);
-  return scene != nullptr ? scene->cook : std::get<CookReport>(cooked);
-}
-
-Status write_depfile(const Arguments& arguments, std::span<const std::filesystem::path> read) {
-  std::string text = make_name(arguments.output) + ":";
-  const auto add = [&](const std::filesystem::path& file) { text += " \\\n  " + make_name(file); };
-  for (const std::filesystem::path& file : read) add(file);
-  if (!arguments.costs.empty()) add(arguments.costs);
-  text += "\n";
-  Result<AtomicFile> file = AtomicFile::create(arguments.depfile);
-  if (!file) return file.error();
-  if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
-  return file->commit();
-}
-
-// Before minutes of work; what a file refers to is known, and checked, only after it was read.
-Status check_names(const Arguments& arguments) {
-  std::vector<std::filesystem::path> inputs = arguments.inputs;
-  for (const std::filesystem::path& more : {arguments.profile, arguments.costs}) {
-    if (!more.empty()) inputs.push_back(more);
-  }
-  if (arguments.output.empty()) return Error{Errc::kWriteFailed, "the output has no name"};
-  return check_outputs(std::array{arguments.output, arguments.depfile}, inputs);
-}
-
 // What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
 std::string positive_fault(const std::string& text) {
   const double number = std::strtod(text.c_str(), nullptr);
   return number > 0 && std::isfinite(number) ? "" : text + " is not above zero";
 }
 
-template <class Report>
-Result<CookedFile> as_cooked(Result<Report> report) {
-  if (!report) return report.error();
-  return CookedFile(std::move(*report));
-}
-
-// Several inputs are trees side by side, as ever; one input is what it is.
-Result<CookedFile> cook_inputs(const Arguments& arguments, const Progress& progress) {
-  if (!arguments.profile.empty() || arguments.scene) {
-    Profile profile;
-    if (!arguments.profile.empty()) {
-      Result<Profile> read = read_profile(arguments.profile);
-      if (!read) return read.error();
-      profile = std::move(*read);
-    }
-    return as_cooked(
-        cook_scene(arguments.inputs, arguments.output, arguments.options, profile, progress));
-  }
-  if (arguments.flatten || arguments.inputs.size() != 1) {
-    return as_cooked(cook(arguments.inputs, arguments.output, arguments.options, progress));
-  }
-  return cook_file(arguments.inputs.front(), arguments.output, arguments.options, progress);
-}
-
-Json report_json(const Arguments& arguments, const CookedFile& cooked, double seconds) {
-  Json json = {{"output", arguments.output.string()}};
-  const auto* scene = std::get_if<SceneReport>(&cooked);
-  if (scene != nullptr) {
-    json.update(report_json(*scene));
-  } else {
-    json["trees"] = trees_json(trees_of(cooked));
-  }
+Json report_json(const Arguments& arguments, const Summary& summary, double seconds) {
+  Json json = {{"output", arguments.job.output.string()}};
+  json.update(summary_json(summary));
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
   json["seconds"] = seconds;
@@ -134,15 +56,15 @@ Json report_json(const Arguments& arguments, const CookedFile& cooked, double se
   return json;
 }
 
-void print_report(const Arguments& arguments, const CookedFile& cooked, double seconds) {
-  if (const auto* scene = std::get_if<SceneReport>(&cooked)) {
-    print_scene(*scene, arguments.candidates);
-    if (arguments.why) print_why(*scene);
+void print_report(const Arguments& arguments, const Summary& summary, double seconds) {
+  if (summary.scene) {
+    print_scene(summary, arguments.candidates);
+    if (arguments.why) print_why(*summary.scene);
   } else {
-    print_trees(trees_of(cooked));
+    print_trees(summary);
   }
   fmt::print("wrote {} in {:.2f} s; every triangle proven inside every box above it\n",
-             shown(arguments.output.string()), seconds);
+             shown(arguments.job.output.string()), seconds);
 }
 
 // The same of a share, for which CLI11's Range lets NaN pass.
@@ -152,7 +74,7 @@ std::string share_fault(const std::string& text) {
 }
 
 int run(Arguments& arguments) {
-  CookOptions& options = arguments.options;
+  CookOptions& options = arguments.job.options;
   if (arguments.codec == "blob-lzma") options.blob = BlobMethod::kLzma;
   if (arguments.codec == "blob-zstd") options.blob = BlobMethod::kZstd;
   if (options.blob) {
@@ -174,28 +96,15 @@ int run(Arguments& arguments) {
   options.import.try_first = !arguments.trusted;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
-  if (!arguments.costs.empty()) {
-    Result<std::vector<CodecCost>> costs = read_costs(arguments.costs);
-    if (!costs) return fail(costs.error());
-    options.costs = std::move(*costs);
-  }
 
-  if (Status status = check_names(arguments); !status) return usage(status.error().detail);
-  // First, so that no error of it leaves a new output without one.
-  if (!arguments.depfile.empty()) {
-    options.before_writing = [&arguments](std::span<const std::filesystem::path> read) {
-      const Status status = check_outputs(std::span(&arguments.depfile, 1), read);
-      return status.ok() ? write_depfile(arguments, read) : status;
-    };
-  }
-
+  if (Status status = check_job(arguments.job); !status) return usage(status.error().detail);
   const Clock::time_point start = Clock::now();
-  Result<CookedFile> cooked = Errc::kInternal;
+  Result<Summary> cooked = Errc::kInternal;
   {
     StepPrinter steps(!arguments.quiet);
     tbb::task_arena arena(arguments.jobs);
     arena.execute([&] {
-      cooked = cook_inputs(arguments, [&steps](const std::string& step) { steps(step); });
+      cooked = cook_job(arguments.job, [&steps](const std::string& step) { steps(step); });
     });
   }
   if (!cooked && cooked.code() == Errc::kInvalidPose) {
@@ -223,15 +132,15 @@ void add_cook_command(CLI::App& app, int& status) {
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
   CLI::Option* inputs = command.add_option(
-      "inputs", arguments->inputs,
+      "inputs", arguments->job.inputs,
       "Mesh files, one tree each; one file with a node graph that places several is a scene");
-  command.add_option("-o,--output", arguments->output, "The file to write")->required();
+  command.add_option("-o,--output", arguments->job.output, "The file to write")->required();
   CLI::Option* profile =
-      command.add_option("--profile", arguments->profile,
+      command.add_option("--profile", arguments->job.profile,
                          "A scene.toml: what is asked of the scene, and so what may be left out");
   CLI::Option* scene =
-      command.add_flag("--scene", arguments->scene, "Make all inputs one scene of placed trees");
-  command.add_flag("--flatten", arguments->flatten, "Make each input one tree, never a scene")
+      command.add_flag("--scene", arguments->job.as_scene, "Make all inputs one scene of placed trees");
+  command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
       ->excludes(profile)
       ->excludes(scene);
   command.add_flag("--why", arguments->why,
@@ -248,26 +157,26 @@ void add_cook_command(CLI::App& app, int& status) {
       command.add_flag("--exact", arguments->exact,
                        "Keep every bit of every position [else auto may choose a grid of 24 bits]");
   CLI::Option* tolerance = command.add_option(
-      "--tolerance", arguments->options.grid.tolerance,
+      "--tolerance", arguments->job.options.grid.tolerance,
       "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
   tolerance->check(positive_fault, "POSITIVE")->excludes(exact);
   CLI::Option* grid_bits = command.add_option(
-      "--grid-bits", arguments->options.grid.bits,
+      "--grid-bits", arguments->job.options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
   CLI::Option* budget =
       command
-          .add_option("--max-bytes-per-triangle", arguments->options.wishes.max_bytes_per_triangle,
+          .add_option("--max-bytes-per-triangle", arguments->job.options.wishes.max_bytes_per_triangle,
                       "Choose nothing larger, nodes and geometry together")
           ->check(positive_fault, "POSITIVE");
   CLI::Option* slowdown =
       command
-          .add_option("--max-slowdown", arguments->options.wishes.max_slowdown,
+          .add_option("--max-slowdown", arguments->job.options.wishes.max_slowdown,
                       "Choose nothing slower, in times of the fastest candidate")
           ->check(positive_fault, "POSITIVE");
   CLI::Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
                                               "Leave the source face numbers out");
-  command.add_flag("--skip-bad", arguments->options.import.skip_bad,
+  command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
   command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it")
       ->check(CLI::Range(1, 1024));
@@ -278,12 +187,12 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_option("--widths", arguments->widths, "Widths of bit-packed fields"))
       ->check(CLI::IsMember({"exact", "estimated"}))
       ->capture_default_str();
-  rare(command.add_option("--shrink-share", arguments->options.shrink_share,
+  rare(command.add_option("--shrink-share", arguments->job.options.shrink_share,
                           "Codecs with a face a leaf cut off empty slabs from this share of a box "
                           "on; 1: never"))
       ->check(share_fault, "0.01 to 1")
       ->capture_default_str();
-  rare(command.add_option("--costs", arguments->costs,
+  rare(command.add_option("--costs", arguments->job.costs,
                           "Choose by the constants of your own machine, as `bench --calibrate "
                           "--json` prints them: the choice may then differ from other machines'"));
   CLI::Option* external =
@@ -299,10 +208,10 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_flag("--trusted", arguments->trusted,
                         "Read formats that assimp reads once, not first in another process that "
                         "may crash"));
-  rare(command.add_option("--depfile", arguments->depfile, "Write the files read, in make syntax"));
+  rare(command.add_option("--depfile", arguments->job.depfile, "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
-  rare(command.add_flag("--try-all", arguments->options.try_all,
+  rare(command.add_flag("--try-all", arguments->job.options.try_all,
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
   for (CLI::Option* option :
@@ -313,7 +222,7 @@ void add_cook_command(CLI::App& app, int& status) {
     if (inputs->count() == 0 && profile->count() == 0) {
       throw CLI::RequiredError("inputs, or --profile with a source");
     }
-    if (grid_bits->count() > 0) arguments->options.geometry = GeometryId::kGrid;
+    if (grid_bits->count() > 0) arguments->job.options.geometry = GeometryId::kGrid;
     status = run(*arguments);
   });
 }

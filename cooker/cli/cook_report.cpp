@@ -123,12 +123,12 @@ void print_grid(const CookedTree& cooked) {
 }
 
 // What was chosen for each tree, a line each.
-void print_choices(const CookReport& report) {
+void print_choices(const Summary& summary) {
   std::size_t width = 4;
-  for (const CookedTree& cooked : report.trees) width = std::max(width, cooked.tree.name.size());
+  for (const CookedTree& cooked : summary.trees) width = std::max(width, cooked.tree.name.size());
   fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>5}  {:>9}\n", "tree", width,
              "triangles", "codec", "geometry", "tree B/tri", "with geom.", "times", "error");
-  for (const CookedTree& cooked : report.trees) {
+  for (const CookedTree& cooked : summary.trees) {
     const std::vector<Candidate>& candidates = cooked.contest.candidates;
     const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -144,8 +144,8 @@ void print_choices(const CookReport& report) {
 }
 
 // The parts of one tree that were left out, for tools that look at trees alone.
-void add_left_out(const SceneReport& report, Json& trees) {
-  for (const WhyLine& line : report.why) {
+void add_left_out(const SceneSummary& scene, Json& trees) {
+  for (const WhyLine& line : scene.why) {
     if (line.kept) continue;
     for (Json& tree : trees) {
       if (line.owner != "mesh " + tree["name"].get<std::string>()) continue;
@@ -159,10 +159,10 @@ void add_left_out(const SceneReport& report, Json& trees) {
 
 }  // namespace
 
-Json trees_json(const CookReport& report) {
+Json trees_json(const Summary& summary) {
   Json trees = Json::array();
-  for (std::size_t i = 0; i < report.trees.size(); ++i) {
-    const CookedTree& cooked = report.trees[i];
+  for (std::size_t i = 0; i < summary.trees.size(); ++i) {
+    const CookedTree& cooked = summary.trees[i];
     Json tree = {{"name", cooked.tree.name},
                  {"triangles", cooked.tree.triangle_count},
                  {"chosen", codec_name(cooked.tree.nodes.codec)},
@@ -183,8 +183,8 @@ Json trees_json(const CookReport& report) {
     for (const LeftOut& part : cooked.left_out) {
       tree["left_out"].push_back({{"what", part.what}, {"bytes", part.bytes}, {"why", part.why}});
     }
-    if (report.imports.size() == report.trees.size()) {
-      tree["import"] = import_json(report.imports[i]);
+    if (summary.imports.size() == summary.trees.size()) {
+      tree["import"] = import_json(summary.imports[i]);
     }
     trees.push_back(tree);
   }
@@ -197,19 +197,21 @@ Json imports_json(const std::vector<ImportReport>& imports) {
   return json;
 }
 
-Json report_json(const SceneReport& report) {
+Json summary_json(const Summary& summary) {
   Json json;
-  json["trees"] = trees_json(report.cook);
-  add_left_out(report, json["trees"]);
-  json["imports"] = imports_json(report.cook.imports);
-  json["scene"] = {{"instances", report.instances},
-                   {"moving", report.moving},
-                   {"instances_left_out", report.instances_left_out},
-                   {"source_meshes", report.meshes},
-                   {"placed_triangles", report.placed_triangles},
-                   {"file_bytes", report.file_bytes}};
+  json["trees"] = trees_json(summary);
+  if (!summary.scene) return json;
+  const SceneSummary& scene = *summary.scene;
+  add_left_out(scene, json["trees"]);
+  json["imports"] = imports_json(summary.imports);
+  json["scene"] = {{"instances", scene.instances},
+                   {"moving", scene.moving},
+                   {"instances_left_out", scene.instances_left_out},
+                   {"source_meshes", scene.meshes},
+                   {"placed_triangles", scene.placed_triangles},
+                   {"file_bytes", summary.file_bytes}};
   json["why"] = Json::array();
-  for (const WhyLine& line : report.why) {
+  for (const WhyLine& line : scene.why) {
     json["why"].push_back({{"part", line.part},
                            {"owner", line.owner},
                            {"kept", line.kept},
@@ -218,47 +220,48 @@ Json report_json(const SceneReport& report) {
                            {"reason", line.reason},
                            {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
   }
-  json["notices"] = report.notices;
+  json["notices"] = scene.notices;
   return json;
 }
 
-void print_trees(const CookReport& report) {
-  for (std::size_t i = 0; i < report.trees.size(); ++i) {
-    const CookedTree& cooked = report.trees[i];
+void print_trees(const Summary& summary) {
+  for (std::size_t i = 0; i < summary.trees.size(); ++i) {
+    const CookedTree& cooked = summary.trees[i];
     fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
     print_contest(cooked);
     print_grid(cooked);
   }
-  for (const ImportReport& import : report.imports) print_import(import);
+  for (const ImportReport& import : summary.imports) print_import(import);
 }
 
-void print_scene(const SceneReport& report, bool candidates) {
+void print_scene(const Summary& summary, bool candidates) {
+  const SceneSummary& scene = *summary.scene;
   if (candidates) {
-    print_trees(report.cook);
+    print_trees(summary);
   } else {
-    print_choices(report.cook);
-    for (const ImportReport& import : report.cook.imports) print_import(import);
+    print_choices(summary);
+    for (const ImportReport& import : summary.imports) print_import(import);
   }
   fmt::print("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
-             report.instances, report.moving, report.cook.trees.size(), report.placed_triangles,
-             report.file_bytes);
-  if (report.instances_left_out > 0 || report.meshes > report.cook.trees.size()) {
-    fmt::print("  left out: {} instances, {} meshes\n", report.instances_left_out,
-               report.meshes - report.cook.trees.size());
+             scene.instances, scene.moving, summary.trees.size(), scene.placed_triangles,
+             summary.file_bytes);
+  if (scene.instances_left_out > 0 || scene.meshes > summary.trees.size()) {
+    fmt::print("  left out: {} instances, {} meshes\n", scene.instances_left_out,
+               scene.meshes - summary.trees.size());
   }
-  for (const std::string& notice : report.notices) fmt::print("  {}\n", shown(notice));
+  for (const std::string& notice : scene.notices) fmt::print("  {}\n", shown(notice));
 }
 
-void print_why(const SceneReport& report) {
+void print_why(const SceneSummary& scene) {
   std::size_t part_width = 4, owner_width = 5;
-  for (const WhyLine& line : report.why) {
+  for (const WhyLine& line : scene.why) {
     part_width = std::max(part_width, line.part.size());
     owner_width = std::max(owner_width, line.owner.size());
   }
   std::uint64_t kept = 0;
   for (const bool wanted : {true, false}) {
     fmt::print("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
-    for (const WhyLine& line : report.why) {
+    for (const WhyLine& line : scene.why) {
       if (line.kept != wanted) continue;
       if (wanted) kept += line.bytes;
       const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)

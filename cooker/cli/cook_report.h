@@ -5,22 +5,22 @@
 #include <vector>
 
 #include "cooker/cli/output.h"
-#include "cooker/scene/cook_scene.h"
+#include "cooker/cook.h"
 
 namespace boxtree::cooker {
 
 /// One entry a tree: candidates, the choice, what was left out and, where trees and imports are one
 /// to one, what import did.
-[[nodiscard]] Json trees_json(const CookReport& report);
+[[nodiscard]] Json trees_json(const Summary& summary);
 [[nodiscard]] Json imports_json(const std::vector<ImportReport>& imports);
-/// Counts of a scene, and every line of --why.
-[[nodiscard]] Json report_json(const SceneReport& report);
+/// The trees; of a scene its counts and every line of --why, too.
+[[nodiscard]] Json summary_json(const Summary& summary);
 
 /// The candidates of each tree and what import found.
-void print_trees(const CookReport& report);
+void print_trees(const Summary& summary);
 /// Each tree on a line, or with the table of its `candidates`; and what the scene has.
-void print_scene(const SceneReport& report, bool candidates);
+void print_scene(const Summary& summary, bool candidates);
 /// Each part, its bytes, and who decided.
-void print_why(const SceneReport& report);
+void print_why(const SceneSummary& scene);
 
 }  // namespace boxtree::cooker

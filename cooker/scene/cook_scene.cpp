@@ -14,15 +14,10 @@
 #include "cooker/scene/precision.h"
 #include "cooker/scene/scene_account.h"
 #include "cooker/scene/scene_grid.h"
-#include "cooker/scene/scene_source.h"
-#include "cooker/write/blob_writer.h"
 #include "format/container.h"
-#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Without a profile, what the options say holds for every mesh.
 void apply_options(const CookOptions& options, ScenePlan& plan) {
@@ -58,24 +53,14 @@ class SceneCook {
   SceneCook(const CookOptions& options, const Profile& profile, const Progress& progress)
       : options_(options), profile_(profile), progress_(progress) {}
 
-  Result<SceneReport> run(LoadedScene loaded, const fs::path& output) {
+  Result<CookedFile> run(LoadedScene loaded) {
     loaded_ = std::move(loaded);
     if (Status status = plan(); !status) return status.error();
     if (Status status = try_meshes(); !status) return status.error();
     if (Status status = choose_encodings(); !status) return status.error();
     if (Status status = assemble(); !status) return status.error();
     if (Status status = keep_to_bytes(); !status) return status.error();
-    std::vector<fs::path> read = profile_.files_read;
-    for (const ImportReport& import : loaded_.imports) {
-      read.insert(read.end(), import.files_read.begin(), import.files_read.end());
-    }
-    if (Status status = prepare_writing(output, read, options_); !status) return status.error();
-    step("write " + output.filename().string());
-    const FileParts parts{trees_, record_, &parts_};
-    const Status written =
-        options_.blob ? write_blob(output, parts, *options_.blob) : write_file(output, parts);
-    if (!written) return written.error();
-    return report(output);
+    return cooked();
   }
 
  private:
@@ -274,9 +259,9 @@ class SceneCook {
           materials.runs.push_back({run.first_face, material_number_[run.material]});
         }
       } else {
+        const NumberView ids(tree.geometry.face_ids.data(), tree.geometry.face_id_bytes);
         for (std::uint32_t face = 0; face < tree.face_count; ++face) {
-          materials.faces.push_back(material_at(
-              load_number(tree.geometry.face_ids.data(), tree.geometry.face_id_bytes, face)));
+          materials.faces.push_back(material_at(ids[face]));
         }
       }
     }
@@ -329,14 +314,15 @@ class SceneCook {
     if (!profile_.budget.bytes) return {};
     const std::uint64_t limit = profile_.budget.bytes->value;
     for (;;) {
-      const Result<std::uint64_t> bytes = file_bytes({trees_, record_, &parts_});
-      if (!bytes) return bytes.error();
-      if (*bytes <= limit) return {};
+      const Result<FileLayout> layout = layout_of({trees_, record_, &parts_});
+      if (!layout) return layout.error();
+      if (layout->bytes <= limit) return {};
       if (!make_something_smaller()) {
         return Error{Errc::kBudgetUnreachable,
                      fmt::format("{}: wanted a file of at most {} bytes; the smallest that is "
                                  "possible has {}",
-                                 profile_.cite(profile_.budget.bytes->line), limit, *bytes)};
+                                 profile_.cite(profile_.budget.bytes->line), limit,
+                                 layout->bytes)};
       }
       if (Status status = assemble(); !status) return status;
     }
@@ -368,39 +354,41 @@ class SceneCook {
     return true;
   }
 
-  Result<SceneReport> report(const fs::path& output) {
-    SceneReport out;
-    for (std::size_t t = 0; t < trees_.size(); ++t) {
-      CookedTree cooked;
-      cooked.collapsed = tried_[t].collapsed[tried_[t].nodes[chosen_[t]].family];
-      cooked.contest = std::move(contests_[t]);
-      out.cook.trees.push_back(std::move(cooked));
-    }
-    out.cook.imports = std::move(loaded_.imports);
-    for (const PlacedTree& instance : parts_.instances) {
-      ++out.instances;
-      out.moving += instance.moves ? 1 : 0;
-      out.placed_triangles += trees_[instance.tree].triangle_count;
-    }
-    out.instances_left_out =
-        static_cast<std::uint32_t>(plan_.instances.size() - parts_.instances.size());
-    out.meshes = static_cast<std::uint32_t>(plan_.meshes.size());
-    out.notices = plan_.notices;
-    out.files_read = profile_.files_read;
+  Result<CookedFile> cooked() {
+    CookedFile file;
+    Summary& summary = file.summary;
     std::vector<const Contest*> contests;
-    for (const CookedTree& cooked : out.cook.trees) contests.push_back(&cooked.contest);
-    Status status = account({loaded_.scene, profile_, plan_, mesh_of_tree_, trees_, contests,
-                             chosen_, parts_, options_},
-                            output, out);
-    if (!status) return status.error();
     for (std::size_t t = 0; t < trees_.size(); ++t) {
-      EncodedTree& tree = trees_[t];
-      tree.name = loaded_.scene.meshes[mesh_of_tree_[t]].mesh.name;
-      tree.nodes.bytes = {};
-      tree.geometry.vertices = tree.geometry.corners = tree.geometry.face_ids = {};
-      out.cook.trees[t].tree = std::move(tree);
+      CookedTree tree;
+      tree.tree.name = loaded_.scene.meshes[mesh_of_tree_[t]].mesh.name;
+      tree.collapsed = tried_[t].collapsed[tried_[t].nodes[chosen_[t]].family];
+      contests.push_back(&contests_[t]);
+      summary.trees.push_back(std::move(tree));
     }
-    return out;
+    SceneSummary scene;
+    for (const PlacedTree& instance : parts_.instances) {
+      ++scene.instances;
+      scene.moving += instance.moves ? 1 : 0;
+      scene.placed_triangles += trees_[instance.tree].triangle_count;
+    }
+    scene.instances_left_out =
+        static_cast<std::uint32_t>(plan_.instances.size() - parts_.instances.size());
+    scene.meshes = static_cast<std::uint32_t>(plan_.meshes.size());
+    scene.notices = plan_.notices;
+    const Result<FileLayout> layout = layout_of({trees_, record_, &parts_});
+    if (!layout) return layout.error();
+    scene.why = account({loaded_.scene, profile_, plan_, mesh_of_tree_, trees_, contests, chosen_,
+                         parts_, options_},
+                        *layout);
+    summary.scene = std::move(scene);
+    for (std::size_t t = 0; t < trees_.size(); ++t) {
+      summary.trees[t].contest = std::move(contests_[t]);
+    }
+    summary.imports = std::move(loaded_.imports);
+    file.trees = std::move(trees_);
+    file.scene = std::move(parts_);
+    file.record = std::move(record_);
+    return file;
   }
 
   const CookOptions& options_;
@@ -424,37 +412,9 @@ class SceneCook {
 
 }  // namespace
 
-Result<SceneReport> cook_scene(std::span<const fs::path> inputs, const fs::path& output,
-                               const CookOptions& options, const Profile& profile,
-                               const Progress& progress) {
-  const DefaultFloatState state;
-  const Progress none = [](const std::string&) {};
-  Result<LoadedScene> loaded =
-      load_scene(inputs, profile, options.import, progress ? progress : none);
-  if (!loaded) return loaded.error();
-  return SceneCook(options, profile, progress).run(std::move(*loaded), output);
-}
-
-Result<CookedFile> cook_file(const fs::path& input, const fs::path& output,
-                             const CookOptions& options, const Progress& progress) {
-  const DefaultFloatState state;
-  if (progress) progress("import " + input.filename().string());
-  Result<ImportedFile> imported = import_file(input, options.import);
-  if (!imported) return imported.error();
-  if (auto* mesh = std::get_if<Imported>(&*imported)) {
-    mesh->mesh.name = input.stem().string();
-    Result<CookReport> report = cook(std::move(*mesh), output, options, progress);
-    if (!report) return report.error();
-    return CookedFile(std::move(*report));
-  }
-  LoadedScene loaded;
-  loaded.scene = std::move(std::get<SourceScene>(*imported));
-  loaded.imports.push_back(std::move(loaded.scene.report));
-  loaded.import_names.push_back(input.filename().string());
-  Result<SceneReport> report =
-      SceneCook(options, Profile(), progress).run(std::move(loaded), output);
-  if (!report) return report.error();
-  return CookedFile(std::move(*report));
+Result<CookedFile> cook_scene(LoadedScene source, const Profile& profile,
+                              const CookOptions& options, const Progress& progress) {
+  return SceneCook(options, profile, progress).run(std::move(source));
 }
 
 }  // namespace boxtree::cooker

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <cstring>
-#include <filesystem>
 #include <optional>
 
 #include <fmt/format.h>
 
-#include <boxtree/file.h>
-
 #include "format/bytes.h"
 #include "format/container.h"
 #include "runtime/file/checksum.h"
-#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -23,16 +19,16 @@ class Account {
  public:
   Account(const CookedParts& cooked, std::vector<WhyLine>& why) : cooked_(cooked), why_(why) {}
 
-  void add_kept(const File& file) {
+  void add_kept(const FileLayout& layout) {
     std::uint64_t of_sections = 0;
-    for (const SectionEntry& entry : OpenFile::of(file).container().sections) {
+    for (const SectionEntry& entry : layout.sections) {
       add_section(entry);
       of_sections += entry.size;
     }
     const std::uint64_t table =
-        sizeof(FileHeader) + OpenFile::of(file).container().sections.size() * sizeof(SectionEntry);
+        sizeof(FileHeader) + layout.sections.size() * sizeof(SectionEntry);
     keep("header and section table", table, "what a reader opens the file by");
-    keep("padding", file.bytes().size() - of_sections - table,
+    keep("padding", layout.bytes - of_sections - table,
          "every section starts at a multiple of 64 bytes");
   }
 
@@ -313,22 +309,16 @@ class Account {
 
 }  // namespace
 
-Status account(const CookedParts& cooked, const std::filesystem::path& written,
-               SceneReport& report) {
-  report.why.clear();
-  Account lines(cooked, report.why);
+std::vector<WhyLine> account(const CookedParts& cooked, const FileLayout& layout) {
+  std::vector<WhyLine> why;
+  Account lines(cooked, why);
   if (cooked.options.blob) {
-    report.file_bytes = std::filesystem::file_size(written);
-    report.why.push_back(
-        {"blob", "file", true, report.file_bytes, false, "the file, compressed whole", {}});
+    why.push_back({"blob", "file", true, 0, false, "the file, compressed whole", {}});
   } else {
-    const Result<File> file = File::open(written);
-    if (!file) return file.error();
-    report.file_bytes = file->bytes().size();
-    lines.add_kept(*file);
+    lines.add_kept(layout);
   }
   lines.add_left_out();
-  return {};
+  return why;
 }
 
 std::uint64_t profile_hash(const Profile& profile) {

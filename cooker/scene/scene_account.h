@@ -3,12 +3,13 @@
 // part that is not there with what it would have taken.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <vector>
 
 #include "cooker/encode/encoded_scene.h"
-#include "cooker/scene/cook_scene.h"
+#include "cooker/cook.h"
+#include "cooker/import/source_scene.h"
+#include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 
@@ -25,10 +26,9 @@ struct CookedParts {
   const CookOptions& options;
 };
 
-/// Fills file_bytes and why of `report` from the sections of the file that was written.
-/// Errors: those of File::open.
-Status account(const CookedParts& cooked, const std::filesystem::path& written,
-               SceneReport& report);
+/// The lines of --why. Of a file that is compressed as a whole the first line is that of the blob,
+/// whose bytes are not known yet.
+[[nodiscard]] std::vector<WhyLine> account(const CookedParts& cooked, const FileLayout& layout);
 
 /// A number that tells profiles apart; 0 without one.
 [[nodiscard]] std::uint64_t profile_hash(const Profile& profile);

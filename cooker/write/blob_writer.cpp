@@ -13,14 +13,15 @@
 
 namespace boxtree::cooker {
 
-Status write_blob(const std::filesystem::path& path, const FileParts& parts, BlobMethod method) {
+Result<std::uint64_t> write_blob(const std::filesystem::path& path, const FileParts& parts,
+                                 BlobMethod method) {
   const Result<std::vector<std::byte>> file = serialize(parts);
   if (!file) return file.error();
   const Result<std::vector<std::byte>> blob = make_blob(*file, method);
   if (!blob) return blob.error();
   Result<AtomicFile> out = AtomicFile::create(path);
   if (!out) return out.error();
-  if (Status status = out->write(*blob); !status) return status;
+  if (Status status = out->write(*blob); !status) return status.error();
   const Result<Mapping> written = Mapping::map(out->descriptor(), path.string());
   if (!written) return written.error();
   const Result<File> opened = open_blob(written->bytes(), ~std::uint64_t{0});
@@ -30,7 +31,8 @@ Status write_blob(const std::filesystem::path& path, const FileParts& parts, Blo
     return Error{Errc::kBlobCorrupt, path.string() + ": the file inside did not come back"};
   }
   if (const Findings findings = verify_file(*opened); !findings.empty()) return findings.front();
-  return out->commit();
+  if (Status status = out->commit(); !status) return status.error();
+  return std::uint64_t{blob->size()};
 }
 
 }  // namespace boxtree::cooker

@@ -80,6 +80,7 @@ class Layout {
   }
 
   [[nodiscard]] std::uint64_t file_bytes() const { return header_.file_bytes; }
+  [[nodiscard]] const std::vector<SectionEntry>& sections() const { return table_; }
 
  private:
   void add(SectionKind kind, std::uint32_t owner, Bytes bytes) {
@@ -171,14 +172,14 @@ Result<std::vector<std::byte>> serialize(const FileParts& parts) {
   return out;
 }
 
-Result<std::uint64_t> file_bytes(const FileParts& parts) {
-  std::uint64_t bytes = 0;
+Result<FileLayout> layout_of(const FileParts& parts) {
+  FileLayout out;
   const Status status = with_layout(parts, [&](const Layout& layout) {
-    bytes = layout.file_bytes();
+    out = {layout.sections(), layout.file_bytes()};
     return Status{};
   });
   if (!status) return status.error();
-  return bytes;
+  return out;
 }
 
 std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
@@ -186,8 +187,8 @@ std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
   return bytes_of_file(Layout({trees, cook_record, nullptr}, nullptr, tree_names(trees)));
 }
 
-Status write_file(const std::filesystem::path& path, const FileParts& parts) {
-  if (Status status = check_tree_count(parts.trees.size()); !status) return status;
+Result<std::uint64_t> write_file(const std::filesystem::path& path, const FileParts& parts) {
+  if (Status status = check_tree_count(parts.trees.size()); !status) return status.error();
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   if (Status status =
@@ -196,14 +197,15 @@ Status write_file(const std::filesystem::path& path, const FileParts& parts) {
                         return layout.emit([&](Bytes bytes) { return file->write(bytes); });
                       });
       !status) {
-    return status;
+    return status.error();
   }
   const Result<Mapping> written = Mapping::map(file->descriptor(), path.string());
   if (!written) return written.error();
   const Result<File> opened = File::open(written->bytes());
   if (!opened) return opened.error();
   if (const Findings findings = verify_file(*opened); !findings.empty()) return findings.front();
-  return file->commit();
+  if (Status status = file->commit(); !status) return status.error();
+  return std::uint64_t{written->bytes().size()};
 }
 
 }  // namespace boxtree::cooker

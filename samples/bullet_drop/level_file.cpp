@@ -14,7 +14,8 @@ boxtree::Status cook_level(const Level& level, const std::filesystem::path& path
   }
   auto cooked = boxtree::cooker::cook_mesh(mesh, options);
   if (!cooked) return cooked.error();
-  return boxtree::cooker::write_file(path, {std::span(&cooked->tree, 1), {}});
+  const auto written = boxtree::cooker::write_file(path, {std::span(&cooked->tree, 1), {}});
+  return written ? boxtree::Status() : boxtree::Status(written.error());
 }
 
 btTriangleIndexVertexArray arrays_of(Level& level) {

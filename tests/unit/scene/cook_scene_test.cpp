@@ -15,6 +15,7 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
+#include "cooker/shell/cook_job.h"
 #include "runtime/file/open_file.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
@@ -63,21 +64,32 @@ CookOptions exact_options() {
   return options;
 }
 
+CookJob scene_job(std::vector<fs::path> inputs, const fs::path& output,
+                  const fs::path& profile = {}) {
+  return {.inputs = std::move(inputs), .output = output, .profile = profile, .as_scene = true};
+}
+
 class CookedFileOf {
  public:
-  CookedFileOf(const fs::path& source, const CookOptions& options, const Profile& profile = {},
-               bool profile_names_source = false)
-      : report(require(
-            cook_scene(profile_names_source ? std::span<const fs::path>() : std::span(&source, 1),
-                       folder_.path() / "scene.bxt", options, profile))),
+  // Without a source where the profile names it.
+  CookedFileOf(const fs::path& source, const CookOptions& options, const fs::path& profile = {})
+      : summary(require(cook_job(job(source, options, profile)))),
         file(require(File::open(folder_.path() / "scene.bxt"))),
         scene(require(Scene::bind(file))) {}
 
  private:
+  [[nodiscard]] CookJob job(const fs::path& source, const CookOptions& options,
+                            const fs::path& profile) const {
+    CookJob job = scene_job({}, folder_.path() / "scene.bxt", profile);
+    if (!source.empty()) job.inputs.push_back(source);
+    job.options = options;
+    return job;
+  }
+
   test::TempFolder folder_;
 
  public:
-  SceneReport report;
+  Summary summary;
   File file;
   Scene scene;
 };
@@ -147,9 +159,9 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int question
   }
 }
 
-std::uint64_t kept_bytes(const SceneReport& report) {
+std::uint64_t kept_bytes(const Summary& summary) {
   std::uint64_t sum = 0;
-  for (const WhyLine& line : report.why) sum += line.kept ? line.bytes : 0;
+  for (const WhyLine& line : summary.scene->why) sum += line.kept ? line.bytes : 0;
   return sum;
 }
 
@@ -157,8 +169,8 @@ const fs::path kLevel = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/level/level.g
 
 TEST(CookScene, TheSampleLevelEqualsBruteForce) {
   const CookedFileOf cooked(kLevel, exact_options());
-  EXPECT_EQ(cooked.report.instances, 53u);
-  EXPECT_EQ(cooked.report.cook.trees.size(), 8u);
+  EXPECT_EQ(cooked.summary.scene->instances, 53u);
+  EXPECT_EQ(cooked.summary.trees.size(), 8u);
   EXPECT_TRUE(verify_file(cooked.file).empty());
   std::size_t hits = 0;
   expect_brute_force(kLevel, cooked.scene, 150, hits);
@@ -186,7 +198,7 @@ TEST(CookScene, RealFilesEqualBruteForce) {
     SCOPED_TRACE(model.string());
     const CookedFileOf cooked(model, exact_options());
     EXPECT_TRUE(verify_file(cooked.file).empty());
-    EXPECT_EQ(kept_bytes(cooked.report), cooked.file.bytes().size());
+    EXPECT_EQ(kept_bytes(cooked.summary), cooked.file.bytes().size());
     ASSERT_NO_FATAL_FAILURE(expect_brute_force(model, cooked.scene, 20, hits));
   }
   EXPECT_GT(hits, 10 * models.size());
@@ -208,9 +220,9 @@ match = ["Crate"]
 motion = "moving"
 )");
   const CookedFileOf whole(kLevel, exact_options());
-  const CookedFileOf stripped(kLevel, CookOptions(), require(read_profile(text)));
-  EXPECT_LT(stripped.report.file_bytes, whole.report.file_bytes);
-  EXPECT_EQ(kept_bytes(stripped.report), stripped.report.file_bytes);
+  const CookedFileOf stripped(kLevel, CookOptions(), text);
+  EXPECT_LT(stripped.summary.file_bytes, whole.summary.file_bytes);
+  EXPECT_EQ(kept_bytes(stripped.summary), stripped.summary.file_bytes);
   EXPECT_EQ(BoundScene::of(stripped.scene).moving().size(), 1u);
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-1, 1);
@@ -255,11 +267,11 @@ TEST(CookScene, ShapesWithoutTheirMaterialsAreStoredOnce) {
   test::TempFolder folder;
   const fs::path text = folder.write("scene.toml", "[scene]\nmaterials = false\nexact = true\n");
   const CookedFileOf whole(cubes, exact_options());
-  const CookedFileOf plain(cubes, CookOptions(), require(read_profile(text)));
+  const CookedFileOf plain(cubes, CookOptions(), text);
   EXPECT_EQ(whole.scene.trees().size(), 3u);
   EXPECT_EQ(plain.scene.trees().size(), 2u);
   EXPECT_TRUE(verify_file(plain.file).empty());
-  EXPECT_EQ(kept_bytes(plain.report), plain.file.bytes().size());
+  EXPECT_EQ(kept_bytes(plain.summary), plain.file.bytes().size());
   std::size_t hits = 0;
   expect_brute_force(cubes, plain.scene, 100, hits);
   EXPECT_GT(hits, 20u);
@@ -269,7 +281,7 @@ TEST(CookScene, MaterialsSurviveWithoutFaceIds) {
   test::TempFolder folder;
   const fs::path text = folder.write("scene.toml", "[scene]\nface_ids = false\nexact = true\n");
   const CookedFileOf whole(kLevel, exact_options());
-  const CookedFileOf stripped(kLevel, CookOptions(), require(read_profile(text)));
+  const CookedFileOf stripped(kLevel, CookOptions(), text);
   std::mt19937_64 random(4);
   std::uniform_real_distribution<double> unit(-12, 12);
   std::set<std::string> seen;
@@ -291,18 +303,17 @@ TEST(CookScene, ABudgetOfBytesIsKeptOrRefusedWithTheNearest) {
   const auto cook = [&](const std::string& bytes) {
     const fs::path text =
         folder.write("scene.toml", "[scene]\nfor = \"speed\"\n[budget]\nbytes = " + bytes + "\n");
-    return cook_scene(std::span(&kLevel, 1), folder.path() / "out.bxt", CookOptions(),
-                      require(read_profile(text)));
+    return cook_job(scene_job({kLevel}, folder.path() / "out.bxt", text));
   };
-  const Result<SceneReport> free = cook("1000000");
+  const Result<Summary> free = cook("1000000");
   ASSERT_TRUE(free.ok()) << free.error().message();
   const std::uint64_t limit = free->file_bytes * 9 / 10;
-  const Result<SceneReport> tight = cook(std::to_string(limit));
+  const Result<Summary> tight = cook(std::to_string(limit));
   ASSERT_TRUE(tight.ok()) << tight.error().message();
   EXPECT_LE(tight->file_bytes, limit);
   const fs::path out = folder.path() / "out.bxt";
   const std::string before = test::read_text(out);
-  const Result<SceneReport> refused = cook("1000");
+  const Result<Summary> refused = cook("1000");
   EXPECT_EQ(refused.code(), Errc::kBudgetUnreachable);
   EXPECT_NE(refused.error().detail.find("scene.toml:4"), std::string::npos);
   EXPECT_NE(refused.error().detail.find("the smallest that is possible has "), std::string::npos);
@@ -324,9 +335,9 @@ name = "barrels"
 match = ["Barrel*"]
 leave_out = true
 )");
-  const CookedFileOf cooked(kLevel, CookOptions(), require(read_profile(text)));
-  EXPECT_EQ(cooked.report.instances, 41u);
-  EXPECT_EQ(cooked.report.instances_left_out, 12u);
+  const CookedFileOf cooked(kLevel, CookOptions(), text);
+  EXPECT_EQ(cooked.summary.scene->instances, 41u);
+  EXPECT_EQ(cooked.summary.scene->instances_left_out, 12u);
   for (const Tree& tree : cooked.scene.trees()) {
     const bool is_scenery = tree.name() == "wall" || tree.name() == "pillar";
     EXPECT_NE(tree.name(), "barrel");
@@ -335,13 +346,13 @@ leave_out = true
     }
   }
   const auto told = [&](const std::string& owner, const std::string& line) {
-    return std::any_of(cooked.report.why.begin(), cooked.report.why.end(), [&](const WhyLine& why) {
+    return std::any_of(cooked.summary.scene->why.begin(), cooked.summary.scene->why.end(), [&](const WhyLine& why) {
       return why.owner == owner && why.line.find(line) != std::string::npos;
     });
   };
   EXPECT_TRUE(told("mesh wall", "scene.toml:6"));
   EXPECT_TRUE(told("object barrels", "scene.toml:11"));
-  EXPECT_EQ(kept_bytes(cooked.report), cooked.report.file_bytes);
+  EXPECT_EQ(kept_bytes(cooked.summary), cooked.summary.file_bytes);
 }
 
 // A thousand instances of twenty props take a tenth of the bytes of cooking every one as triangles,
@@ -372,10 +383,10 @@ TEST(CookScene, InstancesTakeATenthOfTheirTriangles) {
             std::to_string(3 * (i % 32)) + ", 0, " + std::to_string(3 * (i / 32)) +
             "]\naxis = [0, 1, 0]\ndegrees = " + std::to_string(i % 360) + "\n";
   }
-  const Profile profile = require(read_profile(folder.write("scene.toml", text)));
-  const CookedFileOf cooked({}, CookOptions(), profile, true);
-  ASSERT_EQ(cooked.report.instances, 1000u);
-  ASSERT_EQ(cooked.report.cook.trees.size(), 20u);
+  const fs::path profile = folder.write("scene.toml", text);
+  const CookedFileOf cooked({}, CookOptions(), profile);
+  ASSERT_EQ(cooked.summary.scene->instances, 1000u);
+  ASSERT_EQ(cooked.summary.trees.size(), 20u);
   for (std::uint32_t i = 0; i < 1000; ++i) {
     const InstanceInfo info = require(cooked.scene.info(i));
     const Pose pose = require(cooked.scene.pose(i));
@@ -397,8 +408,8 @@ TEST(CookScene, InstancesTakeATenthOfTheirTriangles) {
   const EncodedTree one = require(cook_as(merged, CodecId::kWide4, options));
   const std::uint64_t triangles = one.nodes.bytes.size() + one.geometry.vertices.size() +
                                   one.geometry.corners.size() + one.geometry.face_ids.size();
-  EXPECT_LT(cooked.report.file_bytes * 10, triangles)
-      << cooked.report.file_bytes << " of " << triangles;
+  EXPECT_LT(cooked.summary.file_bytes * 10, triangles)
+      << cooked.summary.file_bytes << " of " << triangles;
 }
 
 // Geometry that the application shares with its render mesh: not in the file, the same answers.
@@ -412,9 +423,8 @@ match = ["Floor", "Barrel*"]
 external = true
 )");
   const fs::path out = folder.path() / "out.bxt";
-  const SceneReport report =
-      require(cook_scene(std::span(&kLevel, 1), out, CookOptions(), require(read_profile(text))));
-  EXPECT_EQ(kept_bytes(report), report.file_bytes);
+  const Summary summary = require(cook_job(scene_job({kLevel}, out, text)));
+  EXPECT_EQ(kept_bytes(summary), summary.file_bytes);
   const File file = require(File::open(out));
   EXPECT_TRUE(verify_file(file).empty());
   EXPECT_EQ(Scene::bind(file).code(), Errc::kExternalMeshNeeded);
@@ -445,7 +455,7 @@ exact = true
 name = "crate"
 hidden_faces = "hidden.txt"
 )");
-  const CookedFileOf cooked(kLevel, CookOptions(), require(read_profile(text)));
+  const CookedFileOf cooked(kLevel, CookOptions(), text);
   for (const Tree& tree : cooked.scene.trees()) {
     if (tree.name() != "crate") continue;
     ASSERT_EQ(BoundTree::of(tree).record().face_count, 9u);
@@ -453,27 +463,25 @@ hidden_faces = "hidden.txt"
     for (std::uint32_t face = 0; face < 9; ++face) ids.insert(BoundTree::of(tree).face_id(face));
     EXPECT_EQ(ids, (std::set<std::uint32_t>{1, 2, 5, 6, 7, 8, 9, 10, 11}));
   }
-  const auto dropped = std::ranges::find_if(cooked.report.why, [](const WhyLine& line) {
+  const auto dropped = std::ranges::find_if(cooked.summary.scene->why, [](const WhyLine& line) {
     return !line.kept && line.part == "hidden faces";
   });
-  ASSERT_NE(dropped, cooked.report.why.end());
+  ASSERT_NE(dropped, cooked.summary.scene->why.end());
   EXPECT_NE(dropped->reason.find('3'), std::string::npos) << dropped->reason;
   folder.write("hidden.txt", "0-11\n");
-  EXPECT_EQ(cook_scene(std::span(&kLevel, 1), folder.path() / "out.bxt", CookOptions(),
-                       require(read_profile(text)))
-                .code(),
+  EXPECT_EQ(cook_job(scene_job({kLevel}, folder.path() / "out.bxt", text)).code(),
             Errc::kProfileInvalid);
 }
 
 TEST(CookScene, OneFileIsCookedAsWhatItIs) {
   test::TempFolder folder;
   const fs::path obj = fs::path(BOXTREE_SOURCE_FOLDER) / "samples/meshes/crate.obj";
-  const CookedFile mesh = require(cook_file(obj, folder.path() / "mesh.bxt", CookOptions()));
-  EXPECT_TRUE(std::holds_alternative<CookReport>(mesh));
+  const Summary mesh = require(cook_job({{obj}, folder.path() / "mesh.bxt"}));
+  EXPECT_FALSE(mesh.scene.has_value());
   const File without = require(File::open(folder.path() / "mesh.bxt"));
   EXPECT_EQ(Scene::bind(without).code(), Errc::kNoScene);
-  const CookedFile scene = require(cook_file(kLevel, folder.path() / "scene.bxt", CookOptions()));
-  EXPECT_TRUE(std::holds_alternative<SceneReport>(scene));
+  const Summary scene = require(cook_job({{kLevel}, folder.path() / "scene.bxt"}));
+  EXPECT_TRUE(scene.scene.has_value());
   const File with = require(File::open(folder.path() / "scene.bxt"));
   EXPECT_TRUE(Scene::bind(with).ok());
 }
@@ -511,7 +519,7 @@ mesh = "tile"
 mesh = "tile"
 translation = [1, 0, 0]
 )");
-  const CookedFileOf cooked({}, CookOptions(), require(read_profile(text)), true);
+  const CookedFileOf cooked({}, CookOptions(), text);
   ASSERT_EQ(cooked.scene.trees().size(), 1u);
   const Tree& tree = cooked.scene.trees()[0];
   ASSERT_EQ(BoundTree::of(tree).record().geometry, GeometryId::kGrid);
@@ -543,8 +551,8 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
   const std::vector<fs::path> inputs{folder.write("a.obj", wood), folder.write("b.obj", wood),
                                      folder.write("c.obj", stone), folder.write("d.obj", both)};
   const fs::path out = folder.path() / "out.bxt";
-  const SceneReport report = require(cook_scene(inputs, out, CookOptions(), Profile()));
-  EXPECT_EQ(report.meshes, 3u);
+  const Summary summary = require(cook_job(scene_job(inputs, out)));
+  EXPECT_EQ(summary.scene->meshes, 3u);
   const File file = require(File::open(out));
   const Scene scene = require(Scene::bind(file));
   EXPECT_EQ(scene.instance_count(), 4u);
@@ -569,13 +577,10 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
 TEST(CookScene, InvalidScenesAreRefused) {
   test::TempFolder folder;
   const fs::path out = folder.path() / "out.bxt";
-  const std::vector<fs::path> none;
-  EXPECT_EQ(cook_scene(none, out, CookOptions(), Profile()).code(), Errc::kProfileInvalid);
+  EXPECT_EQ(cook_job(scene_job({}, out)).code(), Errc::kProfileInvalid);
   const fs::path text = folder.write("scene.toml", "[scene]\nsource = \"absent.gltf\"\n");
-  const Profile profile = require(read_profile(text));
-  EXPECT_EQ(cook_scene(none, out, CookOptions(), profile).code(), Errc::kFileNotFound);
-  EXPECT_EQ(cook_scene(std::span(&kLevel, 1), out, CookOptions(), profile).code(),
-            Errc::kProfileInvalid);
+  EXPECT_EQ(cook_job(scene_job({}, out, text)).code(), Errc::kFileNotFound);
+  EXPECT_EQ(cook_job(scene_job({kLevel}, out, text)).code(), Errc::kProfileInvalid);
   EXPECT_FALSE(fs::exists(out));
 }
 

@@ -191,7 +191,9 @@ TEST(WriteFile, FullDiskLeavesTheOldAndNamesTheFile) {
   Status status;
   {
     const FullDisk full(4096);
-    status = write_file(target, {std::span(&cooked->tree, 1), "{}\n"});
+    const Result<std::uint64_t> written =
+        write_file(target, {std::span(&cooked->tree, 1), "{}\n"});
+    status = written ? Status() : Status(written.error());
   }
   ASSERT_EQ(status.code(), Errc::kWriteFailed);
   EXPECT_NE(status.error().detail.find(target.string()), std::string::npos);
@@ -207,7 +209,7 @@ TEST(WriteFile, ATreeThatDoesNotHoldIsNotReleased) {
   const auto target = folder.write("torus.bxt", "old");
   Result<CookedTree> cooked = cook_mesh(test::torus(24, 16), {});
   cooked->tree.nodes.root_box.high[0] -= 1;
-  const Status status = write_file(target, {std::span(&cooked->tree, 1), {}});
+  const Result<std::uint64_t> status = write_file(target, {std::span(&cooked->tree, 1), {}});
   EXPECT_EQ(status.code(), Errc::kBoxEscape) << status.error().message();
   EXPECT_EQ(test::read_text(target), "old");
   EXPECT_EQ(entries(folder.path()), 1u);

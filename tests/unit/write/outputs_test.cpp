@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "cooker/cook.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
@@ -16,11 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kTriangle = "mtllib m.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\n";
-
 TEST(Outputs, AreFilesOfTheirOwn) {
   const test::TempFolder folder;
-  const fs::path mesh = folder.write("m.obj", kTriangle);
+  const fs::path mesh = folder.write("m.obj", "v 0 0 0\n");
   fs::create_hard_link(mesh, folder.path() / "hard");
   fs::create_symlink(mesh, folder.path() / "soft");
   fs::create_directory(folder.path() / "sub");
@@ -35,32 +32,6 @@ TEST(Outputs, AreFilesOfTheirOwn) {
   EXPECT_EQ(code("out", folder.path() / "out"), Errc::kWriteFailed);
   EXPECT_EQ(code("new", folder.path() / "dangling"), Errc::kWriteFailed);
   EXPECT_EQ(code("out", folder.path() / "new"), Errc::kOk);
-}
-
-TEST(Outputs, ACookDoesNotWriteOverWhatItRead) {
-  const test::TempFolder folder;
-  const fs::path mesh = folder.write("m.obj", kTriangle);
-  const fs::path material = folder.write("m.mtl", "newmtl a\n");
-  for (const fs::path& output : {mesh, material}) {
-    const std::string before = test::read_text(output);
-    EXPECT_EQ(cook(std::vector{mesh}, output, CookOptions()).code(), Errc::kWriteFailed) << output;
-    EXPECT_EQ(test::read_text(output), before);
-  }
-}
-
-TEST(Outputs, WhatComesBeforeWritingCanEndACook) {
-  const test::TempFolder folder;
-  const fs::path mesh = folder.write("m.obj", kTriangle);
-  const fs::path material = folder.write("m.mtl", "newmtl a\n");
-  CookOptions options;
-  std::vector<fs::path> told;
-  options.before_writing = [&told](std::span<const fs::path> read) {
-    told.assign(read.begin(), read.end());
-    return Status(Error{Errc::kWriteFailed, "no"});
-  };
-  EXPECT_EQ(cook(std::vector{mesh}, folder.path() / "out", options).code(), Errc::kWriteFailed);
-  EXPECT_EQ(told, (std::vector{mesh, material}));
-  EXPECT_FALSE(fs::exists(folder.path() / "out"));
 }
 
 }  // namespace
