@@ -3,6 +3,7 @@
 #include "cooker/scene/toml_checks.h"
 
 #include <algorithm>
+#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -52,21 +53,24 @@ class Scan {
           has_begun_ = is_header_ = true;
           return;
         }
-        if (is_value_) ++depth_;
+        if (is_value_) open_ += c;
         break;
       case '{':
-        if (is_value_) ++depth_;
+        if (is_value_) open_ += c;
+        expects_value_ = false;
         break;
       case ']':
         is_header_ = false;  // its name ends here, what follows is for the parser to see
         [[fallthrough]];
       case '}':
-        if (depth_ > 0) --depth_;
+        if (!open_.empty()) open_.pop_back();
+        expects_value_ = is_value_;
         break;
       case '=':
-        is_value_ = true;
+        is_value_ = expects_value_ = true;
         break;
       case ',':
+        expects_value_ = is_value_ && (open_.empty() || open_.back() == '[');
         break;
       default:
         if (static_cast<unsigned char>(c) >= 0x80) {
@@ -83,16 +87,17 @@ class Scan {
     if (is_header_) add("the name of a table has to end on its line, by ']'");
     ++line_;
     dots_ = 0;
-    if (depth_ == 0) has_begun_ = is_value_ = is_header_ = false;
+    if (open_.empty()) has_begun_ = is_value_ = expects_value_ = is_header_ = false;
   }
 
   // Whether the quote before at_ is where a token begins: elsewhere the parser takes it, and what
-  // follows, for a part of a bare value.
+  // follows, for a part of a bare value. Behind a dot it begins a part of a key.
   [[nodiscard]] bool may_begin_string() const {
     constexpr std::string_view kBefore = " \t\r\n=[{,.";
     const std::string_view before = text_.substr(0, at_ - 1);
-    return before.empty() || before == kByteOrderMark ||
-           kBefore.find(before.back()) != std::string_view::npos;
+    if (before.empty() || before == kByteOrderMark) return true;
+    return kBefore.find(before.back()) != std::string_view::npos &&
+           !(before.back() == '.' && expects_value_);
   }
 
   // Behind the first quote. A string of one line that has no end leaves the rest of it to the
@@ -126,9 +131,10 @@ class Scan {
   std::size_t at_ = 0;
   std::uint32_t line_ = 1;
   std::uint32_t dots_ = 0;
-  std::uint32_t depth_ = 0;  // of arrays and inline tables
+  std::string open_;         // the brackets of arrays and inline tables
   bool has_begun_ = false;   // something of a statement has been seen
-  bool is_value_ = false;
+  bool is_value_ = false;       // behind the '=' of a statement
+  bool expects_value_ = false;  // not a key of an inline table there
   bool is_header_ = false;
   std::optional<TomlFault> fault_;
 };
