@@ -28,8 +28,7 @@ Result<CookedFile> TreesCook::finish() {
     file.trees.push_back(std::move(cooked.tree));
     cooked.tree.name = file.trees.back().name;
     file.summary.trees.push_back(std::move(cooked));
-    sources.push_back(
-        {file.trees.back().name, imports_[i].content_hash, imports_[i].source_faces});
+    sources.push_back({file.trees.back().name, imports_[i].content_hash, imports_[i].source_faces});
   }
   if (options_.cook_record) file.record = make_cook_record(options_, sources);
   file.summary.imports = std::move(imports_);

@@ -44,8 +44,8 @@ template <class T>
   return largest <= 0xffff ? 2 : 4;
 }
 
-/// Numbers of 1, 2 or 4 bytes each, wherever they lie: the one way to read face ids, copies of faces
-/// and materials. May be of nothing.
+/// Numbers of 1, 2 or 4 bytes each, wherever they lie: the one way to read face ids, copies of
+/// faces and materials. May be of nothing.
 class NumberView {
  public:
   NumberView() noexcept = default;

@@ -228,7 +228,8 @@ BOXTREE_ALWAYS_INLINE std::array<std::uint8_t, 4> with_fourth(std::uint32_t corn
 /// decode_grid_leaf; the vertices named are vertices of the cluster. `may_be_quad`: whether a face
 /// of the store has four corners, a constant where it matters. `place` may be null.
 BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
-                                           bool may_be_quad, GridLeafFaces& out, GridOffsets& offsets,
+                                           bool may_be_quad, GridLeafFaces& out,
+                                           GridOffsets& offsets,
                                            GridLeafBits* place = nullptr) noexcept {
   using namespace grid_detail;
   std::uint32_t vertex_count = 0;

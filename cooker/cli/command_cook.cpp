@@ -138,8 +138,8 @@ void add_cook_command(CLI::App& app, int& status) {
   CLI::Option* profile =
       command.add_option("--profile", arguments->job.profile,
                          "A scene.toml: what is asked of the scene, and so what may be left out");
-  CLI::Option* scene =
-      command.add_flag("--scene", arguments->job.as_scene, "Make all inputs one scene of placed trees");
+  CLI::Option* scene = command.add_flag("--scene", arguments->job.as_scene,
+                                        "Make all inputs one scene of placed trees");
   command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
       ->excludes(profile)
       ->excludes(scene);
@@ -164,11 +164,11 @@ void add_cook_command(CLI::App& app, int& status) {
       "--grid-bits", arguments->job.options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
-  CLI::Option* budget =
-      command
-          .add_option("--max-bytes-per-triangle", arguments->job.options.wishes.max_bytes_per_triangle,
-                      "Choose nothing larger, nodes and geometry together")
-          ->check(positive_fault, "POSITIVE");
+  CLI::Option* budget = command
+                            .add_option("--max-bytes-per-triangle",
+                                        arguments->job.options.wishes.max_bytes_per_triangle,
+                                        "Choose nothing larger, nodes and geometry together")
+                            ->check(positive_fault, "POSITIVE");
   CLI::Option* slowdown =
       command
           .add_option("--max-slowdown", arguments->job.options.wishes.max_slowdown,
@@ -208,7 +208,8 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_flag("--trusted", arguments->trusted,
                         "Read formats that assimp reads once, not first in another process that "
                         "may crash"));
-  rare(command.add_option("--depfile", arguments->job.depfile, "Write the files read, in make syntax"));
+  rare(command.add_option("--depfile", arguments->job.depfile,
+                          "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   rare(command.add_flag("--try-all", arguments->job.options.try_all,

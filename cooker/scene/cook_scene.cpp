@@ -321,8 +321,7 @@ class SceneCook {
         return Error{Errc::kBudgetUnreachable,
                      fmt::format("{}: wanted a file of at most {} bytes; the smallest that is "
                                  "possible has {}",
-                                 profile_.cite(profile_.budget.bytes->line), limit,
-                                 layout->bytes)};
+                                 profile_.cite(profile_.budget.bytes->line), limit, layout->bytes)};
       }
       if (Status status = assemble(); !status) return status;
     }

@@ -25,8 +25,7 @@ class Account {
       add_section(entry);
       of_sections += entry.size;
     }
-    const std::uint64_t table =
-        sizeof(FileHeader) + layout.sections.size() * sizeof(SectionEntry);
+    const std::uint64_t table = sizeof(FileHeader) + layout.sections.size() * sizeof(SectionEntry);
     keep("header and section table", table, "what a reader opens the file by");
     keep("padding", layout.bytes - of_sections - table,
          "every section starts at a multiple of 64 bytes");

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "cooker/encode/encoded_scene.h"
 #include "cooker/cook.h"
+#include "cooker/encode/encoded_scene.h"
 #include "cooker/import/source_scene.h"
 #include "cooker/scene/plan.h"
 

@@ -40,7 +40,8 @@ class Scan {
         return;
       case '"':
       case '\'':
-        if (!may_begin_string()) add("a string stands by itself, not beside a word or another string");
+        if (!may_begin_string())
+          add("a string stands by itself, not beside a word or another string");
         has_begun_ = true;
         pass_string(c);
         return;
@@ -131,8 +132,8 @@ class Scan {
   std::size_t at_ = 0;
   std::uint32_t line_ = 1;
   std::uint32_t dots_ = 0;
-  std::string open_;         // the brackets of arrays and inline tables
-  bool has_begun_ = false;   // something of a statement has been seen
+  std::string open_;            // the brackets of arrays and inline tables
+  bool has_begun_ = false;      // something of a statement has been seen
   bool is_value_ = false;       // behind the '=' of a statement
   bool expects_value_ = false;  // not a key of an inline table there
   bool is_header_ = false;

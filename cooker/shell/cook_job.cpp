@@ -92,8 +92,7 @@ class Job {
     }
     TreesCook trees(options_, progress_);
     const bool may_share_grid =
-        job_.inputs.size() > 1 &&
-        (options_.geometry == GeometryId::kGrid || options_.may_use_grid);
+        job_.inputs.size() > 1 && (options_.geometry == GeometryId::kGrid || options_.may_use_grid);
     if (may_share_grid) return cook_on_one_grid(trees);
     for (const fs::path& input : job_.inputs) {
       Result<Imported> imported = import_tree(input);
@@ -150,7 +149,8 @@ class Job {
     if (!bytes) return bytes.error();
     summary.file_bytes = *bytes;
     if (options_.blob && summary.scene) summary.scene->why.front().bytes = *bytes;
-    for (std::size_t i = 0; i < cooked.trees.size(); ++i) release(cooked.trees[i], summary.trees[i]);
+    for (std::size_t i = 0; i < cooked.trees.size(); ++i)
+      release(cooked.trees[i], summary.trees[i]);
     return std::move(summary);
   }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one shell around the pipeline: reads what a job names, cooks it in memory, checks that nothing
-// that was read would be written over, and writes.
+// The one shell around the pipeline: reads what a job names, cooks it in memory, checks that
+// nothing that was read would be written over, and writes.
 #pragma once
 
 #include <filesystem>
@@ -27,12 +27,12 @@ struct CookJob {
 Status check_job(const CookJob& job);
 
 /// Cooks a job: a scene, where it says so or its only input places meshes twice or more; otherwise
-/// each input becomes a tree named after its file. Each input is read once; inputs that share a grid
-/// are in memory together, others one after the other. The file is written, proven and takes the
-/// place of another only when it is whole; before it the depfile. On any error nothing of the output
-/// changes. The bytes do not depend on threads or folders.
-/// Errors: those of check_job; kWriteFailed, also where an output is a file that was read; those of
-/// read_costs, read_profile, import, TreesCook, cook_scene and write_file.
+/// each input becomes a tree named after its file. Each input is read once; inputs that share a
+/// grid are in memory together, others one after the other. The file is written, proven and takes
+/// the place of another only when it is whole; before it the depfile. On any error nothing of the
+/// output changes. The bytes do not depend on threads or folders. Errors: those of check_job;
+/// kWriteFailed, also where an output is a file that was read; those of read_costs, read_profile,
+/// import, TreesCook, cook_scene and write_file.
 Result<Summary> cook_job(const CookJob& job, const Progress& progress = {});
 
 }  // namespace boxtree::cooker

@@ -9,8 +9,8 @@
 
 namespace boxtree::cooker {
 
-/// Writes "output: inputs" in make syntax to `path`, which takes the place of another file only once
-/// it is whole. Error: kWriteFailed.
+/// Writes "output: inputs" in make syntax to `path`, which takes the place of another file only
+/// once it is whole. Error: kWriteFailed.
 Status write_depfile(const std::filesystem::path& path, const std::filesystem::path& output,
                      std::span<const std::filesystem::path> inputs);
 

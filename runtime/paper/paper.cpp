@@ -9,22 +9,22 @@ namespace boxtree {
 void use_paper_codecs() noexcept {
   static constexpr const CodecFunctions* kFunctions[] = {
 #if BOXTREE_HAS_PLAIN_F32
-      &kPlainF32Functions,
+    &kPlainF32Functions,
 #endif
 #if BOXTREE_HAS_PLAIN_F16
-      &kPlainF16Functions,
+    &kPlainF16Functions,
 #endif
 #if BOXTREE_HAS_PACKED_F32
-      &kPackedF32Functions,
+    &kPackedF32Functions,
 #endif
 #if BOXTREE_HAS_PACKED_F16
-      &kPackedF16Functions,
+    &kPackedF16Functions,
 #endif
 #if BOXTREE_HAS_PACKED_F64
-      &kPackedF64Functions,
+    &kPackedF64Functions,
 #endif
 #if BOXTREE_HAS_DEDUP
-      &kDedupFunctions,
+    &kDedupFunctions,
 #endif
   };
   static constexpr CodecSet kSet(kFunctions);

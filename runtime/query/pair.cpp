@@ -8,8 +8,8 @@
 namespace boxtree {
 namespace {
 
-// Trees of different codecs, or of none. A function of its own, because its stack of boxes in double is the
-// largest of all walks.
+// Trees of different codecs, or of none. A function of its own, because its stack of boxes in
+// double is the largest of all walks.
 [[gnu::noinline]] Result<Visit> walk_erased(const BoundTree& first, const BoundTree& second,
                                             const RelativePose& pose, PairVisitor visitor,
                                             PairBound& bound) {

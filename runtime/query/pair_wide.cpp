@@ -270,8 +270,7 @@ Result<Visit> walk(const BoundTree& first, const WideCodec<Node>& first_codec,
 Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
                         const PairFilter& filter, PairVisitor visitor, PairBound& bound) {
   return with_wide_codec<Result<Visit>>(first, [&]<class C>(const C& codec) {
-    return walk(first, codec, second, second.nodes().as<C>(), pose, filter, visitor,
-                bound);
+    return walk(first, codec, second, second.nodes().as<C>(), pose, filter, visitor, bound);
   });
 }
 #endif

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The nodes of a tree in one codec or another, behind one type: what a bound tree holds. Which
-// codecs there are is known when a tree is bound and not when the runtime is compiled: the wide ones
-// are its own, those of the paper come from boxtree::paper.
+// codecs there are is known when a tree is bound and not when the runtime is compiled: the wide
+// ones are its own, those of the paper come from boxtree::paper.
 #pragma once
 
 #include <concepts>
@@ -84,34 +84,35 @@ struct CodecFunctions {
 template <Codec C>
 [[nodiscard]] constexpr CodecFunctions functions_of(CodecId id,
                                                     const CodecWalks* walks = nullptr) noexcept {
-  return {id, C::Children::kWidth,
-          [](const TreeRecord& record, Bytes nodes, BoundCodec& out) -> Status {
-            const Result<C> codec = C::bind(record, nodes);
-            if (!codec) return codec.error();
-            out = BoundCodec(*codec);
-            return {};
-          },
-          [](const BoundCodec& codec, const TreeRecord& record) noexcept {
-            return codec.as<C>().root(record);
-          },
-          [](const BoundCodec& codec, NodeRef ref, const Box<double>& box,
-             AnyChildren& out) noexcept {
-            typename C::Children children;
-            if (!codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children)) {
-              return false;
-            }
-            out.count = children.count;
-            out.leaf_mask = children.leaf_mask;
-            for (std::uint32_t i = 0; i < children.count; ++i) {
-              for (std::size_t k = 0; k < 3; ++k) {
-                out.low[k][i] = children.low[k][i];
-                out.high[k][i] = children.high[k][i];
-              }
-              out.ref[i] = children.ref[i];
-            }
-            return true;
-          },
-          walks};
+  return {
+      id,
+      C::Children::kWidth,
+      [](const TreeRecord& record, Bytes nodes, BoundCodec& out) -> Status {
+        const Result<C> codec = C::bind(record, nodes);
+        if (!codec) return codec.error();
+        out = BoundCodec(*codec);
+        return {};
+      },
+      [](const BoundCodec& codec, const TreeRecord& record) noexcept {
+        return codec.as<C>().root(record);
+      },
+      [](const BoundCodec& codec, NodeRef ref, const Box<double>& box, AnyChildren& out) noexcept {
+        typename C::Children children;
+        if (!codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children)) {
+          return false;
+        }
+        out.count = children.count;
+        out.leaf_mask = children.leaf_mask;
+        for (std::uint32_t i = 0; i < children.count; ++i) {
+          for (std::size_t k = 0; k < 3; ++k) {
+            out.low[k][i] = children.low[k][i];
+            out.high[k][i] = children.high[k][i];
+          }
+          out.ref[i] = children.ref[i];
+        }
+        return true;
+      },
+      walks};
 }
 
 /// The functions of a tree that has no nodes: its expand() finds every reference corrupt.
@@ -123,9 +124,9 @@ using CodecSet = std::span<const CodecFunctions* const>;
 /// and what they point to stay for good. Thread-safe.
 void add_codecs(const CodecSet& codecs) noexcept;
 
-/// Binds the nodes of a tree in the codec that its record states. Errors: those of the codec's bind;
-/// kCodecUnsupported, and what to do about it, when it was left out of this build or is in a library
-/// that the program does not use.
+/// Binds the nodes of a tree in the codec that its record states. Errors: those of the codec's
+/// bind; kCodecUnsupported, and what to do about it, when it was left out of this build or is in a
+/// library that the program does not use.
 Status bind_codec(const TreeRecord& record, Bytes nodes, const CodecFunctions*& functions,
                   BoundCodec& codec);
 

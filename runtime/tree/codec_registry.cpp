@@ -52,7 +52,9 @@ const CodecFunctions kNoCodec = {
     CodecId{},
     2,
     [](const TreeRecord&, Bytes, BoundCodec&) -> Status { return Errc::kInternal; },
-    [](const BoundCodec&, const TreeRecord&) noexcept { return NodeRef{0, 0}; },
+    [](const BoundCodec&, const TreeRecord&) noexcept {
+      return NodeRef{0, 0};
+    },
     [](const BoundCodec&, NodeRef, const Box<double>&, AnyChildren&) noexcept { return false; },
     nullptr};
 

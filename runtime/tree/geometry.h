@@ -65,8 +65,8 @@ class LeafReader {
     mesh_.corners_per_face = grid.corners_per_face;
   }
 
-  /// From now on face n of the tree is face order[n] of the mesh: for arrays of an application, whose
-  /// order is not the tree's.
+  /// From now on face n of the tree is face order[n] of the mesh: for arrays of an application,
+  /// whose order is not the tree's.
   void set_order(NumberView order) noexcept { order_ = order; }
 
   /// Comes last: `reach` is the largest magnitude of a coordinate in tree space.

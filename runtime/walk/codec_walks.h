@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks compiled for one codec. The wide codecs do without: they are walked by vectors; any other may
-// have these, and is walked by its functions, one indirect call a node, where it has none.
+// Walks compiled for one codec. The wide codecs do without: they are walked by vectors; any other
+// may have these, and is walked by its functions, one indirect call a node, where it has none.
 #pragma once
 
 #include <cstddef>

@@ -29,7 +29,8 @@ class LeafFloats {
   bool load(std::uint32_t first, std::uint32_t count) {
     first_ = first;
     count_ = count;
-    is_direct_ = floats_.is_direct && count == kLeafFaces && in_range(first, count, mesh_.face_count) && gather();
+    is_direct_ = floats_.is_direct && count == kLeafFaces &&
+                 in_range(first, count, mesh_.face_count) && gather();
     return is_direct_ || convert();
   }
 

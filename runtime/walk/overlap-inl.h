@@ -35,8 +35,8 @@ HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& trian
   return verdict;
 }
 
-/// The leaves that a shape meets: the same for both codecs, and compiled once. Each returns whether to
-/// go on.
+/// The leaves that a shape meets: the same for both codecs, and compiled once. Each returns whether
+/// to go on.
 template <class Shape, class Filter>
 class OverlapLeaves {
  public:

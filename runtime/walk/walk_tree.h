@@ -26,8 +26,8 @@ inline constexpr bool kHasOtherCodecs = BOXTREE_HAS_PLAIN_F32 || BOXTREE_HAS_PLA
   return kHasWideCodecs && is_wide(tree.codec_functions().id);
 }
 
-/// Calls `visitor` with the codec of a tree that has wide nodes. Where there are no other codecs the
-/// tree may be without nodes, too: one of these does for it.
+/// Calls `visitor` with the codec of a tree that has wide nodes. Where there are no other codecs
+/// the tree may be without nodes, too: one of these does for it.
 template <class Answer, class Visitor>
 Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
                        [[maybe_unused]] const Visitor& visitor) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Runs every query of a scene: on a runtime of one codec, of the paper, it has to link all the same.
+// Runs every query of a scene: on a runtime of one codec, of the paper, it has to link all the
+// same.
 #include <cstdio>
 
 #include <boxtree/boxtree.h>

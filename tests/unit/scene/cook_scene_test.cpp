@@ -346,9 +346,10 @@ leave_out = true
     }
   }
   const auto told = [&](const std::string& owner, const std::string& line) {
-    return std::any_of(cooked.summary.scene->why.begin(), cooked.summary.scene->why.end(), [&](const WhyLine& why) {
-      return why.owner == owner && why.line.find(line) != std::string::npos;
-    });
+    return std::any_of(cooked.summary.scene->why.begin(), cooked.summary.scene->why.end(),
+                       [&](const WhyLine& why) {
+                         return why.owner == owner && why.line.find(line) != std::string::npos;
+                       });
   };
   EXPECT_TRUE(told("mesh wall", "scene.toml:6"));
   EXPECT_TRUE(told("object barrels", "scene.toml:11"));

@@ -69,8 +69,8 @@ TEST(TomlChecks, StringsStandByThemselves) {
   EXPECT_EQ(fault("a = [1]\"c\"\n"), "1" + beside);
   for (const std::string text :
        {"\"a\" = 1\n", "\xef\xbb\xbf'a' = 1\n", "a.'b'.\"c\" = 1\n", "['a'.\"b\"]\n",
-        "a=['b',\"c\"]\n", "a={'b'='c',\"d\"=1}\n", "a = {b.\"c\" = 1, d.'e' = [{f.\"g\" = 2}]}\n", "a = \"\"\"b\"\"\"\"\n",
-        "a = '''b'''''\nc = 'd'\n", "a = [\n\t'b',\r\n'c']\n"}) {
+        "a=['b',\"c\"]\n", "a={'b'='c',\"d\"=1}\n", "a = {b.\"c\" = 1, d.'e' = [{f.\"g\" = 2}]}\n",
+        "a = \"\"\"b\"\"\"\"\n", "a = '''b'''''\nc = 'd'\n", "a = [\n\t'b',\r\n'c']\n"}) {
     EXPECT_EQ(fault(text), "") << text;
     EXPECT_TRUE(parse_toml(text, "t").ok()) << text;
   }

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include <boxtree/boxtree.h>
 #include <gtest/gtest.h>
+
+#include <boxtree/boxtree.h>
 
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/require.h"
@@ -56,9 +57,9 @@ TEST(CookJob, TheDepfileListsAllThatWasRead) {
   const Summary summary =
       require(cook_job({.output = output, .profile = profile, .depfile = depfile}));
   EXPECT_EQ(summary.files_read, (std::vector{profile, mesh, material}));
-  EXPECT_EQ(test::read_text(depfile),
-            output.string() + ": \\\n  " + profile.string() + " \\\n  " +
-                folder.path().string() + "/a\\ mesh.obj \\\n  " + material.string() + "\n");
+  EXPECT_EQ(test::read_text(depfile), output.string() + ": \\\n  " + profile.string() + " \\\n  " +
+                                          folder.path().string() + "/a\\ mesh.obj \\\n  " +
+                                          material.string() + "\n");
   EXPECT_EQ(summary.file_bytes, fs::file_size(output));
 }
 
@@ -67,11 +68,10 @@ TEST(CookJob, WithoutItsDepfileThereIsNoOutput) {
   const test::TempFolder folder;
   const fs::path mesh = folder.write("m.obj", kOther);
   const fs::path output = folder.write("out.bxt", "before");
-  EXPECT_EQ(cook_job({.inputs = {mesh},
-                      .output = output,
-                      .depfile = folder.path() / "absent" / "out.d"})
-                .code(),
-            Errc::kWriteFailed);
+  EXPECT_EQ(
+      cook_job({.inputs = {mesh}, .output = output, .depfile = folder.path() / "absent" / "out.d"})
+          .code(),
+      Errc::kWriteFailed);
   EXPECT_EQ(test::read_text(output), "before");
 }
 

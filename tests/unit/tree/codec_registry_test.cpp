@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <random>
 
+#include <gtest/gtest.h>
+
 #include <boxtree/boxtree.h>
 #include <boxtree/paper.h>
-#include <gtest/gtest.h>
 
 #include "format/codec_packed.h"
 #include "format/codec_plain.h"

@@ -191,8 +191,7 @@ TEST(WriteFile, FullDiskLeavesTheOldAndNamesTheFile) {
   Status status;
   {
     const FullDisk full(4096);
-    const Result<std::uint64_t> written =
-        write_file(target, {std::span(&cooked->tree, 1), "{}\n"});
+    const Result<std::uint64_t> written = write_file(target, {std::span(&cooked->tree, 1), "{}\n"});
     status = written ? Status() : Status(written.error());
   }
   ASSERT_EQ(status.code(), Errc::kWriteFailed);
