@@ -3,10 +3,10 @@
 #pragma once
 
 #include <filesystem>
-#include <string>
 
 #include <boxtree/error.h>
 
+#include "cooker/write/temporary_file.h"
 #include "format/bytes.h"
 
 namespace boxtree::cooker {
@@ -15,13 +15,11 @@ namespace boxtree::cooker {
 /// no link. Error: kWriteFailed for a loop.
 Result<std::filesystem::path> follow_links(const std::filesystem::path& target);
 
-/// Collects bytes beside the target and puts them in its place by rename. Where the file system
-/// allows (O_TMPFILE) the bytes have no name until they are complete, so that even a killed process
-/// leaves nothing behind but between two system calls; the next AtomicFile for the same target
-/// sweeps what a killed one left. A target that is a link stays one: what it leads to is replaced.
-/// An existing file keeps its mode, and its owner where the process may give files away. Two
-/// processes that write one target do not hinder each other: the last one stays. Not for use by
-/// several threads at once.
+/// Collects bytes in a TemporaryFile beside the target and puts them in its place by rename: what a
+/// killed process leaves, the next AtomicFile for the same target sweeps. A target that is a link
+/// stays one: what it leads to is replaced. An existing file keeps its mode, and its owner where
+/// the process may give files away. Two processes that write one target do not hinder each other:
+/// the last one stays. Not for use by several threads at once.
 class AtomicFile {
  public:
   /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.
@@ -37,24 +35,19 @@ class AtomicFile {
   Status write(Bytes bytes);
 
   /// The descriptor, for reading back what was written before it is committed.
-  [[nodiscard]] int descriptor() const { return descriptor_; }
+  [[nodiscard]] int descriptor() const { return temporary_.descriptor(); }
 
   /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
   /// After an error the old file is in its place, or none if there was none.
   Status commit();
 
  private:
-  AtomicFile() = default;
-  Status choose_name();
-  Status create_named();
-  Status link_anonymous();
+  AtomicFile(TemporaryFile temporary, std::filesystem::path target, bool replaces, int directory);
 
+  TemporaryFile temporary_;
   std::filesystem::path target_;
-  std::filesystem::path temporary_;  // the name before the rename
-  bool named_ = false;               // whether `temporary_` exists
-  bool replaces_ = false;            // whether the target was there
-  int descriptor_ = -1;
-  int directory_ = -1;
+  bool replaces_;  // whether the target was there
+  int directory_;  // -1 once moved from
 };
 
 }  // namespace boxtree::cooker

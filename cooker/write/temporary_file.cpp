@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Whoever is alive holds a lock on its file: what can be locked is nobody's, and is swept.
+#include "cooker/write/temporary_file.h"
+
+#include <cerrno>
+#include <cstdint>
+#include <dirent.h>
+#include <fcntl.h>
+#include <memory>
+#include <optional>
+#include <sys/file.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <system_error>
+#include <unistd.h>
+#include <utility>
+
+#include <fmt/format.h>
+
+namespace boxtree::cooker {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kSuffix = ".cooking";
+constexpr std::size_t kRandomDigits = 16;
+constexpr std::size_t kLongestName = 200;  // of what it is for: a name has 255 bytes in all
+
+Error failure(const fs::path& path, const char* what) {
+  return Error{Errc::kWriteFailed,
+               path.string() + ": " + what + ": " + std::generic_category().message(errno)};
+}
+
+std::string prefix_of(std::string_view name) {
+  return fmt::format(".{}.", name.substr(0, kLongestName));
+}
+
+bool is_temporary(std::string_view name, std::string_view prefix) {
+  if (name.size() != prefix.size() + kRandomDigits + kSuffix.size()) return false;
+  const std::string_view digits = name.substr(prefix.size(), kRandomDigits);
+  return name.starts_with(prefix) && name.ends_with(kSuffix) &&
+         digits.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+}
+
+std::optional<std::string> random_digits() {
+  std::uint64_t random = 0;
+  if (::getrandom(&random, sizeof(random), 0) != sizeof(random)) return std::nullopt;
+  return fmt::format("{:016x}", random);
+}
+
+struct CloseDirectory {
+  void operator()(DIR* directory) const { ::closedir(directory); }
+};
+
+// By readdir(), as std::filesystem aborts where memory runs out, and throws where a folder cannot
+// be read to its end: what cannot be swept stays. A lock holds in whatever container its owner is.
+void sweep(const fs::path& folder, std::string_view name) {
+  const std::string prefix = prefix_of(name);
+  const std::unique_ptr<DIR, CloseDirectory> entries(::opendir(folder.c_str()));
+  if (!entries) return;
+  const int at = ::dirfd(entries.get());
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): the folder is read by nobody else
+  while (const dirent* entry = ::readdir(entries.get())) {
+    if (!is_temporary(entry->d_name, prefix)) continue;
+    const int file = ::openat(at, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (file < 0) continue;
+    if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlinkat(at, entry->d_name, 0);
+    ::close(file);
+  }
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(TemporaryFile&& other) noexcept
+    : folder_(std::move(other.folder_)),
+      name_(std::move(other.name_)),
+      path_(std::move(other.path_)),
+      is_named_(std::exchange(other.is_named_, false)),
+      descriptor_(std::exchange(other.descriptor_, -1)) {}
+
+TemporaryFile::~TemporaryFile() {
+  remove_name();
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Result<TemporaryFile> TemporaryFile::create(const fs::path& folder, std::string_view name,
+                                            mode_t mode) {
+  sweep(folder, name);
+  TemporaryFile file;
+  file.folder_ = folder;
+  file.name_ = name;
+  file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
+  if (file.descriptor_ >= 0) {
+    if (Status status = file.choose_name(); !status) return status.error();
+    // File systems without locks sweep too much or nothing; a writer whose temporary goes fails.
+    static_cast<void>(::flock(file.descriptor_, LOCK_EX | LOCK_NB));
+  } else if (Status status = file.create_named(mode); !status) {
+    return status.error();
+  }
+  return file;
+}
+
+Status TemporaryFile::choose_name() {
+  const std::optional<std::string> digits = random_digits();
+  if (!digits) return failure(folder_ / name_, "no random numbers");
+  path_ = folder_ / (prefix_of(name_) + *digits + std::string(kSuffix));
+  return {};
+}
+
+// Before it is locked, another owner's sweep may take the file for a dead one's: then the next name
+// is tried. Each attempt that fails is somebody else's sweep, of which there are not many.
+Status TemporaryFile::create_named(mode_t mode) {
+  constexpr int kAttempts = 100;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (Status status = choose_name(); !status) return status;
+    descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode);
+    if (descriptor_ < 0) return failure(folder_ / name_, "cannot create");
+    is_named_ = true;
+    const bool is_swept = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+    struct stat status {};
+    if (::fstat(descriptor_, &status) != 0) return failure(folder_ / name_, "cannot create");
+    if (!is_swept && status.st_nlink > 0) return {};
+    remove_name();
+    ::close(std::exchange(descriptor_, -1));
+  }
+  errno = EAGAIN;
+  return failure(folder_ / name_, "cannot create");
+}
+
+// Linking by descriptor needs a privilege or /proc. A call that fails may have been done all the
+// same, on a network: the name is removed either way.
+Status TemporaryFile::add_name() {
+  if (is_named_) return {};
+  is_named_ = true;
+  if (::linkat(descriptor_, "", AT_FDCWD, path_.c_str(), AT_EMPTY_PATH) != 0) {
+    const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
+    if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
+      return failure(folder_ / name_, "cannot name the finished file");
+    }
+  }
+  return {};
+}
+
+void TemporaryFile::remove_name() {
+  if (is_named_) ::unlink(path_.c_str());
+  is_named_ = false;
+}
+
+}  // namespace boxtree::cooker
