@@ -20,6 +20,15 @@ struct NodeRef {
   friend bool operator==(const NodeRef&, const NodeRef&) = default;
 };
 
+/// What the root of a tree is. Numbers are pinned.
+enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
+
+/// As many nodes and faces as a tree states, which bound what its bytes may name.
+struct TreeCounts {
+  std::uint32_t node_count = 0;
+  std::uint32_t faces_in_leaves = 0;
+};
+
 /// Up to Width children as structure of arrays, so that one vector test serves them all.
 /// Entries at and above `count` are unspecified.
 template <std::size_t Width, class S>

@@ -25,13 +25,13 @@ bool cut_width_fits(const PackedHeader& header, PackedCut cut) {
 
 }  // namespace
 
-Status check_packed_header(const PackedHeader& header, PackedCut cut, const TreeRecord& record) {
+Status check_packed_header(const PackedHeader& header, PackedCut cut, const TreeCounts& counts) {
   const auto invalid = [](const char* what) {
     return Error{Errc::kRecordInvalid, std::string("packed header: ") + what};
   };
   std::uint64_t nodes = 0;
   for (const std::uint32_t count : header.node_count) nodes += count;
-  if (nodes != record.node_count) return invalid("nodes of the four kinds are not those stated");
+  if (nodes != counts.node_count) return invalid("nodes of the four kinds are not those stated");
   const auto is_width = [](std::uint8_t bits) { return bits >= 1 && bits <= 32; };
   if (!is_width(header.node_bits) || !is_width(header.face_bits) || !cut_width_fits(header, cut)) {
     return invalid("width of a field");

@@ -13,7 +13,7 @@
 #include "format/bits.h"
 #include "format/half.h"
 #include "format/limits.h"
-#include "format/tree_record.h"
+#include "format/message.h"
 
 namespace boxtree {
 
@@ -86,9 +86,9 @@ struct PackedPlaces {
   }
 };
 
-/// Whether widths, counts and reserve of a header can be those of a tree of `record` with that kind
+/// Whether widths, counts and reserve of a header can be those of such a tree with that kind
 /// of cut; otherwise kRecordInvalid says what cannot.
-Status check_packed_header(const PackedHeader& header, PackedCut cut, const TreeRecord& record);
+Status check_packed_header(const PackedHeader& header, PackedCut cut, const TreeCounts& counts);
 
 /// Decodes nodes of one tree. A subtree's NodeRef is its number and its kind.
 template <PackedCut K>
@@ -109,13 +109,13 @@ struct PackedCodec {
   std::uint8_t cut_bits = 0;
   std::uint8_t root_kind = 0;
 
-  /// Reads nodes of `record` out of its section. Errors: kSectionSize, kRecordInvalid.
-  static Result<PackedCodec> bind(const TreeRecord& record, Bytes section) {
+  /// Reads the nodes of a tree out of their section. Errors: kSectionSize, kRecordInvalid.
+  static Result<PackedCodec> bind(const TreeCounts& counts, Bytes section) {
     if (section.size() < sizeof(PackedHeader)) {
       return section_size_error(section.size(), sizeof(PackedHeader));
     }
     const auto header = load<PackedHeader>(section.data());
-    if (Status status = check_packed_header(header, K, record); !status) return status.error();
+    if (Status status = check_packed_header(header, K, counts); !status) return status.error();
     const PackedPlaces places(header);
     if (section.size() != places.section_bytes) {
       return section_size_error(section.size(), places.section_bytes);
@@ -132,7 +132,7 @@ struct PackedCodec {
     return codec;
   }
 
-  [[nodiscard]] NodeRef root(const TreeRecord& /*record*/) const noexcept { return {0, root_kind}; }
+  [[nodiscard]] NodeRef root() const noexcept { return {0, root_kind}; }
 
   /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
   /// corrupt: no such axis, node or cut. Precondition: `ref` came from root() or expand().

@@ -10,7 +10,7 @@
 #include "format/bytes.h"
 #include "format/half.h"
 #include "format/limits.h"
-#include "format/tree_record.h"
+#include "format/message.h"
 
 namespace boxtree {
 
@@ -77,14 +77,14 @@ struct PlainCodec {
   const std::byte* nodes = nullptr;
   std::uint32_t node_count = 0;
 
-  /// Reads nodes of `record` out of its section. Error: kSectionSize.
-  static Result<PlainCodec> bind(const TreeRecord& record, Bytes section) {
-    const std::uint64_t expected = std::uint64_t{record.node_count} * sizeof(Node);
+  /// Reads the nodes of a tree out of their section. Error: kSectionSize.
+  static Result<PlainCodec> bind(const TreeCounts& counts, Bytes section) {
+    const std::uint64_t expected = std::uint64_t{counts.node_count} * sizeof(Node);
     if (section.size() != expected) return section_size_error(section.size(), expected);
-    return PlainCodec{section.data(), record.node_count};
+    return PlainCodec{section.data(), counts.node_count};
   }
 
-  [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {0, 0}; }
+  [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
   /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
   /// corrupt: a kind or axis that does not exist, or a child that is no node behind its parent.

@@ -14,7 +14,7 @@
 #include "format/bytes.h"
 #include "format/children.h"
 #include "format/limits.h"
-#include "format/tree_record.h"
+#include "format/message.h"
 
 namespace boxtree {
 
@@ -141,14 +141,14 @@ struct WideCodec {
   std::uint32_t node_count = 0;
   std::uint32_t face_count = 0;  // of those in leaves
 
-  /// Reads nodes of `record` out of its section. Error: kSectionSize.
-  static Result<WideCodec> bind(const TreeRecord& record, Bytes section) {
-    const std::uint64_t expected = std::uint64_t{record.node_count} * sizeof(Node);
+  /// Reads the nodes of a tree out of their section. Error: kSectionSize.
+  static Result<WideCodec> bind(const TreeCounts& counts, Bytes section) {
+    const std::uint64_t expected = std::uint64_t{counts.node_count} * sizeof(Node);
     if (section.size() != expected) return section_size_error(section.size(), expected);
-    return WideCodec{section.data(), record.node_count, faces_in_leaves(record)};
+    return WideCodec{section.data(), counts.node_count, counts.faces_in_leaves};
   }
 
-  [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {0, 0}; }
+  [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
   /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
   /// corrupt: no children, or a child that is no node behind its parent or has no face.

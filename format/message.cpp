@@ -21,4 +21,8 @@ Error error_with(Errc code, std::string_view place, std::string_view text,
   return {code, std::move(detail)};
 }
 
+Error section_size_error(std::uint64_t found, std::uint64_t expected) {
+  return error_with(Errc::kSectionSize, {}, "# bytes, its record asks for #", {found, expected});
+}
+
 }  // namespace boxtree

@@ -16,4 +16,7 @@ namespace boxtree {
 [[nodiscard]] Error error_with(Errc code, std::string_view place, std::string_view text,
                                std::initializer_list<std::uint64_t> numbers = {});
 
+/// kSectionSize with both sizes; the caller knows which section of which tree.
+[[nodiscard]] Error section_size_error(std::uint64_t found, std::uint64_t expected);
+
 }  // namespace boxtree

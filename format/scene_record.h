@@ -12,8 +12,8 @@
 #include <boxtree/error.h>
 #include <boxtree/kinds.h>
 
+#include "format/children.h"
 #include "format/limits.h"
-#include "format/tree_record.h"
 
 namespace boxtree {
 

@@ -43,7 +43,7 @@ bool root_fits(const TreeRecord& record) {
 bool leaves_fit(const TreeRecord& record) {
   const std::uint64_t faces_of_node = is_wide(record.codec) ? kWideChildren * kLeafFaces : 2;
   const std::uint64_t nodes = std::max(record.node_count, 1u);
-  return faces_in_leaves(record) <= faces_of_node * nodes;
+  return counts_of(record).faces_in_leaves <= faces_of_node * nodes;
 }
 
 bool frame_fits(const TreeRecord& record) {
@@ -61,7 +61,7 @@ bool frame_fits(const TreeRecord& record) {
 bool duplicates_fit(const TreeRecord& record) {
   const std::uint8_t bytes = record.duplicate_bytes;
   if (record.duplicate_count == 0) return bytes == 0;
-  return (bytes == 1 || bytes == 2 || bytes == 4) && faces_in_leaves(record) > 0 &&
+  return (bytes == 1 || bytes == 2 || bytes == 4) && counts_of(record).faces_in_leaves > 0 &&
          (record.flags & kTreeFacesInSourceOrder) == 0;
 }
 
@@ -121,11 +121,6 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
   if (!reserve_is_zero(record)) return invalid("reserved bits are set");
   return {};
-}
-
-Error section_size_error(std::uint64_t found, std::uint64_t expected) {
-  return {Errc::kSectionSize,
-          std::to_string(found) + " bytes, its record asks for " + std::to_string(expected)};
 }
 
 }  // namespace boxtree

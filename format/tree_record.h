@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The fixed-width records that describe one tree: where it lies, how it is stored, what was proven.
+// The fixed-width record that describes one tree: where it lies, how it is stored.
 #pragma once
 
 #include <array>
@@ -9,12 +9,10 @@
 
 #include <boxtree/error.h>
 
+#include "format/children.h"
 #include "format/codec.h"
 
 namespace boxtree {
-
-/// What the root is.
-enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
 
 /// TreeRecord::flags: leaves name faces by their number in the source, so that no face_ids section
 /// is needed to translate. Otherwise faces are in tree order.
@@ -60,31 +58,15 @@ static_assert(offsetof(TreeRecord, grid_exponent) == 128);
 static_assert(offsetof(TreeRecord, duplicate_bytes) == 35);
 static_assert(offsetof(TreeRecord, duplicate_count) == 132);
 
-/// Faces that leaves hold: the first so many in tree order. The others are copies of these.
-[[nodiscard]] constexpr std::uint32_t faces_in_leaves(const TreeRecord& record) noexcept {
-  return record.face_count - record.duplicate_count;
+/// What codecs ask of it. Faces that leaves hold are the first so many in tree order; the others
+/// are copies of these.
+[[nodiscard]] constexpr TreeCounts counts_of(const TreeRecord& record) noexcept {
+  return {record.node_count, record.face_count - record.duplicate_count};
 }
-
-/// What the cooker proved about the tree after it had written it; `boxtree verify` proves it again.
-struct CertificateRecord {
-  double max_vertex_error;     // largest distance of a stored from a source vertex, object space
-  std::uint32_t depth;         // equals TreeRecord::depth
-  std::uint32_t node_count;    // nodes reached from the root
-  std::uint32_t leaf_count;    // leaves reached
-  std::uint32_t face_count;    // faces reached, each exactly once; duplicates by their originals
-  std::uint32_t shrink_count;  // nodes with one child
-  std::uint32_t degenerate_count;  // triangles without area, kept
-  std::array<std::uint64_t, 4> reserved;
-};
-static_assert(sizeof(CertificateRecord) == 64 && std::is_trivially_copyable_v<CertificateRecord>);
-static_assert(offsetof(CertificateRecord, degenerate_count) == 28);
 
 /// Checks everything about a record that can be checked without its sections: known codec, geometry
 /// and flags, counts within limits, finite ordered root box, consistent root kind, zero reserve.
 /// `tree` is the record's number, for the message.
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree);
-
-/// kSectionSize with both sizes; the caller knows which section of which tree.
-[[nodiscard]] Error section_size_error(std::uint64_t found, std::uint64_t expected);
 
 }  // namespace boxtree

@@ -51,9 +51,7 @@ struct BuildTree {
   /// Of trees with full leaves: faces in the order of leaves, from left to right. Otherwise empty.
   std::vector<std::uint32_t> order;
 
-  [[nodiscard]] Frame frame() const {
-    return Frame(Eigen::Vector3d(origin[0], origin[1], origin[2]), scale_exponent);
-  }
+  [[nodiscard]] Frame frame() const { return Frame(origin, scale_exponent); }
 };
 
 /// The bounds of a face in tree space, as a reader computes its corners.

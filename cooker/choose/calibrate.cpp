@@ -59,7 +59,7 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   if (!tried) return tried.error();
   const WorkOfKinds work = tried->contest.candidates.front().work;
   const EncodedTree encoded = tried->take(0);
-  const Result<Tree> tree = bind_parts(parts_of(encoded));
+  const Result<Tree> tree = bind_encoded(encoded);
   if (!tree) return tree.error();
   const Result<QueryCost> ns = time_queries(*tree, choice_questions(bounds_of(mesh)), runs);
   if (!ns) return ns.error();

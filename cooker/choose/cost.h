@@ -6,7 +6,7 @@
 #include <span>
 
 #include "cooker/choose/work.h"
-#include "format/tree_record.h"
+#include "format/codec.h"
 
 namespace boxtree::cooker {
 

@@ -187,7 +187,7 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
   if (!candidate.gates.pass()) return candidate;
   BindOptions bind;
   bind.mesh = arrays_of(mesh);
-  const Result<Tree> bound = bind_parts(parts_of(tree), bind);
+  const Result<Tree> bound = bind_encoded(tree, bind);
   if (!bound) return bound.error();
   const Result<WorkOfKinds> work = count_work(*bound, questions);
   if (!work) return work.error();

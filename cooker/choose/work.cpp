@@ -34,7 +34,7 @@ struct Counts {
 struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
-  static Result<ListeningCodec> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
+  static Result<ListeningCodec> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
     if (counts->are_enough()) return false;
     ++counts->nodes;
@@ -64,7 +64,7 @@ struct LeafPairCounter {
 Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
   int exponent = 0;
   static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
-  WalkBound nodes(tree.record().node_count);
+  WalkBound nodes(tree.node_count());
   RayCandidate hit;
   Listening query{RayQuery(tree, ray, exponent, nodes, false, hit), &counts};
   if (tree.empty() || !query.enters_root()) return Errc::kOk;
@@ -75,7 +75,7 @@ Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
 Errc ask(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
-  WalkBound nodes(tree.record().node_count);
+  WalkBound nodes(tree.node_count());
   Listening query{FaceWalk<BoxQuery>{tree, shape, go_on, nodes}, &counts};
   const Errc walked = traverse_overlap(tree, ListeningCodec{{&tree}, &counts}, query);
   return walked != Errc::kOk ? walked : query.error;
@@ -83,7 +83,7 @@ Errc ask(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) 
 
 Errc ask(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
-  WalkBound nodes(tree.record().node_count);
+  WalkBound nodes(tree.node_count());
   Listening query{
       PointQuery{tree, nodes, tree.frame().to_tree(point), kAnywhere, {}, Errc::kOk, {}}, &counts};
   const Errc walked = traverse_nearest(tree, ListeningCodec{{&tree}, &counts}, query);

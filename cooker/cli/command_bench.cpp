@@ -44,7 +44,7 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
   return Json{{"file", path.string()},
               {"tree", tree.name()},
               {"codec", codec_name(BoundTree::of(tree).codec())},
-              {"triangles", BoundTree::of(tree).record().triangle_count},
+              {"triangles", tree.triangle_count()},
               {"ray_ns", figures->ray_ns},
               {"box_ns", figures->box_ns},
               {"point_ns", figures->point_ns},
@@ -89,7 +89,7 @@ Result<Json> bench_approximate(const std::filesystem::path& path, const Tree& tr
   Json json = {{"file", path.string()},
                {"tree", tree.name()},
                {"codec", codec_name(BoundTree::of(tree).codec())},
-               {"triangles", BoundTree::of(tree).record().triangle_count}};
+               {"triangles", tree.triangle_count()}};
   for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
     json["approximate"][kApproximateNames[kind]] = {
         {"by_error", to_json((*figures)[kind].by_error)},
@@ -178,8 +178,8 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   if (!figures) return figures.error();
   if (!arguments.json) {
     fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", shown(path.string()),
-               shown(tree.name()), codec_name(BoundTree::of(tree).codec()),
-               BoundTree::of(tree).record().triangle_count, figures->file_pages);
+               shown(tree.name()), codec_name(BoundTree::of(tree).codec()), tree.triangle_count(),
+               figures->file_pages);
     fmt::print("  open  {:5} pages\n", figures->open);
     print_row("ray", figures->ray);
     print_row("box", figures->box);
@@ -188,7 +188,7 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   return Json{{"file", path.string()},
               {"tree", tree.name()},
               {"codec", codec_name(BoundTree::of(tree).codec())},
-              {"triangles", BoundTree::of(tree).record().triangle_count},
+              {"triangles", tree.triangle_count()},
               {"pages", to_json(*figures)}};
 }
 

@@ -18,6 +18,7 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/import/source_scene.h"
 #include "cooker/write/outputs.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {

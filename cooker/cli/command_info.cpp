@@ -10,8 +10,11 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/scene_info.h"
+#include "format/certificate_record.h"
 #include "format/container.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
+#include "runtime/tree/frame.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -67,7 +70,7 @@ Json tree_json(const File& file, std::uint32_t index) {
       certificate.size() == sizeof(CertificateRecord)
           ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
           : Json(nullptr);
-  const Frame frame(record);
+  const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
   for (std::size_t k = 0; k < 3; ++k) {

@@ -15,6 +15,7 @@
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {

@@ -11,6 +11,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {

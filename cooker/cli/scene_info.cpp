@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cooker/import/mesh_arrays.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
 

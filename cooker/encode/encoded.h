@@ -10,7 +10,8 @@
 #include "cooker/build/build_tree.h"
 #include "cooker/quantise/grid.h"
 #include "format/binary_node.h"
-#include "format/tree_record.h"
+#include "format/children.h"
+#include "format/codec.h"
 
 namespace boxtree::cooker {
 

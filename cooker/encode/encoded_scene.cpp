@@ -52,8 +52,7 @@ class SceneEncoder {
     for (std::uint32_t i = 0; i < parts_.instances.size(); ++i) {
       const PlacedTree& instance = parts_.instances[i];
       const EncodedTree& tree = trees_[instance.tree];
-      const Frame frame(Eigen::Vector3d(tree.origin[0], tree.origin[1], tree.origin[2]),
-                        tree.scale_exponent);
+      const Frame frame(tree.origin, tree.scale_exponent);
       const std::optional<Placement> placed = Placement::make(frame, instance.pose);
       const auto bounds = placed ? placed->bounds(tree.nodes.root_box) : std::nullopt;
       if (!bounds) {

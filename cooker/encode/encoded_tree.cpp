@@ -2,6 +2,9 @@
 // Records from encoded parts.
 #include "cooker/encode/encoded_tree.h"
 
+#include "format/certificate_record.h"
+#include "runtime/tree/tree_parts.h"
+
 namespace boxtree::cooker {
 
 TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
@@ -44,11 +47,11 @@ CertificateRecord certificate_of(const EncodedTree& tree) {
   return certificate;
 }
 
-TreeParts parts_of(const EncodedTree& tree) {
-  return {record_of(tree, 0),      tree.name,
-          tree.nodes.bytes,        tree.geometry.vertices,
-          tree.geometry.corners,   tree.geometry.face_ids,
-          tree.geometry.duplicates};
+Result<Tree> bind_encoded(const EncodedTree& tree, const BindOptions& options) {
+  const EncodedGeometry& geometry = tree.geometry;
+  return bind_parts({record_of(tree, 0), tree.name, tree.nodes.bytes, geometry.vertices,
+                     geometry.corners, geometry.face_ids, geometry.duplicates},
+                    options);
 }
 
 }  // namespace boxtree::cooker

@@ -5,9 +5,14 @@
 #include <array>
 #include <string>
 
+#include <boxtree/tree.h>
+
 #include "cooker/encode/encoded.h"
-#include "format/tree_record.h"
-#include "runtime/tree/bound_tree.h"
+
+namespace boxtree {
+struct CertificateRecord;
+struct TreeRecord;
+}  // namespace boxtree
 
 namespace boxtree::cooker {
 
@@ -32,7 +37,7 @@ struct EncodedTree {
 /// What the encoder claims of it, for the proof to confirm.
 [[nodiscard]] CertificateRecord certificate_of(const EncodedTree& tree);
 
-/// Its parts as a reader binds them; they point into `tree`.
-[[nodiscard]] TreeParts parts_of(const EncodedTree& tree);
+/// The tree as a reader binds it; it points into `tree`. Errors: as Tree::bind.
+[[nodiscard]] Result<Tree> bind_encoded(const EncodedTree& tree, const BindOptions& options = {});
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,7 @@
 #include "cooker/encode/top_level.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -148,10 +149,10 @@ Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
   if (boxes.empty()) return {};
   Box<double> bounds = empty_box<double>();
   for (const Box<double>& box : boxes) expand(bounds, box);
-  Eigen::Vector3d middle;
+  std::array<double, 3> middle;
   double largest = 0;
   for (std::size_t k = 0; k < 3; ++k) {
-    middle[static_cast<Eigen::Index>(k)] = bounds.low[k] / 2 + bounds.high[k] / 2;
+    middle[k] = bounds.low[k] / 2 + bounds.high[k] / 2;
     largest = std::max(largest, bounds.high[k] / 2 - bounds.low[k] / 2);
   }
   if (largest > 0) {

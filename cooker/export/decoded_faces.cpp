@@ -17,26 +17,25 @@ namespace boxtree::cooker {
 namespace {
 
 bool is_external(const Tree& tree) {
-  return BoundTree::of(tree).record().geometry == GeometryId::kExternal;
+  return BoundTree::of(tree).geometry() == GeometryId::kExternal;
 }
 
 std::vector<std::uint32_t> face_ids_of(const Tree& tree) {
-  std::vector<std::uint32_t> ids(BoundTree::of(tree).record().face_count);
+  std::vector<std::uint32_t> ids(tree.face_count());
   for (std::uint32_t f = 0; f < ids.size(); ++f) ids[f] = BoundTree::of(tree).face_id(f);
   return ids;
 }
 
 // Which stored face comes when; nothing if they are stored in the order asked for.
 Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder order) {
-  const std::uint32_t count = BoundTree::of(tree).record().face_count;
+  const std::uint32_t count = tree.face_count();
   if (order == ExportOrder::kSource && !tree.has_face_ids() && !tree.empty()) {
     return Error{Errc::kPartLeftOut,
                  fmt::format("{}: face ids were left out when it was cooked, so that the order of "
                              "its source is not known",
                              tree.name())};
   }
-  const bool stored_as_source =
-      is_external(tree) || (BoundTree::of(tree).record().flags & kTreeFacesInSourceOrder) != 0;
+  const bool stored_as_source = is_external(tree) || BoundTree::of(tree).is_in_source_order();
   const bool stored_as_tree = BoundTree::of(tree).leaves().is_in_tree_order();
   if (order == ExportOrder::kSource ? stored_as_source : stored_as_tree) {
     return std::vector<std::uint32_t>();
@@ -59,8 +58,8 @@ Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder or
 }  // namespace
 
 bool has_f32_positions(const Tree& tree) {
-  return BoundTree::of(tree).record().geometry != GeometryId::kGrid &&
-         (BoundTree::of(tree).record().flags & kTreePositionsF64) == 0;
+  return BoundTree::of(tree).geometry() != GeometryId::kGrid &&
+         !BoundTree::of(tree).has_f64_positions();
 }
 
 Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
@@ -81,7 +80,7 @@ Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
 }
 
 Status DecodedFaces::decode_grid(const Tree& tree) {
-  const std::uint32_t count = BoundTree::of(tree).record().face_count;
+  const std::uint32_t count = tree.face_count();
   decoded_.positions.precision = Precision::kF64;
   decoded_.faces.reserve(count);
   Welder<double> welder(decoded_.positions.f64, count / 2);  // as many as a closed surface has

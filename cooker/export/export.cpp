@@ -20,7 +20,7 @@ namespace {
 
 Status check_levels(std::span<const Tree> trees, const std::vector<LevelRange>& levels) {
   std::uint32_t deepest = 0;
-  for (const Tree& tree : trees) deepest = std::max(deepest, BoundTree::of(tree).record().depth);
+  for (const Tree& tree : trees) deepest = std::max(deepest, BoundTree::of(tree).depth());
   for (const LevelRange& range : levels) {
     if (range.first > deepest) {
       return Error{Errc::kInvalidQuery,

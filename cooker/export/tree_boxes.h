@@ -46,7 +46,7 @@ template <class Visit>
   if (tree.empty()) return Errc::kOk;
   std::vector<Entry> stack = {{BoundTree::of(tree).root(), 0}};
   NodeChildren children;
-  WalkBound bound(BoundTree::of(tree).record().node_count);
+  WalkBound bound(BoundTree::of(tree).node_count());
   while (!stack.empty()) {
     const Entry entry = stack.back();
     stack.pop_back();

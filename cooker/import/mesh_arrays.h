@@ -2,56 +2,26 @@
 // A source mesh in the shape in which a runtime binds an application's arrays.
 #pragma once
 
-#include <vector>
+#include <boxtree/file.h>
+#include <boxtree/scene.h>
 
 #include "cooker/import/source_mesh.h"
-#include "runtime/file/open_file.h"
-#include "runtime/scene/bound_scene.h"
-#include "runtime/tree/geometry.h"
+
+namespace boxtree {
+struct TreeRecord;
+}  // namespace boxtree
 
 namespace boxtree::cooker {
 
 /// Points into `mesh`. Faces are four corners each; kNoCorner is the runtime's missing corner.
-[[nodiscard]] inline MeshArrays arrays_of(const SourceMesh& mesh) {
-  static_assert(sizeof(Face) == 4 * sizeof(std::uint32_t) && kNoCorner == kMissingCorner);
-  const bool f64 = mesh.positions.precision == Precision::kF64;
-  MeshArrays arrays;
-  arrays.positions = f64 ? reinterpret_cast<const std::byte*>(mesh.positions.f64.data())
-                         : reinterpret_cast<const std::byte*>(mesh.positions.f32.data());
-  arrays.position_stride = 3 * (f64 ? sizeof(double) : sizeof(float));
-  arrays.positions_f64 = f64;
-  arrays.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
-  arrays.corners = reinterpret_cast<const std::byte*>(mesh.faces.data());
-  arrays.corner_bytes = 4;
-  arrays.corners_per_face = 4;
-  arrays.face_count = static_cast<std::uint32_t>(mesh.faces.size());
-  return arrays;
-}
+[[nodiscard]] MeshArrays arrays_of(const SourceMesh& mesh);
 
 /// Stands for the mesh of a tree with external geometry when it is not at hand and no leaf will be
 /// read: such a tree can be bound and its boxes walked.
-[[nodiscard]] inline MeshArrays absent_arrays(const TreeRecord& record) {
-  static constexpr std::byte kNowhere{0};
-  MeshArrays absent;
-  absent.face_count = record.face_count;
-  absent.positions_f64 = (record.flags & kTreePositionsF64) != 0;
-  absent.position_stride = 3 * sizeof(double);
-  absent.positions = &kNowhere;
-  absent.corners = &kNowhere;
-  absent.corner_bytes = sizeof(std::uint32_t);
-  return absent;
-}
+[[nodiscard]] MeshArrays absent_arrays(const TreeRecord& record);
 
 /// A scene of which no leaf will be read, whose external geometry need not be there. Errors as for
 /// Scene::bind.
-[[nodiscard]] inline Result<Scene> bind_without_meshes(const File& file) {
-  std::vector<SceneMeshArrays> absent;
-  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    absent.push_back({i, absent_arrays(OpenFile::of(file).tree_record(i))});
-  }
-  SceneOptions options;
-  options.meshes = absent;
-  return Scene::bind(file, options);
-}
+[[nodiscard]] Result<Scene> bind_without_meshes(const File& file);
 
 }  // namespace boxtree::cooker

@@ -10,7 +10,7 @@ namespace boxtree::cooker {
 Gates check_gates(const EncodedTree& tree, const MeshArrays& source) {
   BindOptions options;
   options.mesh = source;
-  const Result<Tree> bound = bind_parts(parts_of(tree), options);
+  const Result<Tree> bound = bind_encoded(tree, options);
   if (!bound) return {tree.face_count, 0, false};
   const TreeProof proof = prove_tree(*bound, true);
   const bool holds = certificate_holds(certificate_of(tree), proof.certificate, true);

@@ -18,6 +18,7 @@
 #include "cooker/proof/reserved.h"
 #include "cooker/proof/scene_proof.h"
 #include "format/limits.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/walk/traversal.h"
 
@@ -53,9 +54,9 @@ class Walk {
   Walk(const Tree& tree, bool with_geometry, Reached& reached, NodeBudget& budget, TreeProof& proof)
       : tree_(tree),
         with_geometry_(with_geometry),
-        task_levels_(BoundTree::of(tree).record().face_count < kParallelFaces ? 0
-                     : is_wide(BoundTree::of(tree).codec())                   ? kWideTaskLevels
-                                                                              : kBinaryTaskLevels),
+        task_levels_(tree.face_count() < kParallelFaces     ? 0
+                     : is_wide(BoundTree::of(tree).codec()) ? kWideTaskLevels
+                                                            : kBinaryTaskLevels),
         reached_(reached),
         budget_(budget),
         proof_(proof) {}
@@ -66,11 +67,10 @@ class Walk {
       visit_duplicates();
       report_unreached();
     }
-    const TreeRecord& record = BoundTree::of(tree_).record();
-    compare("depth", proof_.certificate.depth, record.depth);
-    compare("nodes", proof_.certificate.node_count, record.node_count);
-    compare("faces", proof_.certificate.face_count, record.face_count);
-    if (with_geometry_) compare("triangles", triangles_, record.triangle_count);
+    compare("depth", proof_.certificate.depth, BoundTree::of(tree_).depth());
+    compare("nodes", proof_.certificate.node_count, BoundTree::of(tree_).node_count());
+    compare("faces", proof_.certificate.face_count, tree_.face_count());
+    if (with_geometry_) compare("triangles", triangles_, tree_.triangle_count());
   }
 
  private:
@@ -207,9 +207,9 @@ class Walk {
   // original: so it must be in a leaf, be the same to the bit, and have the smaller id. Originals
   // ascend, as they are searched for.
   void visit_duplicates() {
-    const std::uint32_t in_leaves = faces_in_leaves(BoundTree::of(tree_).record());
+    const std::uint32_t in_leaves = BoundTree::of(tree_).counts().faces_in_leaves;
     std::uint32_t before = 0;
-    for (std::uint32_t copy = in_leaves; copy < BoundTree::of(tree_).record().face_count; ++copy) {
+    for (std::uint32_t copy = in_leaves; copy < tree_.face_count(); ++copy) {
       const std::uint32_t original = BoundTree::of(tree_).original_of(copy);
       const bool is_original = original < in_leaves && original >= before &&
                                reached_[original].load(std::memory_order_relaxed) != 0;
@@ -296,8 +296,8 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 
 TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   TreeProof proof;
-  Reached reached(tree.empty() ? 0 : BoundTree::of(tree).record().face_count);
-  NodeBudget budget(BoundTree::of(tree).record().node_count);
+  Reached reached(tree.empty() ? 0 : tree.face_count());
+  NodeBudget budget(BoundTree::of(tree).node_count());
   Walk(tree, with_geometry, reached, budget, proof).run();
   return proof;
 }
@@ -327,10 +327,10 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
       continue;
     }
     const bool with_geometry =
-        BoundTree::of(*tree).record().geometry != GeometryId::kExternal || mesh.has_value();
+        BoundTree::of(*tree).geometry() != GeometryId::kExternal || mesh.has_value();
     TreeProof proof = prove_tree(*tree, with_geometry);
-    for (Error& finding : check_reserved(BoundTree::of(*tree).record(),
-                                         OpenFile::of(file).section(SectionKind::kNodes, i),
+    const TreeRecord record = OpenFile::of(file).tree_record(i);
+    for (Error& finding : check_reserved(record, OpenFile::of(file).section(SectionKind::kNodes, i),
                                          OpenFile::of(file).section(SectionKind::kVertices, i),
                                          OpenFile::of(file).section(SectionKind::kCorners, i))) {
       proof.findings.push_back(std::move(finding));
@@ -338,7 +338,6 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
     if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
       proof.findings.push_back(status.error());
     }
-    const TreeRecord& record = BoundTree::of(*tree).record();
     if (Status status = check_text(OpenFile::of(file).section(SectionKind::kNames),
                                    record.name_offset, record.name_bytes, "its name");
         !status) {

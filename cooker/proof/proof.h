@@ -8,7 +8,7 @@
 
 #include <boxtree/file.h>
 
-#include "format/tree_record.h"
+#include "format/certificate_record.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include "cooker/proof/proof.h"
+#include "format/tree_record.h"
 
 namespace boxtree::cooker {
 

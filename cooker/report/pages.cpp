@@ -110,7 +110,7 @@ class Watch {
 // kLeafFaces would be if the triangles were spread evenly over a square of the tree's extent.
 Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size_t count) {
   const double extent = bounds_in_object_space(tree).sizes().maxCoeff();
-  const double faces = std::max(BoundTree::of(tree).record().face_count, kLeafFaces);
+  const double faces = std::max(tree.face_count(), kLeafFaces);
   const double half_edge = extent * std::sqrt(kLeafFaces / faces) / 2;
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(half_edge);
   std::mt19937 random(1);

@@ -155,7 +155,7 @@ Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTre
   figures.gates_nearest = check_gates(nearest, arrays_of(mesh));
   figures.gates_outward = check_gates(outward, arrays_of(mesh));
   const auto count = [&](const EncodedTree& encoded, std::uint64_t& total) -> Status {
-    const Result<Tree> tree = bind_parts(parts_of(encoded));
+    const Result<Tree> tree = bind_encoded(encoded);
     if (!tree) return tree.error();
     const std::vector<Pose> poses = aligned_poses(bounds_in_object_space(*tree));
     figures.questions = poses.size();
@@ -182,7 +182,7 @@ Result<std::vector<StairFigures>> stair_contact() {
   const Result<EncodedTree> box = cook_as(crate(), CodecId::kPlainF32, options);
   if (!box) return box.error();
   const EncodedTree nearest = with_nearest_cuts(*f32);
-  const Result<Tree> resting = bind_parts(parts_of(*box));
+  const Result<Tree> resting = bind_encoded(*box);
   if (!resting) return resting.error();
 
   std::vector<StairFigures> rows;
@@ -191,7 +191,7 @@ Result<std::vector<StairFigures>> stair_contact() {
     row.depth = depth;
     row.steps = kSteps;
     const auto count_missed = [&](const EncodedTree& encoded, std::uint64_t& missed) -> Status {
-      const Result<Tree> tree = bind_parts(parts_of(encoded));
+      const Result<Tree> tree = bind_encoded(encoded);
       if (!tree) return tree.error();
       for (std::size_t i = 0; i < kSteps; ++i) {
         Pose pose = Pose::Identity();

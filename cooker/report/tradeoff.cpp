@@ -240,7 +240,7 @@ class Measurement {
       return Error{Errc::kInternal, mesh_.name + ": nothing to compare answers with"};
     }
     const EncodedTree& encoded = assemble(tried, i);
-    const Result<Tree> tree = bind_parts(parts_of(encoded));
+    const Result<Tree> tree = bind_encoded(encoded);
     if (!tree) return tree.error();
     Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();
@@ -257,7 +257,7 @@ class Measurement {
     const std::vector<std::byte> file = serialize(std::span(&encoded, 1));
     point.bytes = bytes_of(encoded, file.size());
     if (!point.gates.pass()) return {};  // listed as failed, but it has no answers to look at
-    const Result<Tree> tree = bind_parts(parts_of(encoded));
+    const Result<Tree> tree = bind_encoded(encoded);
     if (!tree) return tree.error();
     const Result<Answers> answers = answers_of(*tree, answered_);
     if (!answers) return answers.error();

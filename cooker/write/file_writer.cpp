@@ -9,7 +9,9 @@
 
 #include "cooker/proof/proof.h"
 #include "cooker/text/utf8.h"
+#include "format/certificate_record.h"
 #include "format/container.h"
+#include "format/tree_record.h"
 #include "runtime/file/checksum.h"
 #include "runtime/file/mapping.h"
 

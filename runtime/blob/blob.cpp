@@ -9,6 +9,7 @@
 
 #include <boxtree/blob.h>
 
+#include "format/message.h"
 #include "runtime/blob/compressor.h"
 #include "runtime/file/checksum.h"
 #include "runtime/file/open_file.h"

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "format/message.h"
+#include "format/tree_record.h"
 #include "runtime/file/checksum.h"
 
 namespace boxtree {

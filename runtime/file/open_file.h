@@ -9,10 +9,11 @@
 #include <boxtree/file.h>
 
 #include "format/container.h"
-#include "format/tree_record.h"
 #include "runtime/file/mapping.h"
 
 namespace boxtree {
+
+struct TreeRecord;
 
 /// A file whose header, section table and tree table have been checked.
 class OpenFile {

@@ -49,8 +49,8 @@ class DistanceWalk {
                      root_box<typename B::Scalar>(second_),
                      first_.root_ref(),
                      second_.root_ref(),
-                     first_.record().root == RootKind::kLeaf,
-                     second_.record().root == RootKind::kLeaf};
+                     first_.is_leaf(),
+                     second_.is_leaf()};
     const Box<double> image = pose_.hull_in_first(root.second_box);
     nearest_.face(metric_.to_world(center(image) - center(root.first_box)));
     const double root_key = std::max({metric_.in_first().squared_distance(root.first_box, image),

@@ -149,8 +149,8 @@ struct BoxSearch {
     std::size_t size = 0;
     const Box<double> root = root_box<double>(tree);
     if (!box.overlaps(root)) return Errc::kOk;
-    stack[size++] = {root, tree.root_ref(), tree.record().root == RootKind::kLeaf};
-    WalkBound bound(tree.record().node_count);
+    stack[size++] = {root, tree.root_ref(), tree.is_leaf()};
+    WalkBound bound(tree.node_count());
     ErasedCodec::Children children;
     while (size > 0) {
       const Entry entry = stack[--size];
@@ -216,7 +216,7 @@ Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedB
     return tree.frame().to_tree(corner).cwiseMax(-kReach).cwiseMin(kReach);
   };
   const BoxQuery query{clamped(box.min()), clamped(box.max())};
-  BoxSearch search{tree,        query, scaled_below(distance, -tree.record().scale_exponent),
+  BoxSearch search{tree,        query, scaled_below(distance, -tree.scale_exponent()),
                    node_budget, {},    {}};
   const Errc error = search.run();
   if (error != Errc::kOk) return error;

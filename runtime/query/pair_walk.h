@@ -60,8 +60,8 @@ class PairWalk {
                      root_box<typename B::Scalar>(second_),
                      first_.root_ref(),
                      second_.root_ref(),
-                     first_.record().root == RootKind::kLeaf,
-                     second_.record().root == RootKind::kLeaf};
+                     first_.is_leaf(),
+                     second_.is_leaf()};
     const bool apart = !boxes_overlap(root.first_box, pose_.hull_in_first(root.second_box)) ||
                        !boxes_overlap(pose_.hull_in_second(root.first_box), root.second_box);
     if (!apart && (root.first_leaf && root.second_leaf)) {

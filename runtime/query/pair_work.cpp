@@ -5,16 +5,16 @@
 namespace boxtree {
 
 PairBound::PairBound(const BoundTree& first, const BoundTree& second, QueryWork* work) noexcept
-    : parts_(most_pairs(first.record(), second.record()), work),
+    : parts_(most_pairs(first.codec(), first.counts(), second.codec(), second.counts()), work),
       faces_left_(
-          saturated_product(faces_in_leaves(first.record()), faces_in_leaves(second.record()))) {}
+          saturated_product(first.counts().faces_in_leaves, second.counts().faces_in_leaves)) {}
 
 PairReport::PairReport(const BoundTree& first, const BoundTree& second,
                        PairVisitor visitor) noexcept
     : first_(first),
       second_(second),
       visitor_(visitor),
-      pairs_left_(saturated_product(first.record().face_count, second.record().face_count)) {}
+      pairs_left_(saturated_product(first.face_count(), second.face_count())) {}
 
 // An honest walk tells of each pair once; in corrupt files many faces may have the same copies.
 bool PairReport::tell_copies(std::uint32_t first, std::uint32_t second) {

@@ -15,7 +15,6 @@
 #include "format/children.h"
 #include "format/codec.h"
 #include "format/limits.h"
-#include "format/tree_record.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/face_copies.h"
 #include "runtime/walk/work.h"
@@ -28,17 +27,18 @@ namespace boxtree {
 }
 
 /// As many leaves as a tree may have: what its faces fill, or its nodes have children for.
-[[nodiscard]] constexpr std::uint64_t most_leaves(const TreeRecord& record) noexcept {
-  const std::uint64_t faces = faces_in_leaves(record);
-  if (is_wide(record.codec)) return leaves_of(faces);
-  return std::min(faces, std::uint64_t{record.node_count} + 1);
+[[nodiscard]] constexpr std::uint64_t most_leaves(CodecId codec,
+                                                  const TreeCounts& counts) noexcept {
+  if (is_wide(codec)) return leaves_of(counts.faces_in_leaves);
+  return std::min<std::uint64_t>(counts.faces_in_leaves, std::uint64_t{counts.node_count} + 1);
 }
 
 /// Nodes and leaves of one tree, each with each of the other.
-[[nodiscard]] constexpr std::uint64_t most_pairs(const TreeRecord& first,
-                                                 const TreeRecord& second) noexcept {
-  return saturated_product(first.node_count + most_leaves(first),
-                           second.node_count + most_leaves(second));
+[[nodiscard]] constexpr std::uint64_t most_pairs(CodecId first_codec, const TreeCounts& first,
+                                                 CodecId second_codec,
+                                                 const TreeCounts& second) noexcept {
+  return saturated_product(first.node_count + most_leaves(first_codec, first),
+                           second.node_count + most_leaves(second_codec, second));
 }
 
 /// Counts the work of one walk of two trees.

@@ -27,7 +27,7 @@ class BestFirst {
       : tree_(tree), codec_{&tree}, query_(query), budget_(budget) {}
 
   Errc run() noexcept {
-    Entry entry{root_box<double>(tree_), tree_.root_ref(), tree_.record().root == RootKind::kLeaf};
+    Entry entry{root_box<double>(tree_), tree_.root_ref(), tree_.is_leaf()};
     double key = query_.key(entry.box);
     if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
     ErasedCodec::Children children;
@@ -132,7 +132,7 @@ PointResult closest_point(const Tree& queried, const Eigen::Vector3d& point, dou
   if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;
   QueryWork work(limits);
-  WalkBound nodes(tree.record().node_count, &work);
+  WalkBound nodes(tree.node_count(), &work);
   PointQuery query{tree, nodes, tree_point, tree_distance * tree_distance, {}, Errc::kOk, {}};
   if (const Errc error = find_nearest(tree, query); error != Errc::kOk) return error;
   if (!query.found) return {};
@@ -155,7 +155,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   Approximation approximation = options;
   approximation.absolute_error *= frame.inverse_scale;
   approximation.max_distance *= frame.inverse_scale;
-  WalkBound nodes(tree.record().node_count);
+  WalkBound nodes(tree.node_count());
   const double most = approximation.max_distance * approximation.max_distance;
   PointQuery query{tree, nodes, tree_point, most, {}, Errc::kOk, {}};
   query.approximation = &approximation;
@@ -175,7 +175,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   // What was left out is beyond the bound, or was not looked at; keys are within a factor of
   // 1 + 4 u of the square that they stand for, and so is a root. The point itself is off by the
   // rounding of its way to tree space.
-  const int exponent = tree.record().scale_exponent;
+  const int exponent = tree.scale_exponent();
   const double place =
       frame.origin.isZero(0) ? 0 : 2 * kRoundoffF64 * tree_point.cwiseAbs().maxCoeff();
   const double untested = std::sqrt(std::min(query.best, left)) * (1 - 8 * kRoundoffF64);

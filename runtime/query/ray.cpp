@@ -31,7 +31,7 @@ int direction_exponent(const Eigen::Vector3d& direction) noexcept {
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit) {
   if (!is_valid(ray)) return Errc::kInvalidQuery;
-  WalkBound nodes(tree.record().node_count, &work);
+  WalkBound nodes(tree.node_count(), &work);
   RayQuery query(tree, ray, direction_exponent(ray.direction), nodes, stop_at_first, hit);
   if (!is_within_reach(query.origin)) return Errc::kInvalidQuery;
   if (tree.empty() || !query.enters_root()) return Errc::kOk;

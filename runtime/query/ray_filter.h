@@ -84,8 +84,7 @@ struct RayFilter : RayBoxFilter {
  private:
   RayFilter(const RayQuery& query, double reach) noexcept
       : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
-                     rounding(reach) +
-                         8.0 * query.tree.record().depth * kRoundoffF32 * (2 * reach) +
+                     rounding(reach) + 8.0 * query.tree.depth() * kRoundoffF32 * (2 * reach) +
                          given_away(query.origin, reach)) {
     for (std::size_t k = 0; k < 3; ++k) margins[k] = 2 * margin[k];
     axis_x = static_cast<std::size_t>(query.shear.axis_x);

@@ -43,7 +43,7 @@ struct RayCandidate {
 /// is converted without rounding.
 struct RayInTree {
   RayInTree(const BoundTree& tree, const Ray& ray, int direction_exponent) noexcept
-      : parameter_exponent(direction_exponent - tree.record().scale_exponent),
+      : parameter_exponent(direction_exponent - tree.scale_exponent()),
         origin(tree.frame().to_tree(ray.origin)),
         direction(scaled(ray.direction, -direction_exponent)),
         slab(origin, direction, tree.largest_reach()),

@@ -52,8 +52,8 @@ std::optional<RelativePose> RelativePose::make(const BoundTree& first, const Pos
   const Eigen::Matrix3d first_inverse = inverse_of(first_linear);
 
   RelativePose relative;
-  relative.to_first_.linear = composed(
-      first_inverse, second_linear, second.record().scale_exponent - first.record().scale_exponent);
+  relative.to_first_.linear =
+      composed(first_inverse, second_linear, second.scale_exponent() - first.scale_exponent());
   // Differences first: two bodies far out in the world, or baked far from their origins, lose
   // nothing to the large common part.
   const Eigen::Vector3d between =

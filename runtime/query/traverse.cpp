@@ -44,7 +44,7 @@ Result<Visit> traverse(const Tree& queried, BoxTest intersect, TriangleVisitor v
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   QueryWork work(limits);
-  WalkBound nodes(tree.record().node_count, &work);
+  WalkBound nodes(tree.node_count(), &work);
   OwnTraversal query{tree, intersect, visitor, nodes, Errc::kOk, false, {}};
   return outcome_of(traverse_overlap(tree, ErasedCodec{&tree}, query), query);
 }

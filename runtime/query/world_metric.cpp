@@ -99,7 +99,7 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
       if (std::ldexp(metric.linear_(i, j), pose_exponent) != linear(i, j)) return std::nullopt;
     }
   }
-  metric.exponent_ = pose_exponent + first.record().scale_exponent;
+  metric.exponent_ = pose_exponent + first.scale_exponent();
   const Eigen::Matrix3d& g = metric.linear_;
 
   // The coordinates of z = x - y. From z = Y v - (Y G - I) z, with the residual measured in units

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "format/children.h"
-#include "format/tree_record.h"
 #include "runtime/tree/bound_codec.h"
 
 namespace boxtree {
@@ -27,10 +26,10 @@ class MovingTree {
     const Box<double>* nodes = nullptr;
     std::uint32_t leaves = 0;  // a power of two
 
-    static Result<Codec> bind(const TreeRecord& /*record*/, Bytes /*section*/) {
+    static Result<Codec> bind(const TreeCounts& /*counts*/, Bytes /*section*/) {
       return Errc::kInternal;  // it is in no file
     }
-    [[nodiscard]] static NodeRef root(const TreeRecord& /*record*/) noexcept { return {1, 0}; }
+    [[nodiscard]] static NodeRef root() noexcept { return {1, 0}; }
     [[nodiscard]] bool expand(NodeRef ref, const Box<double>& /*box*/,
                               Children& out) const noexcept {
       out.clear();
@@ -42,21 +41,14 @@ class MovingTree {
     }
   };
 
-  struct Record {
-    RootKind root;
-    std::uint32_t node_count;
-  };
-
   /// Deals places out to instances with these boxes and builds the tree over them. Allocates.
   void build(std::span<const Box<double>> boxes);
   /// Gives the instance with number `moving` another box; O(log n), no allocation.
   void refit(std::uint32_t moving, const Box<double>& box) noexcept;
 
   [[nodiscard]] bool empty() const noexcept { return place_.empty(); }
-  [[nodiscard]] Record record() const noexcept {
-    if (empty()) return {RootKind::kEmpty, 0};
-    return {leaves_ == 1 ? RootKind::kLeaf : RootKind::kSubtree, leaves_ - 1};
-  }
+  [[nodiscard]] bool is_leaf() const noexcept { return leaves_ == 1 && !empty(); }
+  [[nodiscard]] std::uint32_t node_count() const noexcept { return empty() ? 0 : leaves_ - 1; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {1, 0}; }
   [[nodiscard]] Codec codec() const noexcept { return {nodes_.data(), leaves_}; }
   [[nodiscard]] const Box<double>& root_box() const noexcept { return nodes_[1]; }

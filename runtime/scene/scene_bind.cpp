@@ -39,8 +39,7 @@ Status BoundScene::bind_sections(const File& opened) {
   SceneRecord& record = top_.scene;
   record = load<SceneRecord>(section.data(), 0);
   if (Status status = check_scene_record(record); !status) return status;
-  frame_ = Frame(Eigen::Vector3d(record.origin[0], record.origin[1], record.origin[2]),
-                 record.scale_exponent);
+  frame_ = Frame(record.origin, record.scale_exponent);
   const auto nodes = sized(SectionKind::kSceneNodes, record.node_count, sizeof(Wide8Node));
   const auto instances =
       sized(SectionKind::kInstances, record.instance_count, sizeof(InstanceRecord));

@@ -157,7 +157,7 @@ struct PointInScene {
       exact.least_stretch = stretch_of(placement.to_world().linear).least;
       exact.error = placement.distance_error(in_tree.at, point, root_box<double>(tree));
     }
-    WalkBound nodes(tree.record().node_count, &admission.work);
+    WalkBound nodes(tree.node_count(), &admission.work);
     PointQuery query{tree, nodes, in_tree.at, exact.bound_in_tree(), {}, Errc::kOk, {}};
     query.placed = &exact;
     error = find_nearest(tree, query);

@@ -39,7 +39,7 @@ template <class Query>
 template <class Query>
 struct MovingInstances {
   MovingInstances(Query& asked, const MovingTree& tree) noexcept
-      : query(asked), nodes(tree.record().node_count) {}
+      : query(asked), nodes(tree.node_count()) {}
 
   Query& query;
   WalkBound nodes;

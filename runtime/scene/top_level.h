@@ -22,7 +22,8 @@ struct TopLevel {
   [[nodiscard]] bool has_float_nodes() const noexcept {
     return has_nodes() && is_in_float_range({scene.root_low, scene.root_high});
   }
-  [[nodiscard]] const SceneRecord& record() const noexcept { return scene; }
+  [[nodiscard]] bool is_leaf() const noexcept { return scene.root == RootKind::kLeaf; }
+  [[nodiscard]] std::uint32_t node_count() const noexcept { return scene.node_count; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {0, 0}; }
   /// The instance that a leaf is.
   [[nodiscard]] std::uint32_t instance(NodeRef leaf) const noexcept {

@@ -9,6 +9,7 @@
 #include "runtime/tree/bound_tree.h"
 #include "runtime/tree/float_range.h"
 #include "runtime/tree/root_box.h"
+#include "runtime/tree/tree_parts.h"
 
 namespace boxtree {
 namespace {
@@ -54,18 +55,13 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
                              const BindOptions& options) {
   Tree bound{BoundTree()};
   BoundTree& tree = inside(bound);
-  tree.record_ = parts.record;
-  if (Status status = check_tree_record(tree.record_, index); !status) return status.error();
-  tree.frame_ = Frame(tree.record_);
-  const Box<double> root{tree.record_.root_low, tree.record_.root_high};
-  tree.reach_ = reach_of(root);
-  tree.largest_reach_ = tree.reach_.maxCoeff();
-  tree.root_f32_ = rounded_outward<float>(root);
+  if (Status status = check_tree_record(parts.record, index); !status) return status.error();
+  tree.keep(parts.record);
   tree.name_ = parts.name;
   const std::string place = "tree " + std::to_string(index) + ": ";
   if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
-  const bool external = tree.record_.geometry == GeometryId::kExternal;
-  if (Status status = external ? tree.bind_external_geometry(place, options)
+  const bool external = tree.geometry_ == GeometryId::kExternal;
+  if (Status status = external ? tree.bind_external_geometry(parts, place, options)
                                : tree.bind_stored_geometry(parts, place);
       !status) {
     return status.error();
@@ -76,65 +72,82 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   return bound;
 }
 
+void BoundTree::keep(const TreeRecord& record) {
+  codec_ = record.codec;
+  geometry_ = record.geometry;
+  root_kind_ = record.root;
+  counts_ = counts_of(record);
+  face_count_ = record.face_count;
+  triangle_count_ = record.triangle_count;
+  depth_ = record.depth;
+  scale_exponent_ = record.scale_exponent;
+  grid_exponent_ = record.grid_exponent;
+  has_f64_positions_ = (record.flags & kTreePositionsF64) != 0;
+  is_in_source_order_ = (record.flags & kTreeFacesInSourceOrder) != 0;
+  frame_ = Frame(record.origin, record.scale_exponent);
+  root_f64_ = {record.root_low, record.root_high};
+  root_f32_ = rounded_outward<float>(root_f64_);
+  reach_ = reach_of(root_f64_);
+  largest_reach_ = reach_.maxCoeff();
+}
+
 Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
-  if (record_.root != RootKind::kSubtree) return {};
+  if (!has_nodes()) return {};
   const std::string where = place + section_text(SectionKind::kNodes);
   if (parts.nodes.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
-  const Status status = bind_codec(record_, parts.nodes, functions_, nodes_);
+  const Status status = bind_codec(codec_, counts_, parts.nodes, functions_, nodes_);
   if (!status) return Error{status.code(), where + ": " + status.error().detail};
-  has_float_nodes_ = is_in_float_range({record_.root_low, record_.root_high});
+  has_float_nodes_ = is_in_float_range(root_f64_);
   return {};
 }
 
 Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
-  if (record_.geometry == GeometryId::kGrid) return bind_grid(parts, place);
-  const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
-  const std::size_t stride = 3 * (positions_f64 ? sizeof(double) : sizeof(float));
-  const auto positions =
-      sized_section(parts.vertices, SectionKind::kVertices, place, record_.vertex_count, stride);
+  if (geometry_ == GeometryId::kGrid) return bind_grid(parts, place);
+  const std::size_t stride = 3 * (has_f64_positions_ ? sizeof(double) : sizeof(float));
+  const auto positions = sized_section(parts.vertices, SectionKind::kVertices, place,
+                                       parts.record.vertex_count, stride);
   if (!positions) return positions.error();
   const auto corners =
-      sized_section(parts.corners, SectionKind::kCorners, place, record_.face_count,
-                    std::uint64_t{record_.corners_per_face} * record_.corner_bytes);
+      sized_section(parts.corners, SectionKind::kCorners, place, face_count_,
+                    std::uint64_t{parts.record.corners_per_face} * parts.record.corner_bytes);
   if (!corners) return corners.error();
-  leaves_ = LeafReader({*positions, stride, positions_f64, record_.vertex_count, *corners,
-                        record_.corner_bytes, record_.corners_per_face, record_.face_count},
+  leaves_ = LeafReader({*positions, stride, has_f64_positions_, parts.record.vertex_count, *corners,
+                        parts.record.corner_bytes, parts.record.corners_per_face, face_count_},
                        frame_);
   return {};
 }
 
 Status BoundTree::bind_grid(const TreeParts& parts, const std::string& place) {
   const auto clusters = sized_section(parts.corners, SectionKind::kCorners, place,
-                                      clusters_of(record_.face_count), sizeof(ClusterRecord));
+                                      clusters_of(face_count_), sizeof(ClusterRecord));
   if (!clusters) return clusters.error();
-  if (record_.face_count > 0 && parts.vertices.empty()) {
+  if (face_count_ > 0 && parts.vertices.empty()) {
     return error_with(Errc::kSectionMissing, place,
                       section_text(SectionKind::kVertices) + " is absent");
   }
-  const GridView grid{*clusters, parts.vertices, record_.face_count, record_.corners_per_face};
-  leaves_ =
-      LeafReader(grid, frame_, std::ldexp(1.0, record_.grid_exponent - record_.scale_exponent));
+  const GridView grid{*clusters, parts.vertices, face_count_, parts.record.corners_per_face};
+  leaves_ = LeafReader(grid, frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
   return {};
 }
 
-Status BoundTree::bind_external_geometry(const std::string& place, const BindOptions& options) {
+Status BoundTree::bind_external_geometry(const TreeParts& parts, const std::string& place,
+                                         const BindOptions& options) {
   if (!options.mesh) return error_with(Errc::kExternalMeshNeeded, place, "no mesh was given");
   const MeshArrays& mesh = *options.mesh;
   if (!are_readable(mesh)) {
     return error_with(Errc::kExternalMeshMismatch, place,
                       "expected 3 or 4 corners a face, of 2 or 4 bytes, positions apart, no null");
   }
-  const bool positions_f64 = (record_.flags & kTreePositionsF64) != 0;
-  if (mesh.face_count != record_.face_count || mesh.positions_f64 != positions_f64) {
+  if (mesh.face_count != face_count_ || mesh.positions_f64 != has_f64_positions_) {
     const auto bits = [](bool f64) -> std::uint64_t { return f64 ? 64 : 32; };
     return error_with(
         Errc::kExternalMeshMismatch, place, "expected # faces of f# positions, given # of f#",
-        {record_.face_count, bits(positions_f64), mesh.face_count, bits(mesh.positions_f64)});
+        {face_count_, bits(has_f64_positions_), mesh.face_count, bits(mesh.positions_f64)});
   }
   if (options.verify_mesh) {
     const Result<std::uint64_t> hash = geometry_hash(mesh);
     if (!hash) return hash.error();
-    if (*hash != record_.geometry_hash) {
+    if (*hash != parts.record.geometry_hash) {
       return error_with(Errc::kExternalMeshMismatch, place, "the mesh's content differs");
     }
   }
@@ -146,10 +159,10 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
                                 const BindOptions& options) {
   const auto ids =
       sized_section(parts.face_ids, SectionKind::kFaceIds, place,
-                    record_.face_id_bytes == 0 ? 0 : record_.face_count, record_.face_id_bytes);
+                    parts.record.face_id_bytes == 0 ? 0 : face_count_, parts.record.face_id_bytes);
   if (!ids) return ids.error();
-  if (record_.face_id_bytes != 0) face_ids_ = {*ids, record_.face_id_bytes};
-  if (record_.geometry == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
+  if (parts.record.face_id_bytes != 0) face_ids_ = {*ids, parts.record.face_id_bytes};
+  if (geometry_ == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
   }
@@ -158,9 +171,9 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
 
 Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& place) {
   const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
-                                       record_.duplicate_count, record_.duplicate_bytes);
+                                       duplicate_count(), parts.record.duplicate_bytes);
   if (!originals) return originals.error();
-  if (record_.duplicate_count != 0) duplicates_ = {*originals, record_.duplicate_bytes};
+  if (duplicate_count() != 0) duplicates_ = {*originals, parts.record.duplicate_bytes};
   return {};
 }
 

@@ -19,7 +19,6 @@
 #include "format/children.h"
 #include "format/codec.h"
 #include "format/codec_wide.h"
-#include "format/tree_record.h"
 
 namespace boxtree {
 
@@ -32,10 +31,10 @@ inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 /// nodes; `expand` is the one question of a traversal. Whatever the bytes, neither reads outside
 /// the section given to `bind`.
 template <class C>
-concept Codec = requires(const C& codec, const TreeRecord& record, Bytes section, NodeRef ref,
+concept Codec = requires(const C& codec, const TreeCounts& counts, Bytes section, NodeRef ref,
                          const Box<typename C::Scalar>& box, typename C::Children& out) {
-  { C::bind(record, section) } -> std::same_as<Result<C>>;
-  { codec.root(record) }
+  { C::bind(counts, section) } -> std::same_as<Result<C>>;
+  { codec.root() }
   noexcept->std::same_as<NodeRef>;
   { codec.expand(ref, box, out) }
   noexcept->std::same_as<bool>;
@@ -71,8 +70,8 @@ using AnyChildren = ChildSet<kWideChildren, double>;
 struct CodecFunctions {
   CodecId id;
   std::uint32_t width;  // children that a node has at most
-  Status (*bind)(const TreeRecord& record, Bytes nodes, BoundCodec& out);
-  NodeRef (*root)(const BoundCodec& codec, const TreeRecord& record) noexcept;
+  Status (*bind)(const TreeCounts& counts, Bytes nodes, BoundCodec& out);
+  NodeRef (*root)(const BoundCodec& codec) noexcept;
   bool (*expand)(const BoundCodec& codec, NodeRef ref, const Box<double>& box,
                  AnyChildren& out) noexcept;
   /// Walks compiled for it (runtime/walk/codec_walks.h); null: it is walked by expand(), or by
@@ -87,15 +86,13 @@ template <Codec C>
   return {
       id,
       C::Children::kWidth,
-      [](const TreeRecord& record, Bytes nodes, BoundCodec& out) -> Status {
-        const Result<C> codec = C::bind(record, nodes);
+      [](const TreeCounts& counts, Bytes nodes, BoundCodec& out) -> Status {
+        const Result<C> codec = C::bind(counts, nodes);
         if (!codec) return codec.error();
         out = BoundCodec(*codec);
         return {};
       },
-      [](const BoundCodec& codec, const TreeRecord& record) noexcept {
-        return codec.as<C>().root(record);
-      },
+      [](const BoundCodec& codec) noexcept { return codec.as<C>().root(); },
       [](const BoundCodec& codec, NodeRef ref, const Box<double>& box, AnyChildren& out) noexcept {
         typename C::Children children;
         if (!codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children)) {
@@ -124,10 +121,10 @@ using CodecSet = std::span<const CodecFunctions* const>;
 /// and what they point to stay for good. Thread-safe.
 void add_codecs(const CodecSet& codecs) noexcept;
 
-/// Binds the nodes of a tree in the codec that its record states. Errors: those of the codec's
+/// Binds the nodes of a tree in a codec. Errors: those of the codec's
 /// bind; kCodecUnsupported, and what to do about it, when it was left out of this build or is in a
 /// library that the program does not use.
-Status bind_codec(const TreeRecord& record, Bytes nodes, const CodecFunctions*& functions,
-                  BoundCodec& codec);
+Status bind_codec(CodecId id, const TreeCounts& counts, Bytes nodes,
+                  const CodecFunctions*& functions, BoundCodec& codec);
 
 }  // namespace boxtree

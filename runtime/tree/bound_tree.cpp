@@ -21,16 +21,15 @@ BoundTree& BoundTree::inside(Tree& tree) noexcept {
 }
 
 bool BoundTree::has_face_ids() const noexcept {
-  return bool{face_ids_} || (record_.flags & kTreeFacesInSourceOrder) != 0;
+  return bool{face_ids_} || is_in_source_order_;
 }
 
 NodeRef BoundTree::root_ref() const noexcept {
-  if (record_.root == RootKind::kLeaf) return {0, faces_in_leaves(record_)};
-  return functions_->root(nodes_, record_);
+  return is_leaf() ? NodeRef{0, counts_.faces_in_leaves} : functions_->root(nodes_);
 }
 
 Node BoundTree::root() const noexcept {
-  return {{record_.root_low, record_.root_high}, root_ref(), record_.root == RootKind::kLeaf};
+  return {root_f64_, root_ref(), is_leaf()};
 }
 
 Errc BoundTree::expand(const Node& node, NodeChildren& out) const noexcept {
@@ -49,8 +48,8 @@ Errc BoundTree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexc
 }
 
 Result<Triangle> BoundTree::triangle(const FaceRef& face, std::uint32_t half) const {
-  if (face.index >= record_.face_count) {
-    return error_with(Errc::kInvalidQuery, {}, "face # of #", {face.index, record_.face_count});
+  if (face.index >= face_count_) {
+    return error_with(Errc::kInvalidQuery, {}, "face # of #", {face.index, face_count_});
   }
   TriangleBatch batch;
   // Copies are equal to the last bit, so one reading serves them all.
@@ -64,17 +63,17 @@ Result<Triangle> BoundTree::triangle(const FaceRef& face, std::uint32_t half) co
 }
 
 std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
-  if ((record_.flags & kTreeFacesInSourceOrder) != 0) return face;
+  if (is_in_source_order_) return face;
   return face_ids_ ? face_ids_[face] : kNoFaceId;
 }
 
 FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
-  const std::uint32_t originals = faces_in_leaves(record_);
+  const std::uint32_t originals = counts_.faces_in_leaves;
   if (!duplicates_) return {originals, originals};
   // The first whose original is not below `limit`.
   const auto from = [this](std::uint32_t limit) {
     std::uint32_t low = 0;
-    std::uint32_t high = record_.duplicate_count;
+    std::uint32_t high = duplicate_count();
     while (low < high) {
       const std::uint32_t middle = low + (high - low) / 2;
       const bool below = duplicates_[middle] < limit;
@@ -87,7 +86,7 @@ FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
 }
 
 std::uint32_t BoundTree::original_of(std::uint32_t face) const noexcept {
-  const std::uint32_t originals = faces_in_leaves(record_);
+  const std::uint32_t originals = counts_.faces_in_leaves;
   return duplicates_ && face >= originals ? duplicates_[face - originals] : face;
 }
 

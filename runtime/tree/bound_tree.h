@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a Tree is inside: record, frame, codec and leaves over mapped bytes, for the queries and for
-// those who check and export trees.
+// What a Tree is inside: frame, codec and leaves over mapped bytes, for the queries and for those
+// who check and export trees. Of its record it keeps what they ask.
 #pragma once
 
 #include <array>
@@ -13,22 +13,14 @@
 #include <boxtree/tree.h>
 
 #include "format/children.h"
-#include "format/tree_record.h"
+#include "format/codec.h"
 #include "runtime/tree/bound_codec.h"
 #include "runtime/tree/geometry.h"
 
 namespace boxtree {
 
-/// The parts of one tree, wherever they lie; a part that is not there is empty.
-struct TreeParts {
-  TreeRecord record;
-  std::string_view name;
-  Bytes nodes;
-  Bytes vertices;
-  Bytes corners;
-  Bytes face_ids;
-  Bytes duplicates;
-};
+struct TreeParts;
+struct TreeRecord;
 
 /// Faces in a row, in a tree's own order: first to last - 1.
 struct FaceRange {
@@ -60,12 +52,33 @@ class BoundTree {
   [[nodiscard]] static const BoundTree& of(const Tree& tree) noexcept;
 
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
-  [[nodiscard]] CodecId codec() const noexcept { return record_.codec; }
-  [[nodiscard]] const TreeRecord& record() const noexcept { return record_; }
+  [[nodiscard]] CodecId codec() const noexcept { return codec_; }
+  [[nodiscard]] GeometryId geometry() const noexcept { return geometry_; }
+  [[nodiscard]] std::uint32_t face_count() const noexcept { return face_count_; }
+  [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }
+  /// Nodes, and the faces that leaves hold: the first so many in this tree's order.
+  [[nodiscard]] const TreeCounts& counts() const noexcept { return counts_; }
+  [[nodiscard]] std::uint32_t node_count() const noexcept { return counts_.node_count; }
+  /// Faces in no leaf: copies, behind all others.
+  [[nodiscard]] std::uint32_t duplicate_count() const noexcept {
+    return face_count_ - counts_.faces_in_leaves;
+  }
+  /// Inner nodes on the longest path.
+  [[nodiscard]] std::uint32_t depth() const noexcept { return depth_; }
+  /// Object space is tree space times 2 to this.
+  [[nodiscard]] int scale_exponent() const noexcept { return scale_exponent_; }
+  /// Geometry grid: its step in object space is 2 to this; otherwise 0.
+  [[nodiscard]] int grid_exponent() const noexcept { return grid_exponent_; }
+  [[nodiscard]] bool has_f64_positions() const noexcept { return has_f64_positions_; }
+  /// Whether faces are in the order of the source, so that their numbers are their ids.
+  [[nodiscard]] bool is_in_source_order() const noexcept { return is_in_source_order_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
-  [[nodiscard]] bool empty() const noexcept { return record_.root == RootKind::kEmpty; }
+  [[nodiscard]] bool empty() const noexcept { return root_kind_ == RootKind::kEmpty; }
+  [[nodiscard]] bool is_leaf() const noexcept { return root_kind_ == RootKind::kLeaf; }
   /// Whether the root is a node: not so for trees without faces, or of one leaf.
-  [[nodiscard]] bool has_nodes() const noexcept { return record_.root == RootKind::kSubtree; }
+  [[nodiscard]] bool has_nodes() const noexcept { return root_kind_ == RootKind::kSubtree; }
+  /// The root box, as it is stored.
+  [[nodiscard]] const Box<double>& root_f64() const noexcept { return root_f64_; }
   /// The root box rounded outward to float, which changes nothing but where a tree of f64 is a
   /// single leaf: cookers store values of the codec's scalar.
   [[nodiscard]] const Box<float>& root_f32() const noexcept { return root_f32_; }
@@ -91,7 +104,7 @@ class BoundTree {
   [[nodiscard]] Result<Triangle> triangle(const FaceRef& face, std::uint32_t half) const;
 
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
-  /// Precondition: face < record().face_count.
+  /// Precondition: face < face_count().
   [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
 
   /// Whether some faces stand in no leaf because they are copies of others.
@@ -101,7 +114,7 @@ class BoundTree {
   /// original alone. Corrupt bytes may state any copies, for several faces the same.
   [[nodiscard]] FaceRange duplicates_of(std::uint32_t face) const noexcept;
   /// The face of which a face is a copy; itself, if it is none or copies are not known. What
-  /// corrupt bytes state may be any number. Precondition: face < record().face_count.
+  /// corrupt bytes state may be any number. Precondition: face < face_count().
   [[nodiscard]] std::uint32_t original_of(std::uint32_t face) const noexcept;
 
   /// The same tree, of whose faces visitors hear of originals alone: where copies say nothing new,
@@ -127,15 +140,28 @@ class BoundTree {
  private:
   BoundTree() = default;
   [[nodiscard]] static BoundTree& inside(Tree& tree) noexcept;
+  void keep(const TreeRecord& record);
   Status bind_nodes(const TreeParts& parts, const std::string& place);
   Status bind_stored_geometry(const TreeParts& parts, const std::string& place);
   Status bind_grid(const TreeParts& parts, const std::string& place);
-  Status bind_external_geometry(const std::string& place, const BindOptions& options);
+  Status bind_external_geometry(const TreeParts& parts, const std::string& place,
+                                const BindOptions& options);
   Status bind_face_ids(const TreeParts& parts, const std::string& place,
                        const BindOptions& options);
   Status bind_duplicates(const TreeParts& parts, const std::string& place);
 
-  TreeRecord record_{};
+  CodecId codec_{};
+  GeometryId geometry_{};
+  RootKind root_kind_ = RootKind::kEmpty;
+  TreeCounts counts_;
+  std::uint32_t face_count_ = 0;
+  std::uint32_t triangle_count_ = 0;
+  std::uint32_t depth_ = 0;
+  std::int32_t scale_exponent_ = 0;
+  std::int32_t grid_exponent_ = 0;
+  bool has_f64_positions_ = false;
+  bool is_in_source_order_ = false;
+  Box<double> root_f64_{};
   Frame frame_;
   std::string_view name_;
   BoundCodec nodes_;
@@ -149,8 +175,5 @@ class BoundTree {
   Box<float> root_f32_{};
   bool has_float_nodes_ = false;
 };
-
-/// A tree of parts that are not in a file (yet). Errors: as Tree::bind.
-[[nodiscard]] Result<Tree> bind_parts(const TreeParts& parts, const BindOptions& options = {});
 
 }  // namespace boxtree

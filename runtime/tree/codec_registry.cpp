@@ -51,8 +51,8 @@ constexpr bool is_built(CodecId id) noexcept {
 const CodecFunctions kNoCodec = {
     CodecId{},
     2,
-    [](const TreeRecord&, Bytes, BoundCodec&) -> Status { return Errc::kInternal; },
-    [](const BoundCodec&, const TreeRecord&) noexcept {
+    [](const TreeCounts&, Bytes, BoundCodec&) -> Status { return Errc::kInternal; },
+    [](const BoundCodec&) noexcept {
       return NodeRef{0, 0};
     },
     [](const BoundCodec&, NodeRef, const Box<double>&, AnyChildren&) noexcept { return false; },
@@ -62,19 +62,19 @@ void add_codecs(const CodecSet& codecs) noexcept {
   added.store(&codecs, std::memory_order_release);
 }
 
-Status bind_codec(const TreeRecord& record, Bytes nodes, const CodecFunctions*& functions,
-                  BoundCodec& codec) {
-  const CodecFunctions* found = find_in(kOwnCodecs, record.codec);
+Status bind_codec(CodecId id, const TreeCounts& counts, Bytes nodes,
+                  const CodecFunctions*& functions, BoundCodec& codec) {
+  const CodecFunctions* found = find_in(kOwnCodecs, id);
   const CodecSet* others = added.load(std::memory_order_acquire);
-  if (found == nullptr && others != nullptr) found = find_in(*others, record.codec);
+  if (found == nullptr && others != nullptr) found = find_in(*others, id);
   if (found == nullptr) {
-    return error_with(Errc::kCodecUnsupported, codec_name(record.codec),
-                      is_built(record.codec)
+    return error_with(Errc::kCodecUnsupported, codec_name(id),
+                      is_built(id)
                           ? " is a codec of boxtree::paper: link it and call use_paper_codecs()"
                           : " was left out of this build, which has " BOXTREE_CODEC_NAMES);
   }
   functions = found;
-  return found->bind(record, nodes, codec);
+  return found->bind(counts, nodes, codec);
 }
 
 }  // namespace boxtree

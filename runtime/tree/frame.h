@@ -3,13 +3,13 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 
 #include <Eigen/Core>
 
 #include "format/box.h"
-#include "format/tree_record.h"
 
 namespace boxtree {
 
@@ -22,13 +22,10 @@ struct Frame {
   double inverse_scale = 1;  // object to tree, a power of two
 
   Frame() = default;
-  Frame(const Eigen::Vector3d& frame_origin, int scale_exponent)
-      : origin(frame_origin),
+  Frame(const std::array<double, 3>& frame_origin, int scale_exponent)
+      : origin(frame_origin[0], frame_origin[1], frame_origin[2]),
         scale(std::ldexp(1.0, scale_exponent)),
         inverse_scale(std::ldexp(1.0, -scale_exponent)) {}
-  explicit Frame(const TreeRecord& record)
-      : Frame(Eigen::Vector3d(record.origin[0], record.origin[1], record.origin[2]),
-              record.scale_exponent) {}
 
   [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& object) const noexcept {
     return (object - origin) * inverse_scale;

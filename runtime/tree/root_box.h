@@ -30,7 +30,7 @@ template <class S>
   if constexpr (std::is_same_v<S, float>) {
     return tree.root_f32();
   } else {
-    return {tree.record().root_low, tree.record().root_high};
+    return tree.root_f64();
   }
 }
 

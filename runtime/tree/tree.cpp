@@ -31,10 +31,10 @@ std::string_view Tree::codec_name() const noexcept {
   return boxtree::codec_name(BoundTree::of(*this).codec());
 }
 std::uint32_t Tree::face_count() const noexcept {
-  return BoundTree::of(*this).record().face_count;
+  return BoundTree::of(*this).face_count();
 }
 std::uint32_t Tree::triangle_count() const noexcept {
-  return BoundTree::of(*this).record().triangle_count;
+  return BoundTree::of(*this).triangle_count();
 }
 bool Tree::empty() const noexcept {
   return BoundTree::of(*this).empty();
@@ -47,7 +47,7 @@ Eigen::AlignedBox3d Tree::bounds() const noexcept {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(*this);
   if (tree.empty()) return {};
-  return tree.to_object({tree.record().root_low, tree.record().root_high});
+  return tree.to_object(tree.root_f64());
 }
 
 Result<Triangle> Tree::triangle(const FaceRef& face, std::uint32_t half) const {

@@ -20,8 +20,8 @@ struct ErasedCodecOf {
 
   const BoundTree* tree;
 
-  static Result<ErasedCodecOf> bind(const TreeRecord&, Bytes) { return Errc::kInternal; }
-  [[nodiscard]] NodeRef root(const TreeRecord&) const noexcept { return tree->root_ref(); }
+  static Result<ErasedCodecOf> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
+  [[nodiscard]] NodeRef root() const noexcept { return tree->root_ref(); }
 
   // False, too, where a node has more children than there is room for.
   [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {

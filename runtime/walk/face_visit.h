@@ -21,7 +21,7 @@ struct FaceWalk {
   Errc error = Errc::kOk;
   bool stopped = false;
   // An honest walk tells of each copy once; in corrupt files many faces may have the same ones.
-  std::uint32_t copies_left = tree.record().duplicate_count;
+  std::uint32_t copies_left = tree.duplicate_count();
   TriangleBatch batch;
 
   template <class S>

@@ -94,7 +94,7 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
   if (tree.empty()) return Errc::kOk;
   const Box<S> root = root_box<S>(tree);
   if (!query.overlaps(root)) return Errc::kOk;
-  if (tree.record().root == RootKind::kLeaf) {
+  if (tree.is_leaf()) {
     static_cast<void>(query.leaf(tree.root_ref()));
     return Errc::kOk;
   }
@@ -140,7 +140,7 @@ Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   const Box<S> root = root_box<S>(tree);
   const double root_key = query.key(root);
   if (!(root_key <= query.bound())) return Errc::kOk;
-  if (tree.record().root == RootKind::kLeaf) {
+  if (tree.is_leaf()) {
     static_cast<void>(query.leaf(tree.root_ref()));
     return Errc::kOk;
   }

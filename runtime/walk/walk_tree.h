@@ -92,7 +92,7 @@ Errc walk_overlap(const BoundTree& tree, FaceWalk<Shape>& walk) {
 template <class Shape>
 Result<Visit> visit_faces(const BoundTree& tree, const Shape& shape,
                           typename Shape::Visitor visitor, QueryWork& work) {
-  WalkBound nodes(tree.record().node_count, &work);
+  WalkBound nodes(tree.node_count(), &work);
   FaceWalk<Shape> walk{tree, shape, visitor, nodes};
   return outcome_of(walk_overlap(tree, walk), walk);
 }

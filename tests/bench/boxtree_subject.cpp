@@ -95,8 +95,7 @@ struct Listener {
 class BoxtreeSubject : public Subject {
  public:
   BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, const cooker::CookOptions& options)
-      : encoded_(cook(mesh, codec, options)),
-        tree_(require(bind_parts(cooker::parts_of(encoded_)))) {}
+      : encoded_(cook(mesh, codec, options)), tree_(require(cooker::bind_encoded(encoded_))) {}
 
   [[nodiscard]] SubjectBytes bytes() const override {
     const auto tree = static_cast<double>(encoded_.nodes.bytes.size());

@@ -76,7 +76,7 @@ using Row = std::map<std::string, double>;
 
 Row measure(const SourceMesh& mesh, CodecId codec) {
   const cooker::EncodedTree encoded = require(cooker::cook_as(mesh, codec));
-  const Tree tree = require(bind_parts(cooker::parts_of(encoded)));
+  const Tree tree = require(cooker::bind_encoded(encoded));
   const std::vector<Eigen::Vector3d> from = directions(64);
   Row row;
   row["1 ray"] = seconds(from.size(), [&] {

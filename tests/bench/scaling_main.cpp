@@ -62,7 +62,7 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
   options.face_ids = false;
   const cooker::EncodedTree encoded =
       require(cooker::cook_as(mesh, codec_of(arguments.codec), options));
-  const Tree tree = require(bind_parts(cooker::parts_of(encoded)));
+  const Tree tree = require(cooker::bind_encoded(encoded));
   const cooker::Workload workload = cooker::make_workload(cooker::bounds_in_object_space(tree),
                                                           {arguments.rays, 0, 0, arguments.poses});
 

@@ -80,8 +80,8 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   EXPECT_EQ(BoundTree::of(*tree).codec(), GetParam().codec);
   EXPECT_EQ(tree->name(), "scene");
   const std::uint32_t more = is_wide(GetParam().codec) ? 12 : 0;
-  EXPECT_EQ(BoundTree::of(*tree).record().face_count, 8 + more);
-  EXPECT_EQ(BoundTree::of(*tree).record().triangle_count, 9 + more);
+  EXPECT_EQ(BoundTree::of(*tree).face_count(), 8 + more);
+  EXPECT_EQ(BoundTree::of(*tree).triangle_count(), 9 + more);
 
   const auto down = closest_hit(*tree, {{0.25, 0.25, 3}, {0, 0, -1}});
   ASSERT_TRUE(down.ok() && down.has_value());

@@ -24,8 +24,8 @@ cooker::EncodedTree cook_one(const Triangle& triangle, CodecId codec) {
 
 bool trees_meet(const Triangle& p, const Triangle& q, CodecId codec) {
   const cooker::EncodedTree first = cook_one(p, codec), second = cook_one(q, codec);
-  const Tree a = require(bind_parts(cooker::parts_of(first)));
-  const Tree b = require(bind_parts(cooker::parts_of(second)));
+  const Tree a = require(cooker::bind_encoded(first));
+  const Tree b = require(cooker::bind_encoded(second));
   return require(first_contact(a, Pose::Identity(), b, Pose::Identity())).has_value();
 }
 

@@ -285,7 +285,7 @@ void invalid_questions(Run& run) {
     // But for what binding checks, the header of packed nodes.
     const auto first = encoded.nodes.bytes.begin() + (is_packed(codec.id) ? kPackedHeader : 0);
     std::fill(first, encoded.nodes.bytes.end(), std::byte{0xff});
-    const Tree tree = test::require(bind_parts(cooker::parts_of(encoded)));
+    const Tree tree = test::require(cooker::bind_encoded(encoded));
     run.premise(!closest_hit(tree, {{0, 0, 0}, {1, 0, 0}}).ok(),
                 "the damage goes unseen: " + std::string(codec.name));
     const auto refused = [&](Errc code, Errc expected, const char* what) {

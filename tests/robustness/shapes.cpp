@@ -5,6 +5,7 @@
 #include <random>
 
 #include "format/container.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/robustness/brute_force.h"
@@ -99,10 +100,9 @@ void check_counts(Run& run, const SourceMesh& mesh, CodecId codec, const Store& 
   std::uint64_t wrong = 0;
   const std::vector<DecodedTriangle> triangles = decoded_triangles(subject.tree());
   run.check(triangles.size() == mesh.triangle_count(), name);
-  const double tolerance =
-      store.geometry == GeometryId::kExact
-          ? 0
-          : std::ldexp(1.0, BoundTree::of(subject.tree()).record().grid_exponent);
+  const double tolerance = store.geometry == GeometryId::kExact
+                               ? 0
+                               : std::ldexp(1.0, BoundTree::of(subject.tree()).grid_exponent());
   for (const DecodedTriangle& t : triangles) {
     const Triangle source = source_triangle(mesh, t.face, t.half);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -53,8 +53,8 @@ void collapsed_faces(Run& run) {
         options.grid.bits = bits;
         options.codec = codec.id;
         const cooker::CookedTree cooked = test::require(cooker::cook_mesh(mesh, options));
-        const Tree tree = test::require(bind_parts(cooker::parts_of(cooked.tree)));
-        const int step = BoundTree::of(tree).record().grid_exponent;
+        const Tree tree = test::require(cooker::bind_encoded(cooked.tree));
+        const int step = BoundTree::of(tree).grid_exponent();
         std::uint32_t expected = 0;
         for (std::size_t f = 0; f < faces; ++f) expected += has_no_area(mesh, f, 0, step) ? 1u : 0u;
         const auto name = [&] {
@@ -124,7 +124,7 @@ void shared_vertices(Run& run) {
       std::size_t shared = 0;
       for (std::size_t i = 0; i < tiles.size(); ++i) {
         const cooker::CookedTree cooked = test::require(cooker::cook_mesh(tiles[i], options, grid));
-        const Tree tree = test::require(bind_parts(cooker::parts_of(cooked.tree)));
+        const Tree tree = test::require(cooker::bind_encoded(cooked.tree));
         for (const DecodedTriangle& t : decoded_triangles(tree)) {
           const Triangle source = source_triangle(tiles[i], t.face, t.half);
           for (std::size_t c = 0; c < 3; ++c) {

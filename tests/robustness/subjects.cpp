@@ -14,8 +14,7 @@ namespace {
 
 class Walk {
  public:
-  explicit Walk(const Tree& tree)
-      : tree_(tree), met_(BoundTree::of(tree).record().face_count, false) {}
+  explicit Walk(const Tree& tree) : tree_(tree), met_(tree.face_count(), false) {}
 
   WalkFigures run() {
     if (!tree_.empty()) visit(BoundTree::of(tree_).root());
@@ -60,7 +59,7 @@ class Walk {
 
   // Copies stand in no leaf; they are met where their originals are.
   void visit_duplicates() {
-    for (std::uint32_t face = 0; face < BoundTree::of(tree_).record().face_count; ++face) {
+    for (std::uint32_t face = 0; face < BoundTree::of(tree_).face_count(); ++face) {
       if (!met_[face] || BoundTree::of(tree_).original_of(face) != face) continue;
       const FaceRange copies = BoundTree::of(tree_).duplicates_of(face);
       for (std::uint32_t copy = copies.first; copy < copies.last; ++copy) {
@@ -104,7 +103,7 @@ Subject make_subject(const SourceMesh& mesh, CodecId codec, const Store& store) 
 std::vector<DecodedTriangle> decoded_triangles(const Tree& tree) {
   std::vector<DecodedTriangle> all;
   TriangleBatch batch;
-  for (std::uint32_t order = 0; order < BoundTree::of(tree).record().face_count; ++order) {
+  for (std::uint32_t order = 0; order < tree.face_count(); ++order) {
     if (BoundTree::of(tree).leaves().read(order, 1, batch) != Errc::kOk) {
       throw std::runtime_error("face " + std::to_string(order) + " cannot be read");
     }

@@ -35,7 +35,7 @@ Eigen::AlignedBox3d bounds_in_world(std::span<const Triangle> triangles, const P
 
 // Reads every face through the tree, as a contact solver of an application would.
 void read_triangles(Shape& shape, const Tree& tree) {
-  const std::uint32_t faces = BoundTree::of(tree).record().face_count;
+  const std::uint32_t faces = tree.face_count();
   std::vector<std::vector<Triangle>> by_id(faces);
   TriangleBatch batch;
   for (std::uint32_t order = 0; order < faces; ++order) {
@@ -63,7 +63,7 @@ Shape shape_of(std::string name, cooker::EncodedTree encoded) {
   shape.name = std::move(name);
   shape.max_vertex_error = encoded.geometry.max_vertex_error;
   shape.encoded = std::make_unique<const cooker::EncodedTree>(std::move(encoded));
-  shape.tree = require(bind_parts(cooker::parts_of(*shape.encoded)));
+  shape.tree = require(cooker::bind_encoded(*shape.encoded));
   read_triangles(shape, *shape.tree);
   return shape;
 }

@@ -77,8 +77,8 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
     EXPECT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
     for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
   }
-  for (std::uint32_t face = faces_in_leaves(BoundTree::of(tree).record());
-       face < BoundTree::of(tree).record().face_count; ++face) {
+  for (std::uint32_t face = BoundTree::of(tree).counts().faces_in_leaves; face < tree.face_count();
+       ++face) {
     TriangleBatch batch;
     EXPECT_EQ(BoundTree::of(tree).leaves().read(face, 1, batch), Errc::kOk);
     for (std::uint32_t i = 0; i < batch.count; ++i) triangles.push_back(batch.triangle(i));

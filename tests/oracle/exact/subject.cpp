@@ -67,7 +67,7 @@ void finish(Group& group) {
 std::vector<Decoded> decoded_triangles_of(const Tree& tree) {
   std::vector<Decoded> all;
   TriangleBatch batch;
-  for (std::uint32_t order = 0; order < BoundTree::of(tree).record().face_count; ++order) {
+  for (std::uint32_t order = 0; order < tree.face_count(); ++order) {
     if (BoundTree::of(tree).leaves().read(order, 1, batch) != Errc::kOk) {
       throw std::runtime_error("a face cannot be read");
     }

@@ -92,7 +92,7 @@ TEST(Search, TakesOutOneTreeWhole) {
     EXPECT_EQ(tree.nodes.codec, candidate.codec);
     EXPECT_EQ(tree.geometry.geometry, candidate.geometry);
     EXPECT_EQ(tree.nodes.bytes.size(), candidate.tree_bytes);
-    EXPECT_TRUE(bind_parts(parts_of(tree)).ok());
+    EXPECT_TRUE(bind_encoded(tree).ok());
   }
 }
 

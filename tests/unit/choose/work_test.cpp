@@ -41,7 +41,7 @@ TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
   const SourceMesh mesh = test::torus(40, 24);
   for (const CodecInfo& codec : kCodecs) {
     const EncodedTree encoded = require(cook_as(mesh, codec.id));
-    const Tree tree = require(bind_parts(parts_of(encoded)));
+    const Tree tree = require(bind_encoded(encoded));
     Workload questions;
     questions.boxes = choice_questions(bounds_of(mesh)).boxes;
     Reached reached;
@@ -63,7 +63,7 @@ TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
   const SourceMesh mesh = test::torus(40, 24);
   const Workload questions = choice_questions(bounds_of(mesh));
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide4));
-  const Tree tree = require(bind_parts(parts_of(encoded)));
+  const Tree tree = require(bind_encoded(encoded));
   const WorkOfKinds first = require(count_work(tree, questions));
   const WorkOfKinds second = require(count_work(tree, questions));
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
@@ -79,7 +79,7 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
   SourceMesh mesh = test::torus(3, 3);
   mesh.faces.assign(200'000, mesh.faces.front());
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide8));
-  const Tree tree = require(bind_parts(parts_of(encoded)));
+  const Tree tree = require(bind_encoded(encoded));
   for (const Work& work : require(count_work(tree, choice_questions(bounds_of(mesh))))) {
     EXPECT_LE(work.nodes + work.leaves, 1'000'008);
   }
@@ -87,7 +87,7 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
 
 TEST(CountWork, ATreeWithoutFacesHasNone) {
   const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
-  const Tree tree = require(bind_parts(parts_of(encoded)));
+  const Tree tree = require(bind_encoded(encoded));
   const Workload questions = choice_questions(bounds_of(test::torus(4, 4)));
   for (const Work& work : require(count_work(tree, questions))) {
     EXPECT_EQ(work.nodes, 0);

@@ -34,7 +34,7 @@ CookOptions on_grid(int bits) {
 std::map<std::uint32_t, std::vector<Eigen::Vector3d>> decoded_faces(const Tree& tree) {
   std::map<std::uint32_t, std::vector<Eigen::Vector3d>> faces;
   TriangleBatch batch;
-  for (std::uint32_t f = 0; f < BoundTree::of(tree).record().face_count; ++f) {
+  for (std::uint32_t f = 0; f < tree.face_count(); ++f) {
     EXPECT_EQ(BoundTree::of(tree).leaves().read(f, 1, batch), Errc::kOk);
     std::vector<Eigen::Vector3d>& corners = faces[BoundTree::of(tree).face_id(f)];
     EXPECT_TRUE(corners.empty()) << "face " << BoundTree::of(tree).face_id(f) << " occurs twice";
@@ -56,7 +56,7 @@ TEST_P(GridStore, HoldsTheSourceRoundedToTheGrid) {
       const cooker::EncodedTree encoded =
           test::require(cooker::cook_as(mesh, GetParam(), on_grid(bits)));
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), on_grid(bits));
-      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).record().grid_exponent);
+      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).grid_exponent());
       const Eigen::AlignedBox3d bounds = cooker::bounds_of(mesh);
       const double extent = bounds.diagonal().maxCoeff();
       EXPECT_LE(extent, step * std::ldexp(1.0, bits));

@@ -30,7 +30,7 @@ TEST_P(Export, ReimportedFilesHoldTheFacesOfTheSourceInItsOrder) {
     const SourceMesh again = as_f32(imported(obj, Precision::kF64));
     EXPECT_EQ(faces_of(again), faces_of(mesh));
     EXPECT_EQ(cook_as(again, GetParam())->geometry_hash,
-              BoundTree::of(cooked.tree).record().geometry_hash);
+              OpenFile::of(cooked.file).tree_record(0).geometry_hash);
     // Lines are no faces: boxes do not disturb.
     const auto glb = export_one(folder, "out.glb", cooked.tree, {});
     EXPECT_EQ(triangles_of(imported(glb)), triangles_of(mesh));
@@ -129,7 +129,7 @@ void expect_boxes_around_triangles(const Tree& tree, const std::filesystem::path
   const ViewedPart& triangles = parts.at("triangles");
   std::map<std::uint32_t, std::vector<std::size_t>> elements_of_face;
   std::size_t element = 0;
-  for (std::uint32_t f = 0; f < BoundTree::of(tree).record().face_count; ++f) {
+  for (std::uint32_t f = 0; f < tree.face_count(); ++f) {
     TriangleBatch batch;
     ASSERT_EQ(BoundTree::of(tree).leaf_triangles({{}, {f, 1}, true}, batch), Errc::kOk);
     const bool is_split = batch.count == 2 && triangles.elements.at(element).size() == 3;
@@ -209,7 +209,7 @@ TEST_P(Export, GridPointsAreWhatATreeDecodes) {
       SCOPED_TRACE(mesh.name + ", " + std::to_string(bits));
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), on_grid(bits));
       // Multiples of the step, as the grid's origin is one: what import rounded here, face by face.
-      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).record().grid_exponent);
+      const double step = std::ldexp(1.0, BoundTree::of(cooked.tree).grid_exponent());
       SourceMesh rounded = far_away(mesh, 1, Eigen::Vector3d::Zero());
       for (double& x : rounded.positions.f64) x = std::floor(x / step + 0.5) * step;
       const auto obj = export_one(folder, "out.obj", cooked.tree, triangles_only());
@@ -285,7 +285,7 @@ TEST_P(Export, ExternalGeometryComesFromItsMesh) {
               bits_of(mesh, mesh.faces[BoundTree::of(cooked.tree).face_id(f)]));
   }
   // Boxes need no mesh.
-  bind.mesh = absent_arrays(BoundTree::of(cooked.tree).record());
+  bind.mesh = absent_arrays(OpenFile::of(cooked.file).tree_record(0));
   const Tree boxes_only = test::require(Tree::bind(cooked.file, 0, bind));
   ExportOptions boxes = everything();
   boxes.triangles = false;

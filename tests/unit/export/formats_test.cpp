@@ -305,7 +305,7 @@ TEST(ExportFile, RefusesWhatMakesNoSense) {
   const test::TempFolder folder;
   const test::CookedTree cooked = test::cook_tree(test::soup(400, 3), CodecId::kWide8);
   const std::span<const Tree> trees(&cooked.tree, 1);
-  const std::uint32_t depth = BoundTree::of(cooked.tree).record().depth;
+  const std::uint32_t depth = BoundTree::of(cooked.tree).depth();
   const auto code = [&](const char* name, std::vector<LevelRange> levels) {
     ExportOptions options;
     options.levels = std::move(levels);

@@ -95,7 +95,7 @@ TEST(FileTrees, AreFoundByNumberAndName) {
   EXPECT_EQ(*file->find_tree("sphere"), 1u);
   EXPECT_EQ(file->find_tree("cube").code(), Errc::kTreeIndex);
   EXPECT_EQ(Tree::bind(*file, 2).code(), Errc::kTreeIndex);
-  EXPECT_EQ(BoundTree::of(*Tree::bind(*file, 1)).record().face_count, trees[1].face_count);
+  EXPECT_EQ(BoundTree::of(*Tree::bind(*file, 1)).face_count(), trees[1].face_count);
 }
 
 }  // namespace

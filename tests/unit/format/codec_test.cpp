@@ -15,6 +15,8 @@
 namespace boxtree {
 namespace {
 
+constexpr TreeCounts kThreeNodes{.node_count = 3, .faces_in_leaves = 0};
+
 template <class Codec>
 class FixedNodes : public testing::Test {};
 
@@ -23,14 +25,13 @@ using FixedCodecs = testing::Types<PlainCodec<float>, PlainCodec<std::uint16_t>,
 TYPED_TEST_SUITE(FixedNodes, FixedCodecs);
 
 TYPED_TEST(FixedNodes, BindOnlyToAsManyBytesAsTheirNumberTakes) {
-  TreeRecord record{};
-  record.node_count = 3;
   constexpr std::size_t kBytes = 3 * sizeof(typename TypeParam::Node);
   const std::vector<std::byte> bytes(kBytes + 1);
-  EXPECT_TRUE(TypeParam::bind(record, Bytes(bytes).first(kBytes)).ok());
-  EXPECT_EQ(TypeParam::bind(record, Bytes(bytes).first(kBytes - 1)).code(), Errc::kSectionSize);
-  EXPECT_EQ(TypeParam::bind(record, bytes).code(), Errc::kSectionSize);
-  EXPECT_EQ(TypeParam::bind(record, {}).code(), Errc::kSectionSize);
+  EXPECT_TRUE(TypeParam::bind(kThreeNodes, Bytes(bytes).first(kBytes)).ok());
+  EXPECT_EQ(TypeParam::bind(kThreeNodes, Bytes(bytes).first(kBytes - 1)).code(),
+            Errc::kSectionSize);
+  EXPECT_EQ(TypeParam::bind(kThreeNodes, bytes).code(), Errc::kSectionSize);
+  EXPECT_EQ(TypeParam::bind(kThreeNodes, {}).code(), Errc::kSectionSize);
 }
 
 // A header of three nodes, two of which are of other kinds than the root.
@@ -44,22 +45,16 @@ PackedHeader sound_header(std::uint8_t cut_bits, std::uint32_t cut_count) {
   return header;
 }
 
-TreeRecord record_of_three() {
-  TreeRecord record{};
-  record.node_count = 3;
-  return record;
-}
-
 template <PackedCut K>
 void expect_size_matters(const PackedHeader& header) {
   const std::size_t size = PackedPlaces(header).section_bytes;
   std::vector<std::byte> bytes(size + 1);
   std::memcpy(bytes.data(), &header, sizeof(header));
-  const TreeRecord record = record_of_three();
-  EXPECT_TRUE(PackedCodec<K>::bind(record, Bytes(bytes).first(size)).ok());
-  EXPECT_EQ(PackedCodec<K>::bind(record, Bytes(bytes).first(size - 1)).code(), Errc::kSectionSize);
-  EXPECT_EQ(PackedCodec<K>::bind(record, bytes).code(), Errc::kSectionSize);
-  EXPECT_EQ(PackedCodec<K>::bind(record, Bytes(bytes).first(sizeof(header) - 1)).code(),
+  EXPECT_TRUE(PackedCodec<K>::bind(kThreeNodes, Bytes(bytes).first(size)).ok());
+  EXPECT_EQ(PackedCodec<K>::bind(kThreeNodes, Bytes(bytes).first(size - 1)).code(),
+            Errc::kSectionSize);
+  EXPECT_EQ(PackedCodec<K>::bind(kThreeNodes, bytes).code(), Errc::kSectionSize);
+  EXPECT_EQ(PackedCodec<K>::bind(kThreeNodes, Bytes(bytes).first(sizeof(header) - 1)).code(),
             Errc::kSectionSize);
 }
 
@@ -81,8 +76,7 @@ TEST(PackedHeaders, FieldsOfNumbersHave1To32Bits) {
                                          {255, Errc::kRecordInvalid}}) {
       PackedHeader header = sound_header(32, 0);
       header.*field = static_cast<std::uint8_t>(bits);
-      EXPECT_EQ(check_packed_header(header, PackedCut::kF32, record_of_three()).code(), expected)
-          << bits;
+      EXPECT_EQ(check_packed_header(header, PackedCut::kF32, kThreeNodes).code(), expected) << bits;
     }
   }
 }
@@ -114,16 +108,15 @@ TEST(PackedHeaders, CutsHaveTheBitsOfTheirKind) {
                          {PackedCut::kTable, 32, 2, Errc::kOk},
                          {PackedCut::kTable, 33, 2, kInvalid},
                          {PackedCut::kTable, 255, 2, kInvalid}}) {
-    EXPECT_EQ(
-        check_packed_header(sound_header(at.bits, at.count), at.cut, record_of_three()).code(),
-        at.expected)
+    EXPECT_EQ(check_packed_header(sound_header(at.bits, at.count), at.cut, kThreeNodes).code(),
+              at.expected)
         << static_cast<int>(at.cut) << ": " << int{at.bits} << " bits, table of " << at.count;
   }
 }
 
 TEST(PackedHeaders, CountsRootAndReserveAreChecked) {
   const auto check = [](const PackedHeader& header) {
-    return check_packed_header(header, PackedCut::kF32, record_of_three());
+    return check_packed_header(header, PackedCut::kF32, kThreeNodes);
   };
   const PackedHeader sound = sound_header(32, 0);
   EXPECT_TRUE(check(sound).ok());

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

@@ -10,6 +10,7 @@
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
+#include "format/tree_record.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 

@@ -12,6 +12,7 @@
 #include "format/container.h"
 #include "format/grid.h"
 #include "format/grid_leaf.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

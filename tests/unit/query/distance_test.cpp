@@ -35,7 +35,7 @@ Truth brute_force(const Tree& first, const Pose& first_pose, const Tree& second,
   EXPECT_TRUE(pose.has_value());
   const Eigen::Matrix<long double, 3, 3> to_world =
       first_pose.linear().cast<long double>() *
-      std::ldexp(1.0L, BoundTree::of(first).record().scale_exponent);
+      std::ldexp(1.0L, BoundTree::of(first).scale_exponent());
   struct Placed {
     Triangle local;
     test::LongTriangle world;

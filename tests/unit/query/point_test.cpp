@@ -23,7 +23,7 @@ using cooker::SourceMesh;
 class BruteForce {
  public:
   explicit BruteForce(const Tree& tree) {
-    const long double scale = std::ldexp(1.0L, BoundTree::of(tree).record().scale_exponent);
+    const long double scale = std::ldexp(1.0L, BoundTree::of(tree).scale_exponent());
     for (const Triangle& triangle : test::all_triangles(tree)) {
       Item item;
       item.center.setZero();

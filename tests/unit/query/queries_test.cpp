@@ -50,7 +50,7 @@ class Queries : public testing::TestWithParam<CodecId> {
       options.geometry = GeometryId::kGrid;
       options.grid.bits = 12;
       const test::CookedTree cooked = test::cook_tree(mesh, GetParam(), options);
-      body(rounded(mesh, BoundTree::of(cooked.tree).record().grid_exponent), cooked.tree);
+      body(rounded(mesh, BoundTree::of(cooked.tree).grid_exponent()), cooked.tree);
     }
   }
 

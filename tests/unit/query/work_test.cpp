@@ -126,18 +126,21 @@ std::vector<LimitedQuery> tree_queries(const Tree& tree) {
 
 class Limits : public testing::TestWithParam<CodecId> {};
 
+std::uint64_t most_pairs_with_itself(const Tree& tree) {
+  const BoundTree& bound = BoundTree::of(tree);
+  return most_pairs(bound.codec(), bound.counts(), bound.codec(), bound.counts());
+}
+
 TEST_P(Limits, TellWhenTheyDoNotSuffice) {
   const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
-  const std::uint64_t nodes = BoundTree::of(cooked.tree).record().node_count;
+  const std::uint64_t nodes = BoundTree::of(cooked.tree).node_count();
   for (const LimitedQuery& query : tree_queries(cooked.tree)) {
     SCOPED_TRACE(query.name);
     const std::uint64_t least = least_limit(query);
     EXPECT_GT(least, 0u);
     const bool is_pair = std::string(query.name).find("pair") != std::string::npos ||
                          std::string(query.name).find("contact") != std::string::npos;
-    EXPECT_LE(least, is_pair ? most_pairs(BoundTree::of(cooked.tree).record(),
-                                          BoundTree::of(cooked.tree).record())
-                             : nodes);
+    EXPECT_LE(least, is_pair ? most_pairs_with_itself(cooked.tree) : nodes);
     // Everything is inside the box: every node is taken apart.
     if (std::string(query.name) == "overlap_box") {
       EXPECT_EQ(least, nodes);
@@ -152,9 +155,9 @@ TEST_P(Limits, WhatWasToldBeforeIsTrue) {
     const Result<Visit> visit =
         overlap_box(cooked.tree, everywhere(),
                     [&](const FaceRef& face) { return told.insert(face.id).second; }, {nodes});
-    if (nodes >= BoundTree::of(cooked.tree).record().node_count) continue;
+    if (nodes >= BoundTree::of(cooked.tree).node_count()) continue;
     EXPECT_EQ(visit.code(), Errc::kWorkLimit);
-    EXPECT_LT(told.size(), BoundTree::of(cooked.tree).record().face_count);
+    EXPECT_LT(told.size(), BoundTree::of(cooked.tree).face_count());
     EXPECT_LE(told.size(), nodes * kWideChildren * kLeafFaces);
   }
 }
@@ -224,32 +227,26 @@ TEST(SceneLimits, CountForAllInstancesTogether) {
   // All is in the box: every instance and all nodes of its tree.
   std::uint64_t all = 0;
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
-    all += 1 + BoundTree::of(scene.trees()[test::require(scene.info(i)).tree]).record().node_count;
+    all += 1 + BoundTree::of(scene.trees()[test::require(scene.info(i)).tree]).node_count();
   }
   EXPECT_EQ(least_limit(queries[2]), all);
 }
 
 // The bound on the work that two trees of hostile bytes can make.
 TEST(MostPairs, IsTheProductOfNodesAndLeaves) {
-  const auto record = [](CodecId codec, std::uint32_t nodes, std::uint32_t faces) {
-    TreeRecord made{};
-    made.codec = codec;
-    made.node_count = nodes;
-    made.face_count = faces;
-    return made;
+  constexpr CodecId kBinary = CodecId::kPlainF32;
+  EXPECT_EQ(most_leaves(kBinary, {3, 4}), 4u);
+  EXPECT_EQ(most_leaves(kBinary, {3, 40}), 4u);  // two children each at most
+  EXPECT_EQ(most_leaves(kBinary, {0, 1}), 1u);
+  EXPECT_EQ(most_leaves(CodecId::kWide8, {3, 40}), 5u);
+  EXPECT_EQ(most_leaves(CodecId::kWide4, {3, 41}), 6u);
+  const auto most_pairs = [](const TreeCounts& first, const TreeCounts& second) {
+    return boxtree::most_pairs(kBinary, first, kBinary, second);
   };
-  const auto binary = [&](std::uint32_t nodes, std::uint32_t faces) {
-    return record(CodecId::kPlainF32, nodes, faces);
-  };
-  EXPECT_EQ(most_leaves(binary(3, 4)), 4u);
-  EXPECT_EQ(most_leaves(binary(3, 40)), 4u);  // two children each at most
-  EXPECT_EQ(most_leaves(binary(0, 1)), 1u);
-  EXPECT_EQ(most_leaves(record(CodecId::kWide8, 3, 40)), 5u);
-  EXPECT_EQ(most_leaves(record(CodecId::kWide4, 3, 41)), 6u);
-  EXPECT_EQ(most_pairs(binary(3, 4), binary(5, 6)), 77u);
-  EXPECT_EQ(most_pairs(binary(0, 0), binary(5, 6)), 0u);
-  EXPECT_EQ(most_pairs(binary(5, 6), binary(0, 0)), 0u);
-  const TreeRecord largest = binary(kMaxNodes, kMaxFaces);
+  EXPECT_EQ(most_pairs({3, 4}, {5, 6}), 77u);
+  EXPECT_EQ(most_pairs({0, 0}, {5, 6}), 0u);
+  EXPECT_EQ(most_pairs({5, 6}, {0, 0}), 0u);
+  const TreeCounts largest{kMaxNodes, kMaxFaces};
   const std::uint64_t size = std::uint64_t{kMaxNodes} + kMaxFaces;
   EXPECT_EQ(most_pairs(largest, largest), saturated_product(size, size));
   EXPECT_EQ(saturated_product(size, size), ~std::uint64_t{0});
@@ -291,8 +288,8 @@ TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
   for (const std::vector<std::byte>& bytes : {shared_leaves_binary(), shared_leaves_wide()}) {
     const File file = test::require(File::open(Bytes(bytes)));
     const Tree tree = test::require(Tree::bind(file));
-    const std::uint64_t most = saturated_product(faces_in_leaves(BoundTree::of(tree).record()),
-                                                 faces_in_leaves(BoundTree::of(tree).record()));
+    const std::uint64_t most = saturated_product(BoundTree::of(tree).counts().faces_in_leaves,
+                                                 BoundTree::of(tree).counts().faces_in_leaves);
     std::uint64_t told = 0;
     const Pose here = Pose::Identity();
     const auto count = [&](const FacePair&) { return ++told > 0; };
@@ -303,8 +300,7 @@ TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
     const Result<Distance> distant = distance(tree, here, tree, apart);
     EXPECT_TRUE(distant.ok() || distant.code() == Errc::kNodeCorrupt);
     if (distant) {
-      EXPECT_LE(distant->nodes_expanded,
-                most_pairs(BoundTree::of(tree).record(), BoundTree::of(tree).record()));
+      EXPECT_LE(distant->nodes_expanded, most_pairs_with_itself(tree));
     }
   }
 }
@@ -328,7 +324,7 @@ TEST(HostileLeaves, OfATopLevelAreVisitedOnce) {
       overlap_box(scene, everywhere(), [&](const SceneFace&) { return ++told > 0; });
   // Three instances at the root and eight below each of its five nodes: 43 visits of 40 instances.
   EXPECT_EQ(visit.code(), Errc::kNodeCorrupt);
-  EXPECT_EQ(told, 40 * BoundTree::of(scene.trees()[0]).record().face_count);
+  EXPECT_EQ(told, 40 * BoundTree::of(scene.trees()[0]).face_count());
 }
 
 // Copies of a face are told again each time that a leaf with it is met.
@@ -340,7 +336,7 @@ TEST(HostileLeaves, WithCopiesAreToldOnce) {
     const File file = test::require(File::open(Bytes(bytes)));
     const Tree tree = test::require(Tree::bind(file));
     ASSERT_TRUE(BoundTree::of(tree).has_duplicates());
-    original = BoundTree::of(tree).original_of(BoundTree::of(tree).record().face_count - 1);
+    original = BoundTree::of(tree).original_of(tree.face_count() - 1);
   }
   const std::uint32_t leaf = std::min(original / kLeafFaces, 300 / kLeafFaces - 8);
   test::edit_records<Wide8Node>(

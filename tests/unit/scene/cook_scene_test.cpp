@@ -16,6 +16,7 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
 #include "cooker/shell/cook_job.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
@@ -459,7 +460,7 @@ hidden_faces = "hidden.txt"
   const CookedFileOf cooked(kLevel, CookOptions(), text);
   for (const Tree& tree : cooked.scene.trees()) {
     if (tree.name() != "crate") continue;
-    ASSERT_EQ(BoundTree::of(tree).record().face_count, 9u);
+    ASSERT_EQ(tree.face_count(), 9u);
     std::set<std::uint32_t> ids;
     for (std::uint32_t face = 0; face < 9; ++face) ids.insert(BoundTree::of(tree).face_id(face));
     EXPECT_EQ(ids, (std::set<std::uint32_t>{1, 2, 5, 6, 7, 8, 9, 10, 11}));
@@ -523,8 +524,8 @@ translation = [1, 0, 0]
   const CookedFileOf cooked({}, CookOptions(), text);
   ASSERT_EQ(cooked.scene.trees().size(), 1u);
   const Tree& tree = cooked.scene.trees()[0];
-  ASSERT_EQ(BoundTree::of(tree).record().geometry, GeometryId::kGrid);
-  EXPECT_LE(std::ldexp(0.866, BoundTree::of(tree).record().grid_exponent), 0.0005);
+  ASSERT_EQ(BoundTree::of(tree).geometry(), GeometryId::kGrid);
+  EXPECT_LE(std::ldexp(0.866, BoundTree::of(tree).grid_exponent()), 0.0005);
   std::set<std::array<double, 3>> border[2];
   for (std::uint32_t i = 0; i < 2; ++i) {
     const Pose pose = require(cooked.scene.pose(i));
@@ -564,7 +565,7 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
     const InstanceInfo info = require(scene.info(i));
     const Tree& tree = scene.trees()[info.tree];
     std::vector<std::string>& of_faces = names[info.id];
-    of_faces.resize(BoundTree::of(tree).record().face_count);
+    of_faces.resize(tree.face_count());
     for (std::uint32_t face = 0; face < of_faces.size(); ++face) {
       const std::uint32_t id = BoundTree::of(tree).face_id(face);
       of_faces[id] = scene.material_name(scene.material({i, {id, face}}));

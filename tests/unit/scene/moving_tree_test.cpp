@@ -47,7 +47,7 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
     MovingTree tree;
     tree.build(boxes);
     for (int round = 0; round < 200; ++round) {
-      WalkBound nodes(tree.record().node_count);
+      WalkBound nodes(tree.node_count());
       All query{tree, boxes, {}, random_box(random), nodes};
       std::set<std::uint32_t> expected;
       Box<double> whole = boxes[0];
@@ -95,7 +95,8 @@ TEST(MovingTree, NeighboursInTheTreeAreNeighboursInSpace) {
 TEST(MovingTree, IsEmptyWithoutInstances) {
   const MovingTree tree;
   EXPECT_TRUE(tree.empty());
-  EXPECT_EQ(tree.record().root, RootKind::kEmpty);
+  EXPECT_FALSE(tree.is_leaf());
+  EXPECT_EQ(tree.node_count(), 0u);
 }
 
 }  // namespace

@@ -95,8 +95,8 @@ TEST(CookJob, EachInputIsReadOnceAndAllShareOneGrid) {
   ASSERT_EQ(file.tree_count(), 3u);
   const Tree first = require(Tree::bind(file, 0));
   for (std::uint32_t tree = 1; tree < 3; ++tree) {
-    EXPECT_EQ(BoundTree::of(require(Tree::bind(file, tree))).record().grid_exponent,
-              BoundTree::of(first).record().grid_exponent);
+    EXPECT_EQ(BoundTree::of(require(Tree::bind(file, tree))).grid_exponent(),
+              BoundTree::of(first).grid_exponent());
   }
   ASSERT_EQ(summary.trees.size(), 3u);
   EXPECT_EQ(summary.trees[1].tree.name, "b");

@@ -12,6 +12,7 @@
 
 #include "cooker/proof/proof.h"
 #include "format/container.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/coincident.h"
@@ -116,11 +117,11 @@ TEST_P(WithDuplicates, FilesAreProvenAndNameEveryFaceOnce) {
       ADD_FAILURE() << finding.message();
     const cooker::Duplicates duplicates = cooker::find_duplicates(mesh);
     EXPECT_TRUE(BoundTree::of(tree).has_duplicates());
-    EXPECT_GE(BoundTree::of(tree).record().duplicate_count,
+    EXPECT_GE(BoundTree::of(tree).duplicate_count(),
               duplicates.count);  // a grid may make more
-    const std::uint32_t in_leaves = faces_in_leaves(BoundTree::of(tree).record());
+    const std::uint32_t in_leaves = BoundTree::of(tree).counts().faces_in_leaves;
     std::set<std::uint32_t> ids;
-    for (std::uint32_t face = 0; face < BoundTree::of(tree).record().face_count; ++face) {
+    for (std::uint32_t face = 0; face < tree.face_count(); ++face) {
       ids.insert(BoundTree::of(tree).face_id(face));
       const std::uint32_t original = BoundTree::of(tree).original_of(face);
       ASSERT_LT(original, in_leaves);
@@ -201,7 +202,7 @@ TEST_P(WithDuplicates, NothingIsStoredWhereThereAreNone) {
   for (const SourceMesh& mesh : {test::torus(12, 8), test::city(9, 2), test::duplicates(1)}) {
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     EXPECT_FALSE(BoundTree::of(cooked.tree).has_duplicates());
-    EXPECT_EQ(BoundTree::of(cooked.tree).record().duplicate_count, 0u);
+    EXPECT_EQ(BoundTree::of(cooked.tree).duplicate_count(), 0u);
     EXPECT_EQ(OpenFile::of(cooked.file).container().find(SectionKind::kDuplicates, 0), nullptr);
   }
 }
@@ -249,10 +250,10 @@ class LyingBytes {
     static_cast<void>(overlap_pairs(tree, Pose::Identity(), tree, Pose::Identity(), count));
     static_cast<void>(closest_hit(tree, {{0, 0, 9}, {0, 0, -1}}));
     static_cast<void>(closest_point(tree, {0, 0, 9}));
-    for (std::uint32_t face = 0; face < BoundTree::of(tree).record().face_count; ++face) {
+    for (std::uint32_t face = 0; face < tree.face_count(); ++face) {
       const FaceRange copies = BoundTree::of(tree).duplicates_of(face);
       EXPECT_LE(copies.first, copies.last);
-      EXPECT_LE(copies.last, BoundTree::of(tree).record().face_count);
+      EXPECT_LE(copies.last, tree.face_count());
     }
   }
 
@@ -276,7 +277,7 @@ TEST_P(WithDuplicates, VerifyRefusesListsThatLie) {
   };
   // The last one in leaves, or, where that is the original, the one before, which is out of order.
   const std::set<Errc> another = codes_of(3, [](unsigned old, const TreeRecord& r) {
-    const std::uint32_t last = faces_in_leaves(r) - 1;
+    const std::uint32_t last = counts_of(r).faces_in_leaves - 1;
     return old == last ? last - 1 : last;
   });
   EXPECT_TRUE(another.contains(Errc::kDuplicateDiffers) || another.contains(Errc::kFaceOutOfRange));
@@ -284,10 +285,10 @@ TEST_P(WithDuplicates, VerifyRefusesListsThatLie) {
                 return 255u;
               }).contains(Errc::kFaceOutOfRange));
   EXPECT_TRUE(codes_of(3, [](unsigned, const TreeRecord& r) {
-                return faces_in_leaves(r);
+                return counts_of(r).faces_in_leaves;
               }).contains(Errc::kFaceOutOfRange));
   EXPECT_TRUE(codes_of(0, [](unsigned, const TreeRecord& r) {
-                return faces_in_leaves(r) - 1;
+                return counts_of(r).faces_in_leaves - 1;
               }).contains(Errc::kFaceOutOfRange));
 }
 
@@ -333,7 +334,7 @@ TEST_P(ExternalDuplicates, AnswersAreThoseOfStoredGeometry) {
   const test::CookedTree inside = test::cook_tree(mesh, GetParam());
   EXPECT_TRUE(cooker::verify_file(outside.file, bind.mesh).empty());
   EXPECT_TRUE(cooker::verify_file(outside.file).empty());
-  EXPECT_EQ(BoundTree::of(outside.tree).record().duplicate_count, 84u);
+  EXPECT_EQ(BoundTree::of(outside.tree).duplicate_count(), 84u);
   for (int i = 0; i < 50; ++i) {
     const Eigen::Vector3d at(0.04 * i - 1, 0.3, 2);
     const auto a = require(closest_point(outside.tree, at));

@@ -43,7 +43,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t depth, Faces& faces)
   NodeChildren children;
   ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
   ASSERT_GE(children.count, 1u);
-  ASSERT_LT(depth, BoundTree::of(tree).record().depth);
+  ASSERT_LT(depth, BoundTree::of(tree).depth());
   for (std::uint32_t i = 0; i < children.count; ++i) {
     const Node& child = children.child[i];
     for (std::size_t k = 0; k < 3; ++k) {
@@ -60,7 +60,7 @@ TEST_P(Trees, NodeByNodeEveryFaceOfTheSourceIsMetOnceInsideItsBoxes) {
     const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
     Faces faces;
     walk(cooked.tree, BoundTree::of(cooked.tree).root(), 0, faces);
-    for (std::uint32_t i = faces_in_leaves(BoundTree::of(cooked.tree).record());
+    for (std::uint32_t i = BoundTree::of(cooked.tree).counts().faces_in_leaves;
          i < mesh.faces.size(); ++i) {
       const std::uint32_t original =
           BoundTree::of(cooked.tree).face_id(BoundTree::of(cooked.tree).original_of(i));

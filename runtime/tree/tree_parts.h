@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// What a tree is bound from: its record and its sections.
+#pragma once
+
+#include <string_view>
+
+#include <boxtree/tree.h>
+
+#include "format/bytes.h"
+#include "format/tree_record.h"
+
+namespace boxtree {
+
+/// The parts of one tree, wherever they lie; a part that is not there is empty.
+struct TreeParts {
+  TreeRecord record;
+  std::string_view name;
+  Bytes nodes;
+  Bytes vertices;
+  Bytes corners;
+  Bytes face_ids;
+  Bytes duplicates;
+};
+
+/// A tree of parts that are not in a file (yet). Errors: as Tree::bind.
+[[nodiscard]] Result<Tree> bind_parts(const TreeParts& parts, const BindOptions& options = {});
+
+}  // namespace boxtree
