@@ -20,6 +20,14 @@ struct NodeRef {
   friend bool operator==(const NodeRef&, const NodeRef&) = default;
 };
 
+/// What was found of the bytes of a node that was decoded. It says nothing of the walk that met the
+/// node: those go on only through WalkBound::count (runtime/walk/work.h), which asks for it.
+enum class NodeState : bool { kCorrupt, kSound };
+
+[[nodiscard]] constexpr NodeState sound_if(bool is_sound) noexcept {
+  return is_sound ? NodeState::kSound : NodeState::kCorrupt;
+}
+
 /// What the root of a tree is. Numbers are pinned.
 enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
 

@@ -134,16 +134,18 @@ struct PackedCodec {
 
   [[nodiscard]] NodeRef root() const noexcept { return {0, root_kind}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
-  /// corrupt: no such axis, node or cut. Precondition: `ref` came from root() or expand().
-  [[nodiscard]] bool expand(NodeRef ref, const Box<Scalar>& box, Children& out) const noexcept {
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
+  /// contradicts itself: no such axis, node or cut. Precondition: `ref` came from root() or
+  /// expand().
+  [[nodiscard]] NodeState expand(NodeRef ref, const Box<Scalar>& box,
+                                 Children& out) const noexcept {
     const auto kind = static_cast<NodeKind>(ref.second);
     const Array& array = arrays[ref.second];
     const PackedLayout& layout = array.layout;
     const std::uint64_t at = std::uint64_t{ref.first} * layout.bits;
     const std::uint64_t head = read_bits(array.bits, at, 6);  // axis and at most two kinds
     const auto axis = static_cast<std::size_t>(head & 3);
-    if (axis > 2) return false;
+    if (axis > 2) return NodeState::kCorrupt;
     out.clear();
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint32_t width = layout.number_bits[side];
@@ -154,13 +156,13 @@ struct PackedCodec {
       if (!is_leaf) {
         child_kind = static_cast<std::uint32_t>(head >> layout.kind_at[side]) & 3u;
         if (number == low_bits(width)) continue;  // the missing child of a shrink node
-        if (number >= arrays[child_kind].count) return false;
+        if (number >= arrays[child_kind].count) return NodeState::kCorrupt;
       }
       Scalar cut;
-      if (!read_cut(array.bits, at + layout.cut_at[side], cut)) return false;
+      if (!read_cut(array.bits, at + layout.cut_at[side], cut)) return NodeState::kCorrupt;
       out.add(child_box(box, axis, side, cut), {number, child_kind}, is_leaf);
     }
-    return true;
+    return NodeState::kSound;
   }
 
  private:

@@ -86,13 +86,13 @@ struct PlainCodec {
 
   [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
-  /// corrupt: a kind or axis that does not exist, or a child that is no node behind its parent.
-  /// Precondition: `ref` came from root() or expand().
-  [[nodiscard]] bool expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
+  /// contradicts itself: a kind or axis that does not exist, or a child that is no node behind its
+  /// parent. Precondition: `ref` came from root() or expand().
+  [[nodiscard]] NodeState expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
     const Node node = load<Node>(nodes, ref.first);
     const std::uint32_t axis = node.axis();
-    if (axis > 2 || (node.cutplane >> 6) != 0) return false;
+    if (axis > 2 || (node.cutplane >> 6) != 0) return NodeState::kCorrupt;
     out.clear();
     for (std::size_t side = 0; side < 2; ++side) {
       const PlainChild kind = node.kind(side);
@@ -100,11 +100,11 @@ struct PlainCodec {
       const std::uint32_t child = node.child[side];
       const bool is_leaf = kind == PlainChild::kLeaf;
       const bool is_node = kind == PlainChild::kSubtree && child > ref.first && child < node_count;
-      if (!is_leaf && !is_node) return false;
+      if (!is_leaf && !is_node) return NodeState::kCorrupt;
       out.add(child_box(box, axis, side, cut_value(node.cut[side])), {child, is_leaf ? 1u : 0u},
               is_leaf);
     }
-    return true;
+    return NodeState::kSound;
   }
 };
 

@@ -150,14 +150,14 @@ struct WideCodec {
 
   [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. Returns false when the node is
-  /// corrupt: no children, or a child that is no node behind its parent or has no face.
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
+  /// contradicts itself: no children, or a child that is no node behind its parent or has no face.
   /// Precondition: `ref` came from root() or expand().
-  [[nodiscard]] bool expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
+  [[nodiscard]] NodeState expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
     const Node node = load<Node>(nodes, ref.first);
     const WideLinks links = links_of(node);
     const std::uint32_t count = links.child_count;
-    if (count - 1 >= kWideChildren || (links.inner_mask >> count) != 0) return false;
+    if (count - 1 >= kWideChildren || (links.inner_mask >> count) != 0) return NodeState::kCorrupt;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const float step = wide_step<Node>(box.low[axis], box.high[axis]);
       for (std::size_t i = 0; i < kWideChildren; ++i) {
@@ -171,16 +171,16 @@ struct WideCodec {
     std::uint64_t next_face = std::uint64_t{links.first_leaf} * kLeafFaces;
     for (std::uint32_t i = 0; i < count; ++i) {
       if (out.is_leaf(i)) {
-        if (next_face >= face_count) return false;
+        if (next_face >= face_count) return NodeState::kCorrupt;
         const auto first = static_cast<std::uint32_t>(next_face);
         out.ref[i] = {first, std::min(kLeafFaces, face_count - first)};
         next_face += kLeafFaces;
       } else {
-        if (next_node <= ref.first || next_node >= node_count) return false;
+        if (next_node <= ref.first || next_node >= node_count) return NodeState::kCorrupt;
         out.ref[i] = {next_node++, 0};
       }
     }
-    return true;
+    return NodeState::kSound;
   }
 };
 

@@ -35,8 +35,9 @@ struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
   static Result<ListeningCodec> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
-  [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
-    if (counts->are_enough()) return false;
+  [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
+                                 Children& out) const noexcept {
+    if (counts->are_enough()) return NodeState::kCorrupt;
     ++counts->nodes;
     return ErasedCodec::expand(ref, box, out);
   }

@@ -58,9 +58,8 @@ template <class Visit>
     if (entry.node.is_leaf) continue;
     if (entry.level >= kMaxDepth) return Errc::kDepthExceeded;
     if (entry.level >= deepest) continue;
-    if (!bound.take_one()) return bound.error();
-    if (const Errc error = BoundTree::of(tree).expand(entry.node, children); error != Errc::kOk)
-      return error;
+    const Errc error = bound.count(BoundTree::of(tree).expand(entry.node, children));
+    if (error != Errc::kOk) return error;
     for (std::uint32_t i = children.count; i-- > 0;) {
       stack.push_back({children.child[i], entry.level + 1});
     }

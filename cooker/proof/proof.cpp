@@ -34,31 +34,19 @@ constexpr std::uint32_t kWideTaskLevels = 3;
 // One byte a face, set once it was met.
 using Reached = std::vector<std::atomic<std::uint8_t>>;
 
-// Nodes that a walk may still expand: as many as the record states. Whoever needs more has met one
-// twice; without the bound, children that are shared make work without end.
-using NodeBudget = std::atomic<std::uint32_t>;
-
-// False when none is left.
-bool take_node(NodeBudget& budget) {
-  std::uint32_t left = budget.load(std::memory_order_relaxed);
-  while (left > 0) {
-    if (budget.compare_exchange_weak(left, left - 1, std::memory_order_relaxed)) return true;
-  }
-  return false;
-}
-
 // The walk of one subtree. Counts and findings are its own and are added up in the order of the
 // children, so that they do not depend on threads.
 class Walk {
  public:
-  Walk(const Tree& tree, bool with_geometry, Reached& reached, NodeBudget& budget, TreeProof& proof)
+  Walk(const Tree& tree, bool with_geometry, Reached& reached, SharedWalkBound& bound,
+       TreeProof& proof)
       : tree_(tree),
         with_geometry_(with_geometry),
         task_levels_(tree.face_count() < kParallelFaces     ? 0
                      : is_wide(BoundTree::of(tree).codec()) ? kWideTaskLevels
                                                             : kBinaryTaskLevels),
         reached_(reached),
-        budget_(budget),
+        bound_(bound),
         proof_(proof) {}
 
   void run() {
@@ -110,14 +98,13 @@ class Walk {
                                     std::to_string(kMaxDepth));
       return content;
     }
-    if (!take_node(budget_)) {
-      add(Errc::kNodeCorrupt, "node " + std::to_string(node.ref.first) +
-                                  " is one more than the record states: one is met twice");
-      return content;
-    }
     NodeChildren children;
-    if (const Errc error = BoundTree::of(tree_).expand(node, children); error != Errc::kOk) {
-      add(error, "node " + std::to_string(node.ref.first) + " contradicts itself");
+    const NodeState state = BoundTree::of(tree_).expand(node, children);
+    if (const Errc error = bound_.count(state); error != Errc::kOk) {
+      add(error,
+          "node " + std::to_string(node.ref.first) +
+              (state == NodeState::kSound ? " is one more than the record states: one is met twice"
+                                          : " contradicts itself"));
       return content;
     }
     ++proof_.certificate.node_count;
@@ -140,7 +127,7 @@ class Walk {
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, children.count, 1),
                       [&](const tbb::blocked_range<std::uint32_t>& range) {
                         for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
-                          Walk below(tree_, with_geometry_, reached_, budget_, parts[i].proof);
+                          Walk below(tree_, with_geometry_, reached_, bound_, parts[i].proof);
                           parts[i].content = below.walk(children.child[i], depth);
                           parts[i].triangles = below.triangles_;
                         }
@@ -265,7 +252,7 @@ class Walk {
   bool with_geometry_;
   std::uint32_t task_levels_;
   Reached& reached_;
-  NodeBudget& budget_;
+  SharedWalkBound& bound_;
   TreeProof& proof_;
   std::uint32_t triangles_ = 0;
 };
@@ -297,8 +284,8 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   TreeProof proof;
   Reached reached(tree.empty() ? 0 : tree.face_count());
-  NodeBudget budget(BoundTree::of(tree).node_count());
-  Walk(tree, with_geometry, reached, budget, proof).run();
+  SharedWalkBound bound(BoundTree::of(tree).node_count());
+  Walk(tree, with_geometry, reached, bound, proof).run();
   return proof;
 }
 

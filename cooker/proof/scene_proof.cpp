@@ -10,13 +10,15 @@
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree::cooker {
 namespace {
 
 class SceneWalk {
  public:
-  SceneWalk(const File& file, const Scene& scene) : file_(file), scene_(scene) {}
+  SceneWalk(const File& file, const Scene& scene)
+      : file_(file), scene_(scene), bound_(BoundScene::of(scene).record().node_count) {}
 
   Findings run() {
     const SceneRecord& record = BoundScene::of(scene_).record();
@@ -55,14 +57,17 @@ class SceneWalk {
   // so that numbers grow on every path; the depth is limited all the same.
   Box<double> visit_node(NodeRef node, const Box<float>& box, std::uint32_t depth) {
     Box<double> content = empty_box<double>();
-    TopLevel::Codec::Children children;
-    if (depth > kMaxWideDepth || nodes_ == BoundScene::of(scene_).record().node_count) {
-      add(Errc::kDepthExceeded,
-          "node " + std::to_string(node.first) + " is too deep, or met twice");
+    if (depth > kMaxWideDepth) {
+      add(Errc::kDepthExceeded, "node " + std::to_string(node.first) + " is too deep");
       return content;
     }
-    if (!BoundScene::of(scene_).top_level().codec.expand(node, box, children)) {
-      add(Errc::kNodeCorrupt, "node " + std::to_string(node.first) + " contradicts itself");
+    TopLevel::Codec::Children children;
+    const NodeState state = BoundScene::of(scene_).top_level().codec.expand(node, box, children);
+    if (const Errc error = bound_.count(state); error != Errc::kOk) {
+      add(error,
+          "node " + std::to_string(node.first) +
+              (state == NodeState::kSound ? " is one more than the record states: one is met twice"
+                                          : " contradicts itself"));
       return content;
     }
     ++nodes_;
@@ -187,6 +192,7 @@ class SceneWalk {
   const File& file_;
   const Scene& scene_;
   std::vector<bool> reached_;
+  WalkBound bound_;
   std::uint32_t nodes_ = 0;
   std::uint32_t depth_ = 0;
   Findings findings_;

@@ -19,6 +19,8 @@
 #include "cooker/choose/measure.h"
 #include "cooker/choose/workload.h"
 #include "format/limits.h"
+#include "runtime/tree/bound_tree.h"
+#include "runtime/walk/work.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -118,8 +120,9 @@ Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size
   while (boxes.size() < count && !tree.empty()) {
     Node node = BoundTree::of(tree).root();
     NodeChildren children;
+    WalkBound bound(BoundTree::of(tree).node_count());
     while (!node.is_leaf) {
-      const Errc error = BoundTree::of(tree).expand(node, children);
+      const Errc error = bound.count(BoundTree::of(tree).expand(node, children));
       if (error != Errc::kOk) return error;
       if (children.count == 0) return Errc::kNodeCorrupt;
       node = children.child[random() % children.count];

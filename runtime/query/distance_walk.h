@@ -119,14 +119,13 @@ class DistanceWalk {
       const Errc error = bound_.compare(entry.first, entry.second);
       return error != Errc::kOk ? error : nearest_.compare(entry.first, entry.second);
     }
-    if (const Errc error = bound_.take_apart(); error != Errc::kOk) return error;
     // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
     // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
     const Box<double> image = pose_.hull_in_first(entry.second_box);
     if (!entry.first_leaf && (entry.second_leaf || extent(entry.first_box) > extent(image))) {
-      if (!first_codec_.expand(entry.first, entry.first_box, first_children_)) {
-        return Errc::kNodeCorrupt;
-      }
+      const Errc error =
+          bound_.count(first_codec_.expand(entry.first, entry.first_box, first_children_));
+      if (error != Errc::kOk) return error;
       const double second_end = nearest_.direction().end_of_second(entry.second_box);
       return meet_children(
           first_children_,
@@ -144,9 +143,9 @@ class DistanceWalk {
                          entry.second,           first_children_.is_leaf(i), entry.second_leaf};
           });
     }
-    if (!second_codec_.expand(entry.second, entry.second_box, second_children_)) {
-      return Errc::kNodeCorrupt;
-    }
+    const Errc error =
+        bound_.count(second_codec_.expand(entry.second, entry.second_box, second_children_));
+    if (error != Errc::kOk) return error;
     const Box<double> first_image = pose_.to_second().hull(entry.first_box);
     const double first_end = nearest_.direction().end_of_first(entry.first_box);
     return meet_children(

@@ -145,31 +145,30 @@ struct BoxSearch {
       NodeRef ref;
       bool is_leaf;
     };
-    std::array<Entry, kStackSize<ErasedCodec>> stack;
-    std::size_t size = 0;
+    WalkStack<Entry, kStackSize<ErasedCodec>> stack;
     const Box<double> root = root_box<double>(tree);
     if (!box.overlaps(root)) return Errc::kOk;
-    stack[size++] = {root, tree.root_ref(), tree.is_leaf()};
+    Errc error = stack.push({root, tree.root_ref(), tree.is_leaf()});
     WalkBound bound(tree.node_count());
     ErasedCodec::Children children;
-    while (size > 0) {
-      const Entry entry = stack[--size];
+    while (error == Errc::kOk && !stack.empty()) {
+      const Entry entry = stack.pop();
       if (stops(entry.node)) return Errc::kOk;
       if (entry.is_leaf) {
-        const Errc error = leaf(entry.ref);
+        error = leaf(entry.ref);
         if (error != Errc::kOk || result.overlap != Overlap::kDisjoint) return error;
         continue;
       }
-      if (!bound.take_one()) return bound.error();
-      if (!codec.expand(entry.ref, entry.node, children)) return Errc::kNodeCorrupt;
+      error = bound.count(codec.expand(entry.ref, entry.node, children));
+      if (error != Errc::kOk) return error;
       for (std::uint32_t i = 0; i < children.count; ++i) {
         const Box<double> child = children.box(i);
         if (!box.overlaps(child)) continue;
-        if (size == stack.size()) return Errc::kDepthExceeded;
-        stack[size++] = {child, children.ref[i], children.is_leaf(i)};
+        error = stack.push({child, children.ref[i], children.is_leaf(i)});
+        if (error != Errc::kOk) return error;
       }
     }
-    return Errc::kOk;
+    return error;
   }
 };
 

@@ -67,9 +67,9 @@ class PairWalk {
     if (!apart && (root.first_leaf && root.second_leaf)) {
       test_leaves(root);
     } else if (!apart) {
-      stack_[size_++] = root;
+      error_ = stack_.push(root);
     }
-    while (size_ > 0 && error_ == Errc::kOk && !stopped_) descend(stack_[--size_]);
+    while (!stack_.empty() && error_ == Errc::kOk && !stopped_) descend(stack_.pop());
     if (error_ != Errc::kOk) return error_;
     return stopped_ ? Visit::kStopped : Visit::kComplete;
   }
@@ -105,8 +105,6 @@ class PairWalk {
   void descend(const Entry entry) {
     if (stops(entry.first_box, entry.second_box)) return;
     observer_.node_pair(entry.first, entry.first_leaf, entry.second, entry.second_leaf);
-    error_ = bound_.take_apart();
-    if (error_ != Errc::kOk) return;
     if constexpr (kBothSides) {
       descend_both(entry);
     } else {
@@ -121,10 +119,7 @@ class PairWalk {
     if (!entry.first_leaf &&
         (entry.second_leaf || extent(entry.first_box) > extent(second_image))) {
       auto& children = first_side_.children;
-      if (!first_codec_.expand(entry.first, entry.first_box, children)) {
-        error_ = Errc::kNodeCorrupt;
-        return;
-      }
+      error_ = bound_.count(first_codec_.expand(entry.first, entry.first_box, children));
       for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
         const Box<typename A::Scalar> box = children.box(i);
         if (!boxes_overlap(box, second_image) ||
@@ -138,10 +133,7 @@ class PairWalk {
     }
     const Box<double> first_image = pose_.hull_in_second(entry.first_box);
     auto& children = second_side_.children;
-    if (!second_codec_.expand(entry.second, entry.second_box, children)) {
-      error_ = Errc::kNodeCorrupt;
-      return;
-    }
+    error_ = bound_.count(second_codec_.expand(entry.second, entry.second_box, children));
     for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
       const Box<typename B::Scalar> box = children.box(i);
       if (!boxes_overlap(first_image, box) ||
@@ -164,19 +156,18 @@ class PairWalk {
   void meet(const Entry& entry) {
     if (entry.first_leaf && entry.second_leaf) {
       test_leaves(entry);
-    } else if (size_ == stack_.size()) {
-      error_ = Errc::kDepthExceeded;
     } else {
-      stack_[size_++] = entry;
+      error_ = stack_.push(entry);
     }
   }
 
   void descend_both(const Entry& entry) {
-    if (!expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_) ||
-        !expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_)) {
-      error_ = Errc::kNodeCorrupt;
-      return;
-    }
+    const NodeState first =
+        expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_);
+    const NodeState second =
+        expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_);
+    error_ = bound_.count(first == NodeState::kSound ? second : first);
+    if (error_ != Errc::kOk) return;
     const auto& a = first_side_.children;
     const auto& b = second_side_.children;
     for (std::uint32_t i = 0; i < a.count; ++i) {
@@ -198,11 +189,12 @@ class PairWalk {
   }
 
   template <Codec C>
-  [[nodiscard]] static bool expand(const C& codec, bool leaf, const Box<typename C::Scalar>& box,
-                                   NodeRef ref, PairSide<C>& side) noexcept {
+  [[nodiscard]] static NodeState expand(const C& codec, bool leaf,
+                                        const Box<typename C::Scalar>& box, NodeRef ref,
+                                        PairSide<C>& side) noexcept {
     if (!leaf) return codec.expand(ref, box, side.children);
     side.set_leaf(box, ref);
-    return true;
+    return NodeState::kSound;
   }
 
   void test_leaves(const Entry& entry) {
@@ -236,8 +228,7 @@ class PairWalk {
   PairSide<A> first_side_;
   PairSide<B> second_side_;
   LeafPairTest leaves_;
-  std::array<Entry, kPairStack> stack_;
-  std::size_t size_ = 0;
+  WalkStack<Entry, kPairStack> stack_;
 };
 
 /// The walk by vectors. Precondition: both trees have nodes of the same wide codec.

@@ -150,7 +150,6 @@ class WidePairWalk {
     child.is_leaf = ((from.links.inner_mask >> at.number) & 1u) == 0;
     child.number =
         child.is_leaf ? first_face(from.links, at.number) : node_number(from.links, at.number);
-    if (const Errc error = bound_.take_apart(); error != Errc::kOk) return fail(error);
     if (at.depth + 1 == kDepths) return fail(Errc::kDepthExceeded);
     set_image(child.centered, *map_[from.side], from.child_image);
     return from.side == 0 ? choose<0>(from, at.depth + 1) : choose<1>(from, at.depth + 1);
@@ -184,7 +183,8 @@ class WidePairWalk {
     const WideCodec<Node>& codec = *codec_[to.side];
     const NodeView<Node> node(codec, parent.number);
     to.links = node.links();
-    if (!is_sound(codec, parent.number, to.links)) return fail(Errc::kNodeCorrupt);
+    const Errc error = bound_.count(check_links(codec, parent.number, to.links));
+    if (error != Errc::kOk) return fail(error);
     std::uint32_t near = 0;
     HWY_ALIGN float key[kWideChildren];
     for (std::size_t part = 0; part < kParts; ++part) {

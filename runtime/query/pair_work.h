@@ -46,10 +46,8 @@ class PairBound {
  public:
   PairBound(const BoundTree& first, const BoundTree& second, QueryWork* work) noexcept;
 
-  /// Counts a pair of nodes, or of a node and a leaf, about to be taken apart. kOk to go on.
-  [[nodiscard]] Errc take_apart() noexcept {
-    return parts_.take_one() ? Errc::kOk : parts_.error();
-  }
+  /// Counts a pair of nodes, or of a node and a leaf, that was taken apart; see WalkBound::count.
+  [[nodiscard]] Errc count(NodeState state) noexcept { return parts_.count(state); }
   /// Counts a pair of leaves about to be compared.
   [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept {
     const std::uint64_t faces = saturated_product(first.second, second.second);

@@ -44,9 +44,8 @@ class BestFirst {
           break;
         }
         ++query_.nodes_expanded;
-        if (!query_.nodes.take_one()) return query_.nodes.error();
-        if (!codec_.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
-        const Errc error = meet(children, goes_on, key, entry);
+        Errc error = query_.nodes.count(codec_.expand(entry.ref, entry.box, children));
+        if (error == Errc::kOk) error = meet(children, goes_on, key, entry);
         if (error != Errc::kOk) return error;
       }
     }

@@ -141,8 +141,8 @@ class RayWalk {
     for (;;) {
       const NodeView<Node> node(codec_, number);
       const WideLinks links = node.links();
-      if (!query_.nodes.take_one()) return query_.nodes.error();
-      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Errc error = query_.nodes.count(check_links(codec_, number, links));
+      if (error != Errc::kOk) return error;
       if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
       RayChildren& children = open_[at.depth + 1];
       const std::uint32_t passing =

@@ -30,14 +30,14 @@ class MovingTree {
       return Errc::kInternal;  // it is in no file
     }
     [[nodiscard]] static NodeRef root() noexcept { return {1, 0}; }
-    [[nodiscard]] bool expand(NodeRef ref, const Box<double>& /*box*/,
-                              Children& out) const noexcept {
+    [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& /*box*/,
+                                   Children& out) const noexcept {
       out.clear();
       for (std::uint32_t child = 2 * ref.first; child <= 2 * ref.first + 1; ++child) {
         if (nodes[child].low[0] > nodes[child].high[0]) continue;  // no instance below
         out.add(nodes[child], NodeRef{child, 0}, child >= leaves);
       }
-      return true;
+      return NodeState::kSound;
     }
   };
 

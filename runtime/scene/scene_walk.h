@@ -67,10 +67,8 @@ template <class Query>
 Errc walk_static(const BoundScene& scene, Query& query) {
   WalkBound visits(scene.instance_count());
   return query.walk(scene.top_level(), [&](std::uint32_t instance) {
-    if (!visits.take_one()) {
-      query.error = visits.error();
-      return false;
-    }
+    query.error = visits.count(NodeState::kSound);
+    if (query.error != Errc::kOk) return false;
     if (scene.is_detached(instance)) return true;
     const std::optional<InstanceRecord> record = scene.record_of(instance);
     if (record && !query.admission.admits(record->layer)) return true;

@@ -37,7 +37,7 @@ concept Codec = requires(const C& codec, const TreeCounts& counts, Bytes section
   { codec.root() }
   noexcept->std::same_as<NodeRef>;
   { codec.expand(ref, box, out) }
-  noexcept->std::same_as<bool>;
+  noexcept->std::same_as<NodeState>;
 };
 
 /// Some codec over the nodes of one tree, or none. Cheap to copy.
@@ -72,8 +72,8 @@ struct CodecFunctions {
   std::uint32_t width;  // children that a node has at most
   Status (*bind)(const TreeCounts& counts, Bytes nodes, BoundCodec& out);
   NodeRef (*root)(const BoundCodec& codec) noexcept;
-  bool (*expand)(const BoundCodec& codec, NodeRef ref, const Box<double>& box,
-                 AnyChildren& out) noexcept;
+  NodeState (*expand)(const BoundCodec& codec, NodeRef ref, const Box<double>& box,
+                      AnyChildren& out) noexcept;
   /// Walks compiled for it (runtime/walk/codec_walks.h); null: it is walked by expand(), or by
   /// vectors.
   const CodecWalks* walks;
@@ -95,9 +95,9 @@ template <Codec C>
       [](const BoundCodec& codec) noexcept { return codec.as<C>().root(); },
       [](const BoundCodec& codec, NodeRef ref, const Box<double>& box, AnyChildren& out) noexcept {
         typename C::Children children;
-        if (!codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children)) {
-          return false;
-        }
+        const NodeState state =
+            codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children);
+        if (state != NodeState::kSound) return state;
         out.count = children.count;
         out.leaf_mask = children.leaf_mask;
         for (std::uint32_t i = 0; i < children.count; ++i) {
@@ -107,7 +107,7 @@ template <Codec C>
           }
           out.ref[i] = children.ref[i];
         }
-        return true;
+        return state;
       },
       walks};
 }

@@ -32,15 +32,16 @@ Node BoundTree::root() const noexcept {
   return {root_f64_, root_ref(), is_leaf()};
 }
 
-Errc BoundTree::expand(const Node& node, NodeChildren& out) const noexcept {
+NodeState BoundTree::expand(const Node& node, NodeChildren& out) const noexcept {
   out.count = 0;
   AnyChildren children;
-  if (!functions_->expand(nodes_, node.ref, node.box, children)) return Errc::kNodeCorrupt;
+  const NodeState state = functions_->expand(nodes_, node.ref, node.box, children);
+  if (state != NodeState::kSound) return state;
   for (std::uint32_t i = 0; i < children.count; ++i) {
     out.child[i] = {children.box(i), children.ref[i], children.is_leaf(i)};
   }
   out.count = children.count;
-  return Errc::kOk;
+  return state;
 }
 
 Errc BoundTree::leaf_triangles(const Node& leaf, TriangleBatch& out) const noexcept {

@@ -93,8 +93,8 @@ class BoundTree {
   [[nodiscard]] Node root() const noexcept;
 
   /// Decodes one node: its children and their boxes. Precondition: `node` came from root() or
-  /// expand() of this tree and is not a leaf. kNodeCorrupt when its bytes contradict themselves.
-  [[nodiscard]] Errc expand(const Node& node, NodeChildren& out) const noexcept;
+  /// expand() of this tree and is not a leaf.
+  [[nodiscard]] NodeState expand(const Node& node, NodeChildren& out) const noexcept;
 
   /// Triangles of a leaf, in tree space; TriangleBatch::face counts faces in this tree's order.
   /// kFaceOutOfRange, kVertexOutOfRange or kVertexNotFinite when its bytes are corrupt.

@@ -55,7 +55,9 @@ const CodecFunctions kNoCodec = {
     [](const BoundCodec&) noexcept {
       return NodeRef{0, 0};
     },
-    [](const BoundCodec&, NodeRef, const Box<double>&, AnyChildren&) noexcept { return false; },
+    [](const BoundCodec&, NodeRef, const Box<double>&, AnyChildren&) noexcept {
+      return NodeState::kCorrupt;
+    },
     nullptr};
 
 void add_codecs(const CodecSet& codecs) noexcept {

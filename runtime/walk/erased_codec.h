@@ -23,21 +23,21 @@ struct ErasedCodecOf {
   static Result<ErasedCodecOf> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] NodeRef root() const noexcept { return tree->root_ref(); }
 
-  // False, too, where a node has more children than there is room for.
-  [[nodiscard]] bool expand(NodeRef ref, const Box<double>& box, Children& out) const noexcept {
+  // kCorrupt, too, where a node has more children than there is room for.
+  [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
+                                 Children& out) const noexcept {
     const CodecFunctions& functions = tree->codec_functions();
     if constexpr (Width == AnyChildren::kWidth) {
       return functions.expand(tree->nodes(), ref, box, out);
     } else {
       AnyChildren children;
-      if (!functions.expand(tree->nodes(), ref, box, children) || children.count > Width) {
-        return false;
-      }
+      const NodeState state = functions.expand(tree->nodes(), ref, box, children);
+      if (state != NodeState::kSound || children.count > Width) return NodeState::kCorrupt;
       out.clear();
       for (std::uint32_t i = 0; i < children.count; ++i) {
         out.add(children.box(i), children.ref[i], children.is_leaf(i));
       }
-      return true;
+      return state;
     }
   }
 };

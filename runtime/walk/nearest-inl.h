@@ -41,8 +41,8 @@ class NearestWalk {
     for (;;) {
       const NodeView<Node> node(codec_, number);
       const WideLinks links = node.links();
-      if (!query_.nodes().take_one()) return query_.nodes().error();
-      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Errc error = query_.nodes().count(check_links(codec_, number, links));
+      if (error != Errc::kOk) return error;
       if (depth == open_.size()) return Errc::kDepthExceeded;
       open_[depth].links = links;
       query_.expanding(links,

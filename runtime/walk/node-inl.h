@@ -102,8 +102,8 @@ HWY_INLINE std::uint32_t first_face(const WideLinks& links, std::uint32_t i) {
 /// The checks of WideCodec::expand, once for all children of a kind: they stand in a row. Counts
 /// have fewer than 32 bits, so that no sum overflows.
 template <class Node>
-HWY_INLINE bool is_sound(const WideCodec<Node>& codec, std::uint32_t number,
-                         const WideLinks& links) {
+HWY_INLINE NodeState check_links(const WideCodec<Node>& codec, std::uint32_t number,
+                                 const WideLinks& links) {
   const std::uint64_t inner = static_cast<std::uint64_t>(std::popcount(links.inner_mask));
   const std::uint64_t leaves = links.child_count - inner;
   const bool has_children =
@@ -112,7 +112,7 @@ HWY_INLINE bool is_sound(const WideCodec<Node>& codec, std::uint32_t number,
       (inner == 0) | ((links.first_node > number) & (links.first_node + inner <= codec.node_count));
   const bool leaves_fit =
       (leaves == 0) | ((links.first_leaf + leaves - 1) * kLeafFaces < codec.face_count);
-  return has_children & nodes_fit & leaves_fit;
+  return sound_if(has_children & nodes_fit & leaves_fit);
 }
 
 /// Calls visit(child) for each set bit, from the lowest on, while it returns true; whether all did.

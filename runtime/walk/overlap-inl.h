@@ -113,8 +113,8 @@ class OverlapWalk {
       if (depth == open_.size()) return Errc::kDepthExceeded;
       Children& children = open_[depth];
       const WideLinks links = children.links = node.links();
-      if (!walk_.nodes.take_one()) return walk_.nodes.error();
-      if (!is_sound(codec_, number, links)) return Errc::kNodeCorrupt;
+      const Errc error = walk_.nodes.count(check_links(codec_, number, links));
+      if (error != Errc::kOk) return error;
       const Verdict verdict = judge(node, links, box, inside, children.boxes);
       prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
       prefetch_.nodes(links, verdict.touched & links.inner_mask);

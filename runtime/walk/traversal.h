@@ -98,14 +98,13 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
     static_cast<void>(query.leaf(tree.root_ref()));
     return Errc::kOk;
   }
-  std::array<Entry, kStackSize<C>> stack;
-  std::size_t size = 0;
-  stack[size++] = {root, tree.root_ref()};
+  WalkStack<Entry, kStackSize<C>> stack;
+  Errc error = stack.push({root, tree.root_ref()});
   typename C::Children children;
-  while (size > 0) {
-    const Entry entry = stack[--size];
-    if (!query.nodes.take_one()) return query.nodes.error();
-    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
+  while (error == Errc::kOk && !stack.empty()) {
+    const Entry entry = stack.pop();
+    error = query.nodes.count(codec.expand(entry.ref, entry.box, children));
+    if (error != Errc::kOk) return error;
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const Box<S> box = children.box(i);
       if (!query.overlaps(box)) continue;
@@ -113,11 +112,11 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
         if (!query.leaf(children.ref[i])) return Errc::kOk;
         continue;
       }
-      if (size == stack.size()) return Errc::kDepthExceeded;
-      stack[size++] = {box, children.ref[i]};
+      error = stack.push({box, children.ref[i]});
+      if (error != Errc::kOk) return error;
     }
   }
-  return Errc::kOk;
+  return error;
 }
 
 /// Visits leaves roughly from near to far, and none whose key is above the query's bound.
@@ -144,16 +143,15 @@ Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
     static_cast<void>(query.leaf(tree.root_ref()));
     return Errc::kOk;
   }
-  std::array<Entry, kStackSize<C>> stack;
-  std::size_t size = 0;
-  stack[size++] = {root_key, root, tree.root_ref()};
+  WalkStack<Entry, kStackSize<C>> stack;
+  Errc error = stack.push({root_key, root, tree.root_ref()});
   typename C::Children children;
-  while (size > 0) {
-    const Entry entry = stack[--size];
+  while (error == Errc::kOk && !stack.empty()) {
+    const Entry entry = stack.pop();
     if (entry.key > query.bound()) continue;
     if constexpr (requires { query.nodes_expanded; }) ++query.nodes_expanded;
-    if (!query.nodes.take_one()) return query.nodes.error();
-    if (!codec.expand(entry.ref, entry.box, children)) return Errc::kNodeCorrupt;
+    error = query.nodes.count(codec.expand(entry.ref, entry.box, children));
+    if (error != Errc::kOk) return error;
 
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that pass, nearest first
@@ -175,11 +173,11 @@ Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
     }
     for (std::size_t n = passed; n-- > 0;) {  // farthest first, so that the nearest is on top
       if (children.is_leaf(order[n])) continue;
-      if (size == stack.size()) return Errc::kDepthExceeded;
-      stack[size++] = {key[n], children.box(order[n]), children.ref[order[n]]};
+      error = stack.push({key[n], children.box(order[n]), children.ref[order[n]]});
+      if (error != Errc::kOk) return error;
     }
   }
-  return Errc::kOk;
+  return error;
 }
 
 }  // namespace boxtree

@@ -1,13 +1,19 @@
 // SPDX-License-Identifier: MIT
 // What a query may cost. Each walk ends on any bytes, because an honest walk takes each node apart
 // at most once: one that would go on has come to a node twice, and the file is corrupt. A caller
-// may allow less than that.
+// may allow less than that. Whatever the order and the purpose of a walk, it goes on through
+// WalkBound::count alone: it is what a NodeState is good for.
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstddef>
 #include <cstdint>
 
 #include <boxtree/query.h>
+
+#include "format/children.h"
 
 namespace boxtree {
 
@@ -39,15 +45,14 @@ class WalkBound {
     if (work_ != nullptr) work_->left -= first_ - left_;
   }
 
-  /// Counts one more; false, and nothing counted, when there was none left: see error().
-  [[nodiscard]] bool take_one() noexcept {
-    if (left_ == 0) return false;
-    --left_;
-    return true;
-  }
-  /// Why take_one() failed.
-  [[nodiscard]] Errc error() const noexcept {
-    return first_ == most_ ? Errc::kNodeCorrupt : Errc::kWorkLimit;
+  /// Counts one more node, or pair, that was decoded. kNodeCorrupt if it is corrupt or no honest
+  /// walk meets so many; kWorkLimit; else kOk, and the walk may go on to its children.
+  [[nodiscard]] Errc count(NodeState state) noexcept {
+    if (left_ != 0 && state == NodeState::kSound) [[likely]] {
+      --left_;
+      return Errc::kOk;
+    }
+    return left_ == 0 && first_ != most_ ? Errc::kWorkLimit : Errc::kNodeCorrupt;
   }
 
  private:
@@ -55,6 +60,44 @@ class WalkBound {
   std::uint64_t most_;
   std::uint64_t first_;
   std::uint64_t left_;
+};
+
+/// The same for a walk in several threads, which no caller limits.
+class SharedWalkBound {
+ public:
+  explicit SharedWalkBound(std::uint32_t most) noexcept : left_(most) {}
+
+  /// kNodeCorrupt or kOk.
+  [[nodiscard]] Errc count(NodeState state) noexcept {
+    std::uint32_t left = left_.load(std::memory_order_relaxed);
+    while (state == NodeState::kSound && left > 0) {
+      if (left_.compare_exchange_weak(left, left - 1, std::memory_order_relaxed)) return Errc::kOk;
+    }
+    return Errc::kNodeCorrupt;
+  }
+
+ private:
+  std::atomic<std::uint32_t> left_;
+};
+
+/// What a depth-first walk has still to look at, last come first. `kMost`: as many as an honest
+/// walk has pending.
+template <class Entry, std::size_t kMost>
+class WalkStack {
+ public:
+  [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
+  /// kDepthExceeded when it is full: then the tree is deeper than any honest one; else kOk.
+  [[nodiscard]] Errc push(const Entry& entry) noexcept {
+    if (size_ == kMost) return Errc::kDepthExceeded;
+    entries_[size_++] = entry;
+    return Errc::kOk;
+  }
+  /// Precondition: !empty().
+  [[nodiscard]] const Entry& pop() noexcept { return entries_[--size_]; }
+
+ private:
+  std::size_t size_ = 0;
+  std::array<Entry, kMost> entries_;
 };
 
 }  // namespace boxtree

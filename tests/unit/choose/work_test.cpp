@@ -31,7 +31,7 @@ void count(const Tree& tree, const Node& node, const Eigen::AlignedBox3d& box, R
   }
   ++reached.nodes;
   NodeChildren children;
-  ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     count(tree, children.child[i], box, reached);
   }

@@ -9,6 +9,7 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "exported.h"
+#include "format/tree_record.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -62,7 +63,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf 
     return;
   }
   NodeChildren children;
-  ASSERT_EQ(BoundTree::of(tree).expand(node, children), Errc::kOk);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     walk(tree, children.child[i], level + 1, path, out);
   }

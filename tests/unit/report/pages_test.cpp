@@ -2,12 +2,15 @@
 // The counter counts what is read, and local questions read little of a large file.
 #include "cooker/report/pages.h"
 
+#include <algorithm>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "format/codec_packed.h"
 #include "tests/bench/generated_mesh.h"
 #include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
@@ -52,10 +55,27 @@ TEST(PagesRead, ErrorsComeBack) {
             Errc::kMapFailed);
 }
 
-class ColdFiles : public testing::TestWithParam<test::Encoding> {};
+// A node of a packed codec that is its own children: nothing of it alone is wrong.
+TEST(ColdFiles, NodesInACircleEnd) {
+  const TempFolder folder;
+  std::vector<std::byte> bytes = test::cook_bytes(test::torus(24, 16), CodecId::kPackedF16);
+  const SectionEntry nodes = test::entry_of(bytes, SectionKind::kNodes);
+  const auto header = load<PackedHeader>(bytes.data() + nodes.offset);
+  constexpr auto kInner = static_cast<std::uint8_t>(NodeKind::kNoLeaves);
+  ASSERT_EQ(header.root_kind, kInner);
+  std::byte* const root = bytes.data() + nodes.offset + PackedPlaces(header).array_at[kInner];
+  const PackedLayout layout(NodeKind::kNoLeaves, header);
+  std::fill_n(root, (layout.number_at[1] + layout.number_bits[1]) / 8, std::byte{0});
+  *root = std::byte{kInner << 2 | kInner << 4};  // axis 0, both children inner nodes, both number 0
+  test::repair_checksums(bytes);
+  const auto path = write(folder, bytes);
+  EXPECT_EQ(measure_pages(path, 0, 4).code(), Errc::kNodeCorrupt);
+}
+
+class ColdFileOf : public testing::TestWithParam<test::Encoding> {};
 
 // The promise is 64 pages for 10 M triangles; a level more of a tree is a page or two more.
-TEST_P(ColdFiles, LocalQuestionsReadLittle) {
+TEST_P(ColdFileOf, LocalQuestionsReadLittle) {
   const SourceMesh mesh = bench::make_city(1'000'000, 1);
   CookOptions options;
   options.geometry = GetParam().geometry;
@@ -77,7 +97,7 @@ TEST_P(ColdFiles, LocalQuestionsReadLittle) {
   EXPECT_LT(figures->point.worst, 64u);
 }
 
-INSTANTIATE_TEST_SUITE_P(WideCodecs, ColdFiles,
+INSTANTIATE_TEST_SUITE_P(WideCodecs, ColdFileOf,
                          testing::Values(test::Encoding{CodecId::kWide4, GeometryId::kExact},
                                          test::Encoding{CodecId::kWide4, GeometryId::kGrid},
                                          test::Encoding{CodecId::kWide8, GeometryId::kExact}),

@@ -105,7 +105,7 @@ double decoded_move(int grid_bits) {
     todo.pop_back();
     if (!node.is_leaf) {
       NodeChildren children;
-      EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), Errc::kOk);
+      EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kSound);
       for (std::uint32_t i = 0; i < children.count; ++i) todo.push_back(children.child[i]);
       continue;
     }

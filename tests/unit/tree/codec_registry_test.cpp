@@ -100,7 +100,7 @@ TEST(CodecRegistry, ATreeWithoutNodesIsOfNoCodec) {
   ASSERT_FALSE(tree.has_nodes());
   EXPECT_EQ(&tree.codec_functions(), &kNoCodec);
   AnyChildren children;
-  EXPECT_FALSE(kNoCodec.expand({}, {0, 0}, {}, children));
+  EXPECT_EQ(kNoCodec.expand({}, {0, 0}, {}, children), NodeState::kCorrupt);
 }
 
 }  // namespace

@@ -111,7 +111,7 @@ TEST_P(Corrupt, EveryQuerySaysSo) {
     NodeChildren children;
     children.count = 5;
     EXPECT_EQ(BoundTree::of(*broken).expand(BoundTree::of(*broken).root(), children),
-              Errc::kNodeCorrupt);
+              NodeState::kCorrupt);
     EXPECT_EQ(children.count, 0u);
   }
 }
