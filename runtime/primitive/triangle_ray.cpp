@@ -24,8 +24,8 @@ RayShear::RayShear(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& dir
   for (int k = 1; k < 3; ++k) {
     if (std::abs(direction[k]) > std::abs(direction[axis_z])) axis_z = k;
   }
-  axis_x = (axis_z + 1) % 3;
-  axis_y = (axis_z + 2) % 3;
+  axis_x = axis_z == 2 ? 0 : axis_z + 1;
+  axis_y = axis_z == 0 ? 2 : axis_z - 1;
   shear_x = direction[axis_x] / direction[axis_z];
   shear_y = direction[axis_y] / direction[axis_z];
   // Finite even for a subnormal direction, so that a hit at the origin gets t = 0, not NaN.

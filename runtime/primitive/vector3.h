@@ -5,11 +5,25 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
 #include <Eigen/Core>
 
 namespace boxtree {
+
+/// The largest magnitude of a component; NaN if one of them is. By bits, which ascend with the
+/// magnitude, NaN behind infinity.
+[[nodiscard]] inline double largest_magnitude(const Eigen::Vector3d& v) noexcept {
+  constexpr std::uint64_t kMagnitude = ~std::uint64_t{0} >> 1;
+  std::uint64_t largest = 0;
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    largest = std::max(largest, std::bit_cast<std::uint64_t>(v[i]) & kMagnitude);
+  }
+  return std::bit_cast<double>(largest);
+}
 
 [[nodiscard]] inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {
   return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];

@@ -1,10 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Ray queries over any codec.
-#include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/query/ray_query.h"
@@ -12,28 +7,13 @@
 
 namespace boxtree {
 
-bool is_valid(const Ray& ray) noexcept {
-  return ray.direction.allFinite() && !ray.direction.isZero(0) && ray.t_min >= 0 &&
-         ray.t_min <= ray.t_max;  // false for NaN
-}
-
-int direction_exponent(const Eigen::Vector3d& direction) noexcept {
-  const double largest = direction.cwiseAbs().maxCoeff();
-  if (largest >= std::numeric_limits<double>::min()) [[likely]] {  // a normal number
-    constexpr int kBias = std::numeric_limits<double>::max_exponent - 2;
-    return static_cast<int>(std::bit_cast<std::uint64_t>(largest) >> 52) - kBias;
-  }
-  int exponent = 0;
-  static_cast<void>(std::frexp(largest, &exponent));
-  return exponent;
-}
-
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit) {
-  if (!is_valid(ray)) return Errc::kInvalidQuery;
+  const double length = largest_magnitude(ray.direction);
+  if (!is_valid(ray, length)) return Errc::kInvalidQuery;
   WalkBound nodes(tree.node_count(), &work);
-  RayQuery query(tree, ray, direction_exponent(ray.direction), nodes, stop_at_first, hit);
-  if (!is_within_reach(query.origin)) return Errc::kInvalidQuery;
+  RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit);
+  if (!(query.origin_reach <= kReach)) return Errc::kInvalidQuery;  // NaN, too
   if (tree.empty() || !query.enters_root()) return Errc::kOk;
   const Errc walked = walk_nearest(tree, query);
   if (walked != Errc::kOk) return walked;

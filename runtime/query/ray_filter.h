@@ -29,7 +29,7 @@ struct RayBoxFilter {
       // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
       constexpr double kLargest = 0x1p60;
       near_high[k] = static_cast<std::uint32_t>(slab.near_side(k));
-      inverse[k] = static_cast<float>(std::clamp(slab.inverse(k), -kLargest, kLargest));
+      inverse[k] = static_cast<float>(std::max(-kLargest, std::min(kLargest, slab.inverse(k))));
       margin[k] = error * std::abs(inverse[k]);
       origin[k] = static_cast<float>(from[static_cast<Eigen::Index>(k)]);
     }
@@ -39,13 +39,15 @@ struct RayBoxFilter {
   /// = 2^-24 and M = 2 reach no extent and no distance of two points in the root box is larger, and
   /// where the ray enters lies in it but for what the query's own tests give away. 16u M for origin
   /// and direction (moved, rounded to float), for the distance of a plane or corner from the
-  /// origin, its product with a reciprocal that was rounded twice, and the sums after it.
-  [[nodiscard]] static double rounding(double reach) noexcept {
-    return 16 * kRoundoffF32 * (2 * reach) + double{std::numeric_limits<float>::min()};
+  /// origin, its product with a reciprocal that was rounded twice, and the sums after it. And 8u M
+  /// for each of `levels` whose planes are computed from those of their parents.
+  [[nodiscard]] static double rounding(double reach, std::uint32_t levels = 0) noexcept {
+    return (16 + 8 * levels) * (kRoundoffF32 * (2 * reach)) +
+           double{std::numeric_limits<float>::min()};
   }
   /// What the query's own tests give away, see RaySlab: eight times what its margin is.
-  [[nodiscard]] static double given_away(const Eigen::Vector3d& origin, double reach) noexcept {
-    return 128 * kRoundoffF64 * (origin.cwiseAbs().maxCoeff() + reach);
+  [[nodiscard]] static double given_away(double origin_reach, double reach) noexcept {
+    return 128 * kRoundoffF64 * (origin_reach + reach);
   }
 
   /// The largest parameter of the filter that a hit not beyond `t` can have.
@@ -70,7 +72,7 @@ struct RayFilter : RayBoxFilter {
   /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
   /// and no parameter overflows.
   [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
-    return query.origin.cwiseAbs().maxCoeff() <= 0x1p30 * query.tree.largest_reach();
+    return query.origin_reach <= 0x1p30 * query.tree.largest_reach();
   }
 
   /// Precondition: is_near(query), which enters the root box.
@@ -84,8 +86,7 @@ struct RayFilter : RayBoxFilter {
  private:
   RayFilter(const RayQuery& query, double reach) noexcept
       : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
-                     rounding(reach) + 8.0 * query.tree.depth() * kRoundoffF32 * (2 * reach) +
-                         given_away(query.origin, reach)) {
+                     rounding(reach, query.tree.depth()) + given_away(query.origin_reach, reach)) {
     for (std::size_t k = 0; k < 3; ++k) margins[k] = 2 * margin[k];
     axis_x = static_cast<std::size_t>(query.shear.axis_x);
     axis_y = static_cast<std::size_t>(query.shear.axis_y);

@@ -12,6 +12,7 @@
 #include <boxtree/ray.h>
 
 #include "runtime/primitive/predicates.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/ray_slab.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
@@ -46,7 +47,8 @@ struct RayInTree {
       : parameter_exponent(direction_exponent - tree.scale_exponent()),
         origin(tree.frame().to_tree(ray.origin)),
         direction(scaled(ray.direction, -direction_exponent)),
-        slab(origin, direction, tree.largest_reach()),
+        origin_reach(largest_magnitude(origin)),
+        slab(origin, origin_reach, direction, tree.largest_reach()),
         t_min(scaled(ray.t_min, parameter_exponent)),
         t_max(scaled(ray.t_max, parameter_exponent)) {}
 
@@ -68,6 +70,7 @@ struct RayInTree {
   int parameter_exponent;
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
+  double origin_reach;  // the largest magnitude of its components
   RaySlab slab;
   double t_min;
   double t_max;  // shrinks to the best hit
@@ -139,12 +142,24 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
   return std::clamp(RayQuery::scaled(scaled, -exponent), ray.t_min, ray.t_max);
 }
 
-/// The power of two that brings the largest component of a direction into [1/2, 1).
-[[nodiscard]] int direction_exponent(const Eigen::Vector3d& direction) noexcept;
+/// Whether a ray has a finite direction, whose largest component is `length`, and an ordered
+/// interval. Its origin is checked where it is in tree space.
+[[nodiscard]] inline bool is_valid(const Ray& ray, double length) noexcept {
+  return length > 0 && length <= std::numeric_limits<double>::max() && ray.t_min >= 0 &&
+         ray.t_min <= ray.t_max;  // false for NaN
+}
 
-/// Whether a ray has finite numbers, a direction and an ordered interval; an origin that is not
-/// finite is left to is_within_reach().
-[[nodiscard]] bool is_valid(const Ray& ray) noexcept;
+/// The power of two that brings the largest component of a direction into [1/2, 1). Precondition:
+/// it is finite and not zero.
+[[nodiscard]] inline int exponent_of(double length) noexcept {
+  if (length >= std::numeric_limits<double>::min()) [[likely]] {  // a normal number
+    constexpr int kBias = std::numeric_limits<double>::max_exponent - 2;
+    return static_cast<int>(std::bit_cast<std::uint64_t>(length) >> 52) - kBias;
+  }
+  int exponent = 0;
+  static_cast<void>(std::frexp(length, &exponent));
+  return exponent;
+}
 
 /// closest_hit or any_hit for callers that have seen to the floating-point state. `hit`: the
 /// answer, with the ray's own t.

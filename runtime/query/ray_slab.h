@@ -14,6 +14,7 @@
 
 #include "format/box.h"
 #include "runtime/primitive/rounding.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 
@@ -36,12 +37,14 @@ struct SlabInterval {
 /// not depend on that.
 class RaySlab {
  public:
-  /// `reach`: largest magnitude of any box coordinate, on all axes.
-  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) noexcept {
+  /// `origin_reach` and `reach`: largest magnitude of a coordinate of the origin and of any box, on
+  /// all axes.
+  RaySlab(const Eigen::Vector3d& origin, double origin_reach, const Eigen::Vector3d& direction,
+          double reach) noexcept {
     // A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
     // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
     constexpr double kHuge = 0x1p1000;
-    const double margin = 8 * kRoundoffF64 * (origin.cwiseAbs().maxCoeff() + power_above(reach));
+    const double margin = 8 * kRoundoffF64 * (origin_reach + power_above(reach));
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       const double d = direction[axis];
@@ -53,6 +56,8 @@ class RaySlab {
       far_origin_[k] = origin[axis] - toward;
     }
   }
+  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) noexcept
+      : RaySlab(origin, largest_magnitude(origin), direction, reach) {}
 
   template <class S>
   [[nodiscard]] SlabInterval intersect(const Box<S>& box) const noexcept {

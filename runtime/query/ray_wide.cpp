@@ -128,12 +128,11 @@ class RayWalk {
   // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
   Errc run(const Box<float>& root) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::array<float, 2> side = {root.low[k], root.high[k]};
-      const std::uint32_t near_high = filter_.near_high[k];
-      open_[0].near[k][0] =
-          (side[near_high] - filter_.origin[k]) * filter_.inverse[k] - filter_.margin[k];
-      open_[0].far[k][0] =
-          (side[1 - near_high] - filter_.origin[k]) * filter_.inverse[k] + filter_.margin[k];
+      // The sign of the inverse tells which of them is near.
+      const float low = (root.low[k] - filter_.origin[k]) * filter_.inverse[k];
+      const float high = (root.high[k] - filter_.origin[k]) * filter_.inverse[k];
+      open_[0].near[k][0] = std::min(low, high) - filter_.margin[k];
+      open_[0].far[k][0] = std::max(low, high) + filter_.margin[k];
     }
     typename decltype(waiting_)::Child at{0, 0};
     std::uint32_t number = 0;

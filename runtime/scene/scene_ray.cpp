@@ -18,9 +18,9 @@ namespace {
 // slab's margin gets its share by a larger reach.
 struct SceneRayQuery {
   SceneRayQuery(const BoundScene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
-                QueryWork& work) noexcept
+                QueryWork& work, int direction_exponent) noexcept
       : admission{scene, kRayQueries, layers, work},
-        exponent(direction_exponent(world.direction)),
+        exponent(direction_exponent),
         parameter_exponent(exponent - scene.record().scale_exponent),
         ray{scene.to_units(world.origin), RayQuery::scaled(world.direction, -exponent),
             RayQuery::scaled(world.t_min, parameter_exponent),
@@ -39,7 +39,7 @@ struct SceneRayQuery {
     if (!scene.moving_tree().empty()) {
       largest = std::max(largest, reach_of(scene.moving_tree().root_box()).maxCoeff());
     }
-    const double origin = ray.origin.cwiseAbs().maxCoeff();
+    const double origin = largest_magnitude(ray.origin);
     return largest + 16 * scene.condition() * (origin + largest);
   }
 
@@ -85,10 +85,11 @@ SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, La
   const BoundScene& scene = BoundScene::of(queried);
   QueryWork work(limits);
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
-  if (!is_valid(ray) || !is_within_reach(scene.to_units(ray.origin))) {
+  const double length = largest_magnitude(ray.direction);
+  if (!is_valid(ray, length) || !is_within_reach(scene.to_units(ray.origin))) {
     return Errc::kInvalidQuery;
   }
-  SceneRayQuery query(scene, ray, stop_at_first, layers, work);
+  SceneRayQuery query(scene, ray, stop_at_first, layers, work, exponent_of(length));
   const Errc walked = walk_nearest(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;

@@ -130,9 +130,9 @@ Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double&
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
               InstanceVisitor visit) {
-  const RayBoxFilter filter(
-      ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
-      RayBoxFilter::rounding(reach_of(top)) + RayBoxFilter::given_away(ray.origin, ray.reach));
+  const RayBoxFilter filter(ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
+                            RayBoxFilter::rounding(reach_of(top)) +
+                                RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.reach));
   return walk(top, AskedRay{filter}, bound, visit);
 }
 #endif
@@ -171,8 +171,9 @@ Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
   const double reach = reach_of(top);
   // Where a map that is hard to undo makes the query give away more, its margin alone is what
   // decides.
-  const bool is_near = ray.origin.cwiseAbs().maxCoeff() <= 0x1p30 * reach &&
-                       RayBoxFilter::given_away(ray.origin, ray.reach) <= reach;
+  const double origin_reach = largest_magnitude(ray.origin);
+  const bool is_near =
+      origin_reach <= 0x1p30 * reach && RayBoxFilter::given_away(origin_reach, ray.reach) <= reach;
   if (!top.has_float_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;

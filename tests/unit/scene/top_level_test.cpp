@@ -162,7 +162,7 @@ TEST_P(TopLevelWalk, RaysVisitAllThatTheyMeet) {
         if (i % 5 == k) direction[k] = 0;  // along an axis plane
       }
       if (direction.isZero(0)) continue;
-      direction = std::ldexp(1.0, -direction_exponent(direction)) * direction;
+      direction = std::ldexp(1.0, -exponent_of(largest_magnitude(direction))) * direction;
       const double largest = reach_of(level.top());
       const double origin = from.cwiseAbs().maxCoeff();
       const double reach = largest + 16 * level.condition() * (origin + largest);
