@@ -108,14 +108,15 @@ Status TemporaryFile::choose_name() {
 }
 
 // Before it is locked, another owner's sweep may take the file for a dead one's: then the next name
-// is tried. Each attempt that fails is somebody else's sweep, of which there are not many.
+// is tried. Each attempt that fails is somebody else's sweep, of which there are not many. A call
+// that fails may have been done all the same, on a network, but where the name was there before.
 Status TemporaryFile::create_named(mode_t mode) {
   constexpr int kAttempts = 100;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (Status status = choose_name(); !status) return status;
     descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode);
+    is_named_ = descriptor_ >= 0 || errno != EEXIST;
     if (descriptor_ < 0) return failure(folder_ / name_, "cannot create");
-    is_named_ = true;
     const bool is_swept = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) return failure(folder_ / name_, "cannot create");
@@ -127,8 +128,7 @@ Status TemporaryFile::create_named(mode_t mode) {
   return failure(folder_ / name_, "cannot create");
 }
 
-// Linking by descriptor needs a privilege or /proc. A call that fails may have been done all the
-// same, on a network: the name is removed either way.
+// Linking by descriptor needs a privilege or /proc. Likewise, a call that fails may have been done.
 Status TemporaryFile::add_name() {
   if (is_named_) return {};
   is_named_ = true;
@@ -142,8 +142,7 @@ Status TemporaryFile::add_name() {
 }
 
 void TemporaryFile::remove_name() {
-  if (is_named_) ::unlink(path_.c_str());
-  is_named_ = false;
+  if (is_named_ && (::unlink(path_.c_str()) == 0 || errno == ENOENT)) is_named_ = false;
 }
 
 }  // namespace boxtree::cooker

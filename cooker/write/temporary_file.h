@@ -35,7 +35,8 @@ class TemporaryFile {
 
   /// Gives it its name if it has none. Error: kWriteFailed.
   Status add_name();
-  /// Takes the name away; whoever has it open still can read and write it.
+  /// Takes the name away; whoever has it open still can read and write it. Where that fails it is
+  /// tried once more when the owner goes.
   void remove_name();
   /// To be called when the name has been moved: it is no longer this file's to remove.
   void release_name() { is_named_ = false; }
