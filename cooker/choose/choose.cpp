@@ -35,6 +35,7 @@ double score_of(double bytes, double slowdown, Goal goal) {
 
 std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
   const std::vector<double> slower = slowdowns(tree.candidates, wishes.queries);
+  const std::vector<bool> eligible = may_be_chosen(tree.candidates);
   std::vector<Judged> judged;
   for (std::size_t i = 0; i < tree.candidates.size(); ++i) {
     const Candidate& candidate = tree.candidates[i];
@@ -43,8 +44,7 @@ std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
         slower[i], kNone};
     const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kNone) &&
                            of.slowdown <= wishes.max_slowdown.value_or(kNone);
-    if (candidate.gates.pass() && in_budget)
-      of.score = score_of(of.bytes, of.slowdown, wishes.goal);
+    if (eligible[i] && in_budget) of.score = score_of(of.bytes, of.slowdown, wishes.goal);
     judged.push_back(of);
   }
   return judged;
@@ -63,9 +63,10 @@ std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Judged
 
 // Fewest bytes and least slowdown that a tree can have, each with its candidate.
 std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
+  const std::vector<bool> eligible = may_be_chosen(tree.candidates);
   std::optional<std::size_t> smallest, fastest;
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (!tree.candidates[i].gates.pass()) continue;
+    if (!eligible[i]) continue;
     if (!smallest || judged[i].bytes < judged[*smallest].bytes) smallest = i;
     if (!fastest || judged[i].slowdown < judged[*fastest].slowdown) fastest = i;
   }
@@ -79,9 +80,9 @@ std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
 }
 
 Error refusal(const Contest& tree, const std::vector<Judged>& judged, const Wishes& wishes) {
-  const bool any_passes = std::any_of(tree.candidates.begin(), tree.candidates.end(),
-                                      [](const Candidate& c) { return c.gates.pass(); });
-  if (!any_passes) return {Errc::kInternal, "no encoding passes its gates"};
+  const std::vector<bool> eligible = may_be_chosen(tree.candidates);
+  if (std::find(eligible.begin(), eligible.end(), true) == eligible.end())
+    return {Errc::kInternal, "no encoding passes its gates"};
   std::string wanted;
   if (wishes.max_bytes_per_triangle) {
     wanted += fmt::format("at most {} B/tri", *wishes.max_bytes_per_triangle);
@@ -98,6 +99,9 @@ std::string reason(const Candidate& candidate, const Judged& judged, const Candi
   if (!candidate.gates.pass()) {
     return fmt::format("fails its gates: {} faces missed, {} boxes escaped", candidate.gates.missed,
                        candidate.gates.escapes);
+  }
+  if (!is_wide(candidate.codec) && is_wide(chosen.codec)) {
+    return "a codec of boxtree::paper: --codec chooses it";
   }
   if (judged.bytes > wishes.max_bytes_per_triangle.value_or(kNone))
     return "over the budget of bytes";
@@ -128,15 +132,28 @@ const char* goal_name(Goal goal) noexcept {
   return "balance";
 }
 
+std::vector<bool> may_be_chosen(std::span<const Candidate> candidates) {
+  const auto passes_wide = [](const Candidate& candidate) {
+    return candidate.gates.pass() && is_wide(candidate.codec);
+  };
+  const bool any_wide = std::any_of(candidates.begin(), candidates.end(), passes_wide);
+  std::vector<bool> eligible;
+  for (const Candidate& candidate : candidates) {
+    eligible.push_back(any_wide ? passes_wide(candidate) : candidate.gates.pass());
+  }
+  return eligible;
+}
+
 std::vector<double> slowdowns(std::span<const Candidate> candidates, QueryKinds queries) {
   static_assert(kQueryKinds == 4 && kRayQueries == 1 && kPairQueries == 8);  // bits in their order
   if ((queries & kAllQueries) == 0) queries = kAllQueries;
   QueryCost fastest;
   fastest.fill(kNone);
-  for (const Candidate& candidate : candidates) {
-    if (!candidate.gates.pass()) continue;
+  const std::vector<bool> eligible = may_be_chosen(candidates);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!eligible[i]) continue;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      fastest[kind] = std::min(fastest[kind], candidate.cost[kind]);
+      fastest[kind] = std::min(fastest[kind], candidates[i].cost[kind]);
     }
   }
   std::vector<double> slower;

@@ -59,15 +59,20 @@ struct Contest {
   QueryKinds queries = kAllQueries;  // that its choice counted
 };
 
-/// How many times as long each candidate takes as the fastest one that passes its gates: the mean
-/// over the kinds of queries that count of the ratios of costs, each kind against its own fastest.
+/// Which candidates may be chosen: those that pass their gates and that boxtree::runtime alone can
+/// read. Codecs of boxtree::paper are there to compare with, and chosen where nothing else was
+/// tried, as when one was asked for.
+[[nodiscard]] std::vector<bool> may_be_chosen(std::span<const Candidate> candidates);
+
+/// How many times as long each candidate takes as the fastest one that may be chosen: the mean over
+/// the kinds of queries that count of the ratios of costs, each kind against its own fastest.
 [[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates,
                                             QueryKinds queries = kAllQueries);
 
 /// Chooses for trees that share a file, one candidate each, all with the same geometry store, so
 /// that what touches still does. Fills Candidate::rejected of the others; ties go to the earlier
 /// candidate. Returns the number of the chosen candidate of each tree. Errors: kInternal when
-/// nothing passes its gates; kBudgetUnreachable, naming the nearest that is possible.
+/// nothing may be chosen; kBudgetUnreachable, naming the nearest that is possible.
 Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes);
 
 /// The same when each tree has wishes of its own, as many as trees; the store that all share is

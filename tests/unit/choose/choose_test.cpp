@@ -27,7 +27,7 @@ Contest contest() {
   Contest tree{100, {}, {}};
   tree.candidates = {candidate(CodecId::kWide8, GeometryId::kExact, 1320, 10),
                      candidate(CodecId::kWide4, GeometryId::kExact, 700, 20),
-                     candidate(CodecId::kPackedF16, GeometryId::kExact, 800, 15)};
+                     candidate(CodecId::kWide8, GeometryId::kExact, 800, 15)};
   return tree;
 }
 
@@ -56,6 +56,19 @@ TEST(Choose, WhatFailsItsGatesIsNeitherTakenNorAMeasure) {
   EXPECT_EQ(slowdowns(tree.candidates)[2], 1);
   for (Candidate& each : tree.candidates) each.gates.escapes = 1;
   EXPECT_EQ(choose(std::span(&tree, 1), {}).code(), Errc::kInternal);
+}
+
+TEST(Choose, CodecsOfThePaperAreThereToCompareWith) {
+  Contest tree = contest();
+  tree.candidates.push_back(candidate(CodecId::kPackedF16, GeometryId::kExact, 500, 5));
+  EXPECT_EQ(require(choose(std::span(&tree, 1), {Goal::kMemory, {}, {}})).front(), 1u);
+  EXPECT_EQ(tree.candidates[3].rejected, "a codec of boxtree::paper: --codec chooses it");
+  EXPECT_EQ(slowdowns(tree.candidates), (std::vector<double>{1, 2, 1.5, 0.5}));
+  EXPECT_EQ(choice(tree, {Goal::kSpeed, 8, 1.5}), 2u);
+  EXPECT_EQ(choose(std::span(&tree, 1), {Goal::kMemory, 5, {}}).code(), Errc::kBudgetUnreachable);
+  // Where nothing else was tried, as when one was asked for.
+  Contest alone{100, {tree.candidates[3]}, {}};
+  EXPECT_EQ(choice(alone, {Goal::kMemory, 5, {}}), 0u);
 }
 
 TEST(Choose, KeepsToBudgets) {

@@ -58,6 +58,24 @@ TEST(Search, SmallMeshesAreTriedWithEveryCodec) {
   }
 }
 
+// Two triangles far apart take fewer bytes and less time as nodes of the paper, but a program with
+// boxtree::runtime alone could not read them.
+TEST(Search, WhatTheRuntimeAloneReadsIsChosen) {
+  for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+    for (const std::size_t triangles : {1u, 2u, 3u, 10u, 40u}) {
+      for (const bool try_all : {false, true}) {
+        SearchOptions options = options_for(goal);
+        options.try_all = try_all;
+        EXPECT_TRUE(is_wide(winner(test::soup(triangles, 1), options).codec))
+            << goal_name(goal) << ", " << triangles;
+      }
+    }
+    SearchOptions options = options_for(goal);
+    options.codec = CodecId::kPlainF16;
+    EXPECT_EQ(winner(test::soup(2, 1), options).codec, CodecId::kPlainF16);
+  }
+}
+
 TEST(Search, ABudgetBringsBackWhatItNeeds) {
   // The fastest is too large, so that a grid must be tried although it is slower.
   SearchOptions options = options_for(Goal::kSpeed);
