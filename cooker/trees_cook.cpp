@@ -4,6 +4,7 @@
 
 #include "cooker/cook.h"
 #include "cooker/cook_record.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 
@@ -18,6 +19,7 @@ Status TreesCook::add(Imported imported, const std::optional<Grid>& grid) {
 }
 
 Result<CookedFile> TreesCook::finish() {
+  const DefaultFloatState state;
   const auto chosen = choose(contests_, options_.wishes);
   if (!chosen) return chosen.error();
   CookedFile file;

@@ -11,6 +11,7 @@
 
 #include "cooker/text/utf8.h"
 #include "format/container.h"
+#include "runtime/primitive/float_state.h"
 #include "runtime/scene/placement.h"
 
 namespace boxtree::cooker {
@@ -200,6 +201,7 @@ class SceneEncoder {
 
 Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
                                   std::string& names) {
+  const DefaultFloatState state;
   return SceneEncoder(trees, parts, names).run();
 }
 

@@ -15,6 +15,7 @@
 #include "cooker/scene/scene_account.h"
 #include "cooker/scene/scene_grid.h"
 #include "format/container.h"
+#include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -167,9 +168,11 @@ class SceneCook {
   [[nodiscard]] bool has_both_stores(std::size_t tree) const {
     const auto has = [&](GeometryId store) {
       const std::vector<Candidate>& candidates = contests_[tree].candidates;
-      return std::any_of(candidates.begin(), candidates.end(), [&](const Candidate& candidate) {
-        return candidate.geometry == store && candidate.gates.pass();
-      });
+      const std::vector<bool> eligible = may_be_chosen(candidates);
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (eligible[i] && candidates[i].geometry == store) return true;
+      }
+      return false;
     };
     return may_use_grid_[tree] && has(GeometryId::kExact) && has(GeometryId::kGrid);
   }
@@ -333,9 +336,10 @@ class SceneCook {
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       const std::vector<Candidate>& candidates = contests_[t].candidates;
       const std::vector<double> slower = slowdowns(candidates, wishes_[t].queries);
+      const std::vector<bool> eligible = may_be_chosen(candidates);
       const Candidate& now = candidates[chosen_[t]];
       for (std::size_t c = 0; c < candidates.size(); ++c) {
-        if (!candidates[c].gates.pass() || candidates[c].bytes() >= now.bytes()) continue;
+        if (!eligible[c] || candidates[c].bytes() >= now.bytes()) continue;
         if (slower[c] > wishes_[t].max_slowdown.value_or(slower[c])) continue;
         const double cost = (slower[c] - slower[chosen_[t]]) /
                             static_cast<double>(now.bytes() - candidates[c].bytes());
@@ -413,6 +417,7 @@ class SceneCook {
 
 Result<CookedFile> cook_scene(LoadedScene source, const Profile& profile,
                               const CookOptions& options, const Progress& progress) {
+  const DefaultFloatState state;
   return SceneCook(options, profile, progress).run(std::move(source));
 }
 

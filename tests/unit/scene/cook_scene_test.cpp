@@ -23,6 +23,7 @@
 #include "runtime/scene/bound_scene.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
+#include "tests/support/float_state.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
@@ -584,6 +585,25 @@ TEST(CookScene, InvalidScenesAreRefused) {
   EXPECT_EQ(cook_job(scene_job({}, out, text)).code(), Errc::kFileNotFound);
   EXPECT_EQ(cook_job(scene_job({kLevel}, out, text)).code(), Errc::kProfileInvalid);
   EXPECT_FALSE(fs::exists(out));
+}
+
+// In memory, too, where no cook_job() has seen to it.
+TEST(CookScene, TheCallersFloatingPointStateChangesNoByte) {
+  const Profile no_profile;
+  const auto loaded = [&] {
+    return require(
+        load_scene(std::vector<fs::path>{kLevel}, no_profile, {}, [](const std::string&) {}));
+  };
+  const auto cooked = [&](LoadedScene scene) {
+    CookOptions options;
+    options.may_use_grid = true;
+    const CookedFile file = require(cook_scene(std::move(scene), no_profile, options));
+    return require(serialize(file.parts()));
+  };
+  const std::vector<std::byte> expected = cooked(loaded());
+  LoadedScene scene = loaded();
+  const test::RoundingMode<FE_UPWARD> upward;
+  EXPECT_EQ(cooked(std::move(scene)), expected);
 }
 
 }  // namespace
