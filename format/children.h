@@ -21,8 +21,8 @@ struct NodeRef {
 };
 
 /// What was found of the bytes of a node that was decoded. It says nothing of the walk that met the
-/// node: those go on only through WalkBound::count (runtime/walk/work.h), which asks for it.
-enum class NodeState : bool { kCorrupt, kSound };
+/// node: those go on through WalkBound::count (runtime/walk/work.h), which asks for it.
+enum class [[nodiscard]] NodeState : bool{kCorrupt, kSound};
 
 [[nodiscard]] constexpr NodeState sound_if(bool is_sound) noexcept {
   return is_sound ? NodeState::kSound : NodeState::kCorrupt;

@@ -245,8 +245,7 @@ class Search {
   // Why candidates with this geometry store cannot win; empty when they can.
   [[nodiscard]] std::string why_not(GeometryId store) const {
     const Wishes& wishes = options_.wishes;
-    if (store == GeometryId::kGrid && wishes.goal == Goal::kSpeed &&
-        !wishes.max_bytes_per_triangle) {
+    if (store == GeometryId::kGrid && !may_grid_win(wishes)) {
       return "the same tree, but leaves take longer to read";
     }
     if (store != GeometryId::kExact || wishes.goal != Goal::kMemory || wishes.max_slowdown) {
@@ -368,6 +367,10 @@ EncodedTree TriedTree::take(std::size_t candidate) {
   nodes.clear();
   families.clear();
   return tree;
+}
+
+bool may_grid_win(const Wishes& wishes) noexcept {
+  return wishes.goal != Goal::kSpeed || wishes.max_bytes_per_triangle.has_value();
 }
 
 Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,

@@ -37,6 +37,10 @@ struct SearchOptions {
 /// they took 1.6 to 25 times as long (docs/MEASUREMENTS.md, "Our own codecs beside the others").
 inline constexpr std::size_t kTryAllFaces = 4096;
 
+/// Whether a grid may win: not where only time counts, and no budget of bytes. Otherwise it is
+/// tried only if options.try_all says so.
+[[nodiscard]] bool may_grid_win(const Wishes& wishes) noexcept;
+
 /// The encodings of one mesh. Candidates that share a tree and an order of faces share all but
 /// their nodes.
 struct TriedTree {

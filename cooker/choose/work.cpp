@@ -37,7 +37,7 @@ struct ListeningCodec : ErasedCodec {
   static Result<ListeningCodec> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
                                  Children& out) const noexcept {
-    if (counts->are_enough()) return NodeState::kCorrupt;
+    if (counts->are_enough()) return NodeState::kCorrupt;  // ends the walk; mean_work() knows why
     ++counts->nodes;
     return ErasedCodec::expand(ref, box, out);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Encoder of wide8 and wide4 (decoder: format/codec_wide.h).
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -118,6 +119,8 @@ class WideEncoder {
 }  // namespace
 
 EncodedNodes encode_wide(const WideLayout& layout, CodecId codec) {
+  static_assert(std::count_if(kCodecs.begin(), kCodecs.end(),
+                              [](const CodecInfo& info) { return is_wide(info.id); }) == 2);
   EncodedNodes nodes = codec == CodecId::kWide8 ? WideEncoder<Wide8Node>(layout).run()
                                                 : WideEncoder<Wide4Node>(layout).run();
   nodes.codec = codec;

@@ -94,7 +94,7 @@ PageSection unique_floats(const PaperReport& report) {
 }
 
 PageSection sizes(const PaperReport& report) {
-  const std::array<std::pair<CodecId, const char*>, 8> columns = {
+  const std::array<std::pair<CodecId, const char*>, kCodecs.size()> columns = {
       {{CodecId::kPlainF32, ""},
        {CodecId::kPlainF16, "26.9 to 30.9"},
        {CodecId::kPackedF16, "14.7 to 18.9"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file found under the descriptor that holds it: whatever kills the process, the system removes
-// it, and no other process, of whatever namespace, comes upon it.
+// A file found under the descriptor that holds it: no other process, of whatever namespace, comes
+// upon it.
 #include "cooker/report/scratch_file.h"
 
 #include <cerrno>

@@ -91,8 +91,10 @@ class Job {
                                job_.inputs.size(), kMaxTrees)};
     }
     TreesCook trees(options_, progress_);
+    const bool may_use_grid =
+        options_.may_use_grid && (options_.try_all || may_grid_win(options_.wishes));
     const bool may_share_grid =
-        job_.inputs.size() > 1 && (options_.geometry == GeometryId::kGrid || options_.may_use_grid);
+        job_.inputs.size() > 1 && (options_.geometry == GeometryId::kGrid || may_use_grid);
     if (may_share_grid) return cook_on_one_grid(trees);
     for (const fs::path& input : job_.inputs) {
       Result<Imported> imported = import_tree(input);

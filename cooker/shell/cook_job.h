@@ -27,7 +27,7 @@ struct CookJob {
 Status check_job(const CookJob& job);
 
 /// Cooks a job: a scene, where it says so or its only input places meshes twice or more; otherwise
-/// each input becomes a tree named after its file. Each input is read once; inputs that share a
+/// each input becomes a tree named after its file. Each input is imported once; inputs that share a
 /// grid are in memory together, others one after the other. The file is written, proven and takes
 /// the place of another only when it is whole; before it the depfile. On any error nothing of the
 /// output changes. The bytes do not depend on threads or folders. Errors: those of check_job;

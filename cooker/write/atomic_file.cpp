@@ -55,11 +55,8 @@ Result<fs::path> follow_links(const fs::path& target) {
   return Error{Errc::kWriteFailed, target.string() + ": too many links lead on from it"};
 }
 
-AtomicFile::AtomicFile(TemporaryFile temporary, fs::path target, bool replaces, int directory)
-    : temporary_(std::move(temporary)),
-      target_(std::move(target)),
-      replaces_(replaces),
-      directory_(directory) {}
+AtomicFile::AtomicFile(TemporaryFile temporary, fs::path target, bool replaces)
+    : temporary_(std::move(temporary)), target_(std::move(target)), replaces_(replaces) {}
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : temporary_(std::move(other.temporary_)),
@@ -85,10 +82,10 @@ Result<AtomicFile> AtomicFile::create(const fs::path& given) {
   Result<TemporaryFile> temporary =
       TemporaryFile::create(directory, target->filename().string(), kMode);
   if (!temporary) return temporary.error();
+  AtomicFile file(std::move(*temporary), *target, exists);
   // Needed after the rename, when it is too late to fail.
-  const int opened = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (opened < 0) return failure(given, "cannot open its directory");
-  AtomicFile file(std::move(*temporary), *target, exists, opened);
+  file.directory_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (file.directory_ < 0) return failure(given, "cannot open its directory");
   if (exists && ::fchmod(file.descriptor(), old.st_mode & kModeBits) != 0) {
     return failure(given, "cannot keep its mode");
   }

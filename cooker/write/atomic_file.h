@@ -42,12 +42,12 @@ class AtomicFile {
   Status commit();
 
  private:
-  AtomicFile(TemporaryFile temporary, std::filesystem::path target, bool replaces, int directory);
+  AtomicFile(TemporaryFile temporary, std::filesystem::path target, bool replaces);
 
   TemporaryFile temporary_;
   std::filesystem::path target_;
-  bool replaces_;  // whether the target was there
-  int directory_;  // -1 once moved from
+  bool replaces_;       // whether the target was there
+  int directory_ = -1;  // once moved from, too
 };
 
 }  // namespace boxtree::cooker

@@ -11,10 +11,10 @@
 
 namespace boxtree::cooker {
 
-/// An open file in some folder. Where the file system allows (O_TMPFILE) it has no name, so that
-/// even a killed process leaves nothing behind; elsewhere it is called ".NAME.RANDOM.cooking", and
-/// the next TemporaryFile of that folder and name sweeps what a killed process left. Not for use by
-/// several threads at once.
+/// An open file in some folder. Where the file system allows (O_TMPFILE) it has no name until it is
+/// given one, so that a killed process leaves nothing behind; elsewhere, and while it has a name,
+/// it is called ".NAME.RANDOM.cooking", and the next TemporaryFile of that folder and name sweeps
+/// what a killed process left. Not for use by several threads at once.
 class TemporaryFile {
  public:
   /// Error: kWriteFailed, with the path folder/name and the cause.

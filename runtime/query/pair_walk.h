@@ -120,6 +120,7 @@ class PairWalk {
         (entry.second_leaf || extent(entry.first_box) > extent(second_image))) {
       auto& children = first_side_.children;
       error_ = bound_.count(first_codec_.expand(entry.first, entry.first_box, children));
+      if (error_ != Errc::kOk) return;
       for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
         const Box<typename A::Scalar> box = children.box(i);
         if (!boxes_overlap(box, second_image) ||
@@ -134,6 +135,7 @@ class PairWalk {
     const Box<double> first_image = pose_.hull_in_second(entry.first_box);
     auto& children = second_side_.children;
     error_ = bound_.count(second_codec_.expand(entry.second, entry.second_box, children));
+    if (error_ != Errc::kOk) return;
     for (std::uint32_t i = 0; i < children.count && error_ == Errc::kOk && !stopped_; ++i) {
       const Box<typename B::Scalar> box = children.box(i);
       if (!boxes_overlap(first_image, box) ||

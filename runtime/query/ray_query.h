@@ -62,6 +62,7 @@ struct RayInTree {
     return {scaled(v[0], exponent), scaled(v[1], exponent), scaled(v[2], exponent)};
   }
 
+  /// The box test that traverse_nearest puts to each child: where the ray enters it, or infinity.
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
     return slab.key(box, t_min);

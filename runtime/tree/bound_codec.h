@@ -117,13 +117,14 @@ extern const CodecFunctions kNoCodec;
 
 using CodecSet = std::span<const CodecFunctions* const>;
 
-/// Lets trees of these codecs be bound from now on, in place of any that were added before. They
-/// and what they point to stay for good. Thread-safe.
+/// Lets trees of these codecs be bound from now on, in place of any that were added before: the
+/// last call counts. They and what they point to stay for good. Thread-safe.
 void add_codecs(const CodecSet& codecs) noexcept;
+void add_codecs(CodecSet&&) = delete;  // the set itself must stay
 
-/// Binds the nodes of a tree in a codec. Errors: those of the codec's
-/// bind; kCodecUnsupported, and what to do about it, when it was left out of this build or is in a
-/// library that the program does not use.
+/// Binds the nodes of a tree in a codec. Errors: those of the codec's bind; kCodecUnsupported, and
+/// what to do about it, when it was left out of this build or is in a library that the program does
+/// not use.
 Status bind_codec(CodecId id, const TreeCounts& counts, Bytes nodes,
                   const CodecFunctions*& functions, BoundCodec& codec);
 

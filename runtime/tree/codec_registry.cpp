@@ -34,6 +34,7 @@ const CodecFunctions* find_in(CodecSet codecs, CodecId id) noexcept {
   return nullptr;
 }
 
+static_assert(kCodecs.size() == 8, "is_built() says of each whether it is");
 constexpr bool is_built(CodecId id) noexcept {
   constexpr std::uint32_t kBuilt =
       BOXTREE_HAS_PLAIN_F32 << static_cast<unsigned>(CodecId::kPlainF32) |

@@ -78,6 +78,7 @@ class NodeView {
 
  private:
   static constexpr bool kIsWide8 = std::is_same_v<Node, Wide8Node>;
+  static_assert(kIsWide8 || std::is_same_v<Node, Wide4Node>);
 
   const std::byte* bytes_;
 };

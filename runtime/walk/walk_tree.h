@@ -20,6 +20,7 @@ inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
 inline constexpr bool kHasOtherCodecs = BOXTREE_HAS_PLAIN_F32 || BOXTREE_HAS_PLAIN_F16 ||
                                         BOXTREE_HAS_PACKED_F32 || BOXTREE_HAS_PACKED_F16 ||
                                         BOXTREE_HAS_PACKED_F64 || BOXTREE_HAS_DEDUP;
+static_assert(kCodecs.size() == 8, "each is named in one of these two");
 
 /// Whether the nodes of a tree are those of a wide codec.
 [[nodiscard]] inline bool has_wide_nodes(const BoundTree& tree) noexcept {

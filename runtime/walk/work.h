@@ -2,7 +2,8 @@
 // What a query may cost. Each walk ends on any bytes, because an honest walk takes each node apart
 // at most once: one that would go on has come to a node twice, and the file is corrupt. A caller
 // may allow less than that. Whatever the order and the purpose of a walk, it goes on through
-// WalkBound::count alone: it is what a NodeState is good for.
+// WalkBound::count, or SharedWalkBound's: it is what a NodeState is good for. Circles cannot
+// be told otherwise in packed nodes; in plain and wide ones children stand behind their parents.
 #pragma once
 
 #include <algorithm>
@@ -45,8 +46,9 @@ class WalkBound {
     if (work_ != nullptr) work_->left -= first_ - left_;
   }
 
-  /// Counts one more node, or pair, that was decoded. kNodeCorrupt if it is corrupt or no honest
-  /// walk meets so many; kWorkLimit; else kOk, and the walk may go on to its children.
+  /// Counts one more node, or pair, that was decoded. kWorkLimit when the caller's limit is spent;
+  /// else kNodeCorrupt if it is corrupt or no honest walk meets so many; else kOk, and the walk may
+  /// go on to its children.
   [[nodiscard]] Errc count(NodeState state) noexcept {
     if (left_ != 0 && state == NodeState::kSound) [[likely]] {
       --left_;
@@ -93,7 +95,7 @@ class WalkStack {
     return Errc::kOk;
   }
   /// Precondition: !empty().
-  [[nodiscard]] const Entry& pop() noexcept { return entries_[--size_]; }
+  [[nodiscard]] Entry pop() noexcept { return entries_[--size_]; }
 
  private:
   std::size_t size_ = 0;

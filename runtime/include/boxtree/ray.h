@@ -43,7 +43,8 @@ using RayResult = QueryResult<RayHit>;
 /// rounding. Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
 /// interval, an origin more than 2^180 mesh extents away), and
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
-/// bytes; kWorkLimit when `limits` do not suffice. Never allocates.
+/// bytes that the ray comes upon, whatever it has hit by then; kWorkLimit when `limits` do not
+/// suffice. Never allocates.
 RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 /// Some hit, or nothing: cheaper than closest_hit when only the fact matters. Errors as there.

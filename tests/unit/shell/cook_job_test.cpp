@@ -86,10 +86,14 @@ TEST(CookJob, EachInputIsReadOnceAndAllShareOneGrid) {
   job.options.geometry = GeometryId::kGrid;
   job.options.grid.bits = 16;
   std::vector<std::string> steps;
-  const Summary summary =
-      require(cook_job(job, [&](const std::string& step) { steps.push_back(step); }));
+  const Summary summary = require(cook_job(job, [&](const std::string& step) {
+    steps.push_back(step);
+    if (!step.starts_with("build ")) return;
+    for (const fs::path& input : inputs) fs::remove(input);  // all are measured by now
+  }));
   for (const fs::path& input : inputs) {
     EXPECT_EQ(std::count(steps.begin(), steps.end(), "import " + input.filename().string()), 1);
+    EXPECT_FALSE(fs::exists(input));
   }
   const File file = require(File::open(output));
   ASSERT_EQ(file.tree_count(), 3u);
