@@ -18,7 +18,8 @@ constexpr std::array kStores = {GeometryId::kExternal, GeometryId::kExact, Geome
 struct Judged {
   double bytes = 0;  // a triangle
   double slowdown = 0;
-  double score = kNone;  // infinite for what fails its gates or a budget
+  bool eligible = false;  // see may_be_chosen()
+  double score = kNone;   // infinite for what is not, or fails a budget
 };
 
 double score_of(double bytes, double slowdown, Goal goal) {
@@ -41,10 +42,10 @@ std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
     const Candidate& candidate = tree.candidates[i];
     Judged of{
         static_cast<double>(candidate.bytes()) / std::max(1.0, static_cast<double>(tree.triangles)),
-        slower[i], kNone};
+        slower[i], eligible[i], kNone};
     const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kNone) &&
                            of.slowdown <= wishes.max_slowdown.value_or(kNone);
-    if (eligible[i] && in_budget) of.score = score_of(of.bytes, of.slowdown, wishes.goal);
+    if (of.eligible && in_budget) of.score = score_of(of.bytes, of.slowdown, wishes.goal);
     judged.push_back(of);
   }
   return judged;
@@ -63,10 +64,9 @@ std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Judged
 
 // Fewest bytes and least slowdown that a tree can have, each with its candidate.
 std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
-  const std::vector<bool> eligible = may_be_chosen(tree.candidates);
   std::optional<std::size_t> smallest, fastest;
   for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (!eligible[i]) continue;
+    if (!judged[i].eligible) continue;
     if (!smallest || judged[i].bytes < judged[*smallest].bytes) smallest = i;
     if (!fastest || judged[i].slowdown < judged[*fastest].slowdown) fastest = i;
   }
@@ -80,9 +80,9 @@ std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
 }
 
 Error refusal(const Contest& tree, const std::vector<Judged>& judged, const Wishes& wishes) {
-  const std::vector<bool> eligible = may_be_chosen(tree.candidates);
-  if (std::find(eligible.begin(), eligible.end(), true) == eligible.end())
-    return {Errc::kInternal, "no encoding passes its gates"};
+  const bool any_eligible =
+      std::any_of(judged.begin(), judged.end(), [](const Judged& each) { return each.eligible; });
+  if (!any_eligible) return {Errc::kInternal, "no encoding passes its gates"};
   std::string wanted;
   if (wishes.max_bytes_per_triangle) {
     wanted += fmt::format("at most {} B/tri", *wishes.max_bytes_per_triangle);

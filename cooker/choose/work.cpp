@@ -4,7 +4,6 @@
 #include "cooker/choose/work.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -63,8 +62,7 @@ struct LeafPairCounter {
 };
 
 Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
-  int exponent = 0;
-  static_cast<void>(std::frexp(ray.direction.cwiseAbs().maxCoeff(), &exponent));
+  const int exponent = exponent_of(largest_magnitude(ray.direction));
   WalkBound nodes(tree.node_count());
   RayCandidate hit;
   Listening query{RayQuery(tree, ray, exponent, nodes, false, hit), &counts};

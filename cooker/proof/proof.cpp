@@ -101,10 +101,7 @@ class Walk {
     NodeChildren children;
     const NodeState state = BoundTree::of(tree_).expand(node, children);
     if (const Errc error = bound_.count(state); error != Errc::kOk) {
-      add(error,
-          "node " + std::to_string(node.ref.first) +
-              (state == NodeState::kSound ? " is one more than the record states: one is met twice"
-                                          : " contradicts itself"));
+      add(error, fault_of_node(node.ref.first, state));
       return content;
     }
     ++proof_.certificate.node_count;
@@ -280,6 +277,12 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 }
 
 }  // namespace
+
+std::string fault_of_node(std::uint32_t node, NodeState state) {
+  return "node " + std::to_string(node) +
+         (state == NodeState::kSound ? " is one more than the record states: one is met twice"
+                                     : " contradicts itself");
+}
 
 TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   TreeProof proof;

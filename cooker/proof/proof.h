@@ -3,7 +3,9 @@
 // face is reached exactly once, and the counts are as stated.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <boxtree/file.h>
@@ -26,6 +28,9 @@ struct TreeProof {
   std::uint64_t escapes = 0;        // boxes that do not hold what is below them
   Findings findings;                // the first kMaxFindings of all that does not hold
 };
+
+/// What is found of a node that a walk cannot go on from, by what decoding it gave.
+[[nodiscard]] std::string fault_of_node(std::uint32_t node, NodeState state);
 
 /// Walks the whole tree as a reader would. With `with_geometry` false, leaves are counted but
 /// triangles not looked at (external geometry whose mesh is not at hand). Safe on any bytes.

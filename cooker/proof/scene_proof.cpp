@@ -64,10 +64,7 @@ class SceneWalk {
     TopLevel::Codec::Children children;
     const NodeState state = BoundScene::of(scene_).top_level().codec.expand(node, box, children);
     if (const Errc error = bound_.count(state); error != Errc::kOk) {
-      add(error,
-          "node " + std::to_string(node.first) +
-              (state == NodeState::kSound ? " is one more than the record states: one is met twice"
-                                          : " contradicts itself"));
+      add(error, fault_of_node(node.first, state));
       return content;
     }
     ++nodes_;

@@ -3,23 +3,15 @@
 // upon it.
 #include "cooker/report/scratch_file.h"
 
-#include <cerrno>
 #include <string>
 #include <system_error>
 #include <unistd.h>
 #include <utility>
 
 #include "cooker/system/write_all.h"
+#include "cooker/system/write_failure.h"
 
 namespace boxtree::cooker {
-namespace {
-
-Error failure(const std::filesystem::path& folder) {
-  return Error{Errc::kWriteFailed, folder.string() + ": cannot write a temporary file: " +
-                                       std::generic_category().message(errno)};
-}
-
-}  // namespace
 
 Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   std::error_code error;
@@ -30,9 +22,10 @@ Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   if (!file) return file.error();
   file->remove_name();
   const int descriptor = file->descriptor();
-  if (!write_all(descriptor, bytes)) return failure(folder);
   // Pages that are not on disk cannot be dropped, and cold reads are what is measured.
-  if (::fsync(descriptor) != 0) return failure(folder);
+  if (!write_all(descriptor, bytes) || ::fsync(descriptor) != 0) {
+    return write_failure(folder, "cannot write a temporary file");
+  }
   return ScratchFile(std::move(*file));
 }
 

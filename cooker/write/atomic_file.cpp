@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "cooker/system/write_all.h"
+#include "cooker/system/write_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -19,11 +20,6 @@ namespace fs = std::filesystem;
 
 constexpr mode_t kMode = 0666;  // the umask takes away what the user does not want
 constexpr mode_t kModeBits = 07777;
-
-Error failure(const fs::path& path, const char* what) {
-  return Error{Errc::kWriteFailed,
-               path.string() + ": " + what + ": " + std::generic_category().message(errno)};
-}
 
 fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
@@ -73,7 +69,7 @@ Result<AtomicFile> AtomicFile::create(const fs::path& given) {
   if (!target) return target.error();
   struct stat old {};
   const bool exists = ::stat(target->c_str(), &old) == 0;
-  if (!exists && errno != ENOENT) return failure(given, "cannot tell whether it exists");
+  if (!exists && errno != ENOENT) return write_failure(given, "cannot tell whether it exists");
   if (exists && !S_ISREG(old.st_mode)) {
     return Error{Errc::kWriteFailed, given.string() + ": exists and is not a regular file"};
   }
@@ -85,9 +81,9 @@ Result<AtomicFile> AtomicFile::create(const fs::path& given) {
   AtomicFile file(std::move(*temporary), *target, exists);
   // Needed after the rename, when it is too late to fail.
   file.directory_ = ::open(directory.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file.directory_ < 0) return failure(given, "cannot open its directory");
+  if (file.directory_ < 0) return write_failure(given, "cannot open its directory");
   if (exists && ::fchmod(file.descriptor(), old.st_mode & kModeBits) != 0) {
-    return failure(given, "cannot keep its mode");
+    return write_failure(given, "cannot keep its mode");
   }
   // Only root may give files away.
   if (exists) static_cast<void>(!::fchown(file.descriptor(), old.st_uid, old.st_gid));
@@ -95,24 +91,24 @@ Result<AtomicFile> AtomicFile::create(const fs::path& given) {
 }
 
 Status AtomicFile::write(Bytes bytes) {
-  return write_all(descriptor(), bytes) ? Status() : failure(target_, "cannot write");
+  return write_all(descriptor(), bytes) ? Status() : write_failure(target_, "cannot write");
 }
 
 // The old file keeps a name until the new one is known to stay. Where names cannot be exchanged, it
 // does not; and then nothing is left to bring back.
 Status AtomicFile::commit() {
-  if (::fsync(descriptor()) != 0) return failure(target_, "cannot flush");
+  if (::fsync(descriptor()) != 0) return write_failure(target_, "cannot flush");
   if (Status status = temporary_.add_name(); !status) return status;
   const char* const temporary = temporary_.path().c_str();
   const bool is_exchanged = replaces_ && ::renameat2(AT_FDCWD, temporary, AT_FDCWD, target_.c_str(),
                                                      RENAME_EXCHANGE) == 0;
   // After other errors they may have been exchanged: a rename would bring the old file back.
   if (replaces_ && !is_exchanged && !cannot_exchange(errno)) {
-    return failure(target_, "cannot rename");
+    return write_failure(target_, "cannot rename");
   }
   if (!is_exchanged) {
     if (::rename(temporary, target_.c_str()) != 0) {
-      return failure(target_, "cannot rename");
+      return write_failure(target_, "cannot rename");
     }
     temporary_.release_name();
   }
@@ -120,7 +116,7 @@ Status AtomicFile::commit() {
     temporary_.remove_name();  // the old file's, if they were exchanged
     return {};
   }
-  const Error error = failure(target_, "cannot flush the directory");
+  const Error error = write_failure(target_, "cannot flush the directory");
   if (is_exchanged) {
     static_cast<void>(
         !::renameat2(AT_FDCWD, temporary, AT_FDCWD, target_.c_str(), RENAME_EXCHANGE));

@@ -17,6 +17,8 @@
 
 #include <fmt/format.h>
 
+#include "cooker/system/write_failure.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -25,11 +27,6 @@ namespace fs = std::filesystem;
 constexpr std::string_view kSuffix = ".cooking";
 constexpr std::size_t kRandomDigits = 16;
 constexpr std::size_t kLongestName = 200;  // of what it is for: a name has 255 bytes in all
-
-Error failure(const fs::path& path, const char* what) {
-  return Error{Errc::kWriteFailed,
-               path.string() + ": " + what + ": " + std::generic_category().message(errno)};
-}
 
 std::string prefix_of(std::string_view name) {
   return fmt::format(".{}.", name.substr(0, kLongestName));
@@ -102,7 +99,7 @@ Result<TemporaryFile> TemporaryFile::create(const fs::path& folder, std::string_
 
 Status TemporaryFile::choose_name() {
   const std::optional<std::string> digits = random_digits();
-  if (!digits) return failure(folder_ / name_, "no random numbers");
+  if (!digits) return write_failure(folder_ / name_, "no random numbers");
   path_ = folder_ / (prefix_of(name_) + *digits + std::string(kSuffix));
   return {};
 }
@@ -116,16 +113,16 @@ Status TemporaryFile::create_named(mode_t mode) {
     if (Status status = choose_name(); !status) return status;
     descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode);
     is_named_ = descriptor_ >= 0 || errno != EEXIST;
-    if (descriptor_ < 0) return failure(folder_ / name_, "cannot create");
+    if (descriptor_ < 0) return write_failure(folder_ / name_, "cannot create");
     const bool is_swept = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     struct stat status {};
-    if (::fstat(descriptor_, &status) != 0) return failure(folder_ / name_, "cannot create");
+    if (::fstat(descriptor_, &status) != 0) return write_failure(folder_ / name_, "cannot create");
     if (!is_swept && status.st_nlink > 0) return {};
     remove_name();
     ::close(std::exchange(descriptor_, -1));
   }
   errno = EAGAIN;
-  return failure(folder_ / name_, "cannot create");
+  return write_failure(folder_ / name_, "cannot create");
 }
 
 // Linking by descriptor needs a privilege or /proc. Likewise, a call that fails may have been done.
@@ -135,7 +132,7 @@ Status TemporaryFile::add_name() {
   if (::linkat(descriptor_, "", AT_FDCWD, path_.c_str(), AT_EMPTY_PATH) != 0) {
     const std::string self = "/proc/self/fd/" + std::to_string(descriptor_);
     if (::linkat(AT_FDCWD, self.c_str(), AT_FDCWD, path_.c_str(), AT_SYMLINK_FOLLOW) != 0) {
-      return failure(folder_ / name_, "cannot name the finished file");
+      return write_failure(folder_ / name_, "cannot name the finished file");
     }
   }
   return {};

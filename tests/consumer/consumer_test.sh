@@ -78,7 +78,7 @@ mkdir "$work/paper"
 cat >"$work/paper/CMakeLists.txt" <<'CMAKE'
 cmake_minimum_required(VERSION 3.25)
 project(paper_user LANGUAGES CXX)
-find_package(boxtree CONFIG REQUIRED)
+find_package(boxtree CONFIG REQUIRED COMPONENTS paper)
 add_executable(paper_user main.cpp)
 target_link_libraries(paper_user PRIVATE boxtree::paper)
 CMAKE

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// What the system said of a file that could not be written.
+#pragma once
+
+#include <cerrno>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include <boxtree/error.h>
+
+namespace boxtree::cooker {
+
+/// kWriteFailed with the path, what failed, and the reason in errno.
+[[nodiscard]] inline Error write_failure(const std::filesystem::path& path, const char* what) {
+  const int reason = errno;  // before anything here can change it
+  return {Errc::kWriteFailed,
+          path.string() + ": " + what + ": " + std::generic_category().message(reason)};
+}
+
+}  // namespace boxtree::cooker
