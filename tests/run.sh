@@ -1,10 +1,24 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs what is missing, builds and runs every test. The last line counts them.
-#   tests/run.sh [--all]   --all: also the debug, scalar and sanitizer builds, and the bytes that
-#                          other compilers and arm64 write
+#   tests/run.sh [--all | PART...]   [release]
+#   release         every test
+#   asan-ubsan      every test with sanitizers and with the assertions of the libraries
+#   scalar          every test without vectors
+#   tsan            what runs on several threads, with ThreadSanitizer
+#   compare-builds  the bytes that other compilers and arm64 write
+#   --all           all of them: some hours on two cores
 set -euo pipefail
 cd "$(dirname "$0")/.."
+all="release asan-ubsan scalar tsan compare-builds"
+parts=${*:-release}
+[ "$parts" = --all ] && parts=$all
+for part in $parts; do
+  case " $all " in
+    *" $part "*) ;;
+    *) echo "tests/run.sh: no part '$part'; expected --all or some of: $all" >&2; exit 2 ;;
+  esac
+done
 # shellcheck source=samples/packages.sh
 . samples/packages.sh
 # shellcheck disable=SC2086 # lists of words
@@ -43,12 +57,16 @@ compare_builds() {
 }
 
 mkdir -p build
-run_preset release
-if [ "${1:-}" = --all ]; then
-  # shellcheck disable=SC2086 # a list of words
-  install_missing $FUZZ_PACKAGES
-  for preset in debug scalar asan-ubsan tsan; do run_preset "$preset"; done
-  compare_builds
-fi
+for part in $parts; do
+  case $part in
+    compare-builds) compare_builds ;;
+    asan-ubsan)
+      # shellcheck disable=SC2086 # a list of words
+      install_missing $FUZZ_PACKAGES
+      run_preset "$part"
+      ;;
+    *) run_preset "$part" ;;
+  esac
+done
 echo "$passed passed, $failed failed, $skipped skipped"
 [ "$failed" -eq 0 ] && [ "$passed" -gt 0 ]
