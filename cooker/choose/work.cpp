@@ -33,7 +33,6 @@ struct Counts {
 struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
-  static Result<ListeningCodec> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
                                  Children& out) const noexcept {
     if (counts->are_enough()) return NodeState::kCorrupt;  // ends the walk; mean_work() knows why

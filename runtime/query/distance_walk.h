@@ -27,7 +27,7 @@
 namespace boxtree {
 
 /// One query. Everything passed by reference must outlive it.
-template <Codec A, Codec B>
+template <NodeDecoder A, NodeDecoder B>
 class DistanceWalk {
  public:
   /// `approximation` is in the metric's units.

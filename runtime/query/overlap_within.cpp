@@ -71,7 +71,7 @@ bool is_binary(const BoundTree& tree) noexcept {
   return tree.codec_functions().width <= ErasedBinaryCodec::Children::kWidth;
 }
 
-template <Codec C>
+template <NodeDecoder C>
 Result<Visit> walk(const BoundTree& first, const BoundTree& second, Watch& watch,
                    PairVisitor visitor) {
   PairBound bound(first, second, nullptr);

@@ -27,7 +27,7 @@ struct NoPairObserver {
 };
 
 /// The children of one side of a pair: those of a node, or a leaf standing for itself.
-template <Codec C>
+template <NodeDecoder C>
 struct PairSide {
   typename C::Children children;
   std::array<Box<double>, C::Children::kWidth> image;  // in the other tree's space
@@ -39,7 +39,7 @@ struct PairSide {
 };
 
 /// One test of two trees. Everything passed by reference must outlive it.
-template <Codec A, Codec B, class Observer = NoPairObserver>
+template <NodeDecoder A, NodeDecoder B, class Observer = NoPairObserver>
 class PairWalk {
  public:
   PairWalk(const BoundTree& first, const A& first_codec, const BoundTree& second,
@@ -190,7 +190,7 @@ class PairWalk {
     }
   }
 
-  template <Codec C>
+  template <NodeDecoder C>
   [[nodiscard]] static NodeState expand(const C& codec, bool leaf,
                                         const Box<typename C::Scalar>& box, NodeRef ref,
                                         PairSide<C>& side) noexcept {

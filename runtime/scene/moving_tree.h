@@ -18,7 +18,7 @@ namespace boxtree {
 /// instances so that neighbours in the tree are neighbours in space when it is built.
 class MovingTree {
  public:
-  struct Codec {
+  struct Decoder {
     using Scalar = double;
     using Children = ChildSet<2, double>;
     static constexpr std::uint32_t kDepthLimit = 32;
@@ -26,10 +26,6 @@ class MovingTree {
     const Box<double>* nodes = nullptr;
     std::uint32_t leaves = 0;  // a power of two
 
-    static Result<Codec> bind(const TreeCounts& /*counts*/, Bytes /*section*/) {
-      return Errc::kInternal;  // it is in no file
-    }
-    [[nodiscard]] static NodeRef root() noexcept { return {1, 0}; }
     [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& /*box*/,
                                    Children& out) const noexcept {
       out.clear();
@@ -50,7 +46,7 @@ class MovingTree {
   [[nodiscard]] bool is_leaf() const noexcept { return leaves_ == 1 && !empty(); }
   [[nodiscard]] std::uint32_t node_count() const noexcept { return empty() ? 0 : leaves_ - 1; }
   [[nodiscard]] NodeRef root_ref() const noexcept { return {1, 0}; }
-  [[nodiscard]] Codec codec() const noexcept { return {nodes_.data(), leaves_}; }
+  [[nodiscard]] Decoder decoder() const noexcept { return {nodes_.data(), leaves_}; }
   [[nodiscard]] const Box<double>& root_box() const noexcept { return nodes_[1]; }
   [[nodiscard]] const Box<double>& box(std::uint32_t moving) const noexcept {
     return nodes_[leaves_ + place_[moving]];

@@ -103,7 +103,7 @@ Result<Visit> contacts(const Scene& queried, ScenePairVisitor visitor, const Que
     if (walked == Errc::kOk && !body.is_done()) {
       LaterMoving later{body, body.admission, body.error};
       MovingInstances<LaterMoving> others(later, scene.moving_tree());
-      walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), others);
+      walked = traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), others);
     }
     Result<Visit> visit = outcome_of(walked, body);
     if (!visit || *visit == Visit::kStopped) return visit;
@@ -124,7 +124,7 @@ Result<Visit> contacts_of(const Scene& queried, std::uint32_t instance, ScenePai
   const auto bounds = placed->bounds();
   if (!bounds) return Errc::kRecordInvalid;
   BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor, work);
-  return outcome_of(walk_overlap(scene, body), body);
+  return outcome_of(visit_overlapping_instances(scene, body), body);
 }
 
 Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const Pose& pose,
@@ -141,7 +141,7 @@ Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const P
   if (!bounds) return Errc::kInvalidPose;
   BodyInScene body{{scene, kPairQueries, layers, work}, tree,        pose,  bounds->condition,
                    scene.to_frame(bounds->world),       kNoInstance, false, visitor};
-  return outcome_of(walk_overlap(scene, body), body);
+  return outcome_of(visit_overlapping_instances(scene, body), body);
 }
 
 }  // namespace boxtree

@@ -27,17 +27,23 @@ struct CodecWalks;
 /// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 
-/// What a tree and its queries ask of a codec. `bind` checks what can be checked without reading
-/// nodes; `expand` is the one question of a traversal. Whatever the bytes, neither reads outside
-/// the section given to `bind`.
+/// What a walk asks: decodes one node after the other. Whatever the bytes, it reads nothing outside
+/// of the nodes that it was made for.
+template <class D>
+concept NodeDecoder = requires(const D& decoder, NodeRef ref, const Box<typename D::Scalar>& box,
+                               typename D::Children& out) {
+  { D::kDepthLimit } -> std::convertible_to<std::uint32_t>;
+  { decoder.expand(ref, box, out) }
+  noexcept->std::same_as<NodeState>;
+};
+
+/// What a tree asks of a codec besides. `bind` checks what can be checked without reading nodes.
 template <class C>
-concept Codec = requires(const C& codec, const TreeCounts& counts, Bytes section, NodeRef ref,
-                         const Box<typename C::Scalar>& box, typename C::Children& out) {
+concept Codec = NodeDecoder<C> &&
+    requires(const C& codec, const TreeCounts& counts, Bytes section) {
   { C::bind(counts, section) } -> std::same_as<Result<C>>;
   { codec.root() }
   noexcept->std::same_as<NodeRef>;
-  { codec.expand(ref, box, out) }
-  noexcept->std::same_as<NodeState>;
 };
 
 /// Some codec over the nodes of one tree, or none. Cheap to copy.

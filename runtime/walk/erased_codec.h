@@ -20,9 +20,6 @@ struct ErasedCodecOf {
 
   const BoundTree* tree;
 
-  static Result<ErasedCodecOf> bind(const TreeCounts&, Bytes) { return Errc::kInternal; }
-  [[nodiscard]] NodeRef root() const noexcept { return tree->root_ref(); }
-
   // kCorrupt, too, where a node has more children than there is room for.
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
                                  Children& out) const noexcept {

@@ -67,7 +67,7 @@ template <class S>
 
 /// Entries that a depth-first walk of one tree can have pending: all but one child of each node on
 /// a path, and the root.
-template <Codec C>
+template <NodeDecoder C>
 inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
 /// How a walk for a visitor ended: `query` holds the error of a leaf, and whether its visitor asked
@@ -84,7 +84,7 @@ template <class Query>
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
 /// query.nodes: a WalkBound, of as many nodes as the tree's record states.
 /// Returns kNodeCorrupt or kDepthExceeded for corrupt nodes, kWorkLimit, else kOk.
-template <class Source, Codec C, class Query>
+template <class Source, NodeDecoder C, class Query>
 Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   struct Entry {
@@ -126,7 +126,7 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
 /// query.nodes_expanded, if it has one, counts the nodes taken apart. query.nodes: as above.
-template <class Source, Codec C, class Query>
+template <class Source, NodeDecoder C, class Query>
 Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;
   constexpr std::size_t kWidth = C::Children::kWidth;

@@ -57,7 +57,7 @@ TEST(MovingTree, FindsWhatOverlapsBeforeAndAfterMoving) {
         if (query.overlaps(boxes[i])) expected.insert(i);
       }
       EXPECT_EQ(tree.root_box(), whole) << count;
-      ASSERT_EQ(traverse_overlap(tree, tree.codec(), query), Errc::kOk);
+      ASSERT_EQ(traverse_overlap(tree, tree.decoder(), query), Errc::kOk);
       // A tree of one leaf answers with it whatever its box is: the root box was tested.
       EXPECT_EQ(query.found, expected) << count;
       const auto moved = static_cast<std::uint32_t>(random() % count);
@@ -85,7 +85,7 @@ TEST(MovingTree, NeighboursInTheTreeAreNeighboursInSpace) {
     MovingTree tree;
     tree.build(boxes);
     ChildSet<2, double> children;
-    ASSERT_EQ(tree.codec().expand(tree.root_ref(), tree.root_box(), children), NodeState::kSound);
+    ASSERT_EQ(tree.decoder().expand(tree.root_ref(), tree.root_box(), children), NodeState::kSound);
     ASSERT_EQ(children.count, 2u);
     const double apart = 1000 - 20;
     EXPECT_TRUE(children.box(0).high[axis] < -apart && children.box(1).low[axis] > apart) << axis;
