@@ -75,18 +75,18 @@ struct PointQuery {
     return true;
   }
 
-  void test(const Triangle& triangle, std::uint32_t face_order, std::uint32_t half) noexcept {
+  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept {
     const double bounds_distance = squared_distance(point, bounds_of(triangle));
     if (bounds_distance > best) return;
     if (placed != nullptr) {
-      test_placed(triangle, face_order, half);
+      test_placed(triangle, face_index, half);
       return;
     }
     const Eigen::Vector3d closest = closest_point_on_triangle(point, triangle);
     // Never below the distance of the bounds, so that it agrees with every key above.
     const double distance = std::max(bounds_distance, squared_length(closest - point));
     if (approximation != nullptr) note_lower(triangle, closest, std::min(distance, best));
-    const FaceRef face = face_ref(tree, face_order);
+    const FaceRef face = face_ref(tree, face_index);
     if (distance > best) return;
     if (found && distance == best && !comes_before(face, half, found->face, found->triangle))
       return;
@@ -95,13 +95,13 @@ struct PointQuery {
   }
 
  private:
-  void test_placed(const Triangle& triangle, std::uint32_t face_order,
+  void test_placed(const Triangle& triangle, std::uint32_t face_index,
                    std::uint32_t half) noexcept {
     const Eigen::Vector3d closest =
         closest_point_on_triangle(placed->point, placed->to_world.apply(triangle));
     const double distance = squared_length(closest - placed->point);
     if (distance > placed->best) return;
-    const FaceRef face = face_ref(tree, face_order);
+    const FaceRef face = face_ref(tree, face_index);
     if (found && distance == placed->best &&
         !comes_before(face, half, found->face, found->triangle)) {
       return;

@@ -45,7 +45,7 @@ Result<Visit> ask_scene(const BoundScene& scene, const Shape& shape, SceneFaceVi
                         LayerMask layers, const QueryLimits& limits) {
   QueryWork work(limits);
   ShapeInScene<Shape> query{{scene, kBoxQueries, layers, work}, shape, visitor};
-  return outcome_of(walk_overlap(scene, query), query);
+  return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 
 // Boxes are compared in the world itself: only signs count, and units could take the last bits of
@@ -224,7 +224,7 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
                      0,
                      {}};
   query.set_bound();
-  const Errc walked = walk_nearest(scene, query);
+  const Errc walked = visit_nearest_instances(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
   if (!query.found) return {};

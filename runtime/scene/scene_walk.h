@@ -80,18 +80,18 @@ Errc walk_static(const BoundScene& scene, Query& query) {
 
 /// Visits the instances whose boxes overlap; the query may stop it, and holds errors of instances.
 template <class Query>
-Errc walk_overlap(const BoundScene& scene, Query& query) {
+Errc visit_overlapping_instances(const BoundScene& scene, Query& query) {
   const Errc walked = walk_static(scene, query);
   if (walked != Errc::kOk || query.is_done()) return walked;
   MovingInstances<Query> moving(query, scene.moving_tree());
-  return traverse_overlap(scene.moving_tree(), scene.moving_tree().codec(), moving);
+  return traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), moving);
 }
 
 /// The same from near to far. Moving instances come first: they are few, and near what asks.
 template <class Query>
-Errc walk_nearest(const BoundScene& scene, Query& query) {
+Errc visit_nearest_instances(const BoundScene& scene, Query& query) {
   MovingInstances<Query> moving(query, scene.moving_tree());
-  const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().codec(), moving);
+  const Errc walked = traverse_nearest(scene.moving_tree(), scene.moving_tree().decoder(), moving);
   if (walked != Errc::kOk || query.is_done()) return walked;
   return walk_static(scene, query);
 }

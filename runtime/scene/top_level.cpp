@@ -52,19 +52,19 @@ struct InstancesOnRay : Instances {
 
 }  // namespace
 
-Errc walk_top_level_plainly(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+Errc walk_top_level_scalar(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
   InstancesInBox query{{top, visit}, box};
   return traverse_overlap(top, top.codec, query);
 }
 
-Errc walk_top_level_plainly(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                            InstanceVisitor visit) {
+Errc walk_top_level_scalar(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                           InstanceVisitor visit) {
   InstancesNearPoint query{{top, visit}, point, bound};
   return traverse_nearest(top, top.codec, query);
 }
 
-Errc walk_top_level_plainly(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                            InstanceVisitor visit) {
+Errc walk_top_level_scalar(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                           InstanceVisitor visit) {
   InstancesOnRay query{{top, visit}, ray, bound};
   return traverse_nearest(top, top.codec, query);
 }

@@ -28,30 +28,30 @@ struct TopLevelRay {
 };
 
 /// The walks one child at a time; see walk_top_level.
-Errc walk_top_level_plainly(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
-Errc walk_top_level_plainly(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-                            InstanceVisitor visit);
-Errc walk_top_level_plainly(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-                            InstanceVisitor visit);
+Errc walk_top_level_scalar(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
+Errc walk_top_level_scalar(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                           InstanceVisitor visit);
+Errc walk_top_level_scalar(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                           InstanceVisitor visit);
 
 /// The same by vectors, where there are any.
-Errc walk_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
-Errc walk_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-               InstanceVisitor visit);
-Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-               InstanceVisitor visit);
+Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
+Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                         InstanceVisitor visit);
+Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                         InstanceVisitor visit);
 
 /// Visits all instances whose boxes meet what is asked for, and maybe some that only nearly do.
-/// `asked`, in the scene's frame: a box; or a point or a ray, and a bound, a squared distance or a
+/// `shape`, in the scene's frame: a box; or a point or a ray, and a bound, a squared distance or a
 /// parameter: then from near to far. The bound is read again after each visit, which may lower it;
 /// instances beyond it are left out, those at it are not.
 /// Errors: kNodeCorrupt, kDepthExceeded for corrupt nodes.
-template <class... Asked>
-Errc walk_top_level(const TopLevel& top, InstanceVisitor visit, const Asked&... asked) {
+template <class... Shape>
+Errc walk_top_level(const TopLevel& top, InstanceVisitor visit, const Shape&... shape) {
   if constexpr (kWalksByVectors) {
-    return walk_wide(top, asked..., visit);
+    return walk_top_level_wide(top, shape..., visit);
   } else {
-    return walk_top_level_plainly(top, asked..., visit);
+    return walk_top_level_scalar(top, shape..., visit);
   }
 }
 

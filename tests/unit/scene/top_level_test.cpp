@@ -102,8 +102,8 @@ struct Tally {
 
   template <class... Asked>
   void add(const TopLevel& top, const Numbers& expected, const Asked&... asked) {
-    const Numbers plainly = visited(
-        [&](InstanceVisitor visit) { return walk_top_level_plainly(top, asked..., visit); });
+    const Numbers plainly =
+        visited([&](InstanceVisitor visit) { return walk_top_level_scalar(top, asked..., visit); });
     const Numbers fast =
         visited([&](InstanceVisitor visit) { return walk_top_level(top, visit, asked...); });
     ASSERT_TRUE(holds(plainly, expected));
@@ -197,7 +197,7 @@ TEST_P(TopLevelWalk, FollowsABoundThatShrinks) {
       bound = std::min(bound, squared_distance(at, level.box(instance)));
       return true;
     };
-    ASSERT_EQ(walk_top_level_plainly(level.top(), at, bound, visit), Errc::kOk);
+    ASSERT_EQ(walk_top_level_scalar(level.top(), at, bound, visit), Errc::kOk);
     EXPECT_EQ(bound, nearest);
     plain += visits;
     bound = kInfinity;
