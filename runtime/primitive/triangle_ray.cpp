@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The rare parts of the watertight ray test: setting up the ray, and areas that round to zero.
+// The rare part of the watertight ray test: areas that round to zero.
 #include "runtime/primitive/triangle_ray.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "runtime/primitive/expansion.h"
 
@@ -17,21 +16,6 @@ double exact_area(double scale, const ShearedCorner& from, const ShearedCorner& 
 }
 
 }  // namespace
-
-RayShear::RayShear(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction) noexcept
-    : origin(ray_origin) {
-  axis_z = 0;
-  for (int k = 1; k < 3; ++k) {
-    if (std::abs(direction[k]) > std::abs(direction[axis_z])) axis_z = k;
-  }
-  axis_x = axis_z == 2 ? 0 : axis_z + 1;
-  axis_y = axis_z == 0 ? 2 : axis_z - 1;
-  shear_x = direction[axis_x] / direction[axis_z];
-  shear_y = direction[axis_y] / direction[axis_z];
-  // Finite even for a subnormal direction, so that a hit at the origin gets t = 0, not NaN.
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  shear_z = std::clamp(1 / direction[axis_z], -kLargest, kLargest);
-}
 
 RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
                          const ShearedCorner& c) noexcept {

@@ -3,8 +3,12 @@
 // Intersection", JCGT 2013), with exact signs.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <optional>
 
+#include "runtime/primitive/axis_lanes.h"
 #include "runtime/primitive/triangle.h"
 
 namespace boxtree {
@@ -14,11 +18,39 @@ namespace boxtree {
 struct RayShear {
   RayShear() noexcept = default;  // of no ray yet
   /// Precondition: direction is finite and not zero.
-  RayShear(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) noexcept;
+  RayShear(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction) noexcept
+      : origin(ray_origin) {
+    set_axes(direction);
+    // Finite even for a subnormal direction, so that a hit at the origin gets t = 0, not NaN.
+    constexpr double kLargest = std::numeric_limits<double>::max();
+    shear_z = std::clamp(1 / direction[axis_z], -kLargest, kLargest);
+  }
+  /// The same, where the reciprocals of the direction are known. Precondition: its largest
+  /// component is in [1/2, 1).
+  RayShear(const AxisLanes& ray_origin, const AxisLanes& direction,
+           const AxisLanes& inverse) noexcept
+      : origin(ray_origin.vector()) {
+    set_axes(direction);
+    shear_z = inverse[axis_z];
+  }
 
   Eigen::Vector3d origin;
   int axis_x, axis_y, axis_z;        // axis_z: largest component of the direction
   double shear_x, shear_y, shear_z;  // direction x/z, y/z, 1/z
+
+ private:
+  // All but shear_z. No branch on which component is the largest: each is as likely as the others.
+  template <class Vector>
+  void set_axes(const Vector& direction) noexcept {
+    const double x = std::abs(direction[0]), y = std::abs(direction[1]), z = std::abs(direction[2]);
+    axis_z = static_cast<int>(y > x);
+    axis_z = z > std::max(x, y) ? 2 : axis_z;
+    axis_x = axis_z == 2 ? 0 : axis_z + 1;
+    axis_y = axis_z == 0 ? 2 : axis_z - 1;
+    const double d = direction[axis_z];
+    shear_x = direction[axis_x] / d;
+    shear_y = direction[axis_y] / d;
+  }
 };
 
 /// Parameter along the ray (in units of its direction) and barycentric weights of corners 1 and 2.

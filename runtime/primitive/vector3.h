@@ -14,15 +14,15 @@
 
 namespace boxtree {
 
-/// The largest magnitude of a component; NaN if one of them is. By bits, which ascend with the
+/// The largest of three magnitudes; NaN if one of them is. By bits, which ascend with the
 /// magnitude, NaN behind infinity.
-[[nodiscard]] inline double largest_magnitude(const Eigen::Vector3d& v) noexcept {
+[[nodiscard]] inline double largest_magnitude(double x, double y, double z) noexcept {
   constexpr std::uint64_t kMagnitude = ~std::uint64_t{0} >> 1;
-  std::uint64_t largest = 0;
-  for (Eigen::Index i = 0; i < 3; ++i) {
-    largest = std::max(largest, std::bit_cast<std::uint64_t>(v[i]) & kMagnitude);
-  }
-  return std::bit_cast<double>(largest);
+  const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v) & kMagnitude; };
+  return std::bit_cast<double>(std::max(std::max(bits(x), bits(y)), bits(z)));
+}
+[[nodiscard]] inline double largest_magnitude(const Eigen::Vector3d& v) noexcept {
+  return largest_magnitude(v[0], v[1], v[2]);
 }
 
 [[nodiscard]] inline double dot(const Eigen::Vector3d& a, const Eigen::Vector3d& b) noexcept {

@@ -20,18 +20,23 @@ namespace boxtree {
 /// a coordinate relative to the ray can be off.
 struct RayBoxFilter {
   /// `slab` of the same ray; its direction was scaled as RayQuery has it. `bound`: of the error.
-  RayBoxFilter(const RaySlab& slab, const Eigen::Vector3d& query_origin,
-               const Eigen::Vector3d& direction, double query_start, double bound) noexcept
+  RayBoxFilter(const RaySlab& slab, const AxisLanes& query_origin, const AxisLanes& direction,
+               double query_start, double bound) noexcept
       : start(query_start), error(float_above(bound)) {
-    const Eigen::Vector3d from = query_origin + start * direction;
-    for (std::size_t k = 0; k < 3; ++k) {
-      // Not so large that a plane's parameter overflows, and large enough that a ray which is
-      // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
-      constexpr double kLargest = 0x1p60;
-      near_high[k] = static_cast<std::uint32_t>(slab.near_side(k));
-      inverse[k] = static_cast<float>(std::max(-kLargest, std::min(kLargest, slab.inverse(k))));
+    // Not so large that a plane's parameter overflows, and large enough that a ray which is
+    // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
+    constexpr double kLargest = 0x1p60;
+    // One loop an operation, so that each becomes a vector.
+    AxisLanes from, within;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      from[k] = query_origin[k] + start * direction[k];
+      within[k] = std::max(std::min(slab.inverse()[k], kLargest), -kLargest);
+    }
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) origin[k] = static_cast<float>(from[k]);
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) inverse[k] = static_cast<float>(within[k]);
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       margin[k] = error * std::abs(inverse[k]);
-      origin[k] = static_cast<float>(from[static_cast<Eigen::Index>(k)]);
+      near_high[k] = inverse[k] < 0 ? 1 : 0;
     }
   }
 
@@ -58,10 +63,13 @@ struct RayBoxFilter {
 
   double start;
   float error;
-  std::array<std::uint32_t, 3> near_high;  // 1 where the ray comes from the high side, else 0
-  std::array<float, 3> inverse;
-  std::array<float, 3> margin;  // of a plane's parameter
-  std::array<float, 3> origin;
+  // One number an axis, and a copy of the last, as in AxisLanes.
+  using Lanes = std::array<float, AxisLanes::kCount>;
+  alignas(16) Lanes inverse;
+  alignas(16) Lanes margin;  // of a plane's parameter
+  alignas(16) Lanes origin;
+  // 1 where the ray comes from the high side, else 0.
+  alignas(16) std::array<std::uint32_t, AxisLanes::kCount> near_high;
 };
 
 /// A ray against one tree: also against boxes whose planes are computed from those of their parents
@@ -79,7 +87,7 @@ struct RayFilter : RayBoxFilter {
   explicit RayFilter(const RayQuery& query) noexcept
       : RayFilter(query, query.tree.largest_reach()) {}
 
-  std::array<float, 3> margins;  // of both planes of an axis
+  alignas(16) Lanes margins;  // of both planes of an axis
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;
 
@@ -87,7 +95,7 @@ struct RayFilter : RayBoxFilter {
   RayFilter(const RayQuery& query, double reach) noexcept
       : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
                      rounding(reach, query.tree.depth()) + given_away(query.origin_reach, reach)) {
-    for (std::size_t k = 0; k < 3; ++k) margins[k] = 2 * margin[k];
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) margins[k] = 2 * margin[k];
     axis_x = static_cast<std::size_t>(query.shear.axis_x);
     axis_y = static_cast<std::size_t>(query.shear.axis_y);
     axis_z = static_cast<std::size_t>(query.shear.axis_z);

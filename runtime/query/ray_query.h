@@ -45,36 +45,49 @@ struct RayCandidate {
 struct RayInTree {
   RayInTree(const BoundTree& tree, const Ray& ray, int direction_exponent) noexcept
       : parameter_exponent(direction_exponent - tree.scale_exponent()),
-        origin(tree.frame().to_tree(ray.origin)),
-        direction(scaled(ray.direction, -direction_exponent)),
-        origin_reach(largest_magnitude(origin)),
+        origin(tree.frame().to_tree_lanes(AxisLanes(ray.origin))),
+        direction(scaled(AxisLanes(ray.direction), -direction_exponent)),
+        origin_reach(largest_magnitude(origin[0], origin[1], origin[2])),
         slab(origin, origin_reach, direction, tree.largest_reach()),
         t_min(scaled(ray.t_min, parameter_exponent)),
         t_max(scaled(ray.t_max, parameter_exponent)) {}
 
   /// x * 2^exponent, by a product where the power is a normal number.
   [[nodiscard]] static double scaled(double x, int exponent) noexcept {
-    constexpr int kBias = std::numeric_limits<double>::max_exponent - 1;
-    if (std::abs(exponent) >= kBias) return std::ldexp(x, exponent);
-    return x * std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kBias) << 52);
+    return has_power(exponent) ? x * power(exponent) : std::ldexp(x, exponent);
   }
-  [[nodiscard]] static Eigen::Vector3d scaled(const Eigen::Vector3d& v, int exponent) noexcept {
-    return {scaled(v[0], exponent), scaled(v[1], exponent), scaled(v[2], exponent)};
+  [[nodiscard]] static AxisLanes scaled(const AxisLanes& v, int exponent) noexcept {
+    AxisLanes product;
+    if (has_power(exponent)) [[likely]] {
+      const double factor = power(exponent);
+      for (std::size_t k = 0; k < AxisLanes::kCount; ++k) product[k] = v[k] * factor;
+    } else {
+      for (std::size_t k = 0; k < AxisLanes::kCount; ++k) product[k] = std::ldexp(v[k], exponent);
+    }
+    return product;
   }
 
   /// The box test that traverse_nearest puts to each child: where the ray enters it, or infinity.
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+  template <class AnyBox>
+  [[nodiscard]] double key(const AnyBox& box) const noexcept {
     return slab.key(box, t_min);
   }
 
   int parameter_exponent;
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;
+  AxisLanes origin;
+  AxisLanes direction;
   double origin_reach;  // the largest magnitude of its components
   RaySlab slab;
   double t_min;
   double t_max;  // shrinks to the best hit
+
+ private:
+  static constexpr int kBias = std::numeric_limits<double>::max_exponent - 1;
+  // Whether 2^exponent is a normal number, and the number.
+  [[nodiscard]] static bool has_power(int exponent) noexcept { return std::abs(exponent) < kBias; }
+  [[nodiscard]] static double power(int exponent) noexcept {
+    return std::bit_cast<double>(static_cast<std::uint64_t>(exponent + kBias) << 52);
+  }
 };
 
 /// A query of traverse_nearest. `best`: where the answer is put, no hit yet.
@@ -90,9 +103,9 @@ struct RayQuery : RayInTree {
   /// Whether the ray meets the root box, and only then is it made ready for what is inside. Comes
   /// before any walk.
   [[nodiscard]] bool enters_root() noexcept {
-    enter = key(tree.root_f32());
+    enter = key(tree.root_lanes());
     if (!(enter <= t_max) || enter == std::numeric_limits<double>::infinity()) return false;
-    shear = RayShear(origin, direction);
+    shear = RayShear(origin, direction, slab.inverse());
     return true;
   }
 
@@ -110,7 +123,7 @@ struct RayQuery : RayInTree {
   /// Whether no other triangle can matter.
   [[nodiscard]] bool is_done() const noexcept { return any && hit.is_hit; }
 
-  void test(const Triangle& triangle, std::uint32_t face_order, std::uint32_t half) noexcept {
+  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept {
     const SlabInterval interval = slab.intersect(bounds_of(triangle));
     if (interval.enter > interval.leave) return;
     const std::optional<RayTriangleHit> found = intersect_ray_triangle(shear, triangle);
@@ -118,7 +131,7 @@ struct RayQuery : RayInTree {
     // The hit lies in the triangle's bounds; holding t to them makes it agree with every key above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
-    const FaceRef face = face_ref(tree, face_order);
+    const FaceRef face = face_ref(tree, face_index);
     if (hit.is_hit && t == hit.t && !comes_before(face, half, hit.face, hit.half)) return;
     hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
     t_max = t;

@@ -3,9 +3,7 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -13,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "format/box.h"
+#include "runtime/primitive/axis_lanes.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
@@ -35,47 +34,55 @@ struct SlabInterval {
 /// multiplication by a constant are. The largest plane counts as the next power of two: codecs
 /// round their root boxes differently, and a hit that is held to the bounds of its triangle must
 /// not depend on that.
+///
+/// As no low plane is beyond the high one of its axis, the line meets that one first whose
+/// parameter is the smaller one: no sign needs to be looked at.
 class RaySlab {
  public:
   /// `origin_reach` and `reach`: largest magnitude of a coordinate of the origin and of any box, on
   /// all axes.
-  RaySlab(const Eigen::Vector3d& origin, double origin_reach, const Eigen::Vector3d& direction,
+  RaySlab(const AxisLanes& origin, double origin_reach, const AxisLanes& direction,
           double reach) noexcept {
     // A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
     // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
     constexpr double kHuge = 0x1p1000;
     const double margin = 8 * kRoundoffF64 * (origin_reach + power_above(reach));
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      const double d = direction[axis];
-      near_side_[k] = std::signbit(d) ? 1 : 0;
-      inverse_[k] = std::abs(d) < 1 / kHuge ? std::copysign(kHuge, d) : 1 / d;
-      // No branch on a sign, here and below: it is as likely as not.
-      const double toward = std::copysign(margin, d);
-      near_origin_[k] = origin[axis] + toward;
-      far_origin_[k] = origin[axis] - toward;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      inverse_[k] = std::max(-kHuge, std::min(kHuge, 1 / direction[k]));
+      low_origin_[k] = origin[k] + margin;
+      high_origin_[k] = origin[k] - margin;
     }
   }
   RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) noexcept
-      : RaySlab(origin, largest_magnitude(origin), direction, reach) {}
+      : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), reach) {}
 
   template <class S>
   [[nodiscard]] SlabInterval intersect(const Box<S>& box) const noexcept {
     SlabInterval interval{-std::numeric_limits<double>::infinity(),
                           std::numeric_limits<double>::infinity()};
-    const std::array<const S*, 2> side = {box.low.data(), box.high.data()};
     for (std::size_t k = 0; k < 3; ++k) {
-      const double near_plane = side[near_side_[k]][k];
-      const double far_plane = side[1 - near_side_[k]][k];
-      interval.enter = std::max(interval.enter, (near_plane - near_origin_[k]) * inverse_[k]);
-      interval.leave = std::min(interval.leave, (far_plane - far_origin_[k]) * inverse_[k]);
+      const double low = (box.low[k] - low_origin_[k]) * inverse_[k];
+      const double high = (box.high[k] - high_origin_[k]) * inverse_[k];
+      interval.enter = std::max(interval.enter, std::min(low, high));
+      interval.leave = std::min(interval.leave, std::max(low, high));
     }
     return interval;
   }
+  [[nodiscard]] SlabInterval intersect(const BoxLanes& box) const noexcept {
+    AxisLanes near, far;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      const double low = (box.low[k] - low_origin_[k]) * inverse_[k];
+      const double high = (box.high[k] - high_origin_[k]) * inverse_[k];
+      near[k] = std::min(low, high);
+      far[k] = std::max(low, high);
+    }
+    return {std::max(std::max(near[0], near[1]), near[2]),
+            std::min(std::min(far[0], far[1]), far[2])};
+  }
 
   /// Where the line enters a box; infinity where it misses it, or leaves it before `from`.
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box, double from) const noexcept {
+  template <class AnyBox>
+  [[nodiscard]] double key(const AnyBox& box, double from) const noexcept {
     const SlabInterval interval = intersect(box);
     const bool passes = interval.enter <= interval.leave && interval.leave >= from;
     return passes ? interval.enter : std::numeric_limits<double>::infinity();
@@ -88,16 +95,13 @@ class RaySlab {
     return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);
   }
 
-  /// 1 where the line comes from the high side of an axis, else 0.
-  [[nodiscard]] std::size_t near_side(std::size_t axis) const noexcept { return near_side_[axis]; }
-  /// 1 / direction, but finite.
-  [[nodiscard]] double inverse(std::size_t axis) const noexcept { return inverse_[axis]; }
+  /// 1 / direction, but finite; negative where the line comes from the high side of an axis.
+  [[nodiscard]] const AxisLanes& inverse() const noexcept { return inverse_; }
 
  private:
-  std::array<std::uint32_t, 3> near_side_;
-  std::array<double, 3> inverse_;
-  std::array<double, 3> near_origin_;
-  std::array<double, 3> far_origin_;
+  AxisLanes inverse_;
+  AxisLanes low_origin_;   // the origin for low planes
+  AxisLanes high_origin_;  // and for high ones
 };
 
 }  // namespace boxtree

@@ -126,13 +126,19 @@ class RayWalk {
 
   // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
   // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
-  Errc run(const Box<float>& root) {
-    for (std::size_t k = 0; k < 3; ++k) {
+  Errc run(const BoxLanes& root) {
+    RayFilter::Lanes near, far;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       // The sign of the inverse tells which of them is near.
-      const float low = (root.low[k] - filter_.origin[k]) * filter_.inverse[k];
-      const float high = (root.high[k] - filter_.origin[k]) * filter_.inverse[k];
-      open_[0].near[k][0] = std::min(low, high) - filter_.margin[k];
-      open_[0].far[k][0] = std::max(low, high) + filter_.margin[k];
+      const float low = (static_cast<float>(root.low[k]) - filter_.origin[k]) * filter_.inverse[k];
+      const float high =
+          (static_cast<float>(root.high[k]) - filter_.origin[k]) * filter_.inverse[k];
+      near[k] = std::min(low, high) - filter_.margin[k];
+      far[k] = std::max(low, high) + filter_.margin[k];
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      open_[0].near[k][0] = near[k];
+      open_[0].far[k][0] = far[k];
     }
     typename decltype(waiting_)::Child at{0, 0};
     std::uint32_t number = 0;
@@ -202,7 +208,7 @@ class RayWalk {
 
 template <class Node>
 Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query) {
-  return RayWalk<Node>(tree, codec, query, RayFilter(query)).run(tree.root_f32());
+  return RayWalk<Node>(tree, codec, query, RayFilter(query)).run(tree.root_lanes());
 }
 
 Errc walk_ray(const BoundTree& tree, RayQuery& query) {

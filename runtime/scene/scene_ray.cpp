@@ -22,7 +22,8 @@ struct SceneRayQuery {
       : admission{scene, kRayQueries, layers, work},
         exponent(direction_exponent),
         parameter_exponent(exponent - scene.record().scale_exponent),
-        ray{scene.to_units(world.origin), RayQuery::scaled(world.direction, -exponent),
+        ray{scene.to_units(world.origin),
+            RayQuery::scaled(AxisLanes(world.direction), -exponent).vector(),
             RayQuery::scaled(world.t_min, parameter_exponent),
             RayQuery::scaled(world.t_max, parameter_exponent)},
         any(stop_at_first),
@@ -90,7 +91,7 @@ SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, La
     return Errc::kInvalidQuery;
   }
   SceneRayQuery query(scene, ray, stop_at_first, layers, work, exponent_of(length));
-  const Errc walked = walk_nearest(scene, query);
+  const Errc walked = visit_nearest_instances(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
   if (!query.best.is_hit) return {};

@@ -24,15 +24,15 @@ namespace {
 
 #if HWY_TARGET == HWY_SCALAR
 Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  return walk_top_level_plainly(top, box, visit);
+  return walk_top_level_scalar(top, box, visit);
 }
 Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk_top_level_plainly(top, point, bound, visit);
+  return walk_top_level_scalar(top, point, bound, visit);
 }
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, const double& bound,
               InstanceVisitor visit) {
-  return walk_top_level_plainly(top, ray, bound, visit);
+  return walk_top_level_scalar(top, ray, bound, visit);
 }
 #else
 // What is asked about, against boxes: the query of NearestWalk below says what `meet` answers.
@@ -130,7 +130,8 @@ Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double&
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
               InstanceVisitor visit) {
-  const RayBoxFilter filter(ray.slab, ray.origin, ray.direction, std::max(enter, ray.s_min),
+  const RayBoxFilter filter(ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction),
+                            std::max(enter, ray.s_min),
                             RayBoxFilter::rounding(reach_of(top)) +
                                 RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.reach));
   return walk(top, AskedRay{filter}, bound, visit);
@@ -151,30 +152,30 @@ HWY_EXPORT(walk_ray);
 
 }  // namespace
 
-Errc walk_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  if (!top.has_float_nodes()) return walk_top_level_plainly(top, box, visit);
+Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
+  if (!top.has_float_nodes()) return walk_top_level_scalar(top, box, visit);
   if (!boxes_overlap(root_box<float>(top), box)) return Errc::kOk;
   return HWY_DYNAMIC_DISPATCH(walk_box)(top, box, visit);
 }
 
-Errc walk_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
-               InstanceVisitor visit) {
+Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
+                         InstanceVisitor visit) {
   if (!top.has_float_nodes() || !PointFilter::is_near(reach_of(top), point)) {
-    return walk_top_level_plainly(top, point, bound, visit);
+    return walk_top_level_scalar(top, point, bound, visit);
   }
   if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
   return HWY_DYNAMIC_DISPATCH(walk_point)(top, point, bound, visit);
 }
 
-Errc walk_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
-               InstanceVisitor visit) {
+Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
+                         InstanceVisitor visit) {
   const double reach = reach_of(top);
   // Where a map that is hard to undo makes the query give away more, its margin alone is what
   // decides.
   const double origin_reach = largest_magnitude(ray.origin);
   const bool is_near =
       origin_reach <= 0x1p30 * reach && RayBoxFilter::given_away(origin_reach, ray.reach) <= reach;
-  if (!top.has_float_nodes() || !is_near) return walk_top_level_plainly(top, ray, bound, visit);
+  if (!top.has_float_nodes() || !is_near) return walk_top_level_scalar(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;
   return HWY_DYNAMIC_DISPATCH(walk_ray)(top, ray, enter, bound, visit);

@@ -87,6 +87,7 @@ void BoundTree::keep(const TreeRecord& record) {
   frame_ = Frame(record.origin, record.scale_exponent);
   root_f64_ = {record.root_low, record.root_high};
   root_f32_ = rounded_outward<float>(root_f64_);
+  root_lanes_ = BoxLanes(root_f32_);
   reach_ = reach_of(root_f64_);
   largest_reach_ = reach_.maxCoeff();
 }

@@ -82,6 +82,7 @@ class BoundTree {
   /// The root box rounded outward to float, which changes nothing but where a tree of f64 is a
   /// single leaf: cookers store values of the codec's scalar.
   [[nodiscard]] const Box<float>& root_f32() const noexcept { return root_f32_; }
+  [[nodiscard]] const BoxLanes& root_lanes() const noexcept { return root_lanes_; }
   /// Largest magnitude of any box coordinate, on each axis and on all.
   [[nodiscard]] const Eigen::Vector3d& reach() const noexcept { return reach_; }
   [[nodiscard]] double largest_reach() const noexcept { return largest_reach_; }
@@ -173,6 +174,7 @@ class BoundTree {
   Eigen::Vector3d reach_ = Eigen::Vector3d::Zero();
   double largest_reach_ = 0;
   Box<float> root_f32_{};
+  BoxLanes root_lanes_ = BoxLanes(Box<float>{});  // of root_f32_
   bool has_float_nodes_ = false;
 };
 

@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "format/box.h"
+#include "runtime/primitive/axis_lanes.h"
 
 namespace boxtree {
 
@@ -20,15 +21,24 @@ struct Frame {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
   double scale = 1;          // tree to object, a power of two
   double inverse_scale = 1;  // object to tree, a power of two
+  AxisLanes origin_lanes = AxisLanes(0, 0, 0);
 
   Frame() = default;
   Frame(const std::array<double, 3>& frame_origin, int scale_exponent)
       : origin(frame_origin[0], frame_origin[1], frame_origin[2]),
         scale(std::ldexp(1.0, scale_exponent)),
-        inverse_scale(std::ldexp(1.0, -scale_exponent)) {}
+        inverse_scale(std::ldexp(1.0, -scale_exponent)),
+        origin_lanes(origin) {}
 
   [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& object) const noexcept {
     return (object - origin) * inverse_scale;
+  }
+  [[nodiscard]] AxisLanes to_tree_lanes(const AxisLanes& object) const noexcept {
+    AxisLanes tree;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      tree[k] = (object[k] - origin_lanes[k]) * inverse_scale;
+    }
+    return tree;
   }
   [[nodiscard]] Eigen::Vector3d to_object(const Eigen::Vector3d& tree) const noexcept {
     return tree * scale + origin;

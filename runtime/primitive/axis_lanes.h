@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: MIT
+// Numbers of the three axes, side by side so that arithmetic on them is done by vectors.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "format/box.h"
+
+namespace boxtree {
+
+/// One number an axis, and a copy of the last: loops over four of them become two vectors of SSE2
+/// or NEON, or one of AVX, where loops over three stay scalar.
+struct alignas(16) AxisLanes {
+  static constexpr std::size_t kCount = 4;
+
+  AxisLanes() noexcept = default;  // unspecified numbers
+  AxisLanes(double x, double y, double z) noexcept : lane{x, y, z, z} {}
+  explicit AxisLanes(const Eigen::Vector3d& v) noexcept : AxisLanes(v[0], v[1], v[2]) {}
+
+  template <class Index>
+  double& operator[](Index k) noexcept {
+    return lane[static_cast<std::size_t>(k)];
+  }
+  template <class Index>
+  const double& operator[](Index k) const noexcept {
+    return lane[static_cast<std::size_t>(k)];
+  }
+  [[nodiscard]] Eigen::Vector3d vector() const noexcept { return {lane[0], lane[1], lane[2]}; }
+
+  std::array<double, kCount> lane;
+};
+
+/// A box likewise.
+struct BoxLanes {
+  BoxLanes() noexcept = default;  // unspecified numbers
+  template <class S>
+  explicit BoxLanes(const Box<S>& box) noexcept
+      : low(box.low[0], box.low[1], box.low[2]), high(box.high[0], box.high[1], box.high[2]) {}
+
+  AxisLanes low;
+  AxisLanes high;
+};
+
+}  // namespace boxtree
