@@ -204,7 +204,7 @@ void seams_without_area(Run& run) {
       const std::size_t rays = run.count(4000, 200'000);
       const std::vector<DecodedTriangle> triangles = decoded_triangles(subject.tree());
       for (std::size_t i = 0; i < rays; ++i) {
-        const Eigen::Vector3d origin = parts * Eigen::Vector3d(unit(), unit(), unit());
+        const Eigen::Vector3d origin = parts * Eigen::Vector3d{unit(), unit(), unit()};
         const auto& corner =
             triangles[static_cast<std::size_t>(random() % triangles.size())].triangle.corner;
         const double along = i % 2 == 0 ? 0 : unit() + 0.5;

@@ -238,7 +238,7 @@ TEST(Expansion, WhatOverflowsKeepsWithinItsMemory) {
     ASSERT_LE((a * any()).size, 4u);
     ASSERT_LE(product.size, 8u);
     ASSERT_LE(sum.size, 16u);
-    const auto point = [&] { return Eigen::Vector2d(any(), any()); };
+    const auto point = [&] { return Eigen::Vector2d{any(), any()}; };
     static_cast<void>(orient2d(point(), point(), point()));
   }
 }

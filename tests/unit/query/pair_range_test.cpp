@@ -226,7 +226,7 @@ TEST_F(PairRange, AnyAffinePose) {
     Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
     shear(0, 1) = unit();
     shear(2, 0) = i % 3 == 0 ? unit() * power() : 0;
-    const Eigen::Quaterniond turn = Eigen::Quaterniond(unit(), unit(), unit(), unit()).normalized();
+    const Eigen::Quaterniond turn = Eigen::Quaterniond{unit(), unit(), unit(), unit()}.normalized();
     Pose pose = Pose::Identity();
     pose.linear() = Eigen::Vector3d(power(), power(), -power()).asDiagonal();
     if (i % 2 == 0) pose.linear() = pose.linear() * turn.toRotationMatrix() * shear;

@@ -25,12 +25,12 @@ class SceneDuplicates : public testing::TestWithParam<CodecId> {
       : cooked_(test::cook_scene(
             {test::identical_faces(20), test::mixed(test::corner_orders(24), test::torus(6, 5)),
              test::mixed(test::sphere(4, 6), test::sphere(4, 6))},
-            test::random_parts(30, 3, 4, 2, 3), {GetParam()})),
+            test::random_parts(60, 3, 4, 2, 3), {GetParam()})),
         scene_(require(Scene::bind(cooked_.file))),
         triangles_(test::world_triangles(cooked_, scene_)) {}
 
   Eigen::Vector3d point(double reach = 4) {
-    return reach * Eigen::Vector3d(unit(), unit(), unit());
+    return reach * Eigen::Vector3d{unit(), unit(), unit()};
   }
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
 

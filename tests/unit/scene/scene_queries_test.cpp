@@ -47,7 +47,7 @@ class SceneQueries : public testing::TestWithParam<CodecId> {
   }
 
   Eigen::Vector3d point(double reach = 5) {
-    return reach * Eigen::Vector3d(unit(), unit(), unit());
+    return reach * Eigen::Vector3d{unit(), unit(), unit()};
   }
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
 

@@ -110,13 +110,13 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
     SCOPED_TRACE(exponent);
     Pose pose = test::random_pose(random, 0, true);
     pose.linear() *= std::ldexp(1.0, exponent);
-    if (exponent % 40 == 0) pose.translation() = Eigen::Vector3d(unit(), unit(), unit());
+    if (exponent % 40 == 0) pose.translation() = Eigen::Vector3d{unit(), unit(), unit()};
     ASSERT_TRUE(scene.update(instance, pose).ok());
     const std::vector<WorldTriangle> triangles = test::world_triangles(cooked, scene);
     for (int i = 0; i < 20; ++i) {
       const double reach = i % 2 == 0 ? 3 : 3 * std::ldexp(1.0, exponent);
       const Eigen::Vector3d at =
-          Eigen::Vector3d(unit(), unit(), unit()) * reach + pose.translation();
+          Eigen::Vector3d{unit(), unit(), unit()} * reach + pose.translation();
       // In units of 2^exponent where all of it is small, so that squares do not underflow.
       const double up = reach < 1 && pose.translation().isZero(0) ? std::ldexp(1.0, -exponent) : 1;
       double best = std::numeric_limits<double>::infinity();
