@@ -3,7 +3,7 @@
 # Installs what is missing, builds and runs every test. The last line counts them.
 #   tests/run.sh [--all | PART...]   [release]
 #   release         every test
-#   asan-ubsan      every test with sanitizers and with the assertions of the libraries
+#   asan-ubsan      all but those labelled "figures", with sanitizers and the assertions of libraries
 #   scalar          every test without vectors
 #   tsan            what runs on several threads, with ThreadSanitizer
 #   compare-builds  the bytes that other compilers and arm64 write

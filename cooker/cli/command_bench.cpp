@@ -10,6 +10,7 @@
 
 #include "cooker/choose/cost_file.h"
 #include "cooker/choose/measure.h"
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
@@ -30,7 +31,7 @@ struct Arguments {
   bool json = false;
 };
 
-// A tenth of the questions: for a look, not for a figure.
+// A tenth of the queries: for a look, not for a figure.
 constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
@@ -221,17 +222,20 @@ int run(const Arguments& arguments) {
 void add_bench_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("bench", "Time queries on .bxt files");
-  command.add_option("files", arguments->files, "Files with geometry inside")->required();
+  command.add_option("FILE", arguments->files, "Files with geometry inside")
+      ->type_name("FILE")
+      ->required();
   command
       .add_flag("--calibrate", arguments->calibrate,
                 "Measure the constants that auto chooses by; the files are meshes then")
       ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
+      ->type_name("N")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command.add_flag("--pages", arguments->pages,
-                   "Count the pages of a cold file that questions read, in place of times");
-  command.add_flag("--quick", arguments->quick, "A tenth of the questions");
+                   "Count the pages of a cold file that queries read, in place of times");
+  command.add_flag("--quick", arguments->quick, "A tenth of the queries");
   command.add_flag("--approximate", arguments->approximate,
                    "Instead: closest points and distances against the error that is allowed");
   command.add_flag("--json", arguments->json, "Print one JSON document");

@@ -11,6 +11,7 @@
 #include <oneapi/tbb/task_arena.h>
 
 #include "cooker/cli/cook_report.h"
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/shell/cook_job.h"

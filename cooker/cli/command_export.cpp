@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/export/export.h"
@@ -265,24 +266,32 @@ void add_export_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("export", "Show triangles and boxes in a viewer: OBJ or glTF");
-  command.add_option("file", arguments->file, "A .bxt file")->required();
-  command.add_option("-o,--output", arguments->output, "A name in .obj or .glb")->required();
-  command.add_option("--tree", arguments->tree,
-                     "One tree alone, in its own coordinates: number or name");
+  command.add_option("FILE", arguments->file, "The file to show")->type_name("FILE")->required();
+  command.add_option("-o,--output", arguments->output, "What to write: a name in .obj or .glb")
+      ->type_name("FILE")
+      ->required();
+  command
+      .add_option("--tree", arguments->tree,
+                  "One tree alone, in its own coordinates: number or name")
+      ->type_name("TREE");
   command.add_flag("--trees", arguments->trees,
                    "Each tree once, in its own coordinates, not the scene that places them");
   command.add_flag("--triangles", arguments->triangles, "Show triangles");
   command.add_flag("--boxes", arguments->boxes, "Show boxes; neither of the two: both");
-  command.add_option("--levels", arguments->levels,
-                     "Boxes of these levels, as in 0-3,6; the root is level 0 [0-3]");
+  command
+      .add_option("--levels", arguments->levels,
+                  "Boxes of these levels, as in 0-3,6; the root is level 0 [0-3]")
+      ->type_name("LEVELS");
   command.add_flag("--leaves", arguments->leaves, "Boxes of all leaves");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("--solid", arguments->solid, "Boxes as faces, not as lines")
       ->group(kRareOptions);
   command.add_option("--order", arguments->order, "Of faces [source, if face ids tell it]")
+      ->type_name("ORDER")
       ->check(CLI::IsMember({"source", "tree"}))
       ->group(kRareOptions);
   command.add_option("--mesh", arguments->mesh, "The source of trees cooked with --external")
+      ->type_name("FILE")
       ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }

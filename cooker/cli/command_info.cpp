@@ -2,6 +2,8 @@
 // `boxtree info`: what a file holds and what each part costs.
 #include <filesystem>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -20,7 +22,7 @@ namespace boxtree::cooker {
 namespace {
 
 struct Arguments {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;
   bool json = false;
 };
 
@@ -121,28 +123,55 @@ void print_file(const Json& json) {
   if (json.contains("scene")) print_scene(json["scene"]);
 }
 
-int run(const Arguments& arguments) {
-  const Result<OpenedFile> opened = open_file(arguments.file);
-  if (!opened) return fail(opened.error());
+Result<Json> info_on(const std::filesystem::path& path) {
+  const Result<OpenedFile> opened = open_file(path);
+  if (!opened) return opened.error();
   const File* const file = &opened->file;
   for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
     if (Status status = check_tree_record(OpenFile::of(*file).tree_record(i), i); !status) {
-      return fail(status.error());
+      return status.error();
     }
   }
   Json json = file_json(*file);
-  const Result<Json> scene = scene_json(*file);
-  if (!scene) return fail(scene.error());
-  if (!scene->is_null()) json["scene"] = *scene;
+  Result<Json> scene = scene_json(*file);
+  if (!scene) return scene.error();
+  if (!scene->is_null()) json["scene"] = std::move(*scene);
   if (opened->blob_bytes != 0) {
     json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
   }
-  if (arguments.json) {
-    print(json);
-  } else {
-    print_file(json);
+  return json;
+}
+
+// A file that cannot be read keeps nothing from being said of the others.
+int run(const Arguments& arguments) {
+  int status = 0;
+  std::vector<Json> documents;
+  for (const std::filesystem::path& path : arguments.files) {
+    Result<Json> json = info_on(path);
+    if (!json) {
+      const int failed = fail(json.error());
+      if (status == 0) status = failed;
+      continue;
+    }
+    if (arguments.files.size() > 1) {
+      if (arguments.json) {
+        Json named = {{"file", path.string()}};
+        named.update(*json);
+        *json = std::move(named);
+      } else {
+        fmt::print("{}:\n", shown(path.string()));
+      }
+    }
+    if (arguments.json) {
+      documents.push_back(std::move(*json));
+    } else {
+      print_file(*json);
+    }
   }
-  return 0;
+  if (arguments.json && !(documents.empty() && arguments.files.size() == 1)) {
+    print_files(std::move(documents));
+  }
+  return status;
 }
 
 }  // namespace
@@ -151,7 +180,9 @@ void add_info_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
-  command.add_option("file", arguments->file, "A .bxt file")->required();
+  command.add_option("FILE", arguments->files, "Files to look into")
+      ->type_name("FILE")
+      ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.callback([arguments, &status] { status = run(*arguments); });
 }

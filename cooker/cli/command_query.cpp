@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/question.h"
 #include "cooker/cli/scene_question.h"
@@ -307,7 +308,7 @@ void add_contacts(CLI::App& query, const std::shared_ptr<Arguments>& a, int& sta
 void add_query_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("query", "Ask a .bxt file");
-  command.add_option("file", arguments->file, "A .bxt file")->required();
+  command.add_option("FILE", arguments->file, "The file to query")->type_name("FILE")->required();
   command.add_option("--tree", arguments->tree,
                      "Which tree, by number or name [the scene of the file, or else tree 0]");
   command.add_option("--move", arguments->moves,

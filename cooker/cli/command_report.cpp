@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/peers.h"
@@ -23,11 +24,12 @@ namespace {
 struct Arguments {
   std::vector<std::filesystem::path> meshes;
   std::filesystem::path output;
-  std::filesystem::path json;
+  std::filesystem::path json_out;
   std::filesystem::path csv;
   std::filesystem::path approximate_csv;
   std::filesystem::path peers;
   std::vector<std::filesystem::path> included;
+  bool json = false;
   bool paper = false;
   bool quick = false;
   bool no_times = false;
@@ -141,11 +143,30 @@ Json to_json(const PaperReport& report) {
   return {{"command", report.command}, {"meshes", meshes}, {"stairs", stairs}, {"rows", rows}};
 }
 
+// A path that was not given is empty: then nothing is written.
 Status write_text(const std::filesystem::path& path, const std::string& text) {
+  if (path.empty()) return {};
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
   return file->commit();
+}
+
+// Page and figures, where they are wanted; and what the terminal is shown, with --json the figures.
+int write_report(const Arguments& arguments, const Page& page, const Json& figures,
+                 const Page& summary) {
+  if (Status status = write_text(arguments.output, to_html(page)); !status) {
+    return fail(status.error());
+  }
+  if (Status status = write_text(arguments.json_out, document_text(figures)); !status) {
+    return fail(status.error());
+  }
+  if (arguments.json) {
+    print(figures);
+  } else {
+    fmt::print("{}", to_text(summary));
+  }
+  return 0;
 }
 
 std::string command_of(const Arguments& arguments) {
@@ -183,18 +204,7 @@ int run_paper(const Arguments& arguments) {
     report.peers = std::move(*rows);
   }
   const Page page = paper_page(report);
-  fmt::print("{}", to_text(page));
-  if (!arguments.output.empty()) {
-    if (Status status = write_text(arguments.output, to_html(page)); !status) {
-      return fail(status.error());
-    }
-  }
-  if (!arguments.json.empty()) {
-    if (Status status = write_text(arguments.json, to_json(report).dump(1) + "\n"); !status) {
-      return fail(status.error());
-    }
-  }
-  return 0;
+  return write_report(arguments, page, to_json(report), page);
 }
 
 // Why other libraries are not in the report; empty when they are.
@@ -241,25 +251,19 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
 int run_tradeoff(const Arguments& arguments) {
   const Result<TradeoffReport> report = measure_all(arguments);
   if (!report) return fail(report.error());
-  fmt::print("{}", to_text(tradeoff_summary(*report)));
-  const auto write = [](const std::filesystem::path& path, const std::string& text) {
-    return path.empty() ? Status() : write_text(path, text);
-  };
-  if (Status status = write(arguments.output, to_html(tradeoff_page(*report))); !status) {
+  if (Status status = write_text(arguments.csv, to_csv(*report)); !status)
+    return fail(status.error());
+  if (Status status = write_text(arguments.approximate_csv, approximate_to_csv(*report)); !status) {
     return fail(status.error());
   }
-  if (Status status = write(arguments.json, to_json(*report)); !status) return fail(status.error());
-  if (Status status = write(arguments.csv, to_csv(*report)); !status) return fail(status.error());
-  if (Status status = write(arguments.approximate_csv, approximate_to_csv(*report)); !status) {
-    return fail(status.error());
-  }
-  return 0;
+  return write_report(arguments, tradeoff_page(*report), Json::parse(to_json(*report)),
+                      tradeoff_summary(*report));
 }
 
 int run(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs = arguments.meshes;
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
-  const std::array outputs{arguments.output, arguments.json, arguments.csv,
+  const std::array outputs{arguments.output, arguments.json_out, arguments.csv,
                            arguments.approximate_csv};
   if (Status status = check_outputs(outputs, inputs); !status) return usage(status.error().detail);
   return arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
@@ -271,16 +275,20 @@ void add_report_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("report", "Which encoding to use for meshes: bytes, times and errors");
-  command.add_option("meshes", arguments->meshes, "Mesh files")->required();
+  command.add_option("MESH", arguments->meshes, "Mesh files")->type_name("MESH")->required();
   CLI::Option* paper =
       command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
-  command.add_option("-o,--output", arguments->output, "Write an HTML page");
-  command.add_option("--json", arguments->json, "Write all figures as JSON");
+  command.add_option("-o,--output", arguments->output, "Write an HTML page")->type_name("FILE");
+  command.add_flag("--json", arguments->json, "Print all figures as one JSON document");
+  command.add_option("--json-out", arguments->json_out, "Write the same to a file")
+      ->type_name("FILE");
   command.add_option("--csv", arguments->csv, "Write a row for each encoding as CSV")
+      ->type_name("FILE")
       ->excludes(paper);
   command
       .add_option("--csv-approximate", arguments->approximate_csv,
                   "Write a row for each allowed error and budget of approximate queries as CSV")
+      ->type_name("FILE")
       ->excludes(paper);
   command.add_flag("--quick", arguments->quick, "Few encodings, questions and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,
@@ -288,11 +296,13 @@ void add_report_command(CLI::App& app, int& status) {
   command
       .add_option("--include", arguments->included,
                   "JSON results of other checks, shown as tables of their own")
+      ->type_name("FILE")
       ->excludes(paper);
   command
       .add_option("--peers", arguments->peers,
                   "The program boxtree_peers, to measure other libraries, too "
                   "(BUILD/tests/bench/boxtree_peers) [none]")
+      ->type_name("PROGRAM")
       ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }

@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include <boxtree/file.h>
 
+#include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
@@ -22,8 +24,9 @@ namespace boxtree::cooker {
 namespace {
 
 struct Arguments {
-  std::filesystem::path file;
+  std::vector<std::filesystem::path> files;
   std::filesystem::path mesh;
+  bool quiet = false;
   bool json = false;
 };
 
@@ -41,49 +44,82 @@ bool any_f64(const File& file) {
   return any_tree(file, [](const TreeRecord& r) { return (r.flags & kTreePositionsF64) != 0; });
 }
 
-void report(const Arguments& arguments, const Findings& findings, const std::string& summary) {
-  if (arguments.json) {
-    Json json = {{"file", arguments.file.string()}, {"ok", findings.empty()}};
-    json["findings"] = Json::array();
-    for (const Error& finding : findings) {
-      json["findings"].push_back({{"code", static_cast<unsigned>(finding.code)},
-                                  {"name", error_info(finding.code).name},
-                                  {"detail", finding.detail}});
-    }
-    print(json);
-    return;
-  }
-  for (const Error& finding : findings) {
-    fmt::print("{:04} {}\n", static_cast<unsigned>(finding.code), shown(finding.message()));
-  }
-  if (findings.empty()) fmt::print("{}: {}\n", shown(arguments.file.string()), summary);
+// What was found in one file.
+struct Verdict {
+  int status = 0;
+  bool is_told = false;  // the only finding was printed as an error
+  Findings findings;
+  std::string summary;  // of a file without findings
+};
+
+// A file or a mesh that cannot be read at all.
+Verdict refusal(const Error& error) {
+  return {fail(error), true, {error}, {}};
 }
 
-int run(const Arguments& arguments) {
-  const Result<OpenedFile> opened = open_file(arguments.file);
-  if (!opened) {
-    const int status = fail(opened.error());
-    if (arguments.json) report(arguments, {opened.error()}, {});
-    return status;
-  }
+Verdict verdict_on(const std::filesystem::path& path, const std::filesystem::path& mesh) {
+  const Result<OpenedFile> opened = open_file(path);
+  if (!opened) return refusal(opened.error());
   const File* const file = &opened->file;
   std::optional<MeshArrays> arrays;
   Imported imported;
-  if (!arguments.mesh.empty()) {
+  if (!mesh.empty()) {
     ImportOptions options = careful_import();
     if (any_f64(*file)) options.precision = Precision::kF64;
-    Result<Imported> result = import_mesh(arguments.mesh, options);
-    if (!result) return fail(result.error());
+    Result<Imported> result = import_mesh(mesh, options);
+    if (!result) return refusal(result.error());
     imported = std::move(*result);
     arrays = arrays_of(imported.mesh);
   }
-  const Findings findings = verify_file(*file, arrays);
-  report(arguments, findings,
-         any_external(*file) && !arrays
-             ? "structure holds; triangles are external and were not looked at"
-             : fmt::format("holds: {} trees, every triangle inside every box above it",
-                           file->tree_count()));
-  return findings.empty() ? 0 : kExitBadInput;
+  Verdict verdict;
+  verdict.findings = verify_file(*file, arrays);
+  if (!verdict.findings.empty()) verdict.status = kExitBadInput;
+  verdict.summary =
+      any_external(*file) && !arrays
+          ? "structure is valid; triangles are external and were not looked at"
+          : fmt::format("valid: {} {}, every triangle inside every box above it",
+                        file->tree_count(), file->tree_count() == 1 ? "tree" : "trees");
+  return verdict;
+}
+
+Json to_json(const std::filesystem::path& file, const Verdict& verdict) {
+  Json json = {{"file", file.string()}, {"ok", verdict.findings.empty()}};
+  json["findings"] = Json::array();
+  for (const Error& finding : verdict.findings) {
+    json["findings"].push_back({{"code", static_cast<unsigned>(finding.code)},
+                                {"name", error_info(finding.code).name},
+                                {"detail", finding.detail}});
+  }
+  return json;
+}
+
+void print_verdict(const std::filesystem::path& file, const Verdict& verdict, bool quiet) {
+  if (verdict.is_told) return;
+  const std::string name = shown(file.string());
+  for (const Error& finding : verdict.findings) {
+    fmt::print("{}: {:04} {}\n", name, static_cast<unsigned>(finding.code),
+               shown(finding.message()));
+  }
+  if (verdict.findings.empty() && !quiet) fmt::print("{}: {}\n", name, verdict.summary);
+}
+
+int run(const Arguments& arguments) {
+  if (!arguments.mesh.empty() && arguments.files.size() > 1) {
+    return usage("verify: --mesh goes with one file");
+  }
+  int status = 0;
+  std::vector<Json> documents;
+  for (const std::filesystem::path& file : arguments.files) {
+    const Verdict verdict = verdict_on(file, arguments.mesh);
+    if (arguments.json) {
+      documents.push_back(to_json(file, verdict));
+    } else {
+      print_verdict(file, verdict, arguments.quiet);
+    }
+    if (status == 0) status = verdict.status;
+  }
+  if (arguments.json) print_files(std::move(documents));
+  return status;
 }
 
 }  // namespace
@@ -92,9 +128,11 @@ void add_verify_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
-  command.add_option("file", arguments->file, "A .bxt file")->required();
+  command.add_option("FILE", arguments->files, "Files to verify")->type_name("FILE")->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print findings only");
   command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
+      ->type_name("FILE")
       ->group(kRareOptions);
   command.callback([arguments, &status] { status = run(*arguments); });
 }

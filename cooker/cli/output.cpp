@@ -82,24 +82,24 @@ std::string shown(std::string_view text) {
   return printable;
 }
 
+std::string document_text(const Json& document) {
+  constexpr int kSchema = 1;
+  Json whole = {{"schema", kSchema}};
+  whole.update(document);
+  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
 void print(const Json& document) {
-  fmt::print("{}\n", document.dump(2, ' ', false, Json::error_handler_t::replace));
+  fmt::print("{}", document_text(document));
+}
+
+void print_files(std::vector<Json> documents) {
+  if (documents.size() == 1) return print(documents.front());
+  print(Json{{"files", std::move(documents)}});
 }
 
 std::string line_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
-}
-
-std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
-                                     CLI::AppFormatMode mode) const {
-  all_ = mode == CLI::AppFormatMode::All;
-  return CLI::Formatter::make_help(app, std::move(name), mode);
-}
-
-std::string HelpFormatter::make_group(std::string group, bool is_positional,
-                                      std::vector<const CLI::Option*> options) const {
-  if (group == kRareOptions && !all_) return {};
-  return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
 }
 
 void VectorOption::add_to(CLI::App& command, const std::string& option, const std::string& help) {

@@ -39,28 +39,19 @@ int fail_to_print();
 /// no UTF-8, as \\xNN.
 [[nodiscard]] std::string shown(std::string_view text);
 
-/// Prints one JSON document to standard output. Bytes that are no UTF-8 become U+FFFD.
+/// Prints one JSON document to standard output, behind the number of the schema that all documents
+/// of this program follow: keys may be added under it, none is renamed. Bytes that are no UTF-8
+/// become U+FFFD.
 void print(const Json& document);
+/// What print() prints.
+[[nodiscard]] std::string document_text(const Json& document);
+/// What is said of each of several files: the only one as it is, several as {"files": [...]}.
+void print_files(std::vector<Json> documents);
 /// The same in one line, as text.
 [[nodiscard]] std::string line_of(const Json& value);
 
 /// A vector as three numbers.
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
-
-/// Group of options that `--help` leaves to `--help-all`.
-inline constexpr const char* kRareOptions = "Rarely needed";
-
-/// Help in the manner of zstd: `--help` shows the common options, `--help-all` the rest too.
-class HelpFormatter : public CLI::Formatter {
- public:
-  std::string make_help(const CLI::App* app, std::string name,
-                        CLI::AppFormatMode mode) const override;
-  std::string make_group(std::string group, bool is_positional,
-                         std::vector<const CLI::Option*> options) const override;
-
- private:
-  mutable bool all_ = false;  // make_group is not told the mode
-};
 
 /// "1,-2.5,3e4" as a vector; reports a bad one as CLI11 reports bad options.
 struct VectorOption {

@@ -12,6 +12,7 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/precision.h"
 #include "cooker/scene/profile_fields.h"
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -4,9 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <fmt/format.h>
+
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -17,22 +18,6 @@ std::optional<double> number_in(const TomlNode& node) {
   }
   const auto* number = std::get_if<double>(&node.value);
   return number != nullptr && std::isfinite(*number) ? std::optional(*number) : std::nullopt;
-}
-
-// Insertions, deletions and changes of one byte (Levenshtein), row by row.
-std::size_t edits(std::string_view from, std::string_view to) {
-  std::vector<std::size_t> row(to.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < from.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < to.size(); ++j) {
-      const std::size_t changed = diagonal + (from[i] == to[j] ? 0u : 1u);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
-    }
-  }
-  return row.back();
 }
 
 std::string with_nearest(std::string_view wording, std::string_view name,
@@ -57,18 +42,6 @@ void Complaints::expected(std::uint32_t line, std::string_view where, std::strin
 Status Complaints::status() const {
   if (text_.empty()) return {};
   return Error{Errc::kProfileInvalid, fmt::format("{}:{}: {}", path_, line_, text_)};
-}
-
-std::string nearest_name(std::string_view name, std::span<const std::string> names) {
-  std::string nearest;
-  std::size_t fewest = 0;
-  for (const std::string& other : names) {
-    const std::size_t count = edits(name, other);
-    if (!nearest.empty() && count >= fewest) continue;
-    nearest = other;
-    fewest = count;
-  }
-  return nearest;
 }
 
 const TomlEntry* Fields::find(std::string_view key) {

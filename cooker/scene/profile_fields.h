@@ -34,10 +34,6 @@ class Complaints {
   std::uint32_t line_ = 0;
 };
 
-/// The one of `names` that takes the fewest edits to become `name`, the earlier of equals; empty if
-/// there are none.
-[[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
-
 /// What numbers are allowed.
 struct NumberRange {
   const char* wording;  // "a number above 0"

@@ -14,7 +14,7 @@
 
 namespace boxtree {
 
-/// A ray against boxes. It starts anew where it enters the root box, so that errors grow with the
+/// A ray against boxes. It is re-based where it enters the root box, so that errors grow with the
 /// tree and not with the distance it comes from: a parameter s of the filter is a parameter start +
 /// s of the query. Boxes are widened by `error` on every side, which bounds, on every axis, how far
 /// a coordinate relative to the ray can be off.
@@ -40,7 +40,7 @@ struct RayBoxFilter {
     }
   }
 
-  /// What a ray that starts anew, and planes at most `reach` away, lose in single precision: with u
+  /// What a re-based ray, and planes at most `reach` away, lose in single precision: with u
   /// = 2^-24 and M = 2 reach no extent and no distance of two points in the root box is larger, and
   /// where the ray enters lies in it but for what the query's own tests give away. 16u M for origin
   /// and direction (moved, rounded to float), for the distance of a plane or corner from the

@@ -164,6 +164,71 @@ printf '\377' | dd of=damaged.bxt bs=1 seek=700 conv=notrunc status=none
 expect 3 "$boxtree" verify damaged.bxt
 expect 0 "$boxtree" --help
 expect 0 "$boxtree" --version
+mv out version
+expect 0 "$boxtree" -V
+same "$(cat out)" "$(cat version)"
+
+# Misspelt names: what was meant, where help is, nothing on standard output.
+misspelt() {
+  local said=$1
+  shift
+  expect 1 "$boxtree" "$@"
+  same "$(cat err)" "$said"
+  same "$(wc -c <out)" 0
+}
+misspelt "boxtree: 'quary' is no command; did you mean 'query'?
+See 'boxtree --help'." quary
+misspelt "boxtree: 'xyzzy' is no command
+See 'boxtree --help'." xyzzy cube.bxt
+misspelt "boxtree: a command is required
+See 'boxtree --help'."
+misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+See 'boxtree query --help'." query cube.bxt rya
+misspelt "boxtree: query ray: '--orgin' is no option; did you mean '--origin'?
+See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
+misspelt "boxtree: cook: '--outptu' is no option; did you mean '--output'?
+See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
+misspelt "boxtree: query ray: --origin: expected X,Y,Z, found \"1,2\"
+See 'boxtree query ray --help'." query cube.bxt ray --origin 1,2
+misspelt "boxtree: 'quary' is no command; did you mean 'query'?" help quary
+
+# help says what --help says, in lines that a terminal holds.
+help_of() {
+  mv out help
+  expect 0 "$boxtree" "$@" --help
+  cmp out help
+  same "$(awk 'length > 79' help)" ""
+}
+for command in cook info verify query bench report export; do
+  expect 0 "$boxtree" help $command
+  help_of $command
+  grep -q "^Usage: boxtree $command " help
+done
+for kind in ray point box sphere pair distance overlap contacts; do
+  expect 0 "$boxtree" help query $kind
+  help_of query cube.bxt $kind
+  grep -q "^Usage: boxtree query FILE $kind " help
+done
+
+# Several files: a line each, or one document; what is wrong with one keeps none from being looked at.
+cp cube.bxt second.bxt
+expect 0 "$boxtree" verify cube.bxt second.bxt
+same "$(grep -c 'every triangle inside every box above it' out)" 2
+expect 0 "$boxtree" verify -q cube.bxt second.bxt
+same "$(wc -c <out)" 0
+expect 3 "$boxtree" verify short.bxt cube.bxt damaged.bxt --json
+same "$(jq -c '[.schema, [.files[] | [.file, .ok]]]' out)" '[1,[["short.bxt",false],["cube.bxt",true],["damaged.bxt",false]]]'
+expect 1 "$boxtree" verify cube.bxt second.bxt --mesh cube.obj
+expect 2 "$boxtree" info cube.bxt missing.bxt second.bxt --json
+same "$(jq -c '[.schema, [.files[] | [.file, .trees[0].triangles]]]' out)" '[1,[["cube.bxt",12],["second.bxt",12]]]'
+grep -q 'missing.bxt' err
+expect 0 "$boxtree" info cube.bxt second.bxt
+same "$(grep -c ':$' out)" 2
+# Every document says which schema it follows.
+expect 0 "$boxtree" info cube.bxt --json
+same "$(jq -c '[keys_unsorted[0], .schema]' out)" '["schema",1]'
+expect 0 "$boxtree" verify cube.bxt --json
+same "$(jq -c '[.schema, .ok]' out)" '[1,true]'
 same "$(find . -name '*.cooking' | wc -l)" 0
 
 # External geometry: recognised, refused without its mesh or with another one.
@@ -296,7 +361,7 @@ for codec in packed-f64 plain-f16; do
 done
 
 # The paper's tables: text, a page and figures that agree with each other.
-expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json paper.json
+expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json-out paper.json
 grep -q 'Table A.2' out
 grep -q 'A.6 and A.7' out
 grep -q '<td class="word">cube</td>' paper.html
@@ -309,8 +374,11 @@ expect 1 "$boxtree" report --paper cube.obj --csv paper.csv
 # Which encoding to use: a page, JSON and CSV of the same points; counted figures repeat to the byte.
 printf '[{"id":"S1","what":"hashes","figure":0,"limit":0,"pass":true}]' >stiff.json
 expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json \
-  -o report.html --json report.json --csv report.csv
+  -o report.html --json-out report.json --csv report.csv
 grep -q 'Balanced, for most uses' out
+expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json --json
+same "$(jq -S 'del(.load)' out | cmp - <(jq -S 'del(.load)' report.json) && echo same)" same
+same "$(jq -c .schema report.json)" 1
 same "$(wc -c <err)" 0
 same "$(jq -c '[.meshes[].points | length] | unique' report.json)" '[16]'
 same "$(jq -c '[.meshes[].points[] | .gates.pass and .times == null] | unique' report.json)" '[true]'
@@ -318,9 +386,9 @@ same "$(jq -c '[.meshes[].points[].bytes | .total == .nodes + .vertices + .corne
 same "$(wc -l <report.csv)" 33
 same "$(grep -c '<h2>stiff</h2>' report.html)" 1
 jq 'del(.load)' report.json >first.json
-expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json --json report.json
+expect 0 "$boxtree" report cube.obj layers.obj --no-times --quick --include stiff.json --json-out report.json
 same "$(jq 'del(.load)' report.json | cmp - first.json && echo same)" same
-expect 0 "$boxtree" report cube.obj --quick --json report.json
+expect 0 "$boxtree" report cube.obj --quick --json-out report.json
 same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
 expect 2 "$boxtree" report missing.obj
 expect 2 "$boxtree" report cube.obj --include missing.json

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+#include "cooker/cli/usage_message.h"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "cooker/cli/output.h"
+#include "cooker/text/nearest_name.h"
+
+namespace boxtree::cooker {
+namespace {
+
+// Nothing where more than a third of the letters would be others.
+std::string suggestion(std::string_view word, std::span<const std::string> names) {
+  const std::string nearest = nearest_name(word, names);
+  const bool is_near = edit_distance(word, nearest) <= std::max<std::size_t>(word.size() / 3, 1);
+  return is_near ? "; did you mean '" + nearest + "'?" : std::string();
+}
+
+// The command that was being parsed.
+const CLI::App& innermost(const CLI::App& app) {
+  const CLI::App* at = &app;
+  while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
+  return *at;
+}
+
+// "boxtree query ray".
+std::string full_name(const CLI::App& command) {
+  const CLI::App* parent = command.get_parent();
+  return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
+}
+
+// A command takes the options of those around it, too.
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
+    for (const CLI::Option* option : app->get_options()) {
+      for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    }
+  }
+  return names;
+}
+
+// The first argument that nobody took, an option if there is one; empty if all were taken.
+std::string unexpected(const CLI::App& app) {
+  const std::vector<std::string> rest = app.remaining(true);
+  const auto option = std::find_if(rest.begin(), rest.end(),
+                                   [](const std::string& word) { return word.starts_with('-'); });
+  if (option != rest.end()) return option->substr(0, option->find('='));
+  return rest.empty() ? std::string() : rest.front();
+}
+
+// What was misspelt comes before what is missing because of it.
+std::string fault(const CLI::App& app, const CLI::App& command, const CLI::Error& error) {
+  const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
+  const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  const std::string word = is_missing || is_extra ? unexpected(app) : std::string();
+  if (word.starts_with('-')) {
+    return "'" + word + "' is no option" + suggestion(word, option_names(command));
+  }
+  const bool has_kinds = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
+  if (!word.empty() && has_kinds) return unknown_command(command, word);
+  if (!word.empty() && is_extra) return "'" + word + "' was not expected";
+  return is_missing && app.get_subcommands().empty() ? "a command is required" : error.what();
+}
+
+}  // namespace
+
+const CLI::App* find_command(const CLI::App& app, const std::string& name) {
+  const auto found =
+      app.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });
+  return found.empty() ? nullptr : found.front();
+}
+
+std::string unknown_command(const CLI::App& app, const std::string& word) {
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  const std::string kind = app.get_parent() == nullptr ? "command" : "kind of " + app.get_name();
+  return "'" + word + "' is no " + kind + suggestion(word, names);
+}
+
+std::string usage_message(const CLI::App* app, const CLI::Error& error) {
+  const CLI::App& command = innermost(*app);
+  const std::string name = full_name(command);
+  // "boxtree: query ray: --origin is required"
+  const std::string place = name.size() > app->get_name().size()
+                                ? name.substr(app->get_name().size() + 1) + ": "
+                                : std::string();
+  return "boxtree: " + place + shown(fault(*app, command, error)) + "\nSee '" + name +
+         " --help'.\n";
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+// Distances counted by hand.
+#include "cooker/text/nearest_name.h"
+
+#include <array>
+
+#include <gtest/gtest.h>
+
+namespace boxtree::cooker {
+namespace {
+
+TEST(EditDistance, CountsLettersPutInLeftOutReplacedAndSwapped) {
+  EXPECT_EQ(edit_distance("", ""), 0u);
+  EXPECT_EQ(edit_distance("query", "query"), 0u);
+  EXPECT_EQ(edit_distance("", "info"), 4u);
+  EXPECT_EQ(edit_distance("info", ""), 4u);
+  EXPECT_EQ(edit_distance("quary", "query"), 1u);
+  EXPECT_EQ(edit_distance("cok", "cook"), 1u);
+  EXPECT_EQ(edit_distance("coook", "cook"), 1u);
+  EXPECT_EQ(edit_distance("verfiy", "verify"), 1u);
+  EXPECT_EQ(edit_distance("kitten", "sitting"), 3u);
+  EXPECT_EQ(edit_distance("sitting", "kitten"), 3u);
+}
+
+TEST(NearestName, IsTheFirstOfThoseWithTheLeastDistance) {
+  const std::array<std::string, 3> names = {"cook", "book", "query"};
+  EXPECT_EQ(nearest_name("look", names), "cook");
+  EXPECT_EQ(nearest_name("quary", names), "query");
+  EXPECT_EQ(nearest_name("x", {}), "");
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
