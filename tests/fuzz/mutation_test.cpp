@@ -6,6 +6,7 @@
 #include "cooker/proof/proof.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/tree_queries.h"
 
 namespace boxtree {
 namespace {
@@ -33,20 +34,17 @@ void exercise(Bytes bytes) {
   static_cast<void>(cooker::verify_file(*file));
   const Result<Tree> tree = Tree::bind(*file);
   if (!tree) return;
-  static_cast<void>(closest_hit(*tree, {{0.3, 0.4, 9}, {0.01, 0.02, -1}}));
-  static_cast<void>(closest_point(*tree, {3, 2, 1}));
-  const auto all = [](const auto&) { return true; };
-  static_cast<void>(overlap_box(*tree, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}, all));
-  static_cast<void>(overlap_sphere(*tree, {0, 0, 0}, 4, all));
-  static_cast<void>(overlap_pairs(*tree, Pose::Identity(), *tree, Pose::Identity(), all));
-  Pose apart = Pose::Identity();
-  apart.translation() = Eigen::Vector3d(4, 5, 1);
-  static_cast<void>(distance(*tree, Pose::Identity(), *tree, apart));
-  static_cast<void>(overlap_within(*tree, Pose::Identity(), *tree, Pose::Identity(), 0.01));
-  static_cast<void>(overlap_box_within(*tree, Eigen::AlignedBox3d(Eigen::Vector3d(1, 1, 1)), 0));
-  PointOptions options;
-  options.node_budget = 100;
-  static_cast<void>(closest_point(*tree, {3, 2, 1}, options));
+  static const std::vector<test::TreeQuery> queries = [] {
+    test::Questions questions;
+    questions.ray = {{0.3, 0.4, 9}, {0.01, 0.02, -1}};
+    questions.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)};
+    questions.point = {3, 2, 1};
+    questions.radius = 4;
+    questions.far.translation() = Eigen::Vector3d(4, 5, 1);
+    questions.node_budget = 100;
+    return test::tree_queries(questions);
+  }();
+  for (const test::TreeQuery& query : queries) static_cast<void>(query.ask(*tree, *tree, {}));
 }
 
 class Mutation : public testing::TestWithParam<Encoding> {};

@@ -16,6 +16,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tree_queries.h"
 
 namespace boxtree {
 namespace {
@@ -78,40 +79,24 @@ class Stack : public testing::TestWithParam<CodecId> {
 TEST_P(Stack, OfQueriesOfATreeIsAsDocumented) {
   const test::CookedTree cooked = test::cook_tree(test::terrain(120, 3), GetParam());
   const Tree& tree = cooked.tree;
-  const Eigen::Vector3d middle = tree.bounds().center();
-  const Ray ray{middle + Eigen::Vector3d(0.1, 0.2, 50), {0.001, 0.002, -1}};
-  const auto all = [](const auto&) { return true; };
-  expect_at_most(64, "closest_hit", [&] { EXPECT_TRUE(closest_hit(tree, ray).ok()); });
-  expect_at_most(64, "any_hit", [&] { EXPECT_TRUE(any_hit(tree, ray).ok()); });
-  expect_at_most(64, "overlap_box",
-                 [&] { EXPECT_TRUE(overlap_box(tree, tree.bounds(), all).ok()); });
-  expect_at_most(64, "overlap_sphere",
-                 [&] { EXPECT_TRUE(overlap_sphere(tree, middle, 1e3, all).ok()); });
-  expect_at_most(64, "closest_point",
-                 [&] { EXPECT_TRUE(closest_point(tree, middle + Eigen::Vector3d(0, 0, 9)).ok()); });
-  expect_at_most(64, "traverse", [&] { EXPECT_TRUE(traverse(tree, all, all).ok()); });
-  Pose pose = Pose::Identity();
-  pose.translation() = Eigen::Vector3d(0.3, 0.2, 0.05);
-  const Pose here = Pose::Identity();
-  // These say on their pages that they take more.
-  expect_at_most(320, "first_contact",
-                 [&] { EXPECT_TRUE(first_contact(tree, here, tree, pose).ok()); });
-  expect_at_most(320, "overlap_pairs",
-                 [&] { EXPECT_TRUE(overlap_pairs(tree, here, tree, pose, all).ok()); });
-  expect_at_most(192, "overlap_within",
-                 [&] { EXPECT_TRUE(overlap_within(tree, here, tree, pose, 0).ok()); });
-  expect_at_most(64, "overlap_box_within", [&] {
-    EXPECT_TRUE(overlap_box_within(tree, Eigen::AlignedBox3d(middle, middle), 0).ok());
-  });
-  PointOptions budget;
-  budget.node_budget = 1000;
-  expect_at_most(160, "closest_point with a budget",
-                 [&] { EXPECT_TRUE(closest_point(tree, middle, budget).ok()); });
-  pose.translation() = Eigen::Vector3d(0, 0, 40);
+  test::Questions questions;
+  questions.point = tree.bounds().center();
+  questions.ray = {questions.point + Eigen::Vector3d(0.1, 0.2, 50), {0.001, 0.002, -1}};
+  questions.box = tree.bounds();
+  questions.radius = 1e3;
+  questions.near.translation() = Eigen::Vector3d(0.3, 0.2, 0.05);
+  questions.far.translation() = Eigen::Vector3d(0, 0, 40);
   const test::CookedTree other = test::cook_tree(test::terrain(60, 4), CodecId::kPackedF64);
-  expect_at_most(320, "overlap_pairs of two codecs",
-                 [&] { EXPECT_TRUE(overlap_pairs(tree, here, other.tree, here, all).ok()); });
-  expect_at_most(512, "distance", [&] { EXPECT_TRUE(distance(tree, here, tree, pose).ok()); });
+  for (const test::TreeQuery& query : test::tree_queries(questions)) {
+    expect_at_most(query.stack_kilobytes, query.name,
+                   [&] { EXPECT_EQ(query.ask(tree, tree, {}).error, Errc::kOk); });
+    if (!query.is_of_pairs) continue;
+    expect_at_most(query.stack_kilobytes, std::string(query.name) + " of two codecs",
+                   [&] { EXPECT_EQ(query.ask(tree, other.tree, {}).error, Errc::kOk); });
+  }
+  expect_at_most(64, "overlap_box_within of a point", [&] {
+    EXPECT_TRUE(overlap_box_within(tree, Eigen::AlignedBox3d(questions.point), 0).ok());
+  });
 }
 
 INSTANTIATE_TEST_SUITE_P(Codecs, Stack, testing::ValuesIn(test::all_codecs()), test::test_name);

@@ -15,6 +15,7 @@
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
 #include "tests/support/scenes.h"
+#include "tests/support/tree_queries.h"
 
 namespace boxtree {
 namespace {
@@ -25,11 +26,9 @@ Eigen::AlignedBox3d everywhere() {
   return {Eigen::Vector3d::Constant(-1e6), Eigen::Vector3d::Constant(1e6)};
 }
 
-// A query under a limit: its error, and a number that stands for its answer.
-struct Outcome {
-  Errc error = Errc::kOk;
-  double answer = 0;
-};
+using test::Outcome;
+
+// A query under a limit.
 struct LimitedQuery {
   const char* name;
   std::function<Outcome(const QueryLimits&)> ask;
@@ -72,56 +71,13 @@ std::uint64_t least_limit(const LimitedQuery& query) {
   return nodes;
 }
 
-std::vector<LimitedQuery> tree_queries(const Tree& tree) {
-  const Ray ray{{0.1, 0.2, 50}, {0.01, 0.02, -1}};
-  Pose turned = Pose::Identity();
-  turned.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
-  return {
-      {"closest_hit",
-       [=, &tree](const QueryLimits& limits) {
-         return outcome_of_hit<RayHit>(closest_hit(tree, ray, limits),
-                                       [](const RayHit& hit) { return hit.t; });
-       }},
-      {"any_hit",
-       [=, &tree](const QueryLimits& limits) {
-         return outcome_of_hit<RayHit>(any_hit(tree, ray, limits),
-                                       [](const RayHit& hit) { return hit.t; });
-       }},
-      {"overlap_box",
-       [&tree](const QueryLimits& limits) {
-         return outcome_of_visit([&](std::size_t& told) {
-           return overlap_box(
-               tree, everywhere(), [&](const FaceRef&) { return ++told > 0; }, limits);
-         });
-       }},
-      {"overlap_sphere",
-       [&tree](const QueryLimits& limits) {
-         return outcome_of_visit([&](std::size_t& told) {
-           return overlap_sphere(
-               tree, {0, 0, 0}, 1, [&](const FaceRef&) { return ++told > 0; }, limits);
-         });
-       }},
-      {"closest_point",
-       [&tree](const QueryLimits& limits) {
-         return outcome_of_hit<ClosestPoint>(
-             closest_point(tree, {3, 2, 1}, 100, limits),
-             [](const ClosestPoint& closest) { return closest.distance; });
-       }},
-      {"overlap_pairs",
-       [=, &tree](const QueryLimits& limits) {
-         return outcome_of_visit([&](std::size_t& told) {
-           return overlap_pairs(
-               tree, Pose::Identity(), tree, turned, [&](const FacePair&) { return ++told > 0; },
-               limits);
-         });
-       }},
-      {"first_contact",
-       [=, &tree](const QueryLimits& limits) {
-         return outcome_of_hit<FacePair>(
-             first_contact(tree, Pose::Identity(), tree, turned, limits),
-             [](const FacePair& pair) { return double{pair.first.id * 1e6} + pair.second.id; });
-       }},
-  };
+test::Questions questions() {
+  test::Questions questions;
+  questions.ray = {{0.1, 0.2, 50}, {0.01, 0.02, -1}};
+  questions.box = everywhere();
+  questions.point = {1, 0.5, 0.25};
+  questions.near.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  return questions;
 }
 
 class Limits : public testing::TestWithParam<CodecId> {};
@@ -134,13 +90,14 @@ std::uint64_t most_pairs_with_itself(const Tree& tree) {
 TEST_P(Limits, TellWhenTheyDoNotSuffice) {
   const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
   const std::uint64_t nodes = BoundTree::of(cooked.tree).node_count();
-  for (const LimitedQuery& query : tree_queries(cooked.tree)) {
+  for (const test::TreeQuery& query : test::tree_queries(questions())) {
+    if (!query.takes_limits) continue;
     SCOPED_TRACE(query.name);
-    const std::uint64_t least = least_limit(query);
+    const std::uint64_t least = least_limit({query.name, [&](const QueryLimits& limits) {
+                                               return query.ask(cooked.tree, cooked.tree, limits);
+                                             }});
     EXPECT_GT(least, 0u);
-    const bool is_pair = std::string(query.name).find("pair") != std::string::npos ||
-                         std::string(query.name).find("contact") != std::string::npos;
-    EXPECT_LE(least, is_pair ? most_pairs_with_itself(cooked.tree) : nodes);
+    EXPECT_LE(least, query.is_of_pairs ? most_pairs_with_itself(cooked.tree) : nodes);
     // Everything is inside the box: every node is taken apart.
     if (std::string(query.name) == "overlap_box") {
       EXPECT_EQ(least, nodes);

@@ -19,6 +19,7 @@
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/tree_queries.h"
 
 namespace boxtree {
 namespace {
@@ -59,27 +60,21 @@ void PrintTo(const Corruption& corruption, std::ostream* out) {
 // ball around a corner of a face, so that leaves are read and not taken whole.
 std::vector<std::pair<std::string, Errc>> answers(const Tree& broken, const Tree& whole,
                                                   const Eigen::Vector3d& corner) {
-  const auto all = [](const auto&) { return true; };
-  const Pose at_place = Pose::Identity();
-  Pose apart = at_place;
-  apart.translation() = Eigen::Vector3d(100, 0, 0);
   const Eigen::Vector3d near = Eigen::Vector3d::Constant(1e-3);
-  const Eigen::AlignedBox3d box(corner - near, corner + near);
-  const Ray ray{corner - Eigen::Vector3d(0, 0, 50), {0, 0, 1}};
-  PointOptions with_error;
-  with_error.relative_error = 1e-3;
-  return {{"closest_hit", closest_hit(broken, ray).code()},
-          {"any_hit", any_hit(broken, ray).code()},
-          {"overlap_box", overlap_box(broken, box, all).code()},
-          {"overlap_sphere", overlap_sphere(broken, corner, 1e-3, all).code()},
-          {"closest_point", closest_point(broken, corner).code()},
-          {"closest_point_with_error", closest_point(broken, corner, with_error).code()},
-          {"overlap_pairs", overlap_pairs(broken, at_place, whole, at_place, all).code()},
-          {"overlap_pairs_second", overlap_pairs(whole, at_place, broken, at_place, all).code()},
-          {"distance", distance(broken, at_place, whole, apart).code()},
-          {"distance_second", distance(whole, apart, broken, at_place).code()},
-          {"overlap_within", overlap_within(broken, at_place, whole, at_place, 0.0).code()},
-          {"overlap_box_within", overlap_box_within(broken, box, 0.0).code()}};
+  test::Questions questions;
+  questions.ray = {corner - Eigen::Vector3d(0, 0, 50), {0, 0, 1}};
+  questions.box = {corner - near, corner + near};
+  questions.point = corner;
+  questions.radius = 1e-3;
+  questions.far.translation() = Eigen::Vector3d(100, 0, 0);
+  questions.node_budget = kUnlimitedNodes;
+  std::vector<std::pair<std::string, Errc>> codes;
+  for (const test::TreeQuery& query : test::tree_queries(questions)) {
+    codes.emplace_back(query.name, query.ask(broken, whole, {}).error);
+    if (!query.is_of_pairs) continue;
+    codes.emplace_back(std::string(query.name) + " as second", query.ask(whole, broken, {}).error);
+  }
+  return codes;
 }
 
 class Corrupt : public testing::TestWithParam<Corruption> {};

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include "tests/support/tree_queries.h"
+
+namespace boxtree::test {
+namespace {
+
+template <class T, class Value>
+Outcome outcome(const Result<T>& result, const Value& value) {
+  return result ? Outcome{Errc::kOk, static_cast<double>(value(*result))}
+                : Outcome{result.code(), 0};
+}
+template <class T, class Value>
+Outcome outcome(const QueryResult<T>& result, const Value& value) {
+  if (!result.ok()) return {result.code(), 0};
+  return {Errc::kOk, result.has_value() ? static_cast<double>(value(*result)) : -1};
+}
+// Of a query with a visitor: how many it was told of.
+template <class Ask>
+Outcome outcome_of_visit(const Ask& ask) {
+  std::size_t told = 0;
+  return outcome(ask([&told](const auto&) { return ++told > 0; }), [&](Visit) { return told; });
+}
+
+double distance_of(const RayHit& hit) {
+  return hit.t;
+}
+double number_of(const FacePair& pair) {
+  return double{pair.first.id * 1e6} + pair.second.id;
+}
+
+}  // namespace
+
+std::vector<TreeQuery> tree_queries(const Questions& q) {
+  const Pose here = Pose::Identity();
+  PointOptions bounds;
+  bounds.relative_error = 1e-3;
+  bounds.node_budget = q.node_budget;
+  return {
+      {"closest_hit", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(closest_hit(tree, q.ray, limits), distance_of);
+       }},
+      {"any_hit", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(any_hit(tree, q.ray, limits), distance_of);
+       }},
+      {"overlap_box", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_visit(
+             [&](FaceVisitor visitor) { return overlap_box(tree, q.box, visitor, limits); });
+       }},
+      {"overlap_sphere", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_visit([&](FaceVisitor visitor) {
+           return overlap_sphere(tree, q.point, q.radius, visitor, limits);
+         });
+       }},
+      {"closest_point", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(closest_point(tree, q.point, 1e9, limits),
+                        [](const ClosestPoint& closest) { return closest.distance; });
+       }},
+      {"closest_point with bounds", 160, false, false,
+       [=](const Tree& tree, const Tree&, const QueryLimits&) {
+         return outcome(closest_point(tree, q.point, bounds),
+                        [](const auto& found) { return found.lower; });
+       }},
+      {"traverse", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         const auto touches = [&](const Eigen::AlignedBox3d& box) { return box.intersects(q.box); };
+         return outcome_of_visit(
+             [&](TriangleVisitor visitor) { return traverse(tree, touches, visitor, limits); });
+       }},
+      {"overlap_box_within", 64, false, false,
+       [=](const Tree& tree, const Tree&, const QueryLimits&) {
+         return outcome(overlap_box_within(tree, q.box, 0),
+                        [](const BoxOverlap& found) { return static_cast<int>(found.overlap); });
+       }},
+      {"overlap_pairs", 320, true, true,
+       [=](const Tree& first, const Tree& second, const QueryLimits& limits) {
+         return outcome_of_visit([&](PairVisitor visitor) {
+           return overlap_pairs(first, here, second, q.near, visitor, limits);
+         });
+       }},
+      {"first_contact", 320, true, true,
+       [=](const Tree& first, const Tree& second, const QueryLimits& limits) {
+         return outcome(first_contact(first, here, second, q.near, limits), number_of);
+       }},
+      {"overlap_within", 192, true, false,
+       [=](const Tree& first, const Tree& second, const QueryLimits&) {
+         return outcome(overlap_within(first, here, second, q.near, 0),
+                        [](const PairOverlap& found) { return static_cast<int>(found.overlap); });
+       }},
+      {"distance", 512, true, false,
+       [=](const Tree& first, const Tree& second, const QueryLimits&) {
+         return outcome(distance(first, here, second, q.far),
+                        [](const Distance& found) { return found.lower; });
+       }},
+  };
+}
+
+}  // namespace boxtree::test
