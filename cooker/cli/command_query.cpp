@@ -26,16 +26,6 @@ struct Arguments {
   std::filesystem::path mesh;
   std::filesystem::path batch;
   bool json = false;
-  VectorOption origin, direction, low, high, center, at;
-  RayQuestion ray;
-  SphereQuestion sphere;
-  PointQuestion point;
-  PairQuestion pair;
-  ContactsQuestion contacts;
-  SecondTree second;
-  Approximation options;
-  OverlapOptions overlap;
-  std::string pose;
 };
 
 void print_answer(const Arguments& arguments, const Json& json) {
@@ -133,10 +123,10 @@ int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& 
   return status;
 }
 
-// `missing` names an option that the kind needs and that was not given.
+// `missing` names an option that the kind needs and that was not given; or is empty.
 int run(const Arguments& arguments, const std::string& kind, const Question& question,
-        const char* missing) {
-  if (arguments.batch.empty() && missing != nullptr) {
+        const std::string& missing) {
+  if (arguments.batch.empty() && !missing.empty()) {
     return usage(fmt::format("{} is required", missing));
   }
   Result<OpenedFile> opened = open_file(arguments.file);
@@ -169,138 +159,83 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
       [&](const Question& asked, TreeCache& others) { return ask(tree->tree, asked, others); });
 }
 
-// A question about two trees: `question` is made when the second one is known.
-template <class Make>
-int run_pair(Arguments& arguments, const std::string& kind, Make question) {
-  if (!arguments.pose.empty()) {
-    const std::optional<Pose> pose = parse_pose(arguments.pose);
-    if (!pose) {
-      return usage(
-          fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", arguments.pose));
-    }
-    arguments.second.pose = *pose;
+// Declares what a question is made of as options of its command.
+class OptionFields {
+ public:
+  explicit OptionFields(CLI::App& command) : command_(command) {}
+
+  void required(const char* key, Eigen::Vector3d& out, const char* help) {
+    required_.push_back(add_vector_option(command_, option_name(key), out, help));
   }
-  return run(arguments, kind, question(),
-             arguments.second.file.empty() ? "the second file" : nullptr);
-}
+  void required(const char* key, double& out, const char* help) {
+    required_.push_back(command_.add_option(option_name(key), out, help));
+  }
+  void optional(const char* key, double& out, const char* help, bool* given = nullptr) {
+    note(command_.add_option(option_name(key), out, help), given);
+  }
+  void optional(const char* key, std::uint64_t& out, const char* help, bool* given = nullptr) {
+    // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
+    note(command_.add_option(option_name(key), out, help)->check(CLI::NonNegativeNumber), given);
+  }
+  void optional(const char* key, bool& out, const char* help) {
+    command_.add_flag(option_name(key), out, help);
+  }
+  void second(SecondTree& tree) {
+    second_ = command_.add_option("file2", tree.file, "The second .bxt file");
+    command_.add_option_function<std::string>(
+        "--pose",
+        [this, &tree](const std::string& text) {
+          const std::optional<Pose> pose = parse_pose(text);
+          if (pose) {
+            tree.pose = *pose;
+          } else {
+            problem_ = fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", text);
+          }
+        },
+        "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row");
+    command_.add_option("--tree2", tree.tree, "Its tree, by number or name")->group(kRareOptions);
+    command_.add_option("--mesh2", tree.mesh, "Its source mesh, if it was cooked with --external")
+        ->group(kRareOptions);
+  }
 
-const char* first_missing(const VectorOption& first, const VectorOption& second) {
-  return !first.given ? first.name.c_str() : !second.given ? second.name.c_str() : nullptr;
-}
+  // What is wrong with what was given; nothing if all is right.
+  [[nodiscard]] const std::string& problem() const { return problem_; }
 
-CLI::Option* add_budget(CLI::App& query, std::uint64_t& nodes) {
-  // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
-  return query.add_option("--budget", nodes, "Stop after so many nodes")
-      ->check(CLI::NonNegativeNumber);
-}
+  // What has to be given and was not; nothing if all was.
+  [[nodiscard]] std::string first_missing() const {
+    if (second_ != nullptr && second_->count() == 0) return "the second file";
+    for (const CLI::Option* option : required_) {
+      if (option->count() == 0) return option->get_name();
+    }
+    return {};
+  }
 
-// How near to the truth an answer has to be; returns those that make it one with bounds.
-std::vector<CLI::Option*> add_approximation(CLI::App& query, Approximation& options) {
-  query.add_option("--max-distance", options.max_distance, "Look no farther");
-  return {query.add_option("--relative-error", options.relative_error,
-                           "Be content if upper <= lower * (1 + this)"),
-          query.add_option("--absolute-error", options.absolute_error,
-                           "Be content if upper <= lower + this"),
-          add_budget(query, options.node_budget)};
-}
+ private:
+  static std::string option_name(std::string key) {
+    std::replace(key.begin(), key.end(), '_', '-');
+    return "--" + key;
+  }
+  static void note(CLI::Option* option, bool* given) {
+    if (given != nullptr) option->each([given](const std::string&) { *given = true; });
+  }
 
-// What may be left undecided; returns those that ask for no more than whether there is an overlap.
-std::vector<CLI::Option*> add_overlap(CLI::App& query, OverlapOptions& options) {
-  return {query.add_option("--within", options.within,
-                           "Answer hit or free, or undecided if closer than this"),
-          add_budget(query, options.node_budget)};
-}
+  CLI::App& command_;
+  std::vector<const CLI::Option*> required_;
+  const CLI::Option* second_ = nullptr;
+  std::string problem_;
+};
 
-bool any_given(const std::vector<CLI::Option*>& options) {
-  return std::any_of(options.begin(), options.end(),
-                     [](const CLI::Option* option) { return option->count() > 0; });
-}
-
-void add_ray_and_point(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
-  CLI::App& ray = *query.add_subcommand("ray", "Closest hit of a ray");
-  a->origin.add_to(ray, "--origin", "Where it starts");
-  a->direction.add_to(ray, "--direction", "Where it goes; t counts in its length");
-  ray.add_option("--t-max", a->ray.ray.t_max, "Where it ends");
-  ray.add_flag("--any", a->ray.any, "Any hit, not the closest");
-  ray.callback([a, &status] {
-    a->ray.ray.origin = a->origin.value;
-    a->ray.ray.direction = a->direction.value;
-    status = run(*a, "ray", a->ray, first_missing(a->origin, a->direction));
+template <class Kind>
+void add_kind(CLI::App& query, const std::shared_ptr<Arguments>& arguments, int& status) {
+  CLI::App& command = *query.add_subcommand(Kind::kKind, Kind::kHelp);
+  const auto question = std::make_shared<Kind>();
+  const auto options = std::make_shared<OptionFields>(command);
+  question->describe(*options);
+  command.callback([arguments, question, options, &status] {
+    status = options->problem().empty()
+                 ? run(*arguments, Kind::kKind, *question, options->first_missing())
+                 : usage(options->problem());
   });
-
-  CLI::App& point = *query.add_subcommand("point", "Closest point of the surface");
-  a->at.add_to(point, "--at", "The point");
-  const std::vector<CLI::Option*> given = add_approximation(point, a->options);
-  point.callback([a, given, &status] {
-    a->point.at = a->at.value;
-    a->point.options = a->options;
-    a->point.with_bounds = any_given(given);
-    status = run(*a, "point", a->point, first_missing(a->at, a->at));
-  });
-}
-
-void add_box_and_sphere(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
-  CLI::App& box = *query.add_subcommand("box", "Faces that touch an axis-aligned box");
-  a->low.add_to(box, "--min", "Lower corner");
-  a->high.add_to(box, "--max", "Upper corner");
-  const std::vector<CLI::Option*> given = add_overlap(box, a->overlap);
-  box.callback([a, given, &status] {
-    BoxQuestion question{{a->low.value, a->high.value}, {}};
-    if (any_given(given)) question.overlap = a->overlap;
-    status = run(*a, "box", question, first_missing(a->low, a->high));
-  });
-
-  CLI::App& sphere = *query.add_subcommand("sphere", "Faces within a radius of a point");
-  a->center.add_to(sphere, "--center", "The point");
-  CLI::Option* radius = sphere.add_option("--radius", a->sphere.radius, "The radius");
-  sphere.callback([a, radius, &status] {
-    a->sphere.center = a->center.value;
-    const char* missing = first_missing(a->center, a->center);
-    if (missing == nullptr && radius->count() == 0) missing = "--radius";
-    status = run(*a, "sphere", a->sphere, missing);
-  });
-}
-
-void add_second(CLI::App& query, Arguments& arguments) {
-  query.add_option("file2", arguments.second.file, "The second .bxt file");
-  query.add_option("--pose", arguments.pose,
-                   "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row");
-  query.add_option("--tree2", arguments.second.tree, "Its tree, by number or name")
-      ->group(kRareOptions);
-  query
-      .add_option("--mesh2", arguments.second.mesh,
-                  "Its source mesh, if it was cooked with --external")
-      ->group(kRareOptions);
-}
-
-void add_two_trees(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
-  CLI::App& pair = *query.add_subcommand("pair", "Pairs of faces of two trees that touch");
-  add_second(pair, *a);
-  pair.add_flag("--first", a->pair.first_only, "Stop at the first contact");
-  pair.callback([a, &status] {
-    status = run_pair(*a, "pair", [&] { return PairQuestion{a->second, a->pair.first_only}; });
-  });
-
-  CLI::App& distance = *query.add_subcommand("distance", "Distance of two trees");
-  add_second(distance, *a);
-  add_approximation(distance, a->options);
-  distance.callback([a, &status] {
-    status = run_pair(*a, "distance", [&] { return DistanceQuestion{a->second, a->options}; });
-  });
-
-  CLI::App& overlap = *query.add_subcommand("overlap", "Whether two trees touch: hit or free");
-  add_second(overlap, *a);
-  add_overlap(overlap, a->overlap);
-  overlap.callback([a, &status] {
-    status = run_pair(*a, "overlap", [&] { return OverlapQuestion{a->second, a->overlap}; });
-  });
-}
-
-void add_contacts(CLI::App& query, const std::shared_ptr<Arguments>& a, int& status) {
-  CLI::App& command = *query.add_subcommand(
-      "contacts", "Of a scene: pairs of faces of what moves and all else that touch");
-  command.add_flag("--first", a->contacts.first_only, "Stop at the first contact");
-  command.callback([a, &status] { status = run(*a, "contacts", a->contacts, nullptr); });
 }
 
 }  // namespace
@@ -322,14 +257,11 @@ void add_query_command(CLI::App& app, int& status) {
       ->group(kRareOptions);
   command.require_subcommand(0, 1);
   command.fallthrough();
-  add_ray_and_point(command, arguments, status);
-  add_box_and_sphere(command, arguments, status);
-  add_two_trees(command, arguments, status);
-  add_contacts(command, arguments, status);
+  for_each_kind([&]<class Kind>() { add_kind<Kind>(command, arguments, status); });
   command.callback([&command, arguments, &status] {
     if (!command.get_subcommands().empty()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
-                                      : run(*arguments, "", RayQuestion(), nullptr);
+                                      : run(*arguments, "", RayQuestion(), {});
   });
 }
 

@@ -102,16 +102,15 @@ std::string line_of(const Json& value) {
   return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
-void VectorOption::add_to(CLI::App& command, const std::string& option, const std::string& help) {
-  name = option;
-  command
+CLI::Option* add_vector_option(CLI::App& command, const std::string& option, Eigen::Vector3d& out,
+                               const std::string& help) {
+  return command
       .add_option_function<std::string>(
           option,
-          [this](const std::string& text) {
-            if (!parse_vector(text, value)) {
-              throw CLI::ValidationError(name, "expected X,Y,Z, found \"" + text + "\"");
+          [option, &out](const std::string& text) {
+            if (!parse_vector(text, out)) {
+              throw CLI::ValidationError(option, "expected X,Y,Z, found \"" + text + "\"");
             }
-            given = true;
           },
           help)
       ->type_name("X,Y,Z");

@@ -53,14 +53,10 @@ void print_files(std::vector<Json> documents);
 /// A vector as three numbers.
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
 
-/// "1,-2.5,3e4" as a vector; reports a bad one as CLI11 reports bad options.
-struct VectorOption {
-  std::string name;
-  Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  bool given = false;
-
-  void add_to(CLI::App& command, const std::string& option, const std::string& help);
-};
+/// An option like "1,-2.5,3e4"; reports a bad one as CLI11 reports bad options. `out` has to live
+/// until the command line has been parsed.
+CLI::Option* add_vector_option(CLI::App& command, const std::string& option, Eigen::Vector3d& out,
+                               const std::string& help);
 
 /// Each command adds itself to `app` and stores its exit status in `status` when it has run.
 void add_cook_command(CLI::App& app, int& status);

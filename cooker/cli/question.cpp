@@ -63,9 +63,9 @@ const char* name_of(Overlap overlap) {
 }
 
 Result<Json> answer(const Tree& tree, const BoxQuestion& question) {
-  if (question.overlap) {
-    const auto found = overlap_box_within(tree, question.box, question.overlap->within,
-                                          question.overlap->node_budget);
+  if (question.with_overlap) {
+    const auto found = overlap_box_within(tree, question.box, question.overlap.within,
+                                          question.overlap.node_budget);
     if (!found) return found.error();
     Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
     if (found->face) json["face"] = face_json(*found->face);
@@ -159,10 +159,45 @@ Error invalid(std::string what) {
 }
 
 // Reads the keys of one question and remembers the first that is missing, wrong or unknown.
-class Fields {
+class KeyFields {
  public:
-  explicit Fields(const Json& json) : json_(json) {}
+  explicit KeyFields(const Json& json) : json_(json) {}
 
+  template <class T>
+  void required(const char* key, T& out, const char* /*help*/) {
+    read(key, out);
+  }
+  template <class T>
+  void optional(const char* key, T& out, const char* /*help*/, bool* given = nullptr) {
+    if (read_if_given(key, out) && given != nullptr) *given = true;
+  }
+  void second(SecondTree& tree) {
+    std::string file;
+    std::string mesh;
+    std::string pose = "0,0,0";
+    read("file", file);
+    read_if_given("tree", tree.tree);
+    read_if_given("mesh", mesh);
+    read_if_given("pose", pose);
+    tree.file = file;
+    tree.mesh = mesh;
+    const std::optional<Pose> parsed = parse_pose(pose);
+    if (!parsed) fail("pose", "\"X,Y,Z\" or 12 numbers");
+    tree.pose = parsed.value_or(Pose::Identity());
+  }
+
+  [[nodiscard]] Status finish(std::string_view kind) {
+    for (const auto& [key, value] : json_.items()) {
+      const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
+      if (!known && key != "kind") fail(key, fmt::format("no such key in \"{}\"", kind));
+    }
+    return error_.empty() ? Status() : Status(invalid(error_));
+  }
+  void fail(std::string_view key, std::string_view expected) {
+    if (error_.empty()) error_ = fmt::format("\"{}\": expected {}", key, expected);
+  }
+
+ private:
   void read(const char* key, Eigen::Vector3d& out) {
     const Json* value = require(key);
     if (value == nullptr) return;
@@ -204,18 +239,6 @@ class Fields {
     if (given) read(key, out);
     return given;
   }
-  [[nodiscard]] Status finish(std::string_view kind) {
-    for (const auto& [key, value] : json_.items()) {
-      const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
-      if (!known && key != "kind") fail(key, fmt::format("no such key in \"{}\"", kind));
-    }
-    return error_.empty() ? Status() : Status(invalid(error_));
-  }
-  void fail(std::string_view key, std::string_view expected) {
-    if (error_.empty()) error_ = fmt::format("\"{}\": expected {}", key, expected);
-  }
-
- private:
   const Json* require(const char* key) {
     known_.emplace_back(key);
     const auto found = json_.find(key);
@@ -229,89 +252,26 @@ class Fields {
   std::string error_;
 };
 
-// Whether an error or a budget was given.
-bool read_options(Fields& fields, Approximation& options) {
-  const bool relative = fields.read_if_given("relative_error", options.relative_error);
-  const bool absolute = fields.read_if_given("absolute_error", options.absolute_error);
-  const bool budget = fields.read_if_given("budget", options.node_budget);
-  fields.read_if_given("max_distance", options.max_distance);
-  return relative || absolute || budget;
+// "ray, box or point", of all kinds.
+std::string names_of_kinds() {
+  std::vector<std::string> names;
+  for_each_kind([&]<class Kind>() { names.emplace_back(Kind::kKind); });
+  const std::string last = names.back();
+  names.pop_back();
+  return fmt::format("{} or {}", fmt::join(names, ", "), last);
 }
 
-// Whether a distance or a budget was given.
-bool read_options(Fields& fields, OverlapOptions& options) {
-  const bool within = fields.read_if_given("within", options.within);
-  const bool budget = fields.read_if_given("budget", options.node_budget);
-  return within || budget;
-}
-
-void read_second(Fields& fields, SecondTree& second) {
-  std::string file;
-  std::string mesh;
-  std::string pose = "0,0,0";
-  fields.read("file", file);
-  fields.read_if_given("tree", second.tree);
-  fields.read_if_given("mesh", mesh);
-  fields.read_if_given("pose", pose);
-  second.file = file;
-  second.mesh = mesh;
-  const std::optional<Pose> parsed = parse_pose(pose);
-  if (!parsed) fields.fail("pose", "\"X,Y,Z\" or 12 numbers");
-  second.pose = parsed.value_or(Pose::Identity());
-}
-
-Result<Question> question_of(std::string_view kind, Fields& fields) {
-  Question result;
-  if (kind == "ray") {
-    RayQuestion ray;
-    fields.read("origin", ray.ray.origin);
-    fields.read("direction", ray.ray.direction);
-    fields.read_if_given("t_max", ray.ray.t_max);
-    fields.read_if_given("any", ray.any);
-    result = ray;
-  } else if (kind == "box") {
-    BoxQuestion box;
-    fields.read("min", box.box.min());
-    fields.read("max", box.box.max());
-    OverlapOptions overlap;
-    if (read_options(fields, overlap)) box.overlap = overlap;
-    result = box;
-  } else if (kind == "sphere") {
-    SphereQuestion sphere;
-    fields.read("center", sphere.center);
-    fields.read("radius", sphere.radius);
-    result = sphere;
-  } else if (kind == "point") {
-    PointQuestion point;
-    fields.read("at", point.at);
-    point.with_bounds = read_options(fields, point.options);
-    result = point;
-  } else if (kind == "pair") {
-    PairQuestion pair;
-    read_second(fields, pair.second);
-    fields.read_if_given("first", pair.first_only);
-    result = pair;
-  } else if (kind == "distance") {
-    DistanceQuestion distance;
-    read_second(fields, distance.second);
-    read_options(fields, distance.options);
-    result = distance;
-  } else if (kind == "contacts") {
-    ContactsQuestion contacts;
-    fields.read_if_given("first", contacts.first_only);
-    result = contacts;
-  } else if (kind == "overlap") {
-    OverlapQuestion overlap;
-    read_second(fields, overlap.second);
-    read_options(fields, overlap.options);
-    result = overlap;
-  } else {
-    return invalid(fmt::format(
-        "kind \"{}\": expected ray, box, sphere, point, pair, distance, overlap or contacts",
-        kind));
-  }
+Result<Question> question_of(std::string_view kind, KeyFields& fields) {
+  std::optional<Question> result;
+  for_each_kind([&]<class Kind>() {
+    if (kind != Kind::kKind) return;
+    Kind question;
+    question.describe(fields);
+    result = question;
+  });
+  if (!result) return invalid(fmt::format("kind \"{}\": expected {}", kind, names_of_kinds()));
   if (Status status = fields.finish(kind); !status) return status.error();
-  return result;
+  return *result;
 }
 
 }  // namespace
@@ -391,7 +351,7 @@ Result<Question> parse_question(std::string_view line, std::string_view default_
     if (!given->is_string()) return invalid("\"kind\": expected a text");
     kind = given->get<std::string>();
   }
-  Fields fields(json);
+  KeyFields fields(json);
   return question_of(kind, fields);
 }
 

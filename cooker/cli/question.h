@@ -19,52 +19,173 @@
 
 namespace boxtree::cooker {
 
+// A kind of question states its name, a line of help, and what it is made of: describe() tells a
+// reader of options each of them once. There are two such readers, for lines of a batch and for the
+// command line, where key "t_max" is option --t-max. They have
+//   required(key, value, help)           a Vector3d or a double
+//   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if it is
+//   there second(tree)                         a SecondTree
+
 struct RayQuestion {
+  static constexpr const char* kKind = "ray";
+  static constexpr const char* kHelp = "Closest hit of a ray";
+
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   bool any = false;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("origin", ray.origin, "Where it starts");
+    fields.required("direction", ray.direction, "Where it goes; t counts in its length");
+    fields.optional("t_max", ray.t_max, "Where it ends");
+    fields.optional("any", any, "Any hit, not the closest");
+  }
 };
+
 /// What overlap may leave undecided.
 struct OverlapOptions {
   double within = 0;
   std::uint64_t node_budget = kUnlimitedNodes;
+
+  template <class Fields>
+  void describe(Fields& fields, bool* given = nullptr) {
+    fields.optional("within", within, "Answer hit or free, or undecided if closer than this",
+                    given);
+    fields.optional("budget", node_budget, "Stop after so many nodes", given);
+  }
 };
+
 struct BoxQuestion {
+  static constexpr const char* kKind = "box";
+  static constexpr const char* kHelp = "Faces that touch an axis-aligned box";
+
   Eigen::AlignedBox3d box;
-  std::optional<OverlapOptions> overlap;  // asked whether there is any, instead of all faces
+  OverlapOptions overlap;
+  bool with_overlap = false;  // one of them was given: whether there is any, instead of all faces
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("min", box.min(), "Lower corner");
+    fields.required("max", box.max(), "Upper corner");
+    overlap.describe(fields, &with_overlap);
+  }
 };
+
 struct SphereQuestion {
+  static constexpr const char* kKind = "sphere";
+  static constexpr const char* kHelp = "Faces within a radius of a point";
+
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("center", center, "The point");
+    fields.required("radius", radius, "The radius");
+  }
 };
+
+/// How near to the truth an answer has to be.
+template <class Fields>
+void describe_approximation(Fields& fields, Approximation& options, bool* given = nullptr) {
+  fields.optional("max_distance", options.max_distance, "Look no farther");
+  fields.optional("relative_error", options.relative_error,
+                  "Be content if upper <= lower * (1 + this)", given);
+  fields.optional("absolute_error", options.absolute_error, "Be content if upper <= lower + this",
+                  given);
+  fields.optional("budget", options.node_budget, "Stop after so many nodes", given);
+}
+
 struct PointQuestion {
+  static constexpr const char* kKind = "point";
+  static constexpr const char* kHelp = "Closest point of the surface";
+
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   PointOptions options;
   bool with_bounds = false;  // an error or a budget was given
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("at", at, "The point");
+    describe_approximation(fields, options, &with_bounds);
+  }
 };
+
 struct SecondTree {
   std::filesystem::path file;
   std::string tree = "0";
   std::filesystem::path mesh;  // its source, if its geometry is external
   Pose pose = Pose::Identity();
 };
+
 struct PairQuestion {
+  static constexpr const char* kKind = "pair";
+  static constexpr const char* kHelp = "Pairs of faces of two trees that touch";
+
   SecondTree second;
   bool first_only = false;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.second(second);
+    fields.optional("first", first_only, "Stop at the first contact");
+  }
 };
+
 struct DistanceQuestion {
+  static constexpr const char* kKind = "distance";
+  static constexpr const char* kHelp = "Distance of two trees";
+
   SecondTree second;
   DistanceOptions options;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.second(second);
+    describe_approximation(fields, options);
+  }
 };
+
 struct OverlapQuestion {
+  static constexpr const char* kKind = "overlap";
+  static constexpr const char* kHelp = "Whether two trees touch: hit or free";
+
   SecondTree second;
   OverlapOptions options;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.second(second);
+    options.describe(fields);
+  }
 };
+
 /// Of a scene: what moves against the rest.
 struct ContactsQuestion {
+  static constexpr const char* kKind = "contacts";
+  static constexpr const char* kHelp =
+      "Of a scene: pairs of faces of what moves and all else that touch";
+
   bool first_only = false;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.optional("first", first_only, "Stop at the first contact");
+  }
 };
+
+/// A kind that is here is one of batches and of the command line, without another line of theirs.
 using Question = std::variant<RayQuestion, BoxQuestion, SphereQuestion, PointQuestion, PairQuestion,
                               DistanceQuestion, OverlapQuestion, ContactsQuestion>;
+
+/// Calls visit.template operator()<Kind>() for each kind of question, in order.
+template <class Visit>
+void for_each_kind(const Visit& visit) {
+  [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
+    (visit.template operator()<std::variant_alternative_t<kIndex, Question>>(), ...);
+  }
+  (std::make_index_sequence<std::variant_size_v<Question>>());
+}
 
 /// A file, one of its trees, and the mesh that it is bound to if its geometry is external.
 struct OpenedTree {

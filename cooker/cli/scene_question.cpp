@@ -60,7 +60,7 @@ Error not_for_scenes(const std::string& what) {
 }
 
 Result<Json> answer(const Scene& scene, const BoxQuestion& question) {
-  if (question.overlap) return not_for_scenes("whether something is within a distance");
+  if (question.with_overlap) return not_for_scenes("whether something is within a distance");
   return answer_faces(
       scene, [&](SceneFaceVisitor visitor) { return overlap_box(scene, question.box, visitor); });
 }
