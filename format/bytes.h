@@ -38,37 +38,4 @@ template <class T>
   return value;
 }
 
-/// Bytes of each number in an array of numbers up to `largest`: 1, 2 or 4.
-[[nodiscard]] constexpr std::uint8_t number_bytes(std::uint32_t largest) noexcept {
-  if (largest <= 0xff) return 1;
-  return largest <= 0xffff ? 2 : 4;
-}
-
-/// Numbers of 1, 2 or 4 bytes each, wherever they lie: the one way to read face ids, copies of
-/// faces and materials. May be of nothing.
-class NumberView {
- public:
-  NumberView() noexcept = default;
-  NumberView(const std::byte* numbers, std::uint8_t bytes) noexcept
-      : numbers_(numbers), bytes_(bytes) {}
-
-  explicit operator bool() const noexcept { return numbers_ != nullptr; }
-
-  /// Precondition: there is such a number.
-  [[nodiscard]] std::uint32_t operator[](std::size_t index) const noexcept {
-    switch (bytes_) {
-      case 1:
-        return load<std::uint8_t>(numbers_, index);
-      case 2:
-        return load<std::uint16_t>(numbers_, index);
-      default:
-        return load<std::uint32_t>(numbers_, index);
-    }
-  }
-
- private:
-  const std::byte* numbers_ = nullptr;
-  std::uint8_t bytes_ = 0;
-};
-
 }  // namespace boxtree

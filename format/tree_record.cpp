@@ -9,6 +9,7 @@
 #include "format/codec_wide.h"
 #include "format/limits.h"
 #include "format/message.h"
+#include "format/numbers.h"
 
 namespace boxtree {
 namespace {
@@ -59,15 +60,13 @@ bool frame_fits(const TreeRecord& record) {
 // Copies need an original, and leaves that name faces by their numbers in the source cannot have
 // them behind all others.
 bool duplicates_fit(const TreeRecord& record) {
-  const std::uint8_t bytes = record.duplicate_bytes;
-  if (record.duplicate_count == 0) return bytes == 0;
-  return (bytes == 1 || bytes == 2 || bytes == 4) && counts_of(record).faces_in_leaves > 0 &&
+  if (record.duplicate_count == 0) return record.duplicate_bytes == 0;
+  return is_number_width(record.duplicate_bytes) && counts_of(record).faces_in_leaves > 0 &&
          (record.flags & kTreeFacesInSourceOrder) == 0;
 }
 
 bool geometry_fits(const TreeRecord& record) {
-  const bool width_known = record.face_id_bytes == 0 || record.face_id_bytes == 1 ||
-                           record.face_id_bytes == 2 || record.face_id_bytes == 4;
+  const bool width_known = record.face_id_bytes == 0 || is_number_width(record.face_id_bytes);
   const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
   if (!width_known || (in_source_order && record.face_id_bytes != 0)) return false;
   if (record.geometry == GeometryId::kExternal) {

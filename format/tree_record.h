@@ -38,8 +38,8 @@ struct TreeRecord {
   std::uint32_t depth;            // inner nodes on the longest path; at most kMaxDepth
   std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is exact
   std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
-  std::uint8_t face_id_bytes;     // 1, 2 or 4; 0 without a face_ids section
-  std::uint8_t duplicate_bytes;   // 1, 2 or 4; 0 without a duplicates section
+  std::uint8_t face_id_bytes;     // width (format/numbers.h); 0 without a face_ids section
+  std::uint8_t duplicate_bytes;   // likewise, of duplicates
   std::int32_t scale_exponent;
   std::uint32_t name_offset;  // into the names section
   std::uint32_t name_bytes;

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "cooker/encode/face_ids.h"
-#include "format/bytes.h"
+#include "format/numbers.h"
 
 namespace boxtree::cooker {
 namespace {

@@ -320,9 +320,7 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
         BoundTree::of(*tree).geometry() != GeometryId::kExternal || mesh.has_value();
     TreeProof proof = prove_tree(*tree, with_geometry);
     const TreeRecord record = OpenFile::of(file).tree_record(i);
-    for (Error& finding : check_reserved(record, OpenFile::of(file).section(SectionKind::kNodes, i),
-                                         OpenFile::of(file).section(SectionKind::kVertices, i),
-                                         OpenFile::of(file).section(SectionKind::kCorners, i))) {
+    for (Error& finding : check_reserved(file, i)) {
       proof.findings.push_back(std::move(finding));
     }
     if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {

@@ -10,6 +10,7 @@
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
 #include "format/grid_leaf.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -169,7 +170,10 @@ void check_grid(const GridView& grid, Check& check) {
 
 }  // namespace
 
-Findings check_reserved(const TreeRecord& record, Bytes nodes, Bytes vertices, Bytes corners) {
+Findings check_reserved(const File& opened, std::uint32_t index) {
+  const OpenFile& file = OpenFile::of(opened);
+  const TreeRecord record = file.tree_record(index);
+  const Bytes nodes = file.section(SectionKind::kNodes, index);
   Findings findings;
   Check check(findings);
   if (record.root == RootKind::kSubtree) {
@@ -195,7 +199,10 @@ Findings check_reserved(const TreeRecord& record, Bytes nodes, Bytes vertices, B
     }
   }
   if (record.geometry == GeometryId::kGrid) {
-    check_grid({corners.data(), vertices, record.face_count, record.corners_per_face}, check);
+    check_grid(
+        {file.section(SectionKind::kCorners, index).data(),
+         file.section(SectionKind::kVertices, index), record.face_count, record.corners_per_face},
+        check);
   }
   return findings;
 }

@@ -7,6 +7,7 @@
 
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/names.h"
+#include "format/numbers.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/walk/traversal.h"

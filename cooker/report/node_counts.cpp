@@ -7,6 +7,7 @@
 
 #include "cooker/encode/walked_nodes.h"
 #include "format/bits.h"
+#include "format/numbers.h"
 
 namespace boxtree::cooker {
 namespace {

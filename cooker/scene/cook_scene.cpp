@@ -15,6 +15,7 @@
 #include "cooker/scene/scene_account.h"
 #include "cooker/scene/scene_grid.h"
 #include "format/container.h"
+#include "format/numbers.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {

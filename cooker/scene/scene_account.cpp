@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "format/bytes.h"
 #include "format/container.h"
+#include "format/numbers.h"
 #include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {

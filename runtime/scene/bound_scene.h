@@ -13,6 +13,7 @@
 
 #include <boxtree/scene.h>
 
+#include "format/numbers.h"
 #include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/largest.h"

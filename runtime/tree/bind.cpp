@@ -4,6 +4,7 @@
 #include <string>
 
 #include "format/message.h"
+#include "format/numbers.h"
 #include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
 #include "runtime/tree/bound_tree.h"
@@ -158,11 +159,11 @@ Status BoundTree::bind_external_geometry(const TreeParts& parts, const std::stri
 
 Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place,
                                 const BindOptions& options) {
-  const auto ids =
-      sized_section(parts.face_ids, SectionKind::kFaceIds, place,
-                    parts.record.face_id_bytes == 0 ? 0 : face_count_, parts.record.face_id_bytes);
+  const std::uint8_t width = parts.record.face_id_bytes;
+  const auto ids = sized_section(parts.face_ids, SectionKind::kFaceIds, place,
+                                 number_array_bytes(face_count_, width), 1);
   if (!ids) return ids.error();
-  if (parts.record.face_id_bytes != 0) face_ids_ = {*ids, parts.record.face_id_bytes};
+  if (width != 0) face_ids_ = {*ids, width};
   if (geometry_ == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
@@ -171,10 +172,11 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
 }
 
 Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& place) {
+  const std::uint8_t width = parts.record.duplicate_bytes;
   const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
-                                       duplicate_count(), parts.record.duplicate_bytes);
+                                       number_array_bytes(duplicate_count(), width), 1);
   if (!originals) return originals.error();
-  if (duplicate_count() != 0) duplicates_ = {*originals, parts.record.duplicate_bytes};
+  if (width != 0) duplicates_ = {*originals, width};
   return {};
 }
 

@@ -14,6 +14,7 @@
 
 #include "format/children.h"
 #include "format/codec.h"
+#include "format/numbers.h"
 #include "runtime/tree/bound_codec.h"
 #include "runtime/tree/geometry.h"
 

@@ -12,6 +12,7 @@
 #include "format/bytes.h"
 #include "format/grid.h"
 #include "format/limits.h"
+#include "format/numbers.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/tree/frame.h"
