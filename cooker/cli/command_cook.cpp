@@ -62,10 +62,10 @@ void print_report(const Arguments& arguments, const Summary& summary, double sec
     print_scene(summary, arguments.candidates);
     if (arguments.why) print_why(*summary.scene);
   } else {
-    print_trees(summary);
+    print_trees(summary, arguments.candidates);
   }
-  fmt::print("wrote {} in {:.2f} s; every triangle proven inside every box above it\n",
-             shown(arguments.job.output.string()), seconds);
+  fmt::print("wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every box above it\n",
+             shown(arguments.job.output.string()), summary.file_bytes, seconds);
 }
 
 // The same of a share, for which CLI11's Range lets NaN pass.
@@ -128,17 +128,26 @@ int run(Arguments& arguments) {
 void add_cook_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("cook", "Cook meshes into one .bxt file");
+  command.footer(
+      "Positions may be rounded: auto tries a grid of 24 bits over the largest extent beside every "
+      "bit of them, and says how far a vertex moved; --exact forbids it. " +
+      app.get_footer());
   std::vector<std::string> codecs{"auto"};
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
   CLI::Option* inputs = command.add_option(
-      "inputs", arguments->job.inputs,
+      "MESH", arguments->job.inputs,
       "Mesh files, one tree each; one file with a node graph that places several is a scene");
-  command.add_option("-o,--output", arguments->job.output, "The file to write")->required();
+  inputs->type_name("MESH");
+  command.add_option("-o,--output", arguments->job.output, "The file to write")
+      ->type_name("FILE")
+      ->required();
   CLI::Option* profile =
-      command.add_option("--profile", arguments->job.profile,
-                         "A scene.toml: what is asked of the scene, and so what may be left out");
+      command
+          .add_option("--profile", arguments->job.profile,
+                      "A scene.toml: what the scene is queried for, and so what may be left out")
+          ->type_name("FILE");
   CLI::Option* scene = command.add_flag("--scene", arguments->job.as_scene,
                                         "Make all inputs one scene of placed trees");
   command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
@@ -147,11 +156,13 @@ void add_cook_command(CLI::App& app, int& status) {
   command.add_flag("--why", arguments->why,
                    "Of a scene: print each part, its bytes, and what decided that it is there");
   command.add_flag("--candidates", arguments->candidates,
-                   "Of a scene: print all that was tried for each tree, not only what was chosen");
+                   "Print all that was tried for each tree, not only what was chosen");
   CLI::Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")
+                           ->type_name("NAME")
                            ->check(CLI::IsMember(codecs))
                            ->capture_default_str();
   CLI::Option* goal = command.add_option("--for", arguments->goal, "What auto minimises")
+                          ->type_name("GOAL")
                           ->check(CLI::IsMember({"memory", "speed", "balance"}))
                           ->capture_default_str();
   CLI::Option* exact =
@@ -160,42 +171,53 @@ void add_cook_command(CLI::App& app, int& status) {
   CLI::Option* tolerance = command.add_option(
       "--tolerance", arguments->job.options.grid.tolerance,
       "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
-  tolerance->check(positive_fault, "POSITIVE")->excludes(exact);
+  tolerance->type_name("LENGTH")->check(positive_fault)->excludes(exact);
   CLI::Option* grid_bits = command.add_option(
       "--grid-bits", arguments->job.options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
-  grid_bits->check(CLI::Range(kMinGridBits, kMaxGridBits))->excludes(exact)->excludes(tolerance);
+  grid_bits->type_name("N")
+      ->check(CLI::Range(kMinGridBits, kMaxGridBits)
+                  .description(fmt::format("{} to {}", kMinGridBits, kMaxGridBits)))
+      ->excludes(exact)
+      ->excludes(tolerance);
   CLI::Option* budget = command
                             .add_option("--max-bytes-per-triangle",
                                         arguments->job.options.wishes.max_bytes_per_triangle,
                                         "Choose nothing larger, nodes and geometry together")
-                            ->check(positive_fault, "POSITIVE");
+                            ->type_name("BYTES")
+                            ->check(positive_fault);
   CLI::Option* slowdown =
       command
           .add_option("--max-slowdown", arguments->job.options.wishes.max_slowdown,
                       "Choose nothing slower, in times of the fastest candidate")
-          ->check(positive_fault, "POSITIVE");
+          ->type_name("FACTOR")
+          ->check(positive_fault);
   CLI::Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
                                               "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
-  command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it")
-      ->check(CLI::Range(1, 1024));
+  command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024).description(""));
   const auto rare = [](CLI::Option* option) { return option->group(kRareOptions); };
   rare(command.add_option("--builder", arguments->builder, "Split rule"))
+      ->type_name("NAME")
       ->check(CLI::IsMember({"sah", "paper"}))
       ->capture_default_str();
   rare(command.add_option("--widths", arguments->widths, "Widths of bit-packed fields"))
+      ->type_name("NAME")
       ->check(CLI::IsMember({"exact", "estimated"}))
       ->capture_default_str();
   rare(command.add_option("--shrink-share", arguments->job.options.shrink_share,
                           "Codecs with a face a leaf cut off empty slabs from this share of a box "
                           "on; 1: never"))
+      ->type_name("SHARE")
       ->check(share_fault, "0.01 to 1")
       ->capture_default_str();
   rare(command.add_option("--costs", arguments->job.costs,
                           "Choose by the constants of your own machine, as `bench --calibrate "
-                          "--json` prints them: the choice may then differ from other machines'"));
+                          "--json` prints them: the choice may then differ from other machines'"))
+      ->type_name("FILE");
   CLI::Option* external =
       rare(command.add_flag("--external", arguments->external,
                             "Leave positions and corners to the application, which binds its own "
@@ -210,7 +232,8 @@ void add_cook_command(CLI::App& app, int& status) {
                         "Read formats that assimp reads once, not first in another process that "
                         "may crash"));
   rare(command.add_option("--depfile", arguments->job.depfile,
-                          "Write the files read, in make syntax"));
+                          "Write the files read, in make syntax"))
+      ->type_name("FILE");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   rare(command.add_flag("--try-all", arguments->job.options.try_all,
@@ -222,7 +245,7 @@ void add_cook_command(CLI::App& app, int& status) {
   }
   command.callback([arguments, inputs, profile, grid_bits, &status] {
     if (inputs->count() == 0 && profile->count() == 0) {
-      throw CLI::RequiredError("inputs, or --profile with a source");
+      throw CLI::RequiredError("MESH, or --profile with a source");
     }
     if (grid_bits->count() > 0) arguments->job.options.geometry = GeometryId::kGrid;
     status = run(*arguments);

@@ -180,9 +180,7 @@ void add_info_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
-  command.add_option("FILE", arguments->files, "Files to look into")
-      ->type_name("FILE")
-      ->required();
+  command.add_option("FILE", arguments->files, "Files to look into")->type_name("FILE")->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.callback([arguments, &status] { status = run(*arguments); });
 }

@@ -168,33 +168,41 @@ class OptionFields {
     required_.push_back(add_vector_option(command_, option_name(key), out, help));
   }
   void required(const char* key, double& out, const char* help) {
-    required_.push_back(command_.add_option(option_name(key), out, help));
+    required_.push_back(command_.add_option(option_name(key), out, help)->type_name("N"));
   }
   void optional(const char* key, double& out, const char* help, bool* given = nullptr) {
-    note(command_.add_option(option_name(key), out, help), given);
+    note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
   }
   void optional(const char* key, std::uint64_t& out, const char* help, bool* given = nullptr) {
     // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
-    note(command_.add_option(option_name(key), out, help)->check(CLI::NonNegativeNumber), given);
+    note(command_.add_option(option_name(key), out, help)
+             ->type_name("N")
+             ->check(CLI::NonNegativeNumber.description("")),
+         given);
   }
   void optional(const char* key, bool& out, const char* help) {
     command_.add_flag(option_name(key), out, help);
   }
   void second(SecondTree& tree) {
-    second_ = command_.add_option("file2", tree.file, "The second .bxt file");
-    command_.add_option_function<std::string>(
-        "--pose",
-        [this, &tree](const std::string& text) {
-          const std::optional<Pose> pose = parse_pose(text);
-          if (pose) {
-            tree.pose = *pose;
-          } else {
-            problem_ = fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", text);
-          }
-        },
-        "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row");
-    command_.add_option("--tree2", tree.tree, "Its tree, by number or name")->group(kRareOptions);
+    second_ = command_.add_option("FILE2", tree.file, "The second .bxt file")->type_name("FILE2");
+    command_
+        .add_option_function<std::string>(
+            "--pose",
+            [this, &tree](const std::string& text) {
+              const std::optional<Pose> pose = parse_pose(text);
+              if (pose) {
+                tree.pose = *pose;
+              } else {
+                problem_ = fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", text);
+              }
+            },
+            "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
+        ->type_name("POSE");
+    command_.add_option("--tree2", tree.tree, "Its tree, by number or name")
+        ->type_name("TREE")
+        ->group(kRareOptions);
     command_.add_option("--mesh2", tree.mesh, "Its source mesh, if it was cooked with --external")
+        ->type_name("FILE")
         ->group(kRareOptions);
   }
 
@@ -242,18 +250,25 @@ void add_kind(CLI::App& query, const std::shared_ptr<Arguments>& arguments, int&
 
 void add_query_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("query", "Ask a .bxt file");
+  CLI::App& command = *app.add_subcommand("query", "Query a .bxt file");
   command.add_option("FILE", arguments->file, "The file to query")->type_name("FILE")->required();
-  command.add_option("--tree", arguments->tree,
-                     "Which tree, by number or name [the scene of the file, or else tree 0]");
-  command.add_option("--move", arguments->moves,
-                     "Of a scene, as often as needed: INSTANCE=POSE, the instance by number or "
-                     "name, the pose as X,Y,Z or 12 numbers");
-  command.add_option("--batch", arguments->batch,
-                     "Ask every line of a file (- for standard input): JSON objects with the names "
-                     "of the options as keys, and \"kind\" if no kind of query is given here");
+  command
+      .add_option("--tree", arguments->tree,
+                  "Which tree, by number or name [the scene of the file, or else tree 0]")
+      ->type_name("TREE");
+  command
+      .add_option("--move", arguments->moves,
+                  "Of a scene, as often as needed: INSTANCE=POSE, the instance by number or "
+                  "name, the pose as X,Y,Z or 12 numbers")
+      ->type_name("INSTANCE=POSE");
+  command
+      .add_option("--batch", arguments->batch,
+                  "Query every line of a file (- for standard input): JSON objects with the names "
+                  "of the options as keys, and \"kind\" if no kind of query is given here")
+      ->type_name("FILE");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
+      ->type_name("FILE")
       ->group(kRareOptions);
   command.require_subcommand(0, 1);
   command.fallthrough();

@@ -122,6 +122,24 @@ void print_grid(const CookedTree& cooked) {
       cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error, cooked.collapsed);
 }
 
+// What was chosen for the only tree.
+void print_choice(const CookedTree& cooked) {
+  const std::vector<Candidate>& candidates = cooked.contest.candidates;
+  const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+  fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const Candidate& candidate = candidates[i];
+    if (!candidate.rejected.empty()) continue;
+    fmt::print(
+        "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry; {:.2f} times "
+        "the time of the fastest of {}\n",
+        codec_name(candidate.codec), geometry_name(candidate.geometry),
+        per_triangle(candidate.tree_bytes, cooked.tree),
+        per_triangle(candidate.bytes(), cooked.tree), slower[i], candidates.size());
+  }
+  print_grid(cooked);
+}
+
 // What was chosen for each tree, a line each.
 void print_choices(const Summary& summary) {
   std::size_t width = 4;
@@ -224,24 +242,24 @@ Json summary_json(const Summary& summary) {
   return json;
 }
 
-void print_trees(const Summary& summary) {
-  for (std::size_t i = 0; i < summary.trees.size(); ++i) {
-    const CookedTree& cooked = summary.trees[i];
-    fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
-    print_contest(cooked);
-    print_grid(cooked);
+void print_trees(const Summary& summary, bool candidates) {
+  if (candidates) {
+    for (const CookedTree& cooked : summary.trees) {
+      fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
+      print_contest(cooked);
+      print_grid(cooked);
+    }
+  } else if (summary.trees.size() == 1 && !summary.scene) {
+    print_choice(summary.trees.front());
+  } else {
+    print_choices(summary);
   }
   for (const ImportReport& import : summary.imports) print_import(import);
 }
 
 void print_scene(const Summary& summary, bool candidates) {
   const SceneSummary& scene = *summary.scene;
-  if (candidates) {
-    print_trees(summary);
-  } else {
-    print_choices(summary);
-    for (const ImportReport& import : summary.imports) print_import(import);
-  }
+  print_trees(summary, candidates);
   fmt::print("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
              scene.instances, scene.moving, summary.trees.size(), scene.placed_triangles,
              summary.file_bytes);

@@ -16,9 +16,9 @@ namespace boxtree::cooker {
 /// The trees; of a scene its counts and every line of --why, too.
 [[nodiscard]] Json summary_json(const Summary& summary);
 
-/// The candidates of each tree and what import found.
-void print_trees(const Summary& summary);
-/// Each tree on a line, or with the table of its `candidates`; and what the scene has.
+/// What was chosen for each tree, or the table of its `candidates`; and what import found.
+void print_trees(const Summary& summary, bool candidates);
+/// The same, and what the scene has.
 void print_scene(const Summary& summary, bool candidates);
 /// Each part, its bytes, and who decided.
 void print_why(const SceneSummary& scene);

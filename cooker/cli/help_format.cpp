@@ -129,7 +129,9 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
   const Value value = value_of(*option);
   std::string name = is_positional ? value.metavar : option->get_name(false, true);
   if (!is_positional) {
-    std::replace(name.begin(), name.end(), ',', ' ');  // "-o --output FILE"
+    if (const std::size_t comma = name.find(','); comma != std::string::npos) {
+      name.insert(comma + 1, " ");  // "-o, --output FILE"
+    }
     if (!value.metavar.empty()) name += " " + value.metavar;
   }
   if (option->get_expected_max() > 1) name += "...";

@@ -10,6 +10,7 @@
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
 #include "format/grid_leaf.h"
+#include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
