@@ -1,39 +1,463 @@
 // SPDX-License-Identifier: MIT
-// One mesh through the stages in the order the data flows: build -> encode -> choose.
+// The stages, each a member of Cook in the order of the data.
 #include "cooker/cook.h"
 
-#include <cstdint>
-#include <span>
+#include <algorithm>
+#include <iterator>
+#include <map>
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "cooker/cook_record.h"
+#include "cooker/scene/hidden_faces.h"
+#include "cooker/scene/plan.h"
+#include "cooker/scene/precision.h"
+#include "cooker/scene/scene_grid.h"
+#include "cooker/scene_account.h"
+#include "format/container.h"
+#include "format/numbers.h"
+#include "runtime/primitive/float_state.h"
+
 namespace boxtree::cooker {
+namespace {
 
-CookedTree cooked_of(TriedTree tried, std::size_t chosen, const CookOptions& options) {
-  CookedTree cooked;
-  cooked.collapsed = tried.collapsed[tried.nodes[chosen].family];
-  cooked.tree = tried.take(chosen);
-  cooked.contest = std::move(tried.contest);
-  if (!options.face_ids) {
-    cooked.left_out.push_back(
-        {"face_ids", std::uint64_t{cooked.tree.face_count} * 4, "--no-face-ids"});
+// Without a profile, what the options say holds for every mesh.
+void apply_options(const CookOptions& options, ScenePlan& plan) {
+  for (PlannedMesh& mesh : plan.meshes) {
+    mesh.codec = options.codec;
+    mesh.goal = options.wishes.goal;
+    mesh.face_ids = options.face_ids;
+    mesh.external = options.geometry == GeometryId::kExternal;
+    mesh.exact = options.geometry == GeometryId::kExact && !options.may_use_grid;
+    if (!options.grid.tolerance) continue;
+    mesh.default_precision = false;
+    mesh.tolerance = mesh.largest_scale > 0
+                         ? divided_below(*options.grid.tolerance, mesh.largest_scale)
+                         : *options.grid.tolerance;
   }
-  return cooked;
 }
 
-Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
-                             const std::optional<Grid>& scene) {
-  Result<TriedTree> tried = try_encodings(mesh, options, scene);
-  if (!tried) return tried.error();
-  const auto chosen = choose(std::span(&tried->contest, 1), options.wishes);
-  if (!chosen) return Error{chosen.code(), mesh.name + ": " + chosen.error().detail};
-  return cooked_of(std::move(*tried), chosen->front(), options);
+void drop_hidden_faces(SourceMesh& mesh, const std::vector<FaceRange>& ranges) {
+  if (ranges.empty()) return;
+  SourceMesh kept;
+  for (std::size_t i = 0; i < mesh.faces.size(); ++i) {
+    const std::uint32_t id = mesh.face_id(i);
+    if (is_hidden(ranges, id)) continue;
+    kept.faces.push_back(mesh.faces[i]);
+    kept.face_ids.push_back(id);
+  }
+  mesh.faces = std::move(kept.faces);
+  mesh.face_ids = std::move(kept.face_ids);
 }
 
-Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options) {
-  options.codec = codec;
-  Result<CookedTree> cooked = cook_mesh(mesh, options);
-  if (!cooked) return cooked.error();
-  return std::move(cooked->tree);
+class Cook {
+ public:
+  Cook(CookInput input, const Profile& profile, const CookOptions& options,
+       const Progress& progress)
+      : input_(std::move(input)), profile_(profile), options_(options), progress_(progress) {}
+
+  Result<CookedFile> run() {
+    if (Status status = plan(); !status) return status.error();
+    if (Status status = try_meshes(); !status) return status.error();
+    if (Status status = choose_encodings(); !status) return status.error();
+    assemble();
+    if (Status status = keep_to_bytes(); !status) return status.error();
+    if (Status status = summarise(); !status) return status.error();
+    return std::move(file_);
+  }
+
+ private:
+  Status plan() {
+    if (!input_.has_top_level) {  // nothing is placed, so that the options say all there is to say
+      plan_.meshes.resize(input_.scene.meshes.size());
+      return {};
+    }
+    Result<ScenePlan> plan = plan_scene(input_.scene, profile_);
+    if (!plan) return plan.error();
+    plan_ = std::move(*plan);
+    if (profile_.path.empty()) apply_options(options_, plan_);
+    return {};
+  }
+
+  // Called for one mesh after the other, maybe again for one that is there.
+  Status import_mesh(std::size_t mesh) {
+    if (!input_.importer || mesh < input_.imports.size()) return {};
+    Result<Imported> imported = input_.importer(mesh);
+    if (!imported) return imported.error();
+    input_.scene.meshes[mesh].mesh = std::move(imported->mesh);
+    input_.imports.push_back(std::move(imported->report));
+    return {};
+  }
+
+  // The grid of each mesh that must not choose its own.
+  Result<std::vector<std::optional<Grid>>> grids() {
+    if (input_.has_top_level) return scene_grids(input_.scene, plan_, options_.grid.bits);
+    std::vector<std::optional<Grid>> grids(plan_.meshes.size());
+    const bool may_choose_grid =
+        options_.may_use_grid && (options_.try_all || may_grid_win(options_.wishes));
+    const bool may_share =
+        grids.size() > 1 && (options_.geometry == GeometryId::kGrid || may_choose_grid);
+    if (!may_share) return grids;
+    // One for all, so that what touches still does: all are measured first.
+    Eigen::AlignedBox3d bounds;
+    for (std::size_t m = 0; m < grids.size(); ++m) {
+      if (Status status = import_mesh(m); !status) return status.error();
+      bounds.extend(bounds_of(input_.scene.meshes[m].mesh));
+    }
+    const Result<Grid> shared = choose_grid(bounds, options_.grid);
+    if (shared) {
+      grids.assign(grids.size(), *shared);
+    } else if (!options_.may_use_grid) {
+      return shared.error();
+    }
+    return grids;
+  }
+
+  [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
+    SearchOptions search = static_cast<const SearchOptions&>(options_);
+    if (!input_.has_top_level) return search;
+    const PlannedMesh& planned = plan_.meshes[mesh];
+    search.codec = planned.codec;
+    search.wishes.goal = planned.goal;
+    search.wishes.queries = planned.queries;
+    if (profile_.budget.bytes_per_triangle) {
+      search.wishes.max_bytes_per_triangle = profile_.budget.bytes_per_triangle->value;
+    }
+    if (profile_.budget.slowdown) {
+      search.wishes.max_slowdown = profile_.budget.slowdown->value;
+    }
+    // A number of bytes for the whole file may need any of them.
+    if (profile_.budget.bytes) search.try_all = true;
+    search.face_ids = planned.face_ids || has_several_materials(mesh);
+    search.grid.tolerance = planned.tolerance;
+    if (planned.external) {
+      search.geometry = GeometryId::kExternal;
+    } else if (options_.geometry == GeometryId::kGrid && has_grid && profile_.path.empty()) {
+      search.geometry = GeometryId::kGrid;
+    } else {
+      search.geometry = GeometryId::kExact;
+    }
+    search.may_use_grid = search.geometry == GeometryId::kExact && has_grid;
+    return search;
+  }
+
+  [[nodiscard]] bool has_several_materials(std::size_t mesh) const {
+    return plan_.meshes[mesh].materials && input_.scene.meshes[mesh].materials.size() > 1;
+  }
+
+  Status try_meshes() {
+    const auto grids = this->grids();
+    if (!grids) return grids.error();
+    for (std::size_t m = 0; m < plan_.meshes.size(); ++m) {
+      if (!plan_.meshes[m].kept) continue;
+      if (Status status = import_mesh(m); !status) return status;
+      SourceMesh& mesh = input_.scene.meshes[m].mesh;
+      const std::string number =
+          input_.has_top_level ? fmt::format(" ({} of {})", m + 1, plan_.meshes.size()) : "";
+      announce(progress_, "build " + mesh.name + number);
+      drop_hidden_faces(mesh, plan_.meshes[m].hidden_faces);
+      if (input_.has_top_level && mesh.faces.empty()) {  // no instance is of a tree without faces
+        return Error{Errc::kProfileInvalid,
+                     mesh.name + ": hidden_faces leave nothing of it; leave_out drops an object"};
+      }
+      const SearchOptions search = search_options(m, (*grids)[m].has_value());
+      Result<TriedTree> tried = try_encodings(mesh, search, (*grids)[m]);
+      if (!tried) return in_mesh(m, tried.error());
+      mesh.positions = {};
+      mesh.faces = {};
+      mesh.face_ids = {};
+      mesh_of_tree_.push_back(m);
+      wishes_.push_back(search.wishes);
+      may_use_grid_.push_back(search.may_use_grid);
+      contests_.push_back(std::move(tried->contest));
+      tried_.push_back(std::move(*tried));
+    }
+    return {};
+  }
+
+  // Trees that share their geometry store are chosen together.
+  Status choose_encodings() {
+    chosen_.resize(tried_.size());
+    std::vector<std::size_t> sharing;
+    std::vector<Contest> contests;
+    std::vector<Wishes> wishes;
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      if (shares_store(t)) {
+        sharing.push_back(t);
+        contests.push_back(std::move(contests_[t]));
+        wishes.push_back(wishes_[t]);
+        continue;
+      }
+      const auto chosen = choose(std::span(&contests_[t], 1), wishes_[t]);
+      if (!chosen) return in_mesh(mesh_of_tree_[t], chosen.error());
+      chosen_[t] = chosen->front();
+    }
+    if (sharing.empty()) return {};
+    const auto chosen = choose_each(contests, wishes);
+    if (!chosen) return chosen.error();
+    for (std::size_t i = 0; i < sharing.size(); ++i) {
+      chosen_[sharing[i]] = (*chosen)[i];
+      contests_[sharing[i]] = std::move(contests[i]);
+    }
+    return {};
+  }
+
+  // Whether a tree has the geometry store that others have, so that what touches still does. In a
+  // scene it has its own where the profile, or what it asks of the tree, has decided already, and
+  // touches within its tolerance.
+  [[nodiscard]] bool shares_store(std::size_t tree) const {
+    const auto has = [&](GeometryId store) {
+      const std::vector<Candidate>& candidates = contests_[tree].candidates;
+      const std::vector<bool> eligible = may_be_chosen(candidates);
+      for (std::size_t i = 0; i < candidates.size(); ++i) {
+        if (eligible[i] && candidates[i].geometry == store) return true;
+      }
+      return false;
+    };
+    return !input_.has_top_level ||
+           (may_use_grid_[tree] && has(GeometryId::kExact) && has(GeometryId::kGrid));
+  }
+
+  // Users list trees side by side themselves; of a scene an error says which mesh it is about.
+  [[nodiscard]] Error in_mesh(std::size_t mesh, const Error& error) const {
+    if (!input_.has_top_level) return error;
+    return {error.code, input_.scene.meshes[mesh].mesh.name + ": " + error.detail};
+  }
+
+  // A tree of the file: the chosen encoding without what only served to make it. What it was chosen
+  // from is kept where the file may turn out too large.
+  [[nodiscard]] EncodedTree tree_of(std::size_t t) {
+    const PlannedMesh& planned = plan_.meshes[mesh_of_tree_[t]];
+    TriedTree::Nodes& nodes = tried_[t].nodes[chosen_[t]];
+    EncodedTree& family = tried_[t].families[nodes.family];
+    const bool may_choose_again = profile_.budget.bytes.has_value();
+    EncodedTree tree = may_choose_again ? family : std::move(family);
+    tree.nodes = may_choose_again ? nodes.nodes : std::move(nodes.nodes);
+    if (!planned.names) tree.name.clear();
+    return tree;
+  }
+
+  void assemble() {
+    file_.trees.clear();
+    for (std::size_t t = 0; t < tried_.size(); ++t) file_.trees.push_back(tree_of(t));
+    if (input_.has_top_level) place_trees();
+    if (options_.cook_record) file_.record = make_cook_record(options_, input_, profile_);
+  }
+
+  void place_trees() {
+    SceneParts& parts = file_.scene.emplace();
+    parts.queries = plan_.queries;
+    number_materials(parts);
+    std::vector<std::uint32_t> tree_of_mesh(plan_.meshes.size(), 0);
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      tree_of_mesh[mesh_of_tree_[t]] = static_cast<std::uint32_t>(t);
+      parts.tree_materials.push_back(materials_of(t, file_.trees[t]));
+    }
+    for (std::size_t m = 0; m < plan_.meshes.size(); ++m) {
+      const auto& first = plan_.meshes[m].same_as;
+      if (first) tree_of_mesh[m] = tree_of_mesh[*first];
+    }
+    for (std::size_t i = 0; i < plan_.instances.size(); ++i) {
+      const PlannedInstance& planned = plan_.instances[i];
+      if (!planned.kept) continue;
+      const SceneInstance& source = input_.scene.instances[i];
+      parts.instances.push_back({tree_of_mesh[source.mesh], source.id, planned.layer, planned.moves,
+                                 planned.names ? source.name : std::string(), source.pose});
+    }
+    for (const PlannedLayer& layer : plan_.layers) {
+      parts.layers.push_back({layer.name, layer.meets, layer.queries});
+    }
+    add_left_out(tree_of_mesh, parts);
+  }
+
+  // Materials of meshes that are kept with theirs, in the order of the source.
+  void number_materials(SceneParts& parts) {
+    std::vector<bool> used(input_.scene.materials.size(), false);
+    for (const std::size_t m : mesh_of_tree_) {
+      if (!plan_.meshes[m].materials) continue;
+      for (const MaterialRun& run : input_.scene.meshes[m].materials) used[run.material] = true;
+    }
+    material_number_.assign(used.size(), kNoMaterial);
+    for (std::size_t i = 0; i < used.size(); ++i) {
+      if (!used[i]) continue;
+      material_number_[i] = static_cast<std::uint32_t>(parts.materials.size());
+      parts.materials.push_back(plan_.material_names ? input_.scene.materials[i] : std::string());
+    }
+  }
+
+  // By runs of source faces where faces know their numbers, else one by one; ids that served this
+  // alone go.
+  [[nodiscard]] TreeMaterials materials_of(std::size_t t, EncodedTree& tree) const {
+    const std::size_t m = mesh_of_tree_[t];
+    const std::vector<MaterialRun>& runs = input_.scene.meshes[m].materials;
+    TreeMaterials materials;
+    const bool ids_are_wanted = plan_.meshes[m].face_ids;
+    const bool ids_are_structure =
+        tree.geometry.geometry == GeometryId::kExternal;  // leaves name faces by them
+    const auto material_at = [&](std::uint32_t id) {
+      const auto after = std::upper_bound(
+          runs.begin(), runs.end(), id,
+          [](std::uint32_t value, const MaterialRun& run) { return value < run.first_face; });
+      return material_number_[std::prev(after)->material];
+    };
+    if (plan_.meshes[m].materials && !runs.empty()) {
+      if (runs.size() == 1 || ids_are_wanted || ids_are_structure) {
+        for (const MaterialRun& run : runs) {
+          materials.runs.push_back({run.first_face, material_number_[run.material]});
+        }
+      } else {
+        const NumberView ids(tree.geometry.face_ids.data(), tree.geometry.face_id_bytes);
+        for (std::uint32_t face = 0; face < tree.face_count; ++face) {
+          materials.faces.push_back(material_at(ids[face]));
+        }
+      }
+    }
+    if (!ids_are_wanted && !ids_are_structure) {
+      tree.geometry.face_ids = {};
+      tree.geometry.face_id_bytes = 0;
+    }
+    return materials;
+  }
+
+  // What a reader may miss: of the whole scene, or of one tree; once where one line took it from
+  // every tree. Queries that only some layers answer are told by the layers.
+  void add_left_out(const std::vector<std::uint32_t>& tree_of_mesh, SceneParts& parts) const {
+    std::map<std::pair<Part, std::uint32_t>, std::vector<std::uint32_t>> of_trees;  // part, line
+    for (const Decision& decision : plan_.decisions) {
+      const std::optional<Part> part = part_of(decision.aspect);
+      if (decision.kept || !part) continue;
+      if (decision.owner_kind == OwnerKind::kFile) {
+        parts.left_out.push_back({*part, kNoOwner, decision.line, profile_.cite(decision.line)});
+      } else if (decision.owner_kind == OwnerKind::kMesh && plan_.meshes[decision.owner].kept &&
+                 (*part == Part::kFaceIds || *part == Part::kMaterials)) {
+        of_trees[{*part, decision.line}].push_back(tree_of_mesh[decision.owner]);
+      }
+    }
+    if (profile_.path.empty() && !options_.face_ids) {
+      parts.left_out.push_back({Part::kFaceIds, kNoOwner, 0, "--no-face-ids"});
+    }
+    for (const auto& [what, trees] : of_trees) {
+      const auto& [part, line] = what;
+      const bool is_all = trees.size() == file_.trees.size();
+      for (const std::uint32_t tree : trees) {
+        parts.left_out.push_back({part, is_all ? kNoOwner : tree, line, profile_.cite(line)});
+        if (is_all) break;
+      }
+    }
+  }
+
+  // A file that is too large: trees change to smaller candidates, first where a byte saved costs
+  // the least time, until it fits.
+  Status keep_to_bytes() {
+    if (!profile_.budget.bytes) return {};
+    const std::uint64_t limit = profile_.budget.bytes->value;
+    for (;;) {
+      const Result<FileLayout> layout = layout_of(file_.parts());
+      if (!layout) return layout.error();
+      if (layout->bytes <= limit) return {};
+      if (!make_something_smaller()) {
+        return Error{Errc::kBudgetUnreachable,
+                     fmt::format("{}: wanted a file of at most {} bytes; the smallest that is "
+                                 "possible has {}",
+                                 profile_.cite(profile_.budget.bytes->line), limit, layout->bytes)};
+      }
+      assemble();
+    }
+  }
+
+  bool make_something_smaller() {
+    std::size_t best_tree = tried_.size(), best_candidate = 0;
+    double least = 0;
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      const std::vector<Candidate>& candidates = contests_[t].candidates;
+      const std::vector<double> slower = slowdowns(candidates, wishes_[t].queries);
+      const std::vector<bool> eligible = may_be_chosen(candidates);
+      const Candidate& now = candidates[chosen_[t]];
+      for (std::size_t c = 0; c < candidates.size(); ++c) {
+        if (!eligible[c] || candidates[c].bytes() >= now.bytes()) continue;
+        if (slower[c] > wishes_[t].max_slowdown.value_or(slower[c])) continue;
+        const double cost = (slower[c] - slower[chosen_[t]]) /
+                            static_cast<double>(now.bytes() - candidates[c].bytes());
+        if (best_tree != tried_.size() && cost >= least) continue;
+        best_tree = t;
+        best_candidate = c;
+        least = cost;
+      }
+    }
+    if (best_tree == tried_.size()) return false;
+    std::vector<Candidate>& candidates = contests_[best_tree].candidates;
+    candidates[chosen_[best_tree]].rejected = "over the budget of the file's bytes";
+    candidates[best_candidate].rejected.clear();
+    chosen_[best_tree] = best_candidate;
+    return true;
+  }
+
+  Status summarise() {
+    Summary& summary = file_.summary;
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      CookedTree tree;
+      tree.tree.name = input_.scene.meshes[mesh_of_tree_[t]].mesh.name;
+      tree.collapsed = tried_[t].collapsed_of(chosen_[t]);
+      if (!input_.has_top_level && !options_.face_ids) {
+        const std::uint64_t bytes = std::uint64_t{file_.trees[t].face_count} * 4;
+        tree.left_out.push_back({"face_ids", bytes, "--no-face-ids"});
+      }
+      summary.trees.push_back(std::move(tree));
+    }
+    if (input_.has_top_level) {
+      const Result<FileLayout> layout = layout_of(file_.parts());
+      if (!layout) return layout.error();
+      summary.scene = scene_summary(*layout);
+    }
+    for (std::size_t t = 0; t < tried_.size(); ++t) {
+      summary.trees[t].contest = std::move(contests_[t]);
+    }
+    summary.imports = std::move(input_.imports);
+    return {};
+  }
+
+  [[nodiscard]] SceneSummary scene_summary(const FileLayout& layout) const {
+    SceneSummary scene;
+    const std::vector<PlacedTree>& instances = file_.scene->instances;
+    for (const PlacedTree& instance : instances) {
+      ++scene.instances;
+      scene.moving += instance.moves ? 1 : 0;
+      scene.placed_triangles += file_.trees[instance.tree].triangle_count;
+    }
+    scene.instances_left_out =
+        static_cast<std::uint32_t>(plan_.instances.size() - instances.size());
+    scene.meshes = static_cast<std::uint32_t>(plan_.meshes.size());
+    scene.notices = plan_.notices;
+    scene.why = account({input_.scene, profile_, plan_, mesh_of_tree_, file_.trees, contests_,
+                         chosen_, *file_.scene, options_},
+                        layout);
+    return scene;
+  }
+
+  CookInput input_;
+  const Profile& profile_;
+  const CookOptions& options_;
+  const Progress& progress_;
+  ScenePlan plan_;
+  // One a tree of the file.
+  std::vector<std::size_t> mesh_of_tree_;
+  std::vector<TriedTree> tried_;
+  std::vector<Contest> contests_;
+  std::vector<Wishes> wishes_;
+  std::vector<bool> may_use_grid_;
+  std::vector<std::size_t> chosen_;
+
+  std::vector<std::uint32_t> material_number_;
+  CookedFile file_;
+};
+
+}  // namespace
+
+Result<CookedFile> cook(CookInput input, const Profile& profile, const CookOptions& options,
+                        const Progress& progress) {
+  const DefaultFloatState state;
+  return Cook(std::move(input), profile, options, progress).run();
 }
 
 }  // namespace boxtree::cooker

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a cook is told and what it tells, and one mesh through the stages in memory: build -> encode
-// -> choose. Scenes: scene/cook_scene.h; files: shell/cook_job.h.
+// The one pipeline, in memory: a scene to the parts of a file and what is told of them. Files:
+// shell/cook_job.h.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,6 +12,7 @@
 #include "cooker/choose/search.h"
 #include "cooker/encode/encoded_scene.h"
 #include "cooker/import/import.h"
+#include "cooker/scene/cook_input.h"
 #include "cooker/write/file_writer.h"
 #include "format/blob.h"
 
@@ -35,7 +35,7 @@ struct CookedTree {
   EncodedTree tree;
   std::uint32_t collapsed = 0;  // triangles that lost their area on the grid; they are kept
   Contest contest;
-  std::vector<LeftOut> left_out;
+  std::vector<LeftOut> left_out;  // without a top level; of a scene SceneSummary::why says it
 };
 
 /// One line of --why: a part of the file, or one that is not in it.
@@ -65,53 +65,39 @@ struct Summary {
   std::vector<ImportReport> imports;
   std::vector<std::filesystem::path> files_read;
   std::uint64_t file_bytes = 0;
-  std::optional<SceneSummary> scene;  // nothing: trees side by side
+  std::optional<SceneSummary> scene;  // nothing without a top level
 };
 
 /// A file that was cooked and not written yet.
 struct CookedFile {
   std::vector<EncodedTree> trees;
-  std::optional<SceneParts> scene;
+  std::optional<SceneParts> scene;  // nothing without a top level
   std::string record;
   Summary summary;  // its trees are named, and hold what they were chosen from
 
   [[nodiscard]] FileParts parts() const { return {trees, record, scene ? &*scene : nullptr}; }
 };
 
-/// Told of every step ("import bunny.obj"); may be empty.
-using Progress = std::function<void(const std::string& step)>;
+/// Cooks a scene: plan -> build -> encode -> choose -> account. With a top level, `profile` decides
+/// codec, goal, geometry, tolerance and face ids of each mesh, or `options` do where there is no
+/// profile. Without one each mesh becomes a tree as `options` say, `profile` being none; several
+/// share one geometry store and, where they may be on a grid, one grid, so that what touches still
+/// does.
+///
+/// The bytes depend on neither threads nor folders. Errors: those of CookInput::importer,
+/// plan_scene, choose_grid, try_encodings, choose and encode_scene; kBudgetUnreachable for a limit
+/// of the file, naming the nearest that is possible. Meshes are freed once they are encoded; all
+/// that may be chosen stays until the geometry store, which trees share, is known. Runs on the
+/// threads of the enclosing oneTBB arena; may be called from several threads at once.
+Result<CookedFile> cook(CookInput input, const Profile& profile, const CookOptions& options,
+                        const Progress& progress = {});
 
-/// Tries the encodings of a mesh and keeps the one that is wished for. Preconditions and errors as
-/// of try_encodings and choose.
+/// One mesh alone: tries its encodings and keeps the one that is wished for. `scene`: as
+/// try_encodings. Errors: those of try_encodings and choose.
 Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
                              const std::optional<Grid>& scene = {});
 
-/// What is reported of the candidate of a tree that was chosen.
-[[nodiscard]] CookedTree cooked_of(TriedTree tried, std::size_t chosen, const CookOptions& options);
-
 /// The tree that cook_mesh makes in one codec, whatever `options` say of codecs.
 Result<EncodedTree> cook_as(const SourceMesh& mesh, CodecId codec, CookOptions options = {});
-
-/// Meshes to trees side by side, each as soon as it is added, so that no mesh need stay. All that
-/// may be chosen stays until the geometry store, which the trees share, is known. Runs on the
-/// threads of the enclosing oneTBB arena, whose number changes no byte.
-class TreesCook {
- public:
-  TreesCook(const CookOptions& options, const Progress& progress)
-      : options_(options), progress_(progress) {}
-
-  /// `grid`: what all trees share. Errors: as try_encodings.
-  Status add(Imported imported, const std::optional<Grid>& grid);
-
-  /// Errors: as choose.
-  Result<CookedFile> finish();
-
- private:
-  const CookOptions& options_;
-  const Progress& progress_;
-  std::vector<TriedTree> tried_;
-  std::vector<Contest> contests_;
-  std::vector<ImportReport> imports_;
-};
 
 }  // namespace boxtree::cooker

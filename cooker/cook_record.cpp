@@ -2,10 +2,14 @@
 // Options and sources as JSON, in one order.
 #include "cooker/cook_record.h"
 
+#include <cstdint>
+#include <span>
+
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "cooker/version.h"
+#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -21,10 +25,20 @@ nlohmann::ordered_json budget(const std::optional<double>& limit) {
   return *limit;
 }
 
+std::string hash_text(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
+}
+
+std::uint64_t hash_of(const Profile& profile) {
+  std::string text;
+  for (const std::string& line : profile.lines) text += line + "\n";
+  return checksum(std::as_bytes(std::span(text)));
+}
+
 }  // namespace
 
-std::string make_cook_record(const CookOptions& options, std::span<const RecordedSource> sources,
-                             std::uint64_t profile) {
+std::string make_cook_record(const CookOptions& options, const CookInput& input,
+                             const Profile& profile) {
   nlohmann::ordered_json record;
   record["tool"] = fmt::format("boxtree {}", kVersion);
   record["options"] = {
@@ -45,12 +59,12 @@ std::string make_cook_record(const CookOptions& options, std::span<const Recorde
     record["options"]["shrink_share"] = options.shrink_share;
   }
   record["sources"] = nlohmann::ordered_json::array();
-  for (const RecordedSource& source : sources) {
-    record["sources"].push_back({{"name", source.name},
-                                 {"xxh3", fmt::format("{:016x}", source.content_hash)},
-                                 {"faces", source.faces}});
+  for (std::size_t i = 0; i < input.imports.size(); ++i) {
+    record["sources"].push_back({{"name", input.import_names[i]},
+                                 {"xxh3", hash_text(input.imports[i].content_hash)},
+                                 {"faces", input.imports[i].source_faces}});
   }
-  if (profile != 0) record["profile"] = {{"xxh3", fmt::format("{:016x}", profile)}};
+  if (!profile.path.empty()) record["profile"] = {{"xxh3", hash_text(hash_of(profile))}};
   return record.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

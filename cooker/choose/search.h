@@ -53,6 +53,10 @@ struct TriedTree {
   std::vector<EncodedTree> families;     // without nodes
   std::vector<std::uint32_t> collapsed;  // of each family: triangles that lost their area on a grid
 
+  [[nodiscard]] std::uint32_t collapsed_of(std::size_t candidate) const {
+    return collapsed[nodes[candidate].family];
+  }
+
   /// The tree of a candidate; the others are gone then.
   [[nodiscard]] EncodedTree take(std::size_t candidate);
 };

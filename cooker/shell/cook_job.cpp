@@ -2,18 +2,12 @@
 #include "cooker/shell/cook_job.h"
 
 #include <array>
-#include <optional>
 #include <utility>
-#include <variant>
-
-#include <fmt/format.h>
 
 #include "cooker/choose/cost_file.h"
-#include "cooker/scene/cook_scene.h"
 #include "cooker/shell/depfile.h"
 #include "cooker/write/blob_writer.h"
 #include "cooker/write/outputs.h"
-#include "format/limits.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -29,16 +23,14 @@ class Job {
   Result<Summary> run() {
     if (Status status = check_job(job_); !status) return status.error();
     if (Status status = read_settings(); !status) return status.error();
-    Result<CookedFile> cooked = cook();
+    Result<CookInput> input = load();
+    if (!input) return input.error();
+    Result<CookedFile> cooked = cook(std::move(*input), profile_, options_, progress_);
     if (!cooked) return cooked.error();
     return write(std::move(*cooked));
   }
 
  private:
-  void step(const std::string& what) const {
-    if (progress_) progress_(what);
-  }
-
   Status read_settings() {
     if (!job_.costs.empty()) {
       Result<std::vector<CodecCost>> costs = read_costs(job_.costs);
@@ -53,82 +45,14 @@ class Job {
     return {};
   }
 
-  Result<CookedFile> cook() {
+  [[nodiscard]] Result<CookInput> load() const {
     if (!job_.profile.empty() || job_.as_scene) {
-      Result<LoadedScene> loaded = load_scene(job_.inputs, profile_, options_.import,
-                                              [this](const std::string& what) { step(what); });
-      if (!loaded) return loaded.error();
-      return cook_scene(std::move(*loaded), profile_, options_, progress_);
+      return load_scene(job_.inputs, profile_, options_.import, progress_);
     }
-    if (job_.flatten || job_.inputs.size() != 1) return cook_trees();
-    return cook_as_it_is();
-  }
-
-  // The only input: a scene if it places meshes twice or more.
-  Result<CookedFile> cook_as_it_is() {
-    const fs::path& input = job_.inputs.front();
-    step("import " + input.filename().string());
-    Result<ImportedFile> imported = import_file(input, options_.import);
-    if (!imported) return imported.error();
-    if (auto* mesh = std::get_if<Imported>(&*imported)) {
-      mesh->mesh.name = input.stem().string();
-      TreesCook trees(options_, progress_);
-      if (Status status = trees.add(std::move(*mesh), {}); !status) return status.error();
-      return trees.finish();
+    if (job_.flatten || job_.inputs.size() != 1) {
+      return load_trees(job_.inputs, options_.import, progress_);
     }
-    LoadedScene loaded;
-    loaded.scene = std::move(std::get<SourceScene>(*imported));
-    loaded.imports.push_back(std::move(loaded.scene.report));
-    loaded.import_names.push_back(input.filename().string());
-    return cook_scene(std::move(loaded), profile_, options_, progress_);
-  }
-
-  Result<CookedFile> cook_trees() {
-    // Each is a tree: told before hours of work, not after.
-    if (job_.inputs.size() > kMaxTrees) {
-      return Error{Errc::kMeshTooLarge,
-                   fmt::format("{} inputs, each a tree: a file holds {} at most",
-                               job_.inputs.size(), kMaxTrees)};
-    }
-    TreesCook trees(options_, progress_);
-    const bool may_use_grid =
-        options_.may_use_grid && (options_.try_all || may_grid_win(options_.wishes));
-    const bool may_share_grid =
-        job_.inputs.size() > 1 && (options_.geometry == GeometryId::kGrid || may_use_grid);
-    if (may_share_grid) return cook_on_one_grid(trees);
-    for (const fs::path& input : job_.inputs) {
-      Result<Imported> imported = import_tree(input);
-      if (!imported) return imported.error();
-      if (Status status = trees.add(std::move(*imported), {}); !status) return status.error();
-    }
-    return trees.finish();
-  }
-
-  // One grid for all inputs, so that what touches still does: all of them are measured first.
-  Result<CookedFile> cook_on_one_grid(TreesCook& trees) {
-    std::vector<Imported> meshes;
-    Eigen::AlignedBox3d bounds;
-    for (const fs::path& input : job_.inputs) {
-      Result<Imported> imported = import_tree(input);
-      if (!imported) return imported.error();
-      bounds.extend(bounds_of(imported->mesh));
-      meshes.push_back(std::move(*imported));
-    }
-    const Result<Grid> chosen = choose_grid(bounds, options_.grid);
-    if (!chosen && !options_.may_use_grid) return chosen.error();
-    std::optional<Grid> grid;
-    if (chosen) grid = *chosen;
-    for (Imported& mesh : meshes) {
-      if (Status status = trees.add(std::move(mesh), grid); !status) return status.error();
-    }
-    return trees.finish();
-  }
-
-  Result<Imported> import_tree(const fs::path& input) const {
-    step("import " + input.filename().string());
-    Result<Imported> imported = import_mesh(input, options_.import);
-    if (imported) imported->mesh.name = input.stem().string();
-    return imported;
+    return load_file(job_.inputs.front(), options_.import, progress_);
   }
 
   Result<Summary> write(CookedFile cooked) {
@@ -146,7 +70,7 @@ class Job {
       const Status status = write_depfile(job_.depfile, job_.output, summary.files_read);
       if (!status) return status.error();
     }
-    step("write " + job_.output.filename().string());
+    announce(progress_, "write " + job_.output.filename().string());
     const Result<std::uint64_t> bytes = write_parts(cooked.parts());
     if (!bytes) return bytes.error();
     summary.file_bytes = *bytes;

@@ -32,7 +32,7 @@ Status check_job(const CookJob& job);
 /// the place of another only when it is whole; before it the depfile. On any error nothing of the
 /// output changes. The bytes do not depend on threads or folders. Errors: those of check_job;
 /// kWriteFailed, also where an output is a file that was read; those of read_costs, read_profile,
-/// import, TreesCook, cook_scene and write_file.
+/// load_scene, load_file, load_trees, cook and write_file.
 Result<Summary> cook_job(const CookJob& job, const Progress& progress = {});
 
 }  // namespace boxtree::cooker

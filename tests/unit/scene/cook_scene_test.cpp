@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Files to scenes: answers against brute force over all placed triangles of the source, what
 // leaving out does not change, and the account of the bytes.
-#include "cooker/scene/cook_scene.h"
-
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -13,6 +11,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
 #include "cooker/shell/cook_job.h"
@@ -587,21 +586,38 @@ TEST(CookScene, InvalidScenesAreRefused) {
   EXPECT_FALSE(fs::exists(out));
 }
 
+TEST(CookScene, WithoutATopLevelEachMeshIsATree) {
+  const std::vector<SourceMesh> meshes{test::torus(20, 12), test::soup(50, 1)};
+  CookInput input;
+  input.has_top_level = false;
+  std::vector<EncodedTree> expected;
+  CookOptions options;
+  options.cook_record = false;
+  for (const SourceMesh& mesh : meshes) {
+    input.scene.meshes.push_back({mesh, {}});
+    expected.push_back(require(cook_mesh(mesh, options)).tree);
+  }
+  const CookedFile file = require(cook(std::move(input), {}, options));
+  EXPECT_FALSE(file.scene.has_value());
+  EXPECT_FALSE(file.summary.scene.has_value());
+  EXPECT_EQ(file.summary.trees.size(), meshes.size());
+  EXPECT_EQ(require(serialize(file.parts())), serialize(expected));
+}
+
 // In memory, too, where no cook_job() has seen to it.
 TEST(CookScene, TheCallersFloatingPointStateChangesNoByte) {
   const Profile no_profile;
   const auto loaded = [&] {
-    return require(
-        load_scene(std::vector<fs::path>{kLevel}, no_profile, {}, [](const std::string&) {}));
+    return require(load_scene(std::vector<fs::path>{kLevel}, no_profile, {}));
   };
-  const auto cooked = [&](LoadedScene scene) {
+  const auto cooked = [&](CookInput scene) {
     CookOptions options;
     options.may_use_grid = true;
-    const CookedFile file = require(cook_scene(std::move(scene), no_profile, options));
+    const CookedFile file = require(cook(std::move(scene), no_profile, options));
     return require(serialize(file.parts()));
   };
   const std::vector<std::byte> expected = cooked(loaded());
-  LoadedScene scene = loaded();
+  CookInput scene = loaded();
   const test::RoundingMode<FE_UPWARD> upward;
   EXPECT_EQ(cooked(std::move(scene)), expected);
 }

@@ -109,6 +109,16 @@ TEST(CookJob, EachInputIsReadOnceAndAllShareOneGrid) {
   EXPECT_FALSE(summary.scene.has_value());
 }
 
+TEST(CookJob, InputsWithoutACommonGridAreReadOneAfterTheOther) {
+  const test::TempFolder folder;
+  const CookJob job{.inputs = {folder.write("a.obj", kOther), folder.write("b.obj", kOther)},
+                    .output = folder.path() / "out.bxt"};
+  std::vector<std::string> steps;
+  ASSERT_TRUE(cook_job(job, [&](const std::string& step) { steps.push_back(step); }).ok());
+  EXPECT_EQ(steps, (std::vector<std::string>{"import a.obj", "build a", "import b.obj", "build b",
+                                             "write out.bxt"}));
+}
+
 TEST(CookJob, ABlobOfASceneIsAccountedForAsAWhole) {
   const test::TempFolder folder;
   const fs::path mesh = folder.write("m.obj", kOther);

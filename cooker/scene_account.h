@@ -20,7 +20,7 @@ struct CookedParts {
   const ScenePlan& plan;
   std::span<const std::size_t> mesh_of_tree;
   std::span<const EncodedTree> trees;
-  std::span<const Contest* const> contests;
+  std::span<const Contest> contests;
   std::span<const std::size_t> chosen;
   const SceneParts& parts;
   const CookOptions& options;
@@ -29,8 +29,5 @@ struct CookedParts {
 /// The lines of --why. Of a file that is compressed as a whole the first line is that of the blob,
 /// whose bytes are not known yet.
 [[nodiscard]] std::vector<WhyLine> account(const CookedParts& cooked, const FileLayout& layout);
-
-/// A number that tells profiles apart; 0 without one.
-[[nodiscard]] std::uint64_t profile_hash(const Profile& profile);
 
 }  // namespace boxtree::cooker

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Sections to lines of kept bytes, decisions to lines of what was left out.
-#include "cooker/scene/scene_account.h"
+#include "cooker/scene_account.h"
 
 #include <algorithm>
 #include <cstring>
@@ -10,7 +10,6 @@
 
 #include "format/container.h"
 #include "format/numbers.h"
-#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -282,7 +281,7 @@ class Account {
   // Positions that a grid saved: the difference to the exact candidate of the same codec.
   void add_rounding() {
     for (std::size_t t = 0; t < cooked_.trees.size(); ++t) {
-      const std::vector<Candidate>& candidates = cooked_.contests[t]->candidates;
+      const std::vector<Candidate>& candidates = cooked_.contests[t].candidates;
       const Candidate& chosen = candidates[cooked_.chosen[t]];
       if (chosen.geometry != GeometryId::kGrid) continue;
       std::uint64_t saved = 0;
@@ -318,13 +317,6 @@ std::vector<WhyLine> account(const CookedParts& cooked, const FileLayout& layout
   }
   lines.add_left_out();
   return why;
-}
-
-std::uint64_t profile_hash(const Profile& profile) {
-  if (profile.path.empty()) return 0;
-  std::string text;
-  for (const std::string& line : profile.lines) text += line + "\n";
-  return checksum(std::as_bytes(std::span(text)));
 }
 
 }  // namespace boxtree::cooker

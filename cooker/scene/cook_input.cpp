@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Gathers meshes and instances; numbers of a later file follow those of the earlier ones.
-#include "cooker/scene/scene_source.h"
+#include "cooker/scene/cook_input.h"
 
 #include <map>
 #include <optional>
-#include <string>
 #include <utility>
-#include <vector>
+#include <variant>
+
+#include <fmt/format.h>
+
+#include "format/limits.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -65,38 +68,41 @@ class SceneJoin {
   std::map<std::string, std::uint32_t> by_name_;  // numbers of materials
 };
 
+void note_import(CookInput& input, ImportReport&& report, std::string name) {
+  input.imports.push_back(std::move(report));
+  input.import_names.push_back(std::move(name));
+}
+
 // The meshes of a profile become those of the scene, one each; a file that several name is read
 // once for each, as each may be cooked in another way.
-Result<LoadedScene> load_listed(const Profile& profile, const ImportOptions& options,
-                                const std::function<void(const std::string&)>& progress) {
-  LoadedScene loaded;
-  loaded.scene.name = profile.path.stem().string();
+Result<CookInput> load_listed(const Profile& profile, const ImportOptions& options,
+                              const Progress& progress) {
+  CookInput input;
+  input.scene.name = profile.path.stem().string();
   std::vector<std::uint32_t> numbers;  // of the profile's meshes, in the scene
   for (const ProfileMesh& listed : profile.meshes) {
-    numbers.push_back(static_cast<std::uint32_t>(loaded.scene.meshes.size()));
+    numbers.push_back(static_cast<std::uint32_t>(input.scene.meshes.size()));
     if (!listed.file) continue;
-    const fs::path& path = listed.file->value;
-    progress("import " + path.filename().string());
-    Result<Imported> imported = import_mesh(path, options);
+    const std::string name = listed.file->value.filename().string();
+    announce(progress, "import " + name);
+    Result<Imported> imported = import_mesh(listed.file->value, options);
     if (!imported) return imported.error();
     imported->mesh.name = listed.name.value;
-    loaded.scene.meshes.push_back({std::move(imported->mesh), {}});
-    loaded.imports.push_back(std::move(imported->report));
-    loaded.import_names.push_back(path.filename().string());
+    input.scene.meshes.push_back({std::move(imported->mesh), {}});
+    note_import(input, std::move(imported->report), name);
   }
   for (const ProfileInstance& placed : profile.instances) {
-    loaded.scene.instances.push_back({placed.name, numbers[placed.mesh],
-                                      static_cast<std::uint32_t>(loaded.scene.instances.size()),
-                                      placed.pose});
+    input.scene.instances.push_back({placed.name, numbers[placed.mesh],
+                                     static_cast<std::uint32_t>(input.scene.instances.size()),
+                                     placed.pose});
   }
-  return loaded;
+  return input;
 }
 
 }  // namespace
 
-Result<LoadedScene> load_scene(std::span<const fs::path> inputs, const Profile& profile,
-                               const ImportOptions& options,
-                               const std::function<void(const std::string&)>& progress) {
+Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& profile,
+                             const ImportOptions& options, const Progress& progress) {
   const bool is_listed = !profile.instances.empty();
   const bool has_source = is_listed || profile.source.has_value();
   if (has_source == !inputs.empty()) {
@@ -107,24 +113,61 @@ Result<LoadedScene> load_scene(std::span<const fs::path> inputs, const Profile& 
                               "lists instances"};
   }
   if (is_listed) return load_listed(profile, options, progress);
-  LoadedScene loaded;
+  CookInput input;
   const std::span<const fs::path> files =
       profile.source ? std::span(&profile.source->value, 1) : inputs;
   std::optional<SceneJoin> join;  // of the first and all others
   for (const fs::path& file : files) {
-    progress("import " + file.filename().string());
+    const std::string name = file.filename().string();
+    announce(progress, "import " + name);
     Result<SourceScene> scene = import_scene(file, options);
     if (!scene) return scene.error();
-    loaded.imports.push_back(std::move(scene->report));
-    loaded.import_names.push_back(file.filename().string());
-    if (loaded.imports.size() == 1) {
-      loaded.scene = std::move(*scene);
-      join.emplace(loaded.scene);
-    } else {
+    note_import(input, std::move(scene->report), name);
+    if (join) {
       join->add(std::move(*scene));
+    } else {
+      input.scene = std::move(*scene);
+      join.emplace(input.scene);
     }
   }
-  return loaded;
+  return input;
+}
+
+Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
+                            const Progress& progress) {
+  const std::string name = path.filename().string();
+  announce(progress, "import " + name);
+  Result<ImportedFile> file = import_file(path, options);
+  if (!file) return file.error();
+  CookInput input;
+  if (auto* mesh = std::get_if<Imported>(&*file)) {
+    input.has_top_level = false;
+    note_import(input, std::move(mesh->report), mesh->mesh.name);
+    input.scene.meshes.push_back({std::move(mesh->mesh), {}});
+  } else {
+    input.scene = std::move(std::get<SourceScene>(*file));
+    note_import(input, std::move(input.scene.report), name);
+  }
+  return input;
+}
+
+Result<CookInput> load_trees(std::span<const fs::path> inputs, const ImportOptions& options,
+                             const Progress& progress) {
+  // Told before hours of work, not after.
+  if (inputs.size() > kMaxTrees) {
+    return Error{Errc::kMeshTooLarge, fmt::format("{} inputs, each a tree: a file holds {} at most",
+                                                  inputs.size(), kMaxTrees)};
+  }
+  CookInput input;
+  input.has_top_level = false;
+  input.scene.meshes.resize(inputs.size());
+  for (const fs::path& path : inputs) input.import_names.push_back(path.stem().string());
+  input.importer = [paths = std::vector(inputs.begin(), inputs.end()), options,
+                    progress](std::size_t mesh) {
+    announce(progress, "import " + paths[mesh].filename().string());
+    return import_mesh(paths[mesh], options);
+  };
+  return input;
 }
 
 }  // namespace boxtree::cooker
