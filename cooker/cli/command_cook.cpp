@@ -130,7 +130,7 @@ void add_cook_command(CLI::App& app, int& status) {
   CLI::App& command = *app.add_subcommand("cook", "Cook meshes into one .bxt file");
   command.footer(
       "Positions may be rounded: auto tries a grid of 24 bits over the largest extent beside every "
-      "bit of them, and says how far a vertex moved; --exact forbids it. " +
+      "bit of them, and says how far a vertex moved; --exact forbids it.\n" +
       app.get_footer());
   std::vector<std::string> codecs{"auto"};
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);

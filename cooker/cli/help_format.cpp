@@ -143,8 +143,12 @@ std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  const std::string footer = app->get_footer();
-  return footer.empty() ? footer : wrapped(footer, 0, 0) + "\n";
+  std::string footer;
+  std::istringstream paragraphs(app->get_footer());
+  for (std::string paragraph; std::getline(paragraphs, paragraph);) {
+    footer += wrapped(paragraph, 0, 0) + "\n";
+  }
+  return footer;
 }
 
 }  // namespace boxtree::cooker

@@ -27,7 +27,7 @@ struct CodecWalks;
 /// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 
-/// What a walk asks: decodes one node after the other. Whatever the bytes, it reads nothing outside
+/// What a walk needs: decodes one node after the other. Whatever the bytes, it reads nothing outside
 /// of the nodes that it was made for.
 template <class D>
 concept NodeDecoder = requires(const D& decoder, NodeRef ref, const Box<typename D::Scalar>& box,
@@ -37,7 +37,7 @@ concept NodeDecoder = requires(const D& decoder, NodeRef ref, const Box<typename
   noexcept->std::same_as<NodeState>;
 };
 
-/// What a tree asks of a codec besides. `bind` checks what can be checked without reading nodes.
+/// What a tree needs of a codec besides. `bind` checks what can be checked without reading nodes.
 template <class C>
 concept Codec = NodeDecoder<C> &&
     requires(const C& codec, const TreeCounts& counts, Bytes section) {

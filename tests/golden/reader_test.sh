@@ -13,7 +13,7 @@ fail() { echo "$*"; exit 1; }
 
 for file in "$golden"/v*.hex; do read_bxt "$file" >"$work/said" || fail "$file"; done
 
-codecs=$("$boxtree" cook --help | sed -n 's/.*{auto,\([^}]*\)}.*/\1/p' | tr ',' ' ')
+codecs=$("$boxtree" cook --help | tr -s '\n ' ' ' | sed -n 's/.*(auto, \([^)]*\)).*/\1/p' | tr -d ',')
 [ -n "$codecs" ] || fail "no list of codecs in the help of cook"
 for codec in ${codecs//blob-*/}; do # blobs come last
   for geometry in --exact --grid-bits=10 --grid-bits=28; do
