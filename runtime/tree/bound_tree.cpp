@@ -63,11 +63,6 @@ Result<Triangle> BoundTree::triangle(const FaceRef& face, std::uint32_t half) co
   return batch.triangle(half);
 }
 
-std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
-  if (is_in_source_order_) return face;
-  return face_ids_ ? face_ids_[face] : kNoFaceId;
-}
-
 FaceRange BoundTree::duplicates_of(std::uint32_t face) const noexcept {
   const std::uint32_t originals = counts_.faces_in_leaves;
   if (!duplicates_) return {originals, originals};

@@ -107,7 +107,10 @@ class BoundTree {
 
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
   /// Precondition: face < face_count().
-  [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
+  [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept {
+    if (face_ids_) return face_ids_[face];
+    return is_in_source_order_ ? face : kNoFaceId;
+  }
 
   /// Whether some faces stand in no leaf because they are copies of others.
   [[nodiscard]] bool has_duplicates() const noexcept { return bool{duplicates_}; }

@@ -56,6 +56,13 @@ class Waiting {
     size_ += count;
   }
 
+  /// The same for one child, whose place is on top.
+  HWY_INLINE void push_one(std::uint32_t child, float key, std::size_t depth) {
+    word_[size_] =
+        (std::bit_cast<std::int32_t>(key) & ~kChildBits) | static_cast<std::int32_t>(child);
+    depth_[size_++] = static_cast<std::uint8_t>(depth);
+  }
+
   /// Takes the next child whose key is not above `bound`; keys are compared less their lowest bits,
   /// which makes them smaller at most. False when there is none.
   HWY_INLINE bool pop(float bound, Child& child) {
