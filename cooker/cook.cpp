@@ -266,7 +266,7 @@ class Cook {
                                  planned.names ? source.name : std::string(), source.pose});
     }
     for (const PlannedLayer& layer : plan_.layers) {
-      parts.layers.push_back({layer.name, layer.meets, layer.queries});
+      parts.layers.push_back({layer.name, layer.collides_with, layer.queries});
     }
     add_left_out(tree_of_mesh, parts);
   }

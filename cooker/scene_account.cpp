@@ -146,7 +146,7 @@ class Account {
                    ? "f32 holds every number"
                    : "some number needs f64";
       case SectionKind::kLayers:
-        return "who answers what and meets whom";
+        return "which layers answer which queries and collide with which";
       case SectionKind::kMaterials:
       case SectionKind::kMaterialRuns:
       case SectionKind::kFaceMaterials:

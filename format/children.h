@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answer to the one question every codec answers: given a node and its decoded box, what are
+// The answer to the one query every codec answers: given a node and its decoded box, what are
 // the children and their decoded boxes?
 #pragma once
 
@@ -22,10 +22,10 @@ struct NodeRef {
 
 /// What was found of the bytes of a node that was decoded. It says nothing of the walk that met the
 /// node: those go on through WalkBound::count (runtime/walk/work.h), which asks for it.
-enum class [[nodiscard]] NodeState : bool{kCorrupt, kSound};
+enum class [[nodiscard]] NodeState : bool{kCorrupt, kValid};
 
-[[nodiscard]] constexpr NodeState sound_if(bool is_sound) noexcept {
-  return is_sound ? NodeState::kSound : NodeState::kCorrupt;
+[[nodiscard]] constexpr NodeState valid_if(bool is_valid) noexcept {
+  return is_valid ? NodeState::kValid : NodeState::kCorrupt;
 }
 
 /// What the root of a tree is. Numbers are pinned.

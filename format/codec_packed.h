@@ -162,7 +162,7 @@ struct PackedCodec {
       if (!read_cut(array.bits, at + layout.cut_at[side], cut)) return NodeState::kCorrupt;
       out.add(child_box(box, axis, side, cut), {number, child_kind}, is_leaf);
     }
-    return NodeState::kSound;
+    return NodeState::kValid;
   }
 
  private:

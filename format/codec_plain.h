@@ -104,7 +104,7 @@ struct PlainCodec {
       out.add(child_box(box, axis, side, cut_value(node.cut[side])), {child, is_leaf ? 1u : 0u},
               is_leaf);
     }
-    return NodeState::kSound;
+    return NodeState::kValid;
   }
 };
 

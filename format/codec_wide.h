@@ -180,7 +180,7 @@ struct WideCodec {
         out.ref[i] = {next_node++, 0};
       }
     }
-    return NodeState::kSound;
+    return NodeState::kValid;
   }
 };
 

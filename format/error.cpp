@@ -9,7 +9,7 @@ namespace boxtree {
 namespace {
 
 // Exit statuses of the command line (docs/GUIDE.md): 2 input/output, 3 bad input, 4 internal,
-// 5 unsupported; 1 is a question that makes no sense.
+// 5 unsupported; 1 is a query that makes no sense.
 constexpr std::array kTable = {
     ErrcInfo{Errc::kOk, "ok", "no error", 0},
     ErrcInfo{Errc::kBadMagic, "bad_magic", "not a .bxt file", 3},

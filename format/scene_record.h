@@ -68,9 +68,9 @@ static_assert(offsetof(InstanceRecord, layer) == 14);
 
 /// What the instances of one layer answer and meet.
 struct LayerRecord {
-  std::uint32_t meets;        // bit n: contacts with layer n are asked for; symmetric
-  std::uint32_t query_kinds;  // QueryKinds that instances of the layer answer
-  std::uint32_t name_offset;  // into the names section
+  std::uint32_t collides_with;  // bit n: contacts with layer n are asked for; symmetric
+  std::uint32_t query_kinds;    // QueryKinds that instances of the layer answer
+  std::uint32_t name_offset;    // into the names section
   std::uint32_t name_bytes;
 };
 static_assert(sizeof(LayerRecord) == 16 && std::is_trivially_copyable_v<LayerRecord>);

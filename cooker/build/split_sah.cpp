@@ -186,7 +186,7 @@ Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSpl
 }
 
 // Of seven sides in a row each number of roots has one.
-constexpr std::size_t kReach = (kWideChildren - 1) / 2;
+constexpr std::size_t kSearchSpan = (kWideChildren - 1) / 2;
 
 // What roots are worth to a side: with each doubling a level less lies below, so log2 of them.
 constexpr std::array<double, kWideChildren> kLevelsOfRoots = {0, 0,         1,         1.5849625,
@@ -197,10 +197,10 @@ constexpr std::array<double, kWideChildren> kLevelsOfRoots = {0, 0,         1,  
 std::size_t full_side_near(const BinnedSplit<kManyBins>& best, std::size_t leaves,
                            std::size_t roots) {
   const std::size_t near = std::clamp<std::size_t>((best.left_count + kLeafFaces / 2) / kLeafFaces,
-                                                   kReach + 1, leaves - kReach - 1);
+                                                   kSearchSpan + 1, leaves - kSearchSpan - 1);
   std::size_t chosen = near;
   double highest = -1;
-  for (std::size_t left = near - kReach; left <= near + kReach; ++left) {
+  for (std::size_t left = near - kSearchSpan; left <= near + kSearchSpan; ++left) {
     const std::size_t left_roots = roots_on_left(left, leaves, roots);
     if (left_roots == 0) continue;
     const double worth = best.left_area * kLevelsOfRoots[left_roots] +

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The same questions, counted and timed.
+// The same queries, counted and timed.
 #include "cooker/choose/calibrate.h"
 
 #include <algorithm>
@@ -15,30 +15,30 @@
 namespace boxtree::cooker {
 namespace {
 
-template <class Question>
-double nanoseconds(const std::vector<Question>& questions, std::size_t runs, Status& status,
-                   const std::function<Errc(const Question&)>& ask) {
+template <class Query>
+double nanoseconds(const std::vector<Query>& queries, std::size_t runs, Status& status,
+                   const std::function<Errc(const Query&)>& run_query) {
   const double seconds = median_seconds(runs, [&] {
-    for (const Question& question : questions) {
-      if (const Errc error = ask(question); error != Errc::kOk) status = error;
+    for (const Query& query : queries) {
+      if (const Errc error = run_query(query); error != Errc::kOk) status = error;
     }
   });
-  return 1e9 * seconds / static_cast<double>(questions.size());
+  return 1e9 * seconds / static_cast<double>(queries.size());
 }
 
-Result<QueryCost> time_queries(const Tree& tree, const Workload& questions, std::size_t runs) {
+Result<QueryCost> time_queries(const Tree& tree, const Workload& queries, std::size_t runs) {
   Status status;
   const auto go_on = [](const auto&) { return true; };
   const QueryCost cost = {
-      nanoseconds<Ray>(questions.rays, runs, status,
+      nanoseconds<Ray>(queries.rays, runs, status,
                        [&](const Ray& ray) { return closest_hit(tree, ray).code(); }),
       nanoseconds<Eigen::AlignedBox3d>(
-          questions.boxes, runs, status,
+          queries.boxes, runs, status,
           [&](const Eigen::AlignedBox3d& box) { return overlap_box(tree, box, go_on).code(); }),
       nanoseconds<Eigen::Vector3d>(
-          questions.points, runs, status,
+          queries.points, runs, status,
           [&](const Eigen::Vector3d& point) { return closest_point(tree, point).code(); }),
-      nanoseconds<Pose>(questions.poses, runs, status, [&](const Pose& pose) {
+      nanoseconds<Pose>(queries.poses, runs, status, [&](const Pose& pose) {
         return overlap_pairs(tree, Pose::Identity(), tree, pose, go_on).code();
       })};
   if (!status) return status.error();
@@ -61,7 +61,7 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   const EncodedTree encoded = tried->take(0);
   const Result<Tree> tree = bind_encoded(encoded);
   if (!tree) return tree.error();
-  const Result<QueryCost> ns = time_queries(*tree, choice_questions(bounds_of(mesh)), runs);
+  const Result<QueryCost> ns = time_queries(*tree, choice_queries(bounds_of(mesh)), runs);
   if (!ns) return ns.error();
   return Sample{work, *ns};
 }

@@ -18,7 +18,7 @@ struct Calibration {
   double worst_ratio = 1;
 };
 
-/// Cooks each mesh with every codec and both geometry stores, asks it the questions that candidates
+/// Cooks each mesh with every codec and both geometry stores, asks it the queries that candidates
 /// are compared by, and fits the steps to the times: processor time of one thread, medians of
 /// `runs`. At least three meshes of different sizes make sense. Errors: those of cooking and
 /// queries; kNoFaces when no mesh has any.

@@ -15,7 +15,7 @@ namespace {
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr std::array kStores = {GeometryId::kExternal, GeometryId::kExact, GeometryId::kGrid};
 
-struct Judged {
+struct Rated {
   double bytes = 0;  // a triangle
   double slowdown = 0;
   bool eligible = false;  // see may_be_chosen()
@@ -34,54 +34,54 @@ double score_of(double bytes, double slowdown, Goal goal) {
   return bytes * slowdown;
 }
 
-std::vector<Judged> judge(const Contest& tree, const Wishes& wishes) {
+std::vector<Rated> rate(const Contest& tree, const Wishes& wishes) {
   const std::vector<double> slower = slowdowns(tree.candidates, wishes.queries);
   const std::vector<bool> eligible = may_be_chosen(tree.candidates);
-  std::vector<Judged> judged;
+  std::vector<Rated> rated;
   for (std::size_t i = 0; i < tree.candidates.size(); ++i) {
     const Candidate& candidate = tree.candidates[i];
-    Judged of{
+    Rated of{
         static_cast<double>(candidate.bytes()) / std::max(1.0, static_cast<double>(tree.triangles)),
         slower[i], eligible[i], kNone};
     const bool in_budget = of.bytes <= wishes.max_bytes_per_triangle.value_or(kNone) &&
                            of.slowdown <= wishes.max_slowdown.value_or(kNone);
     if (of.eligible && in_budget) of.score = score_of(of.bytes, of.slowdown, wishes.goal);
-    judged.push_back(of);
+    rated.push_back(of);
   }
-  return judged;
+  return rated;
 }
 
 // The best candidate with a geometry store; nothing when none may be chosen.
-std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Judged>& judged,
+std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>& rated,
                                    GeometryId store) {
   std::optional<std::size_t> best;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (tree.candidates[i].geometry != store || judged[i].score == kNone) continue;
-    if (!best || judged[i].score < judged[*best].score) best = i;
+  for (std::size_t i = 0; i < rated.size(); ++i) {
+    if (tree.candidates[i].geometry != store || rated[i].score == kNone) continue;
+    if (!best || rated[i].score < rated[*best].score) best = i;
   }
   return best;
 }
 
 // Fewest bytes and least slowdown that a tree can have, each with its candidate.
-std::string nearest_of(const Contest& tree, const std::vector<Judged>& judged) {
+std::string nearest_of(const Contest& tree, const std::vector<Rated>& rated) {
   std::optional<std::size_t> smallest, fastest;
-  for (std::size_t i = 0; i < judged.size(); ++i) {
-    if (!judged[i].eligible) continue;
-    if (!smallest || judged[i].bytes < judged[*smallest].bytes) smallest = i;
-    if (!fastest || judged[i].slowdown < judged[*fastest].slowdown) fastest = i;
+  for (std::size_t i = 0; i < rated.size(); ++i) {
+    if (!rated[i].eligible) continue;
+    if (!smallest || rated[i].bytes < rated[*smallest].bytes) smallest = i;
+    if (!fastest || rated[i].slowdown < rated[*fastest].slowdown) fastest = i;
   }
   const auto told = [&](std::size_t i) {
     return fmt::format("{} with geometry {} takes {:.2f} B/tri and {:.2f} times the least time",
                        codec_name(tree.candidates[i].codec),
-                       geometry_name(tree.candidates[i].geometry), judged[i].bytes,
-                       judged[i].slowdown);
+                       geometry_name(tree.candidates[i].geometry), rated[i].bytes,
+                       rated[i].slowdown);
   };
   return smallest == fastest ? told(*smallest) : told(*smallest) + "; " + told(*fastest);
 }
 
-Error refusal(const Contest& tree, const std::vector<Judged>& judged, const Wishes& wishes) {
+Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes& wishes) {
   const bool any_eligible =
-      std::any_of(judged.begin(), judged.end(), [](const Judged& each) { return each.eligible; });
+      std::any_of(rated.begin(), rated.end(), [](const Rated& each) { return each.eligible; });
   if (!any_eligible) return {Errc::kInternal, "no encoding passes its gates"};
   std::string wanted;
   if (wishes.max_bytes_per_triangle) {
@@ -91,10 +91,10 @@ Error refusal(const Contest& tree, const std::vector<Judged>& judged, const Wish
     wanted += fmt::format("{}at most {} times the least time", wanted.empty() ? "" : " and ",
                           *wishes.max_slowdown);
   }
-  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, judged)};
+  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, rated)};
 }
 
-std::string reason(const Candidate& candidate, const Judged& judged, const Candidate& chosen,
+std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,
                    const Wishes& wishes) {
   if (!candidate.gates.pass()) {
     return fmt::format("fails its gates: {} faces missed, {} boxes escaped", candidate.gates.missed,
@@ -103,10 +103,10 @@ std::string reason(const Candidate& candidate, const Judged& judged, const Candi
   if (!is_wide(candidate.codec) && is_wide(chosen.codec)) {
     return "a codec of boxtree::paper: --codec chooses it";
   }
-  if (judged.bytes > wishes.max_bytes_per_triangle.value_or(kNone))
+  if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kNone))
     return "over the budget of bytes";
-  if (judged.slowdown > wishes.max_slowdown.value_or(kNone)) return "over the budget of time";
-  if (candidate.geometry != chosen.geometry && judged.score == kNone) return "another geometry";
+  if (rated.slowdown > wishes.max_slowdown.value_or(kNone)) return "over the budget of time";
+  if (candidate.geometry != chosen.geometry && rated.score == kNone) return "another geometry";
   switch (wishes.goal) {
     case Goal::kMemory:
       return "more bytes";
@@ -178,14 +178,14 @@ Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& 
 
 Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
                                              std::span<const Wishes> wishes) {
-  std::vector<std::vector<Judged>> judged;
+  std::vector<std::vector<Rated>> rated;
   for (std::size_t t = 0; t < trees.size(); ++t) {
     trees[t].queries = wishes[t].queries;
-    judged.push_back(judge(trees[t], wishes[t]));
+    rated.push_back(rate(trees[t], wishes[t]));
   }
   const auto least_score = [&](std::size_t t) {
     double least = kNone;
-    for (const Judged& candidate : judged[t]) least = std::min(least, candidate.score);
+    for (const Rated& candidate : rated[t]) least = std::min(least, candidate.score);
     return least;
   };
 
@@ -195,13 +195,13 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     std::vector<std::size_t> of_store;
     double score = 0;
     for (std::size_t t = 0; t < trees.size(); ++t) {
-      const auto best = best_of(trees[t], judged[t], store);
+      const auto best = best_of(trees[t], rated[t], store);
       if (!best) break;
       of_store.push_back(*best);
       // At least one, so that trees without faces have a say as well.
       const double weight = std::max(1.0, static_cast<double>(trees[t].triangles));
       const double own = least_score(t);
-      score += own > 0 ? weight * (judged[t][*best].score / own) : weight;
+      score += own > 0 ? weight * (rated[t][*best].score / own) : weight;
     }
     if (of_store.size() < trees.size()) continue;
     if (chosen.empty() || score < least) {
@@ -214,17 +214,17 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     // all.
     std::size_t worst = 0;
     for (std::size_t t = trees.size(); t-- > 0;) {
-      const bool possible = std::any_of(judged[t].begin(), judged[t].end(),
-                                        [](const Judged& j) { return j.score != kNone; });
+      const bool possible = std::any_of(rated[t].begin(), rated[t].end(),
+                                        [](const Rated& j) { return j.score != kNone; });
       if (!possible) worst = t;
     }
-    return refusal(trees[worst], judged[worst], wishes[worst]);
+    return refusal(trees[worst], rated[worst], wishes[worst]);
   }
   for (std::size_t t = 0; t < trees.size(); ++t) {
     for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
       Candidate& candidate = trees[t].candidates[i];
       const Candidate& winner = trees[t].candidates[chosen[t]];
-      candidate.rejected = i == chosen[t] ? "" : reason(candidate, judged[t][i], winner, wishes[t]);
+      candidate.rejected = i == chosen[t] ? "" : reason(candidate, rated[t][i], winner, wishes[t]);
     }
   }
   return chosen;

@@ -18,7 +18,7 @@ QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
     if (known.codec != codec || known.geometry != stored) continue;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       const StepCost& step = known.of_kind[kind];
-      cost[kind] = step.question + work[kind].nodes * step.node + work[kind].leaves * step.leaf;
+      cost[kind] = step.query + work[kind].nodes * step.node + work[kind].leaves * step.leaf;
     }
   }
   return cost;

@@ -15,7 +15,7 @@ using QueryCost = std::array<double, kQueryKinds>;
 
 /// Nanoseconds of the steps of a query of one kind.
 struct StepCost {
-  double question = 0;
+  double query = 0;
   double node = 0;
   double leaf = 0;
 };
@@ -35,7 +35,7 @@ struct CodecCost {
 [[nodiscard]] QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
                                 std::span<const CodecCost> costs = compiled_costs());
 
-/// One mesh measured: mean work and mean time of a question of one kind.
+/// One mesh measured: mean work and mean time of a query of one kind.
 struct Measured {
   Work work;
   double ns = 0;

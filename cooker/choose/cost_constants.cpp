@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nanoseconds of a question, a node and a leaf, for rays, boxes, points and pairs, as
+// Nanoseconds of a query, a node and a leaf, for rays, boxes, points and pairs, as
 //     boxtree bench --calibrate MESH...
 // printed them for eleven models of 1000 to 70 000 triangles and the dragon of 871 414: AVX-512,
 // processor time of one thread, medians of 3 runs. Modelled and measured times differ by at most

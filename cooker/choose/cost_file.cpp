@@ -18,7 +18,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr std::array kStores = {GeometryId::kExact, GeometryId::kGrid};
-constexpr std::array kSteps = {"question_ns", "node_ns", "leaf_ns"};
+constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
 
 Error fault(std::string what) {
   return {Errc::kFileUnreadable, "costs: " + std::move(what)};
@@ -80,7 +80,7 @@ std::string costs_to_json(const Calibration& calibration) {
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       const StepCost& step = cost.of_kind[kind];
       row[kQueryNames[kind]] = {
-          {kSteps[0], step.question}, {kSteps[1], step.node}, {kSteps[2], step.leaf}};
+          {kSteps[0], step.query}, {kSteps[1], step.node}, {kSteps[2], step.leaf}};
     }
     costs.push_back(std::move(row));
   }

@@ -12,16 +12,16 @@
 namespace boxtree::cooker {
 namespace {
 
-// Seconds a question, and the first error that any gave.
-template <class Questions, class Ask>
-double per_question(const Questions& questions, std::size_t runs, Status& status, Ask ask) {
-  if (questions.empty()) return 0;
+// Seconds a query, and the first error that any gave.
+template <class Queries, class RunQuery>
+double per_query(const QuerySet& queries, std::size_t runs, Status& status, RunQuery run_query) {
+  if (queries.empty()) return 0;
   const double seconds = median_seconds(runs, [&] {
-    for (const auto& question : questions) {
-      if (const Errc error = ask(question); error != Errc::kOk && status.ok()) status = error;
+    for (const auto& query : queries) {
+      if (const Errc error = run_query(query); error != Errc::kOk && status.ok()) status = error;
     }
   });
-  return seconds / static_cast<double>(questions.size());
+  return seconds / static_cast<double>(queries.size());
 }
 
 }  // namespace
@@ -47,13 +47,13 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   QueryFigures figures;
   Status status;
   const std::uint64_t rounds = runs + 1;  // every round adds the same to the counts
-  figures.ray_ns = 1e9 * per_question(workload.rays, runs, status, [&](const Ray& ray) {
+  figures.ray_ns = 1e9 * per_query(workload.rays, runs, status, [&](const Ray& ray) {
                      const auto hit = closest_hit(tree, ray);
                      if (hit) ++figures.ray_hits;
                      return hit.code();
                    });
   figures.box_ns =
-      1e9 * per_question(workload.boxes, runs, status, [&](const Eigen::AlignedBox3d& box) {
+      1e9 * per_query(workload.boxes, runs, status, [&](const Eigen::AlignedBox3d& box) {
         return overlap_box(tree, box,
                            [&](const FaceRef&) {
                              ++figures.box_faces;
@@ -62,18 +62,18 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
             .code();
       });
   figures.point_ns =
-      1e9 * per_question(workload.points, runs, status, [&](const Eigen::Vector3d& point) {
+      1e9 * per_query(workload.points, runs, status, [&](const Eigen::Vector3d& point) {
         const auto closest = closest_point(tree, point);
         if (closest) figures.point_distance += closest->distance;
         return closest.code();
       });
   const Pose here = Pose::Identity();
-  figures.pair_first_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
+  figures.pair_first_us = 1e6 * per_query(workload.poses, runs, status, [&](const Pose& pose) {
                             const auto contact = first_contact(tree, here, tree, pose);
                             if (contact) ++figures.pair_hits;
                             return contact.code();
                           });
-  figures.pair_all_us = 1e6 * per_question(workload.poses, runs, status, [&](const Pose& pose) {
+  figures.pair_all_us = 1e6 * per_query(workload.poses, runs, status, [&](const Pose& pose) {
                           return overlap_pairs(tree, here, tree, pose,
                                                [&](const FacePair&) {
                                                  ++figures.pair_pairs;
@@ -90,7 +90,7 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   return figures;
 }
 
-Status ask_first(const Tree& tree) {
+Status first_query(const Tree& tree) {
   const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
   const Eigen::Vector3d along(0.1, 0.2, -1);
   const auto hit = closest_hit(tree, {bounds.center() - bounds.sizes().norm() * along, along});
@@ -112,7 +112,7 @@ Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_
     const Result<Tree> bound = Tree::bind(*file, tree);
     if (!bound) return bound.error();
     const double opened = thread_seconds();
-    const Status asked = ask_first(*bound);
+    const Status asked = first_query(*bound);
     const double answered = thread_seconds();
     if (!asked) return asked.error();
     ::getrusage(RUSAGE_SELF, &after);

@@ -45,7 +45,7 @@ template <class Body>
   return median(std::move(seconds));
 }
 
-/// Of one kind of questions. A question's time is the least of several runs: other work on the
+/// Of one kind of queries. A query's time is the least of several runs: other work on the
 /// machine can only add to it.
 struct KindTimes {
   double median_ns = 0;
@@ -53,21 +53,21 @@ struct KindTimes {
   double mean_ns = 0;
 };
 
-/// What reading the clock twice takes: it is in every time of a single question.
+/// What reading the clock twice takes: it is in every time of a single query.
 [[nodiscard]] double clock_cost_ns();
 
-/// Times each question on its own. `ask` returns an Errc; `status` gets the first that is not kOk.
-template <class Question, class Ask>
-[[nodiscard]] KindTimes time_each(const std::vector<Question>& questions, std::size_t runs,
-                                  Status& status, Ask ask) {
+/// Times each query on its own. `ask` returns an Errc; `status` gets the first that is not kOk.
+template <class Query, class RunQuery>
+[[nodiscard]] KindTimes time_each(const std::vector<Query>& queries, std::size_t runs,
+                                  Status& status, RunQuery run_query) {
   using Clock = std::chrono::steady_clock;
-  if (questions.empty()) return {};
+  if (queries.empty()) return {};
   const double clock = clock_cost_ns();
-  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> least(queries.size(), std::numeric_limits<double>::infinity());
   for (std::size_t run = 0; run < runs; ++run) {
-    for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
       const Clock::time_point start = Clock::now();
-      const Errc error = ask(questions[i]);
+      const Errc error = run_query(queries[i]);
       const std::chrono::duration<double, std::nano> taken = Clock::now() - start;
       least[i] = std::min(least[i], std::max(0.0, taken.count() - clock));
       if (error != Errc::kOk && status.ok()) status = error;
@@ -97,7 +97,7 @@ struct QueryFigures {
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs);
 
 /// One ray across the middle: the first answer in all times to it.
-Status ask_first(const Tree& tree);
+Status first_query(const Tree& tree);
 
 /// From a closed file in the page cache to answers.
 struct OpenFigures {

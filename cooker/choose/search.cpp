@@ -173,8 +173,8 @@ Family wide_family(const Source& source, const SearchOptions& options) {
 }
 
 // Proves a candidate and counts what it takes.
-Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
-                          const Workload& questions, std::span<const CodecCost> costs) {
+Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh, const Workload& queries,
+                          std::span<const CodecCost> costs) {
   Candidate candidate{tree.nodes.codec,
                       tree.geometry.geometry,
                       tree.nodes.bytes.size() + tree.geometry.duplicates.size(),
@@ -189,7 +189,7 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh,
   bind.mesh = arrays_of(mesh);
   const Result<Tree> bound = bind_encoded(tree, bind);
   if (!bound) return bound.error();
-  const Result<WorkOfKinds> work = count_work(*bound, questions);
+  const Result<WorkOfKinds> work = count_work(*bound, queries);
   if (!work) return work.error();
   candidate.work = *work;
   candidate.cost = cost_of(*work, candidate.codec, candidate.geometry, costs);
@@ -205,7 +205,7 @@ class Search {
         scene_(scene),
         costs_(options.costs.empty() ? compiled_costs()
                                      : std::span<const CodecCost>(options.costs)),
-        questions_(choice_questions(bounds_of(mesh))) {
+        queries_(choice_queries(bounds_of(mesh))) {
     out_.contest.triangles = static_cast<std::uint32_t>(mesh.triangle_count());
   }
 
@@ -333,7 +333,7 @@ class Search {
     EncodedTree& tree = family.tree;
     for (const CodecId codec : codecs) {
       tree.nodes = family.nodes_of(codec);
-      Result<Candidate> candidate = examine(tree, mesh_, questions_, costs_);
+      Result<Candidate> candidate = examine(tree, mesh_, queries_, costs_);
       if (!candidate) return candidate.error();
       out_.contest.candidates.push_back(std::move(*candidate));
       out_.nodes.push_back({out_.families.size(), std::exchange(tree.nodes, {})});
@@ -355,7 +355,7 @@ class Search {
   const SearchOptions& options_;
   const std::optional<Grid>& scene_;
   const std::span<const CodecCost> costs_;
-  const Workload questions_;
+  const Workload queries_;
   TriedTree out_;
 };
 

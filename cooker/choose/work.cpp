@@ -17,8 +17,8 @@
 namespace boxtree::cooker {
 namespace {
 
-// Where a question meets all of a mesh, as when its faces lie on top of each other, a few say as
-// much as hundreds: from so many steps of a kind on, nothing more is asked, and the question at
+// Where a query meets all of a mesh, as when its faces lie on top of each other, a few say as
+// much as hundreds: from so many steps of a kind on, nothing more is asked, and the query at
 // hand ends.
 constexpr std::uint64_t kMostSteps = 1'000'000;
 
@@ -60,7 +60,7 @@ struct LeafPairCounter {
   void leaf_pair(NodeRef, NodeRef) const noexcept { ++counts->leaves; }
 };
 
-Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
+Errc run_query(const BoundTree& tree, const Ray& ray, Counts& counts) {
   const int exponent = exponent_of(largest_magnitude(ray.direction));
   WalkBound nodes(tree.node_count());
   RayCandidate hit;
@@ -70,7 +70,7 @@ Errc ask(const BoundTree& tree, const Ray& ray, Counts& counts) {
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
+Errc run_query(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) {
   const BoxQuery shape{tree.frame().to_tree(box.min()), tree.frame().to_tree(box.max())};
   const auto go_on = [](const FaceRef&) { return true; };
   WalkBound nodes(tree.node_count());
@@ -79,7 +79,7 @@ Errc ask(const BoundTree& tree, const Eigen::AlignedBox3d& box, Counts& counts) 
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
+Errc run_query(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
   constexpr double kAnywhere = std::numeric_limits<double>::infinity();
   WalkBound nodes(tree.node_count());
   Listening query{
@@ -88,7 +88,7 @@ Errc ask(const BoundTree& tree, const Eigen::Vector3d& point, Counts& counts) {
   return walked != Errc::kOk ? walked : query.error;
 }
 
-Errc ask(const BoundTree& tree, const Pose& pose, Counts& counts) {
+Errc run_query(const BoundTree& tree, const Pose& pose, Counts& counts) {
   const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
   // Where bounds reach as far as doubles, a copy beside them lies beyond: nothing to count.
   if (!relative) return Errc::kOk;
@@ -100,14 +100,14 @@ Errc ask(const BoundTree& tree, const Pose& pose, Counts& counts) {
       .code();
 }
 
-template <class Question>
-Result<Work> mean_work(const Tree& tree, const std::vector<Question>& questions) {
+template <class Query>
+Result<Work> mean_work(const Tree& tree, const std::vector<Query>& queries) {
   Counts counts;
   std::size_t asked = 0;
-  for (const Question& question : questions) {
-    const Errc error = ask(BoundTree::of(tree), question, counts);
+  for (const Query& query : queries) {
+    const Errc error = run_query(BoundTree::of(tree), query, counts);
     ++asked;
-    if (counts.are_enough()) break;  // and so ended the question, whatever it says
+    if (counts.are_enough()) break;  // and so ended the query, whatever it says
     if (error != Errc::kOk) return error;
   }
   const auto each = static_cast<double>(std::max<std::size_t>(asked, 1));
@@ -116,17 +116,17 @@ Result<Work> mean_work(const Tree& tree, const std::vector<Question>& questions)
 
 }  // namespace
 
-Workload choice_questions(const Eigen::AlignedBox3d& bounds) {
+Workload choice_queries(const Eigen::AlignedBox3d& bounds) {
   if (bounds.isEmpty()) return {};
-  Workload questions = make_workload(bounds, {400, 100, 100, 32});
+  Workload queries = make_workload(bounds, {400, 100, 100, 32});
   // The third of every four poses is at 0.9 of the distance at which bounds touch.
   std::vector<Pose> near;
-  for (std::size_t i = 2; i < questions.poses.size(); i += 4) near.push_back(questions.poses[i]);
-  questions.poses = std::move(near);
-  return questions;
+  for (std::size_t i = 2; i < queries.poses.size(); i += 4) near.push_back(queries.poses[i]);
+  queries.poses = std::move(near);
+  return queries;
 }
 
-Result<WorkOfKinds> count_work(const Tree& asked, const Workload& questions) {
+Result<WorkOfKinds> count_work(const Tree& asked, const Workload& queries) {
   WorkOfKinds work{};
   if (asked.empty()) return work;
   // Copies cost no step, and of n faces in one place there are n * n pairs.
@@ -137,10 +137,10 @@ Result<WorkOfKinds> count_work(const Tree& asked, const Workload& questions) {
     work[static_cast<std::size_t>(kind)] = *mean;
     return {};
   };
-  if (Status status = enter(QueryKind::kRay, questions.rays); !status) return status.error();
-  if (Status status = enter(QueryKind::kBox, questions.boxes); !status) return status.error();
-  if (Status status = enter(QueryKind::kPoint, questions.points); !status) return status.error();
-  if (Status status = enter(QueryKind::kPair, questions.poses); !status) return status.error();
+  if (Status status = enter(QueryKind::kRay, queries.rays); !status) return status.error();
+  if (Status status = enter(QueryKind::kBox, queries.boxes); !status) return status.error();
+  if (Status status = enter(QueryKind::kPoint, queries.points); !status) return status.error();
+  if (Status status = enter(QueryKind::kPair, queries.poses); !status) return status.error();
   return work;
 }
 

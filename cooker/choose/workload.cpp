@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Seeded questions. What the cooker chooses depends on them, so no library may have a say in their
+// Seeded queries. What the cooker chooses depends on them, so no library may have a say in their
 // last bits: sines, norms and products are made here, by the four operations and square roots in
 // one order (docs/ARCHITECTURE.md, "Same bytes everywhere").
 #include "cooker/choose/workload.h"
@@ -90,10 +90,10 @@ double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rot
                          const Eigen::Vector3d& direction) {
   double distance = std::numeric_limits<double>::infinity();
   const auto consider = [&](const Eigen::Vector3d& axis) {
-    const double reach =
+    const double touching =
         dot(half, axis.cwiseAbs()) + dot(half, product(rotation.transpose(), axis).cwiseAbs());
     const double along = std::abs(dot(direction, axis));
-    if (along > 0) distance = std::min(distance, reach / along);
+    if (along > 0) distance = std::min(distance, touching / along);
   };
   for (Eigen::Index i = 0; i < 3; ++i) {
     consider(Eigen::Vector3d::Unit(i));

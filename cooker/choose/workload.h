@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The questions that measurements ask: seeded, the same on every machine and for every library.
+// The queries that measurements ask: seeded, the same on every machine and for every library.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// How many questions of each kind.
+/// How many queries of each kind.
 struct WorkloadSize {
   std::size_t rays = 200'000;
   std::size_t boxes = 20'000;
@@ -32,7 +32,7 @@ struct Workload {
   std::vector<Pose> apart;
 };
 
-/// Questions for a mesh with these bounds (object space). Deterministic.
+/// Queries for a mesh with these bounds (object space). Deterministic.
 [[nodiscard]] Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& size,
                                      std::uint64_t seed = 1);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `boxtree query`: asks one tree of a mapped file, or two trees against each other, one question
+// `boxtree query`: asks one tree of a mapped file, or two trees against each other, one request
 // from options or many from a file of JSON lines.
 #include <algorithm>
 #include <cerrno>
@@ -13,8 +13,8 @@
 
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
-#include "cooker/cli/question.h"
-#include "cooker/cli/scene_question.h"
+#include "cooker/cli/query_request.h"
+#include "cooker/cli/scene_query.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -95,8 +95,9 @@ class BatchLines {
 
 // Answers each line of the batch: JSON lines as they come, or one document with --json. A line that
 // cannot be answered gets an error in its place; the exit status is that of the first such line.
-using Ask = std::function<Result<Json>(const Question& question, TreeCache& others)>;
-int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& kind) {
+using AnswerRequest = std::function<Result<Json>(const QueryRequest& request, TreeCache& others)>;
+int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
+              const std::string& kind) {
   BatchLines lines(arguments.batch);
   TreeCache others;
   Json answers = Json::array();
@@ -104,8 +105,9 @@ int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& 
   std::string line;
   while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const Result<Question> question = parse_question(line, kind);
-    Result<Json> answer = question ? ask_it(*question, others) : Result<Json>(question.error());
+    const Result<QueryRequest> request = parse_request(line, kind);
+    Result<Json> answer =
+        request ? answer_request(*request, others) : Result<Json>(request.error());
     if (!answer) {
       const Error error{answer.code(),
                         fmt::format("line {}: {}", lines.number(), answer.error().detail)};
@@ -124,7 +126,7 @@ int run_batch(const Arguments& arguments, const Ask& ask_it, const std::string& 
 }
 
 // `missing` names an option that the kind needs and that was not given; or is empty.
-int run(const Arguments& arguments, const std::string& kind, const Question& question,
+int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request,
         const std::string& missing) {
   if (arguments.batch.empty() && !missing.empty()) {
     return usage(fmt::format("{} is required", missing));
@@ -135,10 +137,10 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
   if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
     return usage("--move is for instances of a scene");
   }
-  const auto answer_all = [&](const Ask& ask_it) {
-    if (!arguments.batch.empty()) return run_batch(arguments, ask_it, kind);
+  const auto answer_all = [&](const AnswerRequest& answer_request) {
+    if (!arguments.batch.empty()) return run_batch(arguments, answer_request, kind);
     TreeCache others;
-    const Result<Json> answer = ask_it(question, others);
+    const Result<Json> answer = answer_request(request, others);
     if (!answer) return fail(answer.error());
     print_answer(arguments, *answer);
     return 0;
@@ -148,18 +150,20 @@ int run(const Arguments& arguments, const std::string& kind, const Question& que
     if (!scene) {
       return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
     }
-    return answer_all(
-        [&](const Question& asked, TreeCache& others) { return ask(scene->scene, asked, others); });
+    return answer_all([&](const QueryRequest& request, TreeCache& others) {
+      return answer(scene->scene, request, others);
+    });
   }
   const Result<OpenedTree> tree =
       bind_tree(std::move(opened->file), arguments.file,
                 arguments.tree.empty() ? "0" : arguments.tree, arguments.mesh);
   if (!tree) return fail(tree.error());
-  return answer_all(
-      [&](const Question& asked, TreeCache& others) { return ask(tree->tree, asked, others); });
+  return answer_all([&](const QueryRequest& request, TreeCache& others) {
+    return answer(tree->tree, request, others);
+  });
 }
 
-// Declares what a question is made of as options of its command.
+// Declares what a request is made of as options of its command.
 class OptionFields {
  public:
   explicit OptionFields(CLI::App& command) : command_(command) {}
@@ -236,12 +240,12 @@ class OptionFields {
 template <class Kind>
 void add_kind(CLI::App& query, const std::shared_ptr<Arguments>& arguments, int& status) {
   CLI::App& command = *query.add_subcommand(Kind::kKind, Kind::kHelp);
-  const auto question = std::make_shared<Kind>();
+  const auto request = std::make_shared<Kind>();
   const auto options = std::make_shared<OptionFields>(command);
-  question->describe(*options);
-  command.callback([arguments, question, options, &status] {
+  request->describe(*options);
+  command.callback([arguments, request, options, &status] {
     status = options->problem().empty()
-                 ? run(*arguments, Kind::kKind, *question, options->first_missing())
+                 ? run(*arguments, Kind::kKind, *request, options->first_missing())
                  : usage(options->problem());
   });
 }
@@ -276,7 +280,7 @@ void add_query_command(CLI::App& app, int& status) {
   command.callback([&command, arguments, &status] {
     if (!command.get_subcommands().empty()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
-                                      : run(*arguments, "", RayQuestion(), {});
+                                      : run(*arguments, "", RayRequest(), {});
   });
 }
 

@@ -47,7 +47,7 @@ Result<std::vector<PeerRow>> measure_paper_peers(const Arguments& arguments) {
   const char* const turns = arguments.quick ? "2" : "12";
   const char* const runs = arguments.quick ? "1" : "5";
   options.insert(options.end(),
-                 {"--builder", "paper", "--questions", "tumble", "--tumble", turns, "--runs", runs,
+                 {"--builder", "paper", "--queries", "tumble", "--tumble", turns, "--runs", runs,
                   "--only", "original", "--only", "boxtree", "--only", "fcl:kdop18"});
   return run_peers(arguments.peers, options, false);
 }
@@ -55,8 +55,8 @@ Result<std::vector<PeerRow>> measure_paper_peers(const Arguments& arguments) {
 // Everything but our own codecs, which are measured here; quickly: those that take seconds.
 Result<std::vector<PeerRow>> measure_tradeoff_peers(const Arguments& arguments) {
   std::vector<std::string> options = names_of(arguments.meshes);
-  options.insert(options.end(), {"--questions", "single", "--questions", "pairs", "--only",
-                                 "original", "--only", "embree"});
+  options.insert(options.end(), {"--queries", "single", "--queries", "pairs", "--only", "original",
+                                 "--only", "embree"});
   if (arguments.quick) {
     options.insert(options.end(), {"--quick", "--runs", "1"});
   } else {
@@ -112,7 +112,7 @@ Json to_json(const PaperFigures& mesh) {
             {"two_cut_shrink", counted.two_cut_shrink},
             {"one_cut_shrink", counted.one_cut_shrink}}},
           {"rounding",
-           {{"questions", rounding.questions},
+           {{"queries", rounding.queries},
             {"pairs_f32", rounding.pairs_f32},
             {"pairs_nearest", rounding.pairs_nearest},
             {"pairs_outward", rounding.pairs_outward},
@@ -240,7 +240,7 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
     report.meshes.push_back(std::move(*figures));
   }
   if (report.no_peers.empty()) {
-    steps("ask other libraries", part(static_cast<double>(arguments.meshes.size())));
+    steps("query other libraries", part(static_cast<double>(arguments.meshes.size())));
     Result<std::vector<PeerRow>> rows = measure_tradeoff_peers(arguments);
     if (!rows) return rows.error();
     report.peers = std::move(*rows);
@@ -290,7 +290,7 @@ void add_report_command(CLI::App& app, int& status) {
                   "Write a row for each allowed error and budget of approximate queries as CSV")
       ->type_name("FILE")
       ->excludes(paper);
-  command.add_flag("--quick", arguments->quick, "Few encodings, questions and runs: for a look");
+  command.add_flag("--quick", arguments->quick, "Few encodings, queries and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,
                    "Count only: the same figures on every machine");
   command

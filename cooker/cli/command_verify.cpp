@@ -45,19 +45,19 @@ bool any_f64(const File& file) {
 }
 
 // What was found in one file.
-struct Verdict {
+struct Verification {
   int status = 0;
-  bool is_told = false;  // the only finding was printed as an error
+  bool is_reported = false;  // the only finding was printed as an error
   Findings findings;
   std::string summary;  // of a file without findings
 };
 
 // A file or a mesh that cannot be read at all.
-Verdict refusal(const Error& error) {
+Verification refusal(const Error& error) {
   return {fail(error), true, {error}, {}};
 }
 
-Verdict verdict_on(const std::filesystem::path& path, const std::filesystem::path& mesh) {
+Verification verify_one(const std::filesystem::path& path, const std::filesystem::path& mesh) {
   const Result<OpenedFile> opened = open_file(path);
   if (!opened) return refusal(opened.error());
   const File* const file = &opened->file;
@@ -71,21 +71,21 @@ Verdict verdict_on(const std::filesystem::path& path, const std::filesystem::pat
     imported = std::move(*result);
     arrays = arrays_of(imported.mesh);
   }
-  Verdict verdict;
-  verdict.findings = verify_file(*file, arrays);
-  if (!verdict.findings.empty()) verdict.status = kExitBadInput;
-  verdict.summary =
+  Verification verification;
+  verification.findings = verify_file(*file, arrays);
+  if (!verification.findings.empty()) verification.status = kExitBadInput;
+  verification.summary =
       any_external(*file) && !arrays
           ? "structure is valid; triangles are external and were not looked at"
           : fmt::format("valid: {} {}, every triangle inside every box above it",
                         file->tree_count(), file->tree_count() == 1 ? "tree" : "trees");
-  return verdict;
+  return verification;
 }
 
-Json to_json(const std::filesystem::path& file, const Verdict& verdict) {
-  Json json = {{"file", file.string()}, {"ok", verdict.findings.empty()}};
+Json to_json(const std::filesystem::path& file, const Verification& verification) {
+  Json json = {{"file", file.string()}, {"ok", verification.findings.empty()}};
   json["findings"] = Json::array();
-  for (const Error& finding : verdict.findings) {
+  for (const Error& finding : verification.findings) {
     json["findings"].push_back({{"code", static_cast<unsigned>(finding.code)},
                                 {"name", error_info(finding.code).name},
                                 {"detail", finding.detail}});
@@ -93,14 +93,15 @@ Json to_json(const std::filesystem::path& file, const Verdict& verdict) {
   return json;
 }
 
-void print_verdict(const std::filesystem::path& file, const Verdict& verdict, bool quiet) {
-  if (verdict.is_told) return;
+void print_verification(const std::filesystem::path& file, const Verification& verification,
+                        bool quiet) {
+  if (verification.is_reported) return;
   const std::string name = shown(file.string());
-  for (const Error& finding : verdict.findings) {
+  for (const Error& finding : verification.findings) {
     fmt::print("{}: {:04} {}\n", name, static_cast<unsigned>(finding.code),
                shown(finding.message()));
   }
-  if (verdict.findings.empty() && !quiet) fmt::print("{}: {}\n", name, verdict.summary);
+  if (verification.findings.empty() && !quiet) fmt::print("{}: {}\n", name, verification.summary);
 }
 
 int run(const Arguments& arguments) {
@@ -110,13 +111,13 @@ int run(const Arguments& arguments) {
   int status = 0;
   std::vector<Json> documents;
   for (const std::filesystem::path& file : arguments.files) {
-    const Verdict verdict = verdict_on(file, arguments.mesh);
+    const Verification verification = verify_one(file, arguments.mesh);
     if (arguments.json) {
-      documents.push_back(to_json(file, verdict));
+      documents.push_back(to_json(file, verification));
     } else {
-      print_verdict(file, verdict, arguments.quiet);
+      print_verification(file, verification, arguments.quiet);
     }
-    if (status == 0) status = verdict.status;
+    if (status == 0) status = verification.status;
   }
   if (arguments.json) print_files(std::move(documents));
   return status;

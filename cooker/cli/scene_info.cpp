@@ -83,13 +83,13 @@ Result<Json> scene_json(const File& file) {
   Json layers = Json::array();
   for (std::uint32_t i = 0; i < scene->layer_count(); ++i) {
     const LayerRecord layer = BoundScene::of(*scene).layer(i);
-    Json meets = Json::array();
+    Json collides_with = Json::array();
     for (std::uint32_t other = 0; other < scene->layer_count(); ++other) {
-      if (((layer.meets >> other) & 1u) != 0) meets.push_back(other);
+      if (((layer.collides_with >> other) & 1u) != 0) collides_with.push_back(other);
     }
     layers.push_back({{"name", scene->layer_name(i)},
                       {"queries", kinds_json(layer.query_kinds)},
-                      {"meets", meets}});
+                      {"collides_with", collides_with}});
   }
   Json materials = Json::array();
   for (std::uint32_t i = 0; i < scene->material_count(); ++i) {
@@ -115,9 +115,9 @@ void print_scene(const Json& scene) {
   }
   for (std::uint32_t i = 0; i < scene["layers"].size(); ++i) {
     const Json& layer = scene["layers"][i];
-    fmt::print("  layer {} {}: {} instances, answers {}, meets layers {}\n", i,
+    fmt::print("  layer {} {}: {} instances, answers {}, collides with layers {}\n", i,
                line_of(layer["name"]), of_layer[i], line_of(layer["queries"]),
-               line_of(layer["meets"]));
+               line_of(layer["collides_with"]));
   }
   if (!scene["materials"].empty()) fmt::print("  materials {}\n", line_of(scene["materials"]));
   for (const Json& part : scene["left_out"]) {

@@ -128,9 +128,9 @@ class SceneEncoder {
   void write_layers() {
     for (const SceneLayer& layer : parts_.layers) {
       const Name name = add_name(layer.name);
-      append(out_.layers,
-             LayerRecord{layer.meets, static_cast<QueryKinds>(layer.queries & parts_.queries),
-                         name.offset, name.bytes});
+      append(out_.layers, LayerRecord{layer.collides_with,
+                                      static_cast<QueryKinds>(layer.queries & parts_.queries),
+                                      name.offset, name.bytes});
     }
   }
 

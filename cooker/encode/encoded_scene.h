@@ -28,7 +28,7 @@ struct PlacedTree {
 
 struct SceneLayer {
   std::string name;
-  std::uint32_t meets = ~0u;  // layers; symmetric
+  std::uint32_t collides_with = ~0u;  // layers; symmetric
   QueryKinds queries = kAllQueries;
 };
 

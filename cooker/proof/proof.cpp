@@ -153,7 +153,7 @@ class Walk {
   }
 
   // Who meets a face first does not matter to anyone but the report of a corrupt tree.
-  bool reach(std::uint32_t face, const char* twice) {
+  bool mark_reached(std::uint32_t face, const char* twice) {
     const bool met = reached_[face].exchange(1, std::memory_order_relaxed) != 0;
     if (met) add(Errc::kFaceRepeated, "face " + std::to_string(face) + " " + twice);
     if (!met) ++proof_.certificate.face_count;
@@ -169,7 +169,7 @@ class Walk {
       return content;
     }
     for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
-      reach(f, "is in two leaves");
+      mark_reached(f, "is in two leaves");
     }
     if (!with_geometry_) return content;
     TriangleBatch batch;
@@ -204,7 +204,7 @@ class Walk {
         continue;
       }
       before = original;
-      if (!reach(copy, "is in a leaf and a copy of another one")) continue;
+      if (!mark_reached(copy, "is in a leaf and a copy of another one")) continue;
       if (!has_same_triangles(original, copy) ||
           (tree_.has_face_ids() &&
            BoundTree::of(tree_).face_id(original) > BoundTree::of(tree_).face_id(copy))) {
@@ -280,7 +280,7 @@ Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
 
 std::string fault_of_node(std::uint32_t node, NodeState state) {
   return "node " + std::to_string(node) +
-         (state == NodeState::kSound ? " is one more than the record states: one is met twice"
+         (state == NodeState::kValid ? " is one more than the record states: one is met twice"
                                      : " contradicts itself");
 }
 

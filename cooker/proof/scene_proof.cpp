@@ -136,9 +136,11 @@ class SceneWalk {
         add(Errc::kRecordInvalid, what + "answers queries that the scene does not");
       }
       for (std::uint32_t j = 0; j < i; ++j) {
-        if (((layer.meets >> j) & 1u) == ((BoundScene::of(scene_).layer(j).meets >> i) & 1u))
+        if (((layer.collides_with >> j) & 1u) ==
+            ((BoundScene::of(scene_).layer(j).collides_with >> i) & 1u))
           continue;
-        add(Errc::kRecordInvalid, what + "meets layer " + std::to_string(j) + " one way alone");
+        add(Errc::kRecordInvalid,
+            what + "collides with layer " + std::to_string(j) + " one way only");
       }
     }
   }

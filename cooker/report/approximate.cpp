@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every question is asked in every setting; nodes and errors are of one run, times of several.
+// Every query is asked in every setting; nodes and errors are of one run, times of several.
 #include "cooker/report/approximate.h"
 
 #include <algorithm>
@@ -43,33 +43,33 @@ Bounds bounds_of(const Result<Answer>& answer) {
           answer->converged, answer->nodes_expanded};
 }
 
-Bounds ask(const Tree& tree, const Eigen::Vector3d& point, const Approximation& approximation) {
+Bounds run_query(const Tree& tree, const Eigen::Vector3d& point,
+                 const Approximation& approximation) {
   return bounds_of(closest_point(tree, point, approximation));
 }
 
-Bounds ask(const Tree& tree, const Pose& pose, const Approximation& approximation) {
+Bounds run_query(const Tree& tree, const Pose& pose, const Approximation& approximation) {
   return bounds_of(distance(tree, Pose::Identity(), tree, pose, approximation));
 }
 
-template <class Question>
-Result<std::vector<TrueDistance>> truths_of(const Tree& tree,
-                                            const std::vector<Question>& questions) {
+template <class Query>
+Result<std::vector<TrueDistance>> truths_of(const Tree& tree, const std::vector<Query>& queries) {
   std::vector<TrueDistance> truths;
-  for (const Question& question : questions) {
-    const Bounds bounds = ask(tree, question, {});
+  for (const Query& query : queries) {
+    const Bounds bounds = run_query(tree, query, {});
     if (bounds.error != Errc::kOk) return bounds.error;
     truths.push_back({bounds.lower, bounds.upper});
   }
   return truths;
 }
 
-// One kind of questions, one setting after the other.
-template <class Question>
+// One kind of queries, one setting after the other.
+template <class Query>
 class Sweep {
  public:
-  Sweep(const Tree& tree, const std::vector<Question>& questions,
+  Sweep(const Tree& tree, const std::vector<Query>& queries,
         const std::vector<TrueDistance>& truths, std::size_t runs)
-      : tree_(tree), questions_(questions), truths_(truths), runs_(runs) {
+      : tree_(tree), queries_(queries), truths_(truths), runs_(runs) {
     const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
     resolution_ = std::ldexp(bounds.diagonal().norm(), -44);
   }
@@ -94,17 +94,17 @@ class Sweep {
     ApproximateStep step;
     step.relative_error = approximation.relative_error;
     step.node_budget = approximation.node_budget;
-    step.questions = questions_.size();
+    step.queries = queries_.size();
     std::vector<double> nodes;
     std::vector<double> errors;
     std::vector<double> gaps;
-    for (std::size_t i = 0; i < questions_.size(); ++i) {
-      const Bounds found = ask(tree_, questions_[i], approximation);
+    for (std::size_t i = 0; i < queries_.size(); ++i) {
+      const Bounds found = run_query(tree_, queries_[i], approximation);
       if (found.error != Errc::kOk) return found.error;
       const TrueDistance& truth = truths_[i];
       nodes.push_back(static_cast<double>(found.nodes));
-      if (!before_.empty() && nodes[i] > before_[i]) ++step.dearer;
-      if (found.converged) ++step.near_enough;
+      if (!before_.empty() && nodes[i] > before_[i]) ++step.slower;
+      if (found.converged) ++step.converged;
       if (found.lower > truth.upper || found.upper < truth.lower) ++step.false_bounds;
       if (!found.is_found) continue;
       const double scale = std::max(truth.upper, resolution_);
@@ -127,27 +127,27 @@ class Sweep {
     before_ = std::move(nodes);
     if (runs_ == 0) return step;
     Status status;
-    step.times = time_each(questions_, runs_, status, [&](const Question& question) {
-      return ask(tree_, question, approximation).error;
+    step.times = time_each(queries_, runs_, status, [&](const Query& query) {
+      return run_query(tree_, query, approximation).error;
     });
     if (!status) return status.error();
     return step;
   }
 
   const Tree& tree_;
-  const std::vector<Question>& questions_;
+  const std::vector<Query>& queries_;
   const std::vector<TrueDistance>& truths_;
   const std::size_t runs_;
   double resolution_ = 0;
-  std::vector<double> before_;  // nodes of each question in the step before
+  std::vector<double> before_;  // nodes of each query in the step before
 };
 
-template <class Question>
-Result<ApproximateCurves> curves_of(const Tree& tree, const std::vector<Question>& questions,
+template <class Query>
+Result<ApproximateCurves> curves_of(const Tree& tree, const std::vector<Query>& queries,
                                     const std::vector<TrueDistance>& truths, std::size_t runs,
                                     const std::vector<double>& errors,
                                     const std::vector<std::uint64_t>& budgets) {
-  Sweep<Question> sweep(tree, questions, truths, runs);
+  Sweep<Query> sweep(tree, queries, truths, runs);
   auto by_error = sweep.over(errors, &Approximation::relative_error);
   if (!by_error) return by_error.error();
   auto by_budget = sweep.over(budgets, &Approximation::node_budget);
@@ -157,23 +157,23 @@ Result<ApproximateCurves> curves_of(const Tree& tree, const std::vector<Question
 
 }  // namespace
 
-Result<TrueDistances> true_distances(const Tree& tree, const Workload& questions) {
-  auto points = truths_of(tree, questions.points);
+Result<TrueDistances> true_distances(const Tree& tree, const Workload& queries) {
+  auto points = truths_of(tree, queries.points);
   if (!points) return points.error();
-  auto poses = truths_of(tree, questions.apart);
+  auto poses = truths_of(tree, queries.apart);
   if (!poses) return poses.error();
   return TrueDistances{std::move(*points), std::move(*poses)};
 }
 
-Result<ApproximateFigures> measure_approximate(const Tree& tree, const Workload& questions,
+Result<ApproximateFigures> measure_approximate(const Tree& tree, const Workload& queries,
                                                const TrueDistances& truth,
                                                const ApproximateEffort& effort) {
   const Settings set = settings(effort.quick);
   auto points =
-      curves_of(tree, questions.points, truth.points, effort.runs, set.errors, set.point_budgets);
+      curves_of(tree, queries.points, truth.points, effort.runs, set.errors, set.point_budgets);
   if (!points) return points.error();
   auto poses =
-      curves_of(tree, questions.apart, truth.poses, effort.runs, set.errors, set.distance_budgets);
+      curves_of(tree, queries.apart, truth.poses, effort.runs, set.errors, set.distance_budgets);
   if (!poses) return poses.error();
   return ApproximateFigures{std::move(*points), std::move(*poses)};
 }

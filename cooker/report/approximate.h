@@ -12,7 +12,7 @@
 
 namespace boxtree::cooker {
 
-/// One setting, over all questions. Errors are shares of the true distance. Bounds resolve some
+/// One setting, over all queries. Errors are shares of the true distance. Bounds resolve some
 /// 2^-44 of the mesh's diagonal: errors below that count as none, distances below it as that.
 struct ApproximateStep {
   double relative_error = 0;                    // allowed
@@ -24,11 +24,11 @@ struct ApproximateStep {
   double error_max = 0;
   double gap_median = 0;         // what the answers themselves state: upper - lower
   double gap_max = 0;            // likewise
-  std::size_t questions = 0;     // all of them
+  std::size_t queries = 0;       // all of them
   std::size_t found = 0;         // those with a witness: medians and maxima are over these
-  std::size_t near_enough = 0;   // those that say so: the budget did not run out
+  std::size_t converged = 0;     // those that say so: the budget did not run out
   std::size_t false_bounds = 0;  // those whose bounds do not hold the truth: 0, or a defect
-  std::size_t dearer = 0;        // those that took more nodes than in the step before
+  std::size_t slower = 0;        // those that took more nodes than in the step before
 };
 
 enum class ApproximateKind : std::uint8_t { kPoint, kDistance };
@@ -56,7 +56,7 @@ struct TrueDistances {
 };
 
 /// Asks with no error allowed. Errors: those of the queries.
-Result<TrueDistances> true_distances(const Tree& tree, const Workload& questions);
+Result<TrueDistances> true_distances(const Tree& tree, const Workload& queries);
 
 struct ApproximateEffort {
   bool quick = false;    // half of the steps
@@ -65,7 +65,7 @@ struct ApproximateEffort {
 
 /// Closest points, and distances of the tree and its copy in the poses apart, for each allowed
 /// error and each budget. `truth` may come from any tree of the same geometry.
-Result<ApproximateFigures> measure_approximate(const Tree& tree, const Workload& questions,
+Result<ApproximateFigures> measure_approximate(const Tree& tree, const Workload& queries,
                                                const TrueDistances& truth,
                                                const ApproximateEffort& effort);
 

@@ -20,24 +20,24 @@ using ValueOf = std::function<double(const ApproximateStep&)>;
 
 struct KindWords {
   const char* title;
-  const char* one;  // a question
-  const char* questions;
+  const char* one;  // a query
+  const char* queries;
   const char* promise;
 };
 constexpr std::array<KindWords, kApproximateKinds> kKinds = {
     {{"closest points, approximately", "a closest point",
       "Points in 1.2 times the bounds of the mesh.",
       "Nodes: this walk is depth-first, so theory promises less work for a larger error on average "
-      "only. A single question may take more, if a nearer triangle that would have cut the walk "
-      "short was not worth looking at; the table counts such questions as dearer. A budget bounds "
+      "only. A single query may take more, if a nearer triangle that would have cut the walk "
+      "short was not worth looking at; the table counts such queries as slower. A budget bounds "
       "the worst case: its walk is best-first, one box at a time, and in the median slower than "
       "the walk without one."},
      {"distances, approximately", "a distance",
       "The mesh and a copy of it, turned at random, 1.05, 1.2, 1.5 or 2 times as far away as their "
       "turned bounding boxes touch: apart, always.",
       "Nodes (pairs of them): the walk takes pairs in an order that does not depend on the error "
-      "allowed, so no question takes more of them when more is allowed, as long as 2048 waiting "
-      "pairs suffice; the table counts questions for which they did not as dearer."}}};
+      "allowed, so no query takes more of them when more is allowed, as long as 2048 waiting "
+      "pairs suffice; the table counts queries for which they did not as slower."}}};
 
 std::string share(double value) {
   return value == 0 ? "0" : fmt::format("{:.3g} %", 100 * value);
@@ -64,7 +64,7 @@ PagePlot::Series series_of(const std::string& name, const Steps& steps, const Va
                            const ValueOf& y) {
   PagePlot::Series series{name, {}, PagePlot::Joined::kCurve};
   for (const ApproximateStep& step : steps) {
-    const bool is_exact = step.node_budget != kUnlimitedNodes && step.near_enough == step.questions;
+    const bool is_exact = step.node_budget != kUnlimitedNodes && step.converged == step.queries;
     if (step.found == 0 || is_exact) continue;  // no error to show, or nothing but rounding
     series.points.push_back({x(step), y(step), "", 4,
                              fmt::format("{}, allowed {}: {:.3g}", name, allowed(step), y(step))});
@@ -83,7 +83,7 @@ PagePlot cost_plot(const std::vector<const TradePoint*>& points, std::size_t kin
   PagePlot plot;
   plot.title = of_time ? "Allowed error against time" : "Allowed error against nodes";
   plot.x_title = "allowed relative error";
-  plot.y_title = of_time ? "median time, ns" : "nodes of a question, mean";
+  plot.y_title = of_time ? "median time, ns" : "nodes of a query, mean";
   plot.x_scale = plot.y_scale = AxisScale::kLogarithmic;
   plot.zero_name = "none";
   for (const TradePoint* point : points) {
@@ -134,7 +134,7 @@ PageTable table_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*
   if (by_budget) {
     table.columns.insert(table.columns.end(), {"found", "near enough", "false bounds"});
   } else {
-    table.columns.insert(table.columns.end(), {"false bounds", "dearer"});
+    table.columns.insert(table.columns.end(), {"false bounds", "slower"});
   }
   for (const TradePoint* point : points) {
     const ApproximateCurves& curves = point->approximate[kind];
@@ -145,14 +145,14 @@ PageTable table_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*
         row.push_back(time_in_words(step.times.p99_ns));
       }
       const auto of_all = [&](std::size_t count) {
-        return fmt::format("{} of {}", count, step.questions);
+        return fmt::format("{} of {}", count, step.queries);
       };
       const auto error = [&](double value) { return step.found == 0 ? "-" : share(value); };
       row.insert(row.end(), {fmt::format("{:.1f}", step.nodes_mean), error(step.error_max),
                              error(step.error_median), error(step.gap_max)});
-      if (by_budget) row.insert(row.end(), {of_all(step.found), of_all(step.near_enough)});
+      if (by_budget) row.insert(row.end(), {of_all(step.found), of_all(step.converged)});
       row.push_back(std::to_string(step.false_bounds));
-      if (!by_budget) row.push_back(std::to_string(step.dearer));
+      if (!by_budget) row.push_back(std::to_string(step.slower));
       table.rows.push_back(std::move(row));
     }
   }
@@ -178,7 +178,7 @@ PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, 
                       kKinds[kind].one, cost(step), cost(exact), point.name(),
                       cost_of(mesh, exact) / std::max(cost_of(mesh, step), 1e-300),
                       share(step.error_max), share(step.error_median), step.false_bounds,
-                      step.questions)};
+                      step.queries)};
 }
 
 PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*>& points,
@@ -194,7 +194,7 @@ PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePo
       "largest may come near the bound; the median is far below it, often 0 and then not drawn: "
       "the "
       "first triangle met is often the nearest, and what costs is the proof. {}",
-      kKinds[kind].questions, kKinds[kind].promise);
+      kKinds[kind].queries, kKinds[kind].promise);
   for (const double error : {0.01, 0.1}) {
     for (const ApproximateStep& step : points.front()->approximate[kind].by_error) {
       if (step.relative_error == error) {

@@ -133,29 +133,29 @@ Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size
   return boxes;
 }
 
-// Opens and binds, and asks question after question, each of a file of which nothing was read.
+// Opens and binds, and asks query after query, each of a file of which nothing was read.
 class ColdFile {
  public:
   ColdFile(Watch& watch, std::uint32_t index) : watch_(watch), index_(index) {}
 
-  template <class Ask>
-  Result<std::size_t> pages(Ask ask) {
+  template <class RunQuery>
+  Result<std::size_t> pages(RunQuery run_query) {
     watch_.forget();
     const Result<File> file = File::open(watch_.bytes());
     if (!file) return file.error();
     const Result<Tree> tree = Tree::bind(*file, index_);
     if (!tree) return tree.error();
-    const auto answer = ask(*tree);
+    const auto answer = run_query(*tree);
     if (!answer.ok()) return answer.error();
     return watch_.count();
   }
 
-  template <class Question, class Ask>
-  Result<PageCount> pages_of_all(const std::vector<Question>& questions, Ask ask) {
+  template <class Query, class RunQuery>
+  Result<PageCount> pages_of_all(const std::vector<Query>& queries, RunQuery run_query) {
     std::vector<std::size_t> counts;
-    for (const Question& question : questions) {
+    for (const Query& query : queries) {
       const Result<std::size_t> count =
-          pages([&](const Tree& tree) { return ask(tree, question); });
+          pages([&](const Tree& tree) { return run_query(tree, query); });
       if (!count) return count.error();
       counts.push_back(*count);
     }
@@ -180,13 +180,13 @@ Result<std::vector<std::size_t>> pages_read(const std::filesystem::path& path,
 }
 
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t index,
-                                  std::size_t questions) {
+                                  std::size_t queries) {
   const Result<File> file = File::open(path);
   if (!file) return file.error();
   const Result<Tree> tree = Tree::bind(*file, index);
   if (!tree) return tree.error();
-  const Workload workload = make_workload(bounds_in_object_space(*tree), {questions, 0, 0, 0});
-  const Result<std::vector<Eigen::AlignedBox3d>> boxes = local_boxes(*tree, questions);
+  const Workload workload = make_workload(bounds_in_object_space(*tree), {queries, 0, 0, 0});
+  const Result<std::vector<Eigen::AlignedBox3d>> boxes = local_boxes(*tree, queries);
   if (!boxes) return boxes.error();
 
   Watch watch(path);
@@ -198,19 +198,17 @@ Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32
   if (!open) return open.error();
   figures.open = *open;
   const auto ray = cold.pages_of_all(
-      workload.rays, [](const Tree& t, const Ray& question) { return closest_hit(t, question); });
+      workload.rays, [](const Tree& t, const Ray& query) { return closest_hit(t, query); });
   if (!ray) return ray.error();
   figures.ray = *ray;
-  const auto box =
-      cold.pages_of_all(*boxes, [](const Tree& t, const Eigen::AlignedBox3d& question) {
-        return overlap_box(t, question, [](const FaceRef&) { return true; });
-      });
+  const auto box = cold.pages_of_all(*boxes, [](const Tree& t, const Eigen::AlignedBox3d& query) {
+    return overlap_box(t, query, [](const FaceRef&) { return true; });
+  });
   if (!box) return box.error();
   figures.box = *box;
-  const auto point =
-      cold.pages_of_all(*boxes, [](const Tree& t, const Eigen::AlignedBox3d& question) {
-        return closest_point(t, question.center());
-      });
+  const auto point = cold.pages_of_all(*boxes, [](const Tree& t, const Eigen::AlignedBox3d& query) {
+    return closest_point(t, query.center());
+  });
   if (!point) return point.error();
   figures.point = *point;
   return figures;

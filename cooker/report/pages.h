@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How much of a file questions read, in pages of 4 KiB: what a cold file costs, counted exactly and
+// How much of a file queries read, in pages of 4 KiB: what a cold file costs, counted exactly and
 // the same on every machine.
 #pragma once
 
@@ -16,10 +16,10 @@
 
 namespace boxtree::cooker {
 
-/// Pages that one question of a kind reads in a file of which nothing has been read, from opening
+/// Pages that one query of a kind reads in a file of which nothing has been read, from opening
 /// to the answer.
 struct PageCount {
-  std::size_t questions = 0;
+  std::size_t queries = 0;
   std::size_t median = 0;
   std::size_t worst = 0;
 };
@@ -32,11 +32,11 @@ struct PageFigures {
   PageCount point;       // the middle of such a box
 };
 
-/// Asks `questions` of each kind about a tree with geometry inside, a file anew for each. Mapped
+/// Asks `queries` of each kind about a tree with geometry inside, a file anew for each. Mapped
 /// pages are kept from being read, and signals of those that are nevertheless are counted; so not
 /// two of these at a time in one program. Errors: those of opening, binding and asking, kMapFailed.
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t tree,
-                                  std::size_t questions);
+                                  std::size_t queries);
 
 /// The pages of a file that `read` reads, in the order of the file; likewise.
 Result<std::vector<std::size_t>> pages_read(const std::filesystem::path& path,

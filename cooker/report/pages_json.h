@@ -9,7 +9,7 @@
 namespace boxtree::cooker {
 
 [[nodiscard]] inline nlohmann::ordered_json to_json(const PageCount& count) {
-  return {{"questions", count.questions}, {"median", count.median}, {"worst", count.worst}};
+  return {{"queries", count.queries}, {"median", count.median}, {"worst", count.worst}};
 }
 
 [[nodiscard]] inline nlohmann::ordered_json to_json(const PageFigures& pages) {

@@ -37,7 +37,7 @@ Result<BlobSizes> measure_blob(const EncodedTree& tree, BlobMethod method) {
                     const Result<File> opened = open_blob(scratch->path());
                     const Result<Tree> bound =
                         opened ? Tree::bind(*opened) : Result<Tree>(opened.error());
-                    const Status answered = bound ? ask_first(*bound) : bound.error();
+                    const Status answered = bound ? first_query(*bound) : bound.error();
                     if (!answered) status = answered;
                   });
   if (!status) return status.error();

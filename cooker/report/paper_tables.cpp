@@ -186,7 +186,7 @@ PageSection counted(const PaperReport& report) {
 }
 
 PageSection rounding(const PaperReport& report) {
-  PageTable table{{"aligned contact", "questions", "pairs, f32", "missed, f16 to nearest",
+  PageTable table{{"aligned contact", "queries", "pairs, f32", "missed, f16 to nearest",
                    "missed, f16 outward", "boxes escaped, nearest", "outward"},
                   {}};
   for (const PaperFigures& mesh : report.meshes) {
@@ -196,7 +196,7 @@ PageSection rounding(const PaperReport& report) {
       const double share = all > 0 ? (all - static_cast<double>(found)) / all : 0;
       return fmt::format("{} ({})", figures.pairs_f32 - found, percent(share));
     };
-    table.rows.push_back({mesh.mesh, std::to_string(figures.questions),
+    table.rows.push_back({mesh.mesh, std::to_string(figures.queries),
                           std::to_string(figures.pairs_f32), missed(figures.pairs_nearest),
                           missed(figures.pairs_outward),
                           std::to_string(figures.gates_nearest.escapes),
@@ -272,7 +272,7 @@ PageSection times(const PaperReport& report) {
         const std::string codec = variant;
         table.rows.push_back({mesh.mesh,
                               library == std::string("boxtree") ? codec : library + (" " + codec),
-                              cell(get("asked"), 0), cell(time),
+                              cell(get("queries"), 0), cell(time),
                               original == nullptr ? "-" : number(time->value / original->value),
                               cell(get(kind[0] == 'f' ? "hits" : "pairs"), 0),
                               cell(get("node_pairs")), cell(get("leaf_tests")),

@@ -158,7 +158,7 @@ Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTre
     const Result<Tree> tree = bind_encoded(encoded);
     if (!tree) return tree.error();
     const std::vector<Pose> poses = aligned_poses(bounds_in_object_space(*tree));
-    figures.questions = poses.size();
+    figures.queries = poses.size();
     for (const Pose& pose : poses) {
       const Result<std::uint64_t> pairs = count_pairs(*tree, *tree, pose);
       if (!pairs) return pairs.error();

@@ -14,7 +14,7 @@ namespace boxtree::cooker {
 
 /// The same contacts asked of three trees of one mesh.
 struct RoundingFigures {
-  std::uint64_t questions = 0;
+  std::uint64_t queries = 0;
   std::uint64_t pairs_f32 = 0;      // pairs of faces found with f32 cuts
   std::uint64_t pairs_nearest = 0;  // with f16 cuts rounded to nearest
   std::uint64_t pairs_outward = 0;  // with f16 cuts rounded outward: codec plain-f16

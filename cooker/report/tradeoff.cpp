@@ -30,27 +30,27 @@ struct Effort {
   WorkloadSize answered;
   WorkloadSize approximate;
   std::size_t runs;
-  std::size_t cold;  // questions of a kind, each to a file of which nothing was read
+  std::size_t cold;  // queries of a kind, each to a file of which nothing was read
 };
 constexpr Effort kFullEffort{
     {20'000, 4'000, 4'000, 64, 0}, {200'000, 0, 20'000, 0, 0}, {0, 0, 2'000, 0, 64}, 7, 300};
 constexpr Effort kQuickEffort{
     {2'000, 400, 400, 16, 0}, {20'000, 0, 2'000, 0, 0}, {0, 0, 400, 0, 16}, 3, 100};
 
-Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& questions,
+Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& queries,
                                                       std::size_t runs) {
   Status status;
   const Pose here = Pose::Identity();
   const std::array<KindTimes, kTimedKinds> times = {
-      time_each(questions.rays, runs, status,
+      time_each(queries.rays, runs, status,
                 [&](const Ray& ray) { return closest_hit(tree, ray).code(); }),
-      time_each(questions.boxes, runs, status,
+      time_each(queries.boxes, runs, status,
                 [&](const Eigen::AlignedBox3d& box) {
                   return overlap_box(tree, box, [](const FaceRef&) { return true; }).code();
                 }),
-      time_each(questions.points, runs, status,
+      time_each(queries.points, runs, status,
                 [&](const Eigen::Vector3d& point) { return closest_point(tree, point).code(); }),
-      time_each(questions.poses, runs, status,
+      time_each(queries.poses, runs, status,
                 [&](const Pose& pose) { return first_contact(tree, here, tree, pose).code(); })};
   if (!status) return status.error();
   return times;
@@ -62,17 +62,17 @@ struct Answers {
   std::vector<double> distances;
 };
 
-Result<Answers> answers_of(const Tree& tree, const Workload& questions) {
+Result<Answers> answers_of(const Tree& tree, const Workload& queries) {
   Answers answers;
-  answers.ray_lengths.reserve(questions.rays.size());
-  answers.distances.reserve(questions.points.size());
-  for (const Ray& ray : questions.rays) {
+  answers.ray_lengths.reserve(queries.rays.size());
+  answers.distances.reserve(queries.points.size());
+  for (const Ray& ray : queries.rays) {
     const auto hit = closest_hit(tree, ray);
     if (!hit.ok()) return hit.error();
     answers.ray_lengths.push_back(hit.has_value() ? hit->t * ray.direction.norm()
                                                   : std::numeric_limits<double>::infinity());
   }
-  for (const Eigen::Vector3d& point : questions.points) {
+  for (const Eigen::Vector3d& point : queries.points) {
     const auto closest = closest_point(tree, point);
     if (!closest.ok()) return closest.error();
     answers.distances.push_back(closest.has_value() ? closest->distance
@@ -196,8 +196,8 @@ class Measurement {
       point.grid_bits = grid_bits.value_or(0);
       point.surface_rms = in_diagonals(rms);
       point.surface_bound = in_diagonals(bound);
-      tell("ask " + point.name());
-      if (Status status = ask(*tried, i, point); !status) return status;
+      tell("query " + point.name());
+      if (Status status = run_query(*tried, i, point); !status) return status;
       out_.points.push_back(std::move(point));
       ++step_;
     }
@@ -252,7 +252,7 @@ class Measurement {
     return {};
   }
 
-  Status ask(TriedTree& tried, std::size_t candidate, TradePoint& point) {
+  Status run_query(TriedTree& tried, std::size_t candidate, TradePoint& point) {
     const EncodedTree& encoded = assemble(tried, candidate);
     const std::vector<std::byte> file = serialize(std::span(&encoded, 1));
     point.bytes = bytes_of(encoded, file.size());
@@ -276,7 +276,7 @@ class Measurement {
                                            point.codec) != kApproximateCodecs.end();
     if (point.grid_bits != 0 || !is_approximated) return {};
     ++step_;
-    tell("ask " + point.name() + ", approximately");
+    tell("query " + point.name() + ", approximately");
     Result<ApproximateFigures> figures =
         measure_approximate(*tree, approximate_, truth_,
                             {options_.quick, options_.times ? effort_.runs : std::size_t{0}});

@@ -17,7 +17,7 @@
 
 namespace boxtree::cooker {
 
-/// Kinds of questions that are timed. The first three are also counted (QueryKind); of pairs the
+/// Kinds of queries that are timed. The first three are also counted (QueryKind); of pairs the
 /// first contact is timed, all contacts are counted.
 inline constexpr std::size_t kTimedKinds = 4;
 inline constexpr std::array<const char*, kTimedKinds> kTimedNames = {"ray", "box", "point",
@@ -86,7 +86,7 @@ struct MeshTradeoff {
 };
 
 struct TradeoffOptions {
-  bool quick = false;  // fewer grids, fewer questions
+  bool quick = false;  // fewer grids, fewer queries
   bool times = true;
 };
 

@@ -25,7 +25,7 @@ struct Advice {
   std::size_t smallest_exact = 0;  // fewest bytes with every position bit for bit
 };
 
-/// Nanoseconds of a question of a timed kind: the measured median or, without times, what the
+/// Nanoseconds of a query of a timed kind: the measured median or, without times, what the
 /// counted work is worth.
 [[nodiscard]] double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind);
 

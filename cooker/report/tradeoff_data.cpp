@@ -86,11 +86,11 @@ Json to_json(const MeshTradeoff& mesh, const std::vector<ApproximateStep>& steps
                     {"error_median", step.error_median},
                     {"gap_max", step.gap_max},
                     {"gap_median", step.gap_median},
-                    {"questions", step.questions},
+                    {"queries", step.queries},
                     {"found", step.found},
-                    {"near_enough", step.near_enough},
+                    {"converged", step.converged},
                     {"false_bounds", step.false_bounds},
-                    {"dearer", step.dearer}});
+                    {"slower", step.slower}});
   }
   return json;
 }
@@ -293,8 +293,8 @@ std::string to_csv(const TradeoffReport& report) {
 std::string approximate_to_csv(const TradeoffReport& report) {
   std::string out =
       "mesh,triangles,codec,kind,relative_error,node_budget,median_ns,p99_ns,nodes_mean,"
-      "nodes_median,error_max,error_median,gap_max,gap_median,questions,found,near_enough,"
-      "false_bounds,dearer\n";
+      "nodes_median,error_max,error_median,gap_max,gap_median,queries,found,converged,"
+      "false_bounds,slower\n";
   const auto add = [&](const MeshTradeoff& mesh, const TradePoint& point, const char* kind,
                        const ApproximateStep& step) {
     const bool has_budget = step.node_budget != kUnlimitedNodes;
@@ -304,8 +304,7 @@ std::string approximate_to_csv(const TradeoffReport& report) {
         has_budget ? std::to_string(step.node_budget) : "",
         mesh.timed ? fmt::format("{},{}", step.times.median_ns, step.times.p99_ns) : ",",
         step.nodes_mean, step.nodes_median, step.error_max, step.error_median, step.gap_max,
-        step.gap_median, step.questions, step.found, step.near_enough, step.false_bounds,
-        step.dearer);
+        step.gap_median, step.queries, step.found, step.converged, step.false_bounds, step.slower);
   };
   for (const MeshTradeoff& mesh : report.meshes) {
     for (const TradePoint& point : mesh.points) {

@@ -27,7 +27,7 @@ static_assert(kSeriesOrder.size() == kCodecs.size());
 // How kinds are called on the page; the metric of boxtree_peers; its unit in nanoseconds.
 struct KindWords {
   const char* title;
-  const char* question;
+  const char* query;
   const char* peer_metric;
   double peer_unit_ns;
 };
@@ -165,19 +165,19 @@ PagePlot kind_plot(const TradeoffReport& report, const MeshTradeoff& mesh, std::
 
 // All contacts are counted, and only then is their time modelled: no times, no fourth measured
 // kind.
-std::string kind_question(const MeshTradeoff& mesh, std::size_t kind) {
-  return kind == 3 && !mesh.timed ? "all contacts of the mesh and its copy" : kKinds[kind].question;
+std::string kind_query(const MeshTradeoff& mesh, std::size_t kind) {
+  return kind == 3 && !mesh.timed ? "all contacts of the mesh and its copy" : kKinds[kind].query;
 }
 
 PageSection kind_section(const TradeoffReport& report, const MeshTradeoff& mesh, std::size_t kind) {
   PageSection section;
   section.title = fmt::format("{}: {}", mesh.name, kKinds[kind].title);
   section.text = fmt::format(
-      "The question: {}. Lower is faster, further left is more faithful or smaller, a larger mark "
+      "The query: {}. Lower is faster, further left is more faithful or smaller, a larger mark "
       "is more bytes per triangle. A curve follows one codec over its grids; the number at a mark "
       "is the grid's bits. The dashed line is the Pareto front: nothing of ours lies below and to "
       "the left of it.",
-      kind_question(mesh, kind));
+      kind_query(mesh, kind));
   section.plots = {kind_plot(report, mesh, kind, false), kind_plot(report, mesh, kind, true)};
   return section;
 }
@@ -290,7 +290,7 @@ PageSection work_section(const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": work, counted";
   section.text =
-      "Nodes decoded and leaves tested for one question, the same on every machine, and how many "
+      "Nodes decoded and leaves tested for one query, the same on every machine, and how many "
       "more (+) or fewer (-) than in the reference with exact geometry: plain-f32, whose boxes are "
       "exact, for codecs with a face a leaf; wide8 for the wide ones, which have a tree of their "
       "own. Pairs are all contacts. Fewer is "
@@ -353,24 +353,23 @@ PageSection pages_section(const MeshTradeoff& mesh) {
     table.rows.push_back(std::move(row));
   }
   const auto passing = std::find_if(mesh.points.begin(), mesh.points.end(),
-                                    [](const TradePoint& p) { return p.pages.ray.questions > 0; });
-  const std::size_t questions = passing == mesh.points.end() ? 0 : passing->pages.ray.questions;
-  return {
-      mesh.name + ": pages of a cold file",
-      fmt::format("Pages of 4 KiB that one question reads of a mapped file of which nothing was "
-                  "read before, opening included: median and worst of {}. Rays come from "
-                  "outside; boxes are as large as a leaf, in the middle of leaves, and points "
-                  "are there. What a question does not need is not read.",
-                  questions),
-      {table},
-      {}};
+                                    [](const TradePoint& p) { return p.pages.ray.queries > 0; });
+  const std::size_t queries = passing == mesh.points.end() ? 0 : passing->pages.ray.queries;
+  return {mesh.name + ": pages of a cold file",
+          fmt::format("Pages of 4 KiB that one query reads of a mapped file of which nothing was "
+                      "read before, opening included: median and worst of {}. Rays come from "
+                      "outside; boxes are as large as a leaf, in the middle of leaves, and points "
+                      "are there. What a query does not need is not read.",
+                      queries),
+          {table},
+          {}};
 }
 
 PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": times";
   section.text =
-      "Of one question: median, 99th percentile and mean over all questions, each question's time "
+      "Of one query: median, 99th percentile and mean over all queries, each query's time "
       "the least of several runs, on one thread, in memory that is already mapped. Clocks tick in "
       "steps of about 10 ns; the median box touches nothing and ends early.";
   PageTable table{{"encoding"}, {}};
@@ -447,7 +446,7 @@ PageSection machine_section(const TradeoffReport& report) {
   const auto left_out = [&](const std::string& what) {
     section.conclusions.push_back({"Left out:", what});
   };
-  if (report.quick) left_out("more than half of the grids and most questions (--quick).");
+  if (report.quick) left_out("more than half of the grids and most queries (--quick).");
   if (!report.no_peers.empty()) left_out("other libraries (" + report.no_peers + ").");
   if (report.included.empty()) {
     left_out("stiff contacts and robustness: no results were given with --include.");

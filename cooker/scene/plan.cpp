@@ -89,8 +89,8 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
   }
 }
 
-bool never_meet(const ProfileObject& object, std::uint32_t other) {
-  return std::any_of(object.never_meets.begin(), object.never_meets.end(),
+bool never_collide(const ProfileObject& object, std::uint32_t other) {
+  return std::any_of(object.never_collides_with.begin(), object.never_collides_with.end(),
                      [&](const Stated<std::uint32_t>& name) { return name.value == other; });
 }
 
@@ -103,19 +103,20 @@ void plan_contacts(const Profile& profile, ScenePlan& plan) {
     for (std::size_t b = a; b < plan.layers.size(); ++b) {
       PlannedLayer& second = plan.layers[b];
       if ((second.queries & kPairQueries) == 0) continue;
-      if (never_meet(profile.objects[first.object], second.object) ||
-          never_meet(profile.objects[second.object], first.object)) {
+      if (never_collide(profile.objects[first.object], second.object) ||
+          never_collide(profile.objects[second.object], first.object)) {
         continue;
       }
-      first.meets |= 1u << b;
-      second.meets |= 1u << a;
+      first.collides_with |= 1u << b;
+      second.collides_with |= 1u << a;
     }
   }
   for (const PlannedLayer& layer : plan.layers) {
-    for (const Stated<std::uint32_t>& name : profile.objects[layer.object].never_meets) {
+    for (const Stated<std::uint32_t>& name : profile.objects[layer.object].never_collides_with) {
       plan.decisions.push_back(
           {Aspect::kContacts, OwnerKind::kObject, layer.object, false,
-           fmt::format("never meets \"{}\"", profile.objects[name.value].name.value), name.line});
+           fmt::format("never collides with \"{}\"", profile.objects[name.value].name.value),
+           name.line});
     }
   }
 }

@@ -93,7 +93,7 @@ struct PlannedLayer {
   std::uint32_t object = 0;  // in Profile::objects
   bool moves = false;
   QueryKinds queries = kAllQueries;
-  std::uint32_t meets = 0;  // bit n: layer n; symmetric
+  std::uint32_t collides_with = 0;  // bit n: layer n; symmetric
 };
 
 struct ScenePlan {

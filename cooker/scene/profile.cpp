@@ -235,11 +235,11 @@ void ProfileReader::read_object(const Header& header) {
   if (const auto motion = fields.one_of("motion", kMotions, "static or moving")) {
     object.moves = {motion->value == 1, motion->line};
   }
-  if (const auto names = fields.texts("never_meets")) {
+  if (const auto names = fields.texts("never_collides_with")) {
     for (const Stated<std::string>& name : *names) {
       const auto number =
-          fields.number_of(name, "never_meets", object_names_, "the name of an object");
-      if (number) object.never_meets.push_back({*number, name.line});
+          fields.number_of(name, "never_collides_with", object_names_, "the name of an object");
+      if (number) object.never_collides_with.push_back({*number, name.line});
     }
   }
   override_with(object.leave_out, fields.flag("leave_out"));

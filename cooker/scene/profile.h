@@ -58,7 +58,7 @@ struct ProfileObject {
   Stated<std::string> name;
   std::vector<Stated<std::string>> match;  // globs on names of instances and meshes
   Stated<bool> moves{false};
-  std::vector<Stated<std::uint32_t>> never_meets;  // numbers in Profile::objects
+  std::vector<Stated<std::uint32_t>> never_collides_with;  // numbers in Profile::objects
   Stated<bool> leave_out{false};
   Needs needs;
 };

@@ -12,7 +12,7 @@ namespace boxtree {
 /// within 2^-47 of the true one, if the edges at the first corner are differences that double
 /// holds, as those of f32 meshes are, or the sine of their angle is above 2^-50. Zero for a
 /// triangle without area, but for rounding where double does not hold them. Precondition:
-/// coordinates of at most 2^200 (kReach).
+/// coordinates of at most 2^200 (kMaxCoordinate).
 [[nodiscard]] Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept;
 
 /// The unit normal of a surface after `linear`, the linear part of a pose, has been applied to it:

@@ -33,7 +33,7 @@ template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_along(const Eigen::Vector3d& direction,
                                       const std::array<Eigen::Vector3d, N>& first,
                                       const std::array<Eigen::Vector3d, M>& second,
-                                      double reach) noexcept {
+                                      double max_abs) noexcept {
   const auto project = [&direction](const Eigen::Vector3d& x) {
     return (direction[0] * x[0] + direction[1] * x[1]) + direction[2] * x[2];
   };
@@ -43,7 +43,7 @@ template <std::size_t N, std::size_t M>
   for (std::size_t i = 1; i < M; ++i) far = std::min(far, project(second[i]));
   const double size = (std::abs(direction[0]) + std::abs(direction[1])) + std::abs(direction[2]);
   if (!(size >= kShortestDirection)) return 0;
-  const double gap = (far - near) - kSeparationError * size * reach;
+  const double gap = (far - near) - kSeparationError * size * max_abs;
   if (!(gap > 0)) return 0;
   const double length = std::sqrt(project(direction));
   return std::max(0.0, gap / length * kSeparationQuotient - kSeparationUnderflow);
@@ -82,10 +82,11 @@ template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_on_features(const Eigen::Vector3d& direction,
                                             const std::array<Eigen::Vector3d, N>& first,
                                             const std::array<Eigen::Vector3d, M>& second,
-                                            double reach) noexcept {
+                                            double max_abs) noexcept {
   double lower = 0;
   const auto consider = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    lower = std::max(lower, separation_along(orthogonal_to(direction, a, b), first, second, reach));
+    lower =
+        std::max(lower, separation_along(orthogonal_to(direction, a, b), first, second, max_abs));
   };
   const auto consider_one = [&](const auto& edges) {
     for (std::size_t i = 0; i < edges.size(); ++i) {
@@ -113,11 +114,11 @@ template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
                                      const Eigen::Vector3d& on_second,
                                      const std::array<Eigen::Vector3d, N>& first,
-                                     const std::array<Eigen::Vector3d, M>& second, double reach,
+                                     const std::array<Eigen::Vector3d, M>& second, double max_abs,
                                      double enough) noexcept {
   const Eigen::Vector3d between = on_second - on_first;
   Eigen::Vector3d direction = between;
-  double lower = separation_along(direction, first, second, reach);
+  double lower = separation_along(direction, first, second, max_abs);
   std::array<Eigen::Vector3d, 2> arms;
   for (std::size_t n = 0; n < arms.size() && lower < enough; ++n) {
     arms[n].setZero();
@@ -135,20 +136,20 @@ template <std::size_t N, std::size_t M>
     for (std::size_t i = 0; i <= n; ++i) {
       direction -= (dot(direction, arms[i]) / dot(arms[i], arms[i])) * arms[i];
     }
-    lower = std::max(lower, separation_along(direction, first, second, reach));
+    lower = std::max(lower, separation_along(direction, first, second, max_abs));
   }
   if (!(lower < enough)) return lower;
-  return std::max(lower, separation_on_features(between, first, second, reach));
+  return std::max(lower, separation_on_features(between, first, second, max_abs));
 }
 
 /// The largest magnitude of any coordinate of these points.
 template <std::size_t N>
-[[nodiscard]] double reach_of(const std::array<Eigen::Vector3d, N>& points) noexcept {
-  double reach = 0;
+[[nodiscard]] double max_abs_of(const std::array<Eigen::Vector3d, N>& points) noexcept {
+  double max_abs = 0;
   for (const Eigen::Vector3d& p : points) {
-    for (Eigen::Index k = 0; k < 3; ++k) reach = std::max(reach, std::abs(p[k]));
+    for (Eigen::Index k = 0; k < 3; ++k) max_abs = std::max(max_abs, std::abs(p[k]));
   }
-  return reach;
+  return max_abs;
 }
 
 }  // namespace boxtree

@@ -75,9 +75,9 @@ class RoundedAxes {
         farthest = std::max(farthest, std::abs(corner_[i][k]));
       }
       const double above = high[k] - middle, below = middle - low[k];
-      const double reach = std::max(above, below);
-      half_[k] = kGrow * reach + kProjectionError * farthest;
-      size = std::max(size, reach + farthest);
+      const double half_extent = std::max(above, below);
+      half_[k] = kGrow * half_extent + kProjectionError * farthest;
+      size = std::max(size, half_extent + farthest);
       asymmetry = std::max(asymmetry, std::abs(above - below));
     }
     slack_ = kOverlapError * size + 2 * asymmetry;

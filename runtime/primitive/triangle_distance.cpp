@@ -51,8 +51,8 @@ double unit_quotient(double numerator, double denominator) {
 struct Search {
   Search(const Corners& p_corners, const Corners& q_corners) noexcept
       : p(p_corners), q(q_corners), p_edge(edges_of(p)), q_edge(edges_of(q)) {
-    reach = std::max(reach_of(p), reach_of(q));
-    doubt = kPlaneError * reach * reach;
+    max_abs = std::max(max_abs_of(p), max_abs_of(q));
+    doubt = kPlaneError * max_abs * max_abs;
   }
 
   // Whether it is the best so far.
@@ -160,7 +160,7 @@ struct Search {
   const Corners& q;
   Corners p_edge;
   Corners q_edge;
-  double reach;
+  double max_abs;
   double doubt;
   double squared = std::numeric_limits<double>::infinity();
   Eigen::Vector3d first;
@@ -178,12 +178,13 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
   }
   const auto upper = [&] {
     return std::sqrt(search.squared) * kUpperQuotient +
-           (kPointError * search.reach + kUpperUnderflow);
+           (kPointError * search.max_abs + kUpperUnderflow);
   };
   // Where the bounds are that close, rounding is all that is between them.
-  const auto enough = [&] { return upper() - 2 * kPointError * search.reach; };
+  const auto enough = [&] { return upper() - 2 * kPointError * search.max_abs; };
   const auto separation = [&] {
-    return separation_near(search.first, search.second, search.p, search.q, search.reach, enough());
+    return separation_near(search.first, search.second, search.p, search.q, search.max_abs,
+                           enough());
   };
   double lower = separation();
   if (!(lower >= enough()) && search.try_contacts()) lower = std::max(lower, separation());

@@ -215,7 +215,8 @@ Segment remaining_segment(const Triangle& t) {
   return {*ends.first, *ends.second};
 }
 
-bool segment_meets_triangle(const Segment& s, const Triangle& t, const Projection& projection) {
+bool segment_intersects_triangle(const Segment& s, const Triangle& t,
+                                 const Projection& projection) {
   const std::array<Eigen::Vector3d, 3>& c = t.corner;
   const int from_side = orient3d(c[0], c[1], c[2], s.from);
   const int to_side = orient3d(c[0], c[1], c[2], s.to);
@@ -236,7 +237,7 @@ bool segment_meets_triangle(const Segment& s, const Triangle& t, const Projectio
 
 // Coplanar segments meet if their projections do along an axis that is not in their plane. Looking
 // along all three asks for no less and needs no choice.
-bool segments_meet(const Segment& s, const Segment& t) {
+bool segments_intersect(const Segment& s, const Segment& t) {
   if (orient3d(s.from, s.to, t.from, t.to) != 0) return false;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     if (!flat_shapes_overlap(flatten(s, axis), flatten(t, axis))) return false;
@@ -249,10 +250,10 @@ bool flat_triangles_intersect(const Triangle& p, const Triangle& q) {
   const Projection p_flat = project(p);
   const Projection q_flat = project(q);
   if (p_flat.is_degenerate() && q_flat.is_degenerate()) {
-    return segments_meet(remaining_segment(p), remaining_segment(q));
+    return segments_intersect(remaining_segment(p), remaining_segment(q));
   }
-  if (p_flat.is_degenerate()) return segment_meets_triangle(remaining_segment(p), q, q_flat);
-  if (q_flat.is_degenerate()) return segment_meets_triangle(remaining_segment(q), p, p_flat);
+  if (p_flat.is_degenerate()) return segment_intersects_triangle(remaining_segment(p), q, q_flat);
+  if (q_flat.is_degenerate()) return segment_intersects_triangle(remaining_segment(q), p, p_flat);
   // Parallel planes lose their area along the same axes, so both chose the same one.
   return flat_shapes_overlap(p_flat.shape, q_flat.shape);
 }

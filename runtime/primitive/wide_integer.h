@@ -73,8 +73,8 @@ template <std::size_t M, std::size_t N>
   return a.is_negative() != b.is_negative() ? -result : result;
 }
 
-/// Words for a difference of two doubles of at most 2^200 (see kReach) in units of 2^-1074, the
-/// least double: 1275 bits and a sign.
+/// Words for a difference of two doubles of at most 2^200 (see kMaxCoordinate) in units of 2^-1074,
+/// the least double: 1275 bits and a sign.
 inline constexpr std::size_t kDifferenceWords = 40;
 using WideDifference = WideInteger<kDifferenceWords>;
 

@@ -13,8 +13,9 @@ Result<Visit> overlap_box(const Tree& queried, const Eigen::AlignedBox3d& box, F
   const BoundTree& tree = BoundTree::of(queried);
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
-  const BoxQuery query{tree.frame().to_tree(box.min()).cwiseMax(-kReach).cwiseMin(kReach),
-                       tree.frame().to_tree(box.max()).cwiseMax(-kReach).cwiseMin(kReach)};
+  const BoxQuery query{
+      tree.frame().to_tree(box.min()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate),
+      tree.frame().to_tree(box.max()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate)};
   QueryWork work(limits);
   return visit_faces(tree, query, visitor, work);
 }

@@ -28,16 +28,16 @@ class BoxFilter {
   // Decoded boxes are exact; triangles were rounded to float.
   BoxFilter(const BoundTree& tree, const BoxQuery& query) {
     const double error =
-        tree.largest_reach() * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()};
+        tree.largest_abs() * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()};
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       bounds_.set(k, query.low[axis], query.high[axis], error);
     }
   }
 
-  HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(box); }
-  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
-    return judge_corners(bounds_, triangle);
+  HWY_INLINE Classification classify(const VectorBox& box) const { return bounds_.classify(box); }
+  HWY_INLINE Classification classify(const VectorTriangle& triangle) const {
+    return classify_corners(bounds_, triangle);
   }
 
  private:

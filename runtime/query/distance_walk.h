@@ -127,7 +127,7 @@ class DistanceWalk {
           bound_.count(first_codec_.expand(entry.first, entry.first_box, first_children_));
       if (error != Errc::kOk) return error;
       const double second_end = nearest_.direction().end_of_second(entry.second_box);
-      return meet_children(
+      return intersect_children(
           first_children_,
           [&](const Box<typename A::Scalar>& box) {
             double key = nearest_.direction().squared_distance(
@@ -148,7 +148,7 @@ class DistanceWalk {
     if (error != Errc::kOk) return error;
     const Box<double> first_image = pose_.to_second().hull(entry.first_box);
     const double first_end = nearest_.direction().end_of_first(entry.first_box);
-    return meet_children(
+    return intersect_children(
         second_children_,
         [&](const Box<typename B::Scalar>& box) {
           double key = nearest_.direction().squared_distance(
@@ -167,7 +167,7 @@ class DistanceWalk {
   }
 
   template <class Children, class Key, class Make>
-  Errc meet_children(const Children& children, Key key_of, Make make) noexcept {
+  Errc intersect_children(const Children& children, Key key_of, Make make) noexcept {
     std::array<double, kWidth> key;
     std::array<std::uint32_t, kWidth> order;  // children that count, nearest first
     std::size_t passed = 0;

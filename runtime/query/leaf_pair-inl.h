@@ -81,7 +81,7 @@ struct PreparedLeaf {
 /// W the largest component of the vectors from its corner to the points. A component of the normal,
 /// at most 2 L^2, is off by 16 (c + u L) L and one of these vectors by c + e + u W, so a height by
 /// 64 (c + u L) L W + 8 L^2 (c + e + 4 u W), roundings of the sum included. All coordinates are at
-/// most kFloatReach, so nothing overflows; underflow takes 2^-149 from a component of the normal,
+/// most kFloatMaxAbs, so nothing overflows; underflow takes 2^-149 from a component of the normal,
 /// which the vector multiplies by less than 2^42, and less from all else.
 HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector length,
                                          float plane_error, const Vector3 (&w)[3],
@@ -246,7 +246,7 @@ class LeafPairs {
           for (std::size_t c = 0; c < 3; ++c) {
             moved.corner[c] = pose_.to_first().apply(triangle.corner[c]);
             // Outside the root box that the pose was checked with.
-            if (!is_within_reach(moved.corner[c])) error_ = Errc::kVertexNotFinite;
+            if (!is_within_range(moved.corner[c])) error_ = Errc::kVertexNotFinite;
           }
         });
     if (!read) error_ = second_.error();

@@ -34,7 +34,7 @@ Errc LeafReading::read_second(NodeRef leaf) noexcept {
     for (std::size_t c = 0; c < 3; ++c) {
       moved[j].corner[c] = pose_.to_first().apply(triangle.corner[c]);
       // Outside the root box that the pose was checked with.
-      if (!is_within_reach(moved[j].corner[c])) return Errc::kVertexNotFinite;
+      if (!is_within_range(moved[j].corner[c])) return Errc::kVertexNotFinite;
     }
     moved_bounds[j] = bounds_of(moved[j]);
     expand(all_moved_bounds, moved_bounds[j]);

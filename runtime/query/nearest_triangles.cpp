@@ -110,17 +110,17 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
                                std::uint32_t j) noexcept {
   const Eigen::Vector3d& origin = p.corner[0];
   Triangle p_world, q_world;
-  double reach = 0;
+  double max_abs = 0;
   for (std::size_t c = 0; c < 3; ++c) {
     const Eigen::Vector3d to_p = p.corner[c] - origin;
     const Eigen::Vector3d to_q = q.corner[c] - origin;
-    reach = std::max({reach, to_p.cwiseAbs().maxCoeff(), to_q.cwiseAbs().maxCoeff()});
+    max_abs = std::max({max_abs, to_p.cwiseAbs().maxCoeff(), to_q.cwiseAbs().maxCoeff()});
     p_world.corner[c] = metric_.to_world(to_p);
     q_world.corner[c] = metric_.to_world(to_q);
   }
   // Both triangles may lie off by the error of their corners.
-  const double error = 2 * metric_.image_error() * reach;
-  const double size = std::max(reach_of(p_world.corner), reach_of(q_world.corner));
+  const double error = 2 * metric_.image_error() * max_abs;
+  const double size = std::max(max_abs_of(p_world.corner), max_abs_of(q_world.corner));
   if (has_any() && is_apart(p_world, q_world, size, error)) return;
   TriangleDistance found = triangle_distance(p_world, q_world);
   found.lower = std::max(0.0, found.lower - error);

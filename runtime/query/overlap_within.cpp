@@ -212,7 +212,7 @@ Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedB
   if (tree.empty()) return BoxOverlap();
   // Beyond the reach there is nothing to touch, and the predicates could overflow.
   const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
-    return tree.frame().to_tree(corner).cwiseMax(-kReach).cwiseMin(kReach);
+    return tree.frame().to_tree(corner).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
   };
   const BoxQuery query{clamped(box.min()), clamped(box.max())};
   BoxSearch search{tree,        query, scaled_below(distance, -tree.scale_exponent()),

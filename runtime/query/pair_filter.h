@@ -19,11 +19,12 @@ namespace boxtree {
 /// x -> linear x + translation, for boxes given by center and half extent: the image has center
 /// linear c + translation and half extent |linear| h.
 struct FloatMap {
-  /// `reach`: largest magnitudes of x; `target_reach`: of the boxes that images are compared with;
-  /// `given_error`: of the map itself. No magnitude may exceed `limit`, or is_in_range is false and
-  /// the map must not be used.
-  FloatMap(const AffineMap& map, const Eigen::Vector3d& reach, const Eigen::Vector3d& target_reach,
-           const Eigen::Vector3d& given_error, double limit) noexcept {
+  /// `reach`: largest magnitudes of x; `target_max_abs`: of the boxes that images are compared
+  /// with; `given_error`: of the map itself. No magnitude may exceed `limit`, or is_in_range is
+  /// false and the map must not be used.
+  FloatMap(const AffineMap& map, const Eigen::Vector3d& max_abs,
+           const Eigen::Vector3d& target_max_abs, const Eigen::Vector3d& given_error,
+           double limit) noexcept {
     double largest = 0;
     for (std::size_t i = 0; i < 3; ++i) {
       const auto row = static_cast<Eigen::Index>(i);
@@ -33,16 +34,17 @@ struct FloatMap {
         const double m = map.linear(row, column);
         linear[j][i] = static_cast<float>(m);
         absolute[j][i] = float_above(std::abs(m));
-        magnitude += std::abs(m) * reach[column];
+        magnitude += std::abs(m) * max_abs[column];
         largest = std::max(largest, std::abs(m));
       }
-      largest = std::max({largest, magnitude, target_reach[row], given_error[row]});
+      largest = std::max({largest, magnitude, target_max_abs[row], given_error[row]});
       translation[i] = static_cast<float>(map.translation[row]);
       // Each of the three products passes through the rounding of its factors, of the center and of
       // three sums: 8u of the sum of magnitudes, doubled for the half extents; 4u of what the image
       // is compared with, for its own center and half extent and their sums.
-      error[i] = float_above(16 * kRoundoffF32 * magnitude + 4 * kRoundoffF32 * target_reach[row] +
-                             given_error[row] + kFloatUnderflow);
+      error[i] =
+          float_above(16 * kRoundoffF32 * magnitude + 4 * kRoundoffF32 * target_max_abs[row] +
+                      given_error[row] + kFloatUnderflow);
     }
     is_in_range = largest <= limit;
   }
@@ -60,10 +62,10 @@ struct FloatMap {
 /// product a term.
 struct PairFilter {
   PairFilter(const BoundTree& first, const BoundTree& second, const RelativePose& pose) noexcept
-      : to_first(pose.to_first(), second.reach(), first.reach(), Eigen::Vector3d::Zero(),
-                 kFloatReach),
-        to_second(pose.to_second(), first.reach(), second.reach(), pose.to_second_error(),
-                  kFloatReach * kFloatReach) {}
+      : to_first(pose.to_first(), second.max_abs(), first.max_abs(), Eigen::Vector3d::Zero(),
+                 kFloatMaxAbs),
+        to_second(pose.to_second(), first.max_abs(), second.max_abs(), pose.to_second_error(),
+                  kFloatMaxAbs * kFloatMaxAbs) {}
 
   /// Whether the filter may be used.
   [[nodiscard]] bool is_in_range() const noexcept {

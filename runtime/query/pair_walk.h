@@ -127,8 +127,8 @@ class PairWalk {
             !boxes_overlap(pose_.hull_in_second(box), entry.second_box)) {
           continue;
         }
-        meet({box, entry.second_box, children.ref[i], entry.second, children.is_leaf(i),
-              entry.second_leaf});
+        intersect({box, entry.second_box, children.ref[i], entry.second, children.is_leaf(i),
+                   entry.second_leaf});
       }
       return;
     }
@@ -142,8 +142,8 @@ class PairWalk {
           !boxes_overlap(entry.first_box, pose_.hull_in_first(box))) {
         continue;
       }
-      meet({entry.first_box, box, entry.first, children.ref[i], entry.first_leaf,
-            children.is_leaf(i)});
+      intersect({entry.first_box, box, entry.first, children.ref[i], entry.first_leaf,
+                 children.is_leaf(i)});
     }
   }
 
@@ -155,7 +155,7 @@ class PairWalk {
   }
 
   // A pair whose boxes overlap: its triangles now, or its children later.
-  void meet(const Entry& entry) {
+  void intersect(const Entry& entry) {
     if (entry.first_leaf && entry.second_leaf) {
       test_leaves(entry);
     } else {
@@ -168,7 +168,7 @@ class PairWalk {
         expand(first_codec_, entry.first_leaf, entry.first_box, entry.first, first_side_);
     const NodeState second =
         expand(second_codec_, entry.second_leaf, entry.second_box, entry.second, second_side_);
-    error_ = bound_.count(first == NodeState::kSound ? second : first);
+    error_ = bound_.count(first == NodeState::kValid ? second : first);
     if (error_ != Errc::kOk) return;
     const auto& a = first_side_.children;
     const auto& b = second_side_.children;
@@ -184,7 +184,7 @@ class PairWalk {
             !boxes_overlap(first_side_.image[i], b.box(j))) {
           continue;
         }
-        meet({a.box(i), b.box(j), a.ref[i], b.ref[j], a.is_leaf(i), b.is_leaf(j)});
+        intersect({a.box(i), b.box(j), a.ref[i], b.ref[j], a.is_leaf(i), b.is_leaf(j)});
         if (error_ != Errc::kOk || stopped_) return;
       }
     }
@@ -196,7 +196,7 @@ class PairWalk {
                                         PairSide<C>& side) noexcept {
     if (!leaf) return codec.expand(ref, box, side.children);
     side.set_leaf(box, ref);
-    return NodeState::kSound;
+    return NodeState::kValid;
   }
 
   void test_leaves(const Entry& entry) {
@@ -207,10 +207,10 @@ class PairWalk {
     const LeafPair leaves{box_cast<double>(entry.first_box), box_cast<double>(entry.second_box),
                           entry.first, entry.second};
     if constexpr (requires(const Triangle& t) { observer_.stops(t, t); }) {
-      const auto ask = [this](const Triangle& first, const Triangle& moved) {
+      const auto watched = [this](const Triangle& first, const Triangle& moved) {
         return observer_.stops(first, moved);
       };
-      const TriangleWatch watch = ask;
+      const TriangleWatch watch = watched;
       error_ = leaves_.run(leaves, &watch);
     } else {
       error_ = leaves_.run(leaves, nullptr);

@@ -14,7 +14,7 @@
 
 #include "runtime/query/leaf_pair-inl.h"
 #include "runtime/walk/decode-inl.h"
-#include "runtime/walk/waiting-inl.h"
+#include "runtime/walk/traversal_stack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -131,7 +131,7 @@ class WidePairWalk {
     roots.other = &second_root_;
     roots.other_image = &second_root_image_;
     Position at{0, 0};
-    while (meet(at) && waiting_.pop(std::numeric_limits<float>::infinity(), at)) {
+    while (intersect(at) && stack_.pop(std::numeric_limits<float>::infinity(), at)) {
     }
     if (error_ != Errc::kOk) return error_;
     if (leaves_.error() != Errc::kOk) return leaves_.error();
@@ -140,10 +140,10 @@ class WidePairWalk {
 
  private:
   static constexpr std::size_t kDepths = 2 * WideCodec<Node>::kDepthLimit + 1;
-  using Position = typename Waiting<kDepths>::Child;
+  using Position = typename TraversalStack<kDepths>::Child;
 
   // Takes apart a pair whose boxes may overlap, not both of them leaves. False to end the walk.
-  HWY_INLINE bool meet(const Position& at) {
+  HWY_INLINE bool intersect(const Position& at) {
     PairChildren& from = open_[at.depth];
     PairPart& child = from.child;
     set_box(from.boxes, at.number, child);
@@ -194,11 +194,11 @@ class WidePairWalk {
     }
     near &= (1u << to.links.child_count) - 1;
     if (!to.other->is_leaf) {
-      waiting_.push(near, key, depth);
+      stack_.push(near, key, depth);
       return true;
     }
     // Pairs of leaves need not wait.
-    waiting_.push(near & to.links.inner_mask, key, depth);
+    stack_.push(near & to.links.inner_mask, key, depth);
     return for_each_bit(near & ~to.links.inner_mask, [&](std::uint32_t i) {
       const NodeRef child = leaf_of(first_face(to.links, i), codec);
       const NodeRef other = leaf_of(to.other->number, *codec_[1 - to.side]);
@@ -253,7 +253,7 @@ class WidePairWalk {
   LeafPairs leaves_;
   PairBound& bound_;
   Errc error_ = Errc::kOk;
-  Waiting<kDepths> waiting_;
+  TraversalStack<kDepths> stack_;
   PairPart second_root_;  // what the first one in open_ is compared with
   Centered second_root_image_;
   PairChildren open_[kDepths];

@@ -45,7 +45,7 @@ class BestFirst {
         }
         ++query_.nodes_expanded;
         Errc error = query_.nodes.count(codec_.expand(entry.ref, entry.box, children));
-        if (error == Errc::kOk) error = meet(children, goes_on, key, entry);
+        if (error == Errc::kOk) error = intersect(children, goes_on, key, entry);
         if (error != Errc::kOk) return error;
       }
     }
@@ -70,8 +70,8 @@ class BestFirst {
   }
 
   // Lets the children wait; but while nothing is found yet the nearest is next.
-  Errc meet(const ErasedCodec::Children& children, bool& goes_on, double& key,
-            Entry& entry) noexcept {
+  Errc intersect(const ErasedCodec::Children& children, bool& goes_on, double& key,
+                 Entry& entry) noexcept {
     const auto child = [&](std::uint32_t i) {
       return Entry{children.box(i), children.ref[i], children.is_leaf(i)};
     };
@@ -128,7 +128,7 @@ PointResult closest_point(const Tree& queried, const Eigen::Vector3d& point, dou
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
-  if (!is_within_reach(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
+  if (!is_within_range(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
   const double tree_distance = max_distance * tree.frame().inverse_scale;
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);
@@ -146,7 +146,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   const BoundTree& tree = BoundTree::of(queried);
   const Frame& frame = tree.frame();
   const Eigen::Vector3d tree_point = frame.to_tree(point);
-  if (!is_within_reach(tree_point) || !is_valid(options)) return Errc::kInvalidQuery;
+  if (!is_within_range(tree_point) || !is_valid(options)) return Errc::kInvalidQuery;
   ApproximatePoint result;
   result.lower = std::numeric_limits<double>::infinity();
   if (tree.empty()) return result;
@@ -184,7 +184,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   if (!query.found) return result;
   // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp),
   // and the point itself by half the least double where its way to tree space underflows.
-  const double off = 26 * kRoundoffF64 * tree.largest_reach() + place;
+  const double off = 26 * kRoundoffF64 * tree.largest_abs() + place;
   const double lost =
       frame.to_object(tree_point) == point ? 0 : std::numeric_limits<double>::denorm_min();
   const double upper = length_above(query.found->point - tree_point) + off + lost;

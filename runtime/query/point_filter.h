@@ -17,8 +17,8 @@ namespace boxtree {
 /// in above().
 struct PointFilter {
   /// `reach`: the largest magnitude of any coordinate of the tree's boxes.
-  PointFilter(double reach, const Eigen::Vector3d& point) noexcept {
-    const double bound = 4 * kRoundoffF32 * (point.cwiseAbs().maxCoeff() + reach) +
+  PointFilter(double max_abs, const Eigen::Vector3d& point) noexcept {
+    const double bound = 4 * kRoundoffF32 * (point.cwiseAbs().maxCoeff() + max_abs) +
                          double{std::numeric_limits<float>::min()};
     error = float_above(bound);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -30,8 +30,8 @@ struct PointFilter {
   }
 
   /// Whether single precision tells the parts of a tree apart from there: not from far away.
-  [[nodiscard]] static bool is_near(double reach, const Eigen::Vector3d& point) noexcept {
-    return point.cwiseAbs().maxCoeff() <= 64 * reach;
+  [[nodiscard]] static bool is_near(double max_abs, const Eigen::Vector3d& point) noexcept {
+    return point.cwiseAbs().maxCoeff() <= 64 * max_abs;
   }
 
   /// A float that a computed lower bound of a squared distance does not exceed if the squared

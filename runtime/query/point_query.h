@@ -35,8 +35,8 @@ struct PlacedPoint {
 
   /// No point of tree space whose squared distance is larger can be as near as `best`.
   [[nodiscard]] double bound_in_tree() const noexcept {
-    const double reach = (std::sqrt(best) + error) / least_stretch + kLengthUnderflow;
-    return least_stretch > 0 ? reach * reach * (1 + 16 * kRoundoffF64)
+    const double radius = (std::sqrt(best) + error) / least_stretch + kLengthUnderflow;
+    return least_stretch > 0 ? radius * radius * (1 + 16 * kRoundoffF64)
                              : std::numeric_limits<double>::infinity();
   }
 };
@@ -123,12 +123,12 @@ struct PointQuery {
                   double squared) noexcept {
     std::array<Eigen::Vector3d, 3> corner;
     for (std::size_t c = 0; c < 3; ++c) corner[c] = triangle.corner[c] - point;
-    const double reach = reach_of(corner);
+    const double max_abs = max_abs_of(corner);
     // Each corner is off by a rounding of its difference on each axis, less than this in length.
-    const double off = 2 * kRoundoffF64 * reach;
+    const double off = 2 * kRoundoffF64 * max_abs;
     const std::array<Eigen::Vector3d, 1> here{Eigen::Vector3d::Zero()};
     const double lower = separation_near(here[0], Eigen::Vector3d(closest - point), here, corner,
-                                         reach, std::sqrt(squared) - 16 * off);
+                                         max_abs, std::sqrt(squared) - 16 * off);
     tested_lower = std::min(tested_lower, std::max(0.0, lower - off));
   }
 };

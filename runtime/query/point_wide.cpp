@@ -90,14 +90,14 @@ class PointFaces {
   PointFaces(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
       : codec_(codec),
         query_(query),
-        filter_(tree.largest_reach(), query.point),
+        filter_(tree.largest_abs(), query.point),
         prefetch_(tree, codec),
         leaves_(tree, query, filter_) {}
 
   [[nodiscard]] float bound() const { return leaves_.bound(); }
   [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
 
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
+  HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, FloatVector& key) const {
     key = nearest_squared(filter_, boxes);
     return bits_of(hn::Le(key, hn::Set(Floats(), leaves_.bound())));
   }
@@ -147,7 +147,7 @@ HWY_EXPORT(walk_point);
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, PointQuery& query) {
-  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_reach(), query.point)) {
+  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), query.point)) {
     return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
   }
   return traverse_nearest(tree, ErasedCodec{&tree}, query);

@@ -13,7 +13,7 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
   if (!is_valid(ray, length)) return Errc::kInvalidQuery;
   WalkBound nodes(tree.node_count(), &work);
   RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit);
-  if (!(query.origin_reach <= kReach)) return Errc::kInvalidQuery;  // NaN, too
+  if (!(query.origin_max_abs <= kMaxCoordinate)) return Errc::kInvalidQuery;  // NaN, too
   if (tree.empty() || !query.enters_root()) return Errc::kOk;
   // Wide codecs: RayWalk::meet (ray_wide.cpp); others: traverse_nearest (walk/traversal.h), which
   // asks RayQuery::key.

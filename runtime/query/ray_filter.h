@@ -46,13 +46,13 @@ struct RayBoxFilter {
   /// and direction (moved, rounded to float), for the distance of a plane or corner from the
   /// origin, its product with a reciprocal that was rounded twice, and the sums after it. And 8u M
   /// for each of `levels` whose planes are computed from those of their parents.
-  [[nodiscard]] static double rounding(double reach, std::uint32_t levels = 0) noexcept {
-    return (16 + 8 * levels) * (kRoundoffF32 * (2 * reach)) +
+  [[nodiscard]] static double rounding(double max_abs, std::uint32_t levels = 0) noexcept {
+    return (16 + 8 * levels) * (kRoundoffF32 * (2 * max_abs)) +
            double{std::numeric_limits<float>::min()};
   }
   /// What the query's own tests give away, see RaySlab: eight times what its margin is.
-  [[nodiscard]] static double given_away(double origin_reach, double reach) noexcept {
-    return 128 * kRoundoffF64 * (origin_reach + reach);
+  [[nodiscard]] static double given_away(double origin_max_abs, double max_abs) noexcept {
+    return 128 * kRoundoffF64 * (origin_max_abs + max_abs);
   }
 
   /// The largest parameter of the filter that a hit not beyond `t` can have.
@@ -80,21 +80,21 @@ struct RayFilter : RayBoxFilter {
   /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
   /// and no parameter overflows.
   [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
-    return query.origin_reach <= 0x1p30 * query.tree.largest_reach();
+    return query.origin_max_abs <= 0x1p30 * query.tree.largest_abs();
   }
 
   /// Precondition: is_near(query), which enters the root box.
-  explicit RayFilter(const RayQuery& query) noexcept
-      : RayFilter(query, query.tree.largest_reach()) {}
+  explicit RayFilter(const RayQuery& query) noexcept : RayFilter(query, query.tree.largest_abs()) {}
 
   alignas(16) Lanes margins;  // of both planes of an axis
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;
 
  private:
-  RayFilter(const RayQuery& query, double reach) noexcept
-      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
-                     rounding(reach, query.tree.depth()) + given_away(query.origin_reach, reach)) {
+  RayFilter(const RayQuery& query, double max_abs) noexcept
+      : RayBoxFilter(
+            query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
+            rounding(max_abs, query.tree.depth()) + given_away(query.origin_max_abs, max_abs)) {
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) margins[k] = 2 * margin[k];
     axis_x = static_cast<std::size_t>(query.shear.axis_x);
     axis_y = static_cast<std::size_t>(query.shear.axis_y);

@@ -47,8 +47,8 @@ struct RayInTree {
       : parameter_exponent(direction_exponent - tree.scale_exponent()),
         origin(tree.frame().to_tree_lanes(AxisLanes(ray.origin))),
         direction(scaled(AxisLanes(ray.direction), -direction_exponent)),
-        origin_reach(largest_magnitude(origin[0], origin[1], origin[2])),
-        slab(origin, origin_reach, direction, tree.largest_reach()),
+        origin_max_abs(largest_magnitude(origin[0], origin[1], origin[2])),
+        slab(origin, origin_max_abs, direction, tree.largest_abs()),
         t_min(scaled(ray.t_min, parameter_exponent)),
         t_max(scaled(ray.t_max, parameter_exponent)) {}
 
@@ -76,7 +76,7 @@ struct RayInTree {
   int parameter_exponent;
   AxisLanes origin;
   AxisLanes direction;
-  double origin_reach;  // the largest magnitude of its components
+  double origin_max_abs;  // the largest magnitude of its components
   RaySlab slab;
   double t_min;
   double t_max;  // shrinks to the best hit

@@ -39,22 +39,22 @@ struct SlabInterval {
 /// parameter is the smaller one: no sign needs to be looked at.
 class RaySlab {
  public:
-  /// `origin_reach` and `reach`: largest magnitude of a coordinate of the origin and of any box, on
-  /// all axes.
-  RaySlab(const AxisLanes& origin, double origin_reach, const AxisLanes& direction,
-          double reach) noexcept {
+  /// `origin_max_abs` and `reach`: largest magnitude of a coordinate of the origin and of any box,
+  /// on all axes.
+  RaySlab(const AxisLanes& origin, double origin_max_abs, const AxisLanes& direction,
+          double max_abs) noexcept {
     // A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
     // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
     constexpr double kHuge = 0x1p1000;
-    const double margin = 8 * kRoundoffF64 * (origin_reach + power_above(reach));
+    const double margin = 8 * kRoundoffF64 * (origin_max_abs + power_above(max_abs));
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       inverse_[k] = std::max(-kHuge, std::min(kHuge, 1 / direction[k]));
       low_origin_[k] = origin[k] + margin;
       high_origin_[k] = origin[k] - margin;
     }
   }
-  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double reach) noexcept
-      : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), reach) {}
+  RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_abs) noexcept
+      : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), max_abs) {}
 
   template <class S>
   [[nodiscard]] SlabInterval intersect(const Box<S>& box) const noexcept {

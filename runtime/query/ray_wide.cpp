@@ -14,7 +14,7 @@
 
 #include "runtime/walk/leaf-inl.h"
 #include "runtime/walk/prefetch-inl.h"
-#include "runtime/walk/waiting-inl.h"
+#include "runtime/walk/traversal_stack-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
@@ -141,7 +141,7 @@ class RayWalk {
       open_[0].near[k][0] = near[k];
       open_[0].far[k][0] = far[k];
     }
-    typename decltype(waiting_)::Child at{0, 0};
+    typename decltype(stack_)::Child at{0, 0};
     std::uint32_t number = 0;
     HWY_ALIGN float enter[kWideChildren];
     for (;;) {
@@ -151,8 +151,8 @@ class RayWalk {
       if (error != Errc::kOk) return error;
       if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
       RayChildren& children = open_[at.depth + 1];
-      const std::uint32_t passing =
-          meet(node, open_[at.depth], at.number, children, enter) & ((1u << links.child_count) - 1);
+      const std::uint32_t passing = intersect(node, open_[at.depth], at.number, children, enter) &
+                                    ((1u << links.child_count) - 1);
       children.links = links;
       if (is_large_) {
         prefetch_.leaves(links, passing & ~links.inner_mask);
@@ -166,7 +166,7 @@ class RayWalk {
       }
       const std::uint32_t inner = passing & links.inner_mask;
       if (std::popcount(inner) > 2) {
-        waiting_.push(inner, enter, at.depth + 1);
+        stack_.push(inner, enter, at.depth + 1);
       } else if (inner != 0) {
         // One or two, as in most nodes: the nearer one is entered at once, the other one waits.
         auto nearer = static_cast<std::uint32_t>(std::countr_zero(inner));
@@ -175,7 +175,7 @@ class RayWalk {
           const bool swap = enter[other] < enter[nearer];
           const std::uint32_t farther = swap ? nearer : other;
           nearer = swap ? other : nearer;
-          waiting_.push_one(farther, enter[farther], at.depth + 1);
+          stack_.push_one(farther, enter[farther], at.depth + 1);
         }
         if (enter[nearer] <= leaves_.bound()) {
           at = {at.depth + 1, nearer};
@@ -183,7 +183,7 @@ class RayWalk {
           continue;
         }
       }
-      if (!waiting_.pop(leaves_.bound(), at)) return Errc::kOk;
+      if (!stack_.pop(leaves_.bound(), at)) return Errc::kOk;
       number = node_number(open_[at.depth].links, at.number);
     }
   }
@@ -191,8 +191,8 @@ class RayWalk {
  private:
   // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
   // widened by the margins; the steps between its planes are those of the box itself.
-  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const RayChildren& parent,
-                                std::uint32_t child, RayChildren& out, float* enters) const {
+  HWY_INLINE std::uint32_t intersect(const NodeView<Node>& node, const RayChildren& parent,
+                                     std::uint32_t child, RayChildren& out, float* enters) const {
     const Floats d;
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
@@ -228,7 +228,7 @@ class RayWalk {
   const Prefetch<Node> prefetch_;
   const bool is_large_;
   RayLeaves leaves_;
-  Waiting<WideCodec<Node>::kDepthLimit + 1> waiting_;
+  TraversalStack<WideCodec<Node>::kDepthLimit + 1> stack_;
   std::array<RayChildren, WideCodec<Node>::kDepthLimit + 1> open_;
 };
 

@@ -73,7 +73,7 @@ std::optional<RelativePose> RelativePose::make(const BoundTree& first, const Pos
   // y? The residuals of the inverse are measured; gamma_16 covers the at most 16 roundings of
   // measuring and of applying it (Higham, "Accuracy and Stability", lemma 3.1).
   constexpr double kGamma16 = 16 * kRoundoffF64 / (1 - 16 * kRoundoffF64);
-  const Eigen::Vector3d y = second.reach();
+  const Eigen::Vector3d y = second.max_abs();
   const Eigen::Vector3d x =
       product(relative.to_first_.linear.cwiseAbs(), y) + relative.to_first_.translation.cwiseAbs();
   const Eigen::Matrix3d residual =
@@ -84,7 +84,7 @@ std::optional<RelativePose> RelativePose::make(const BoundTree& first, const Pos
   relative.margin_ =
       product(residual, y) + offset +
       kGamma16 * (product(inverse.cwiseAbs(), x) + relative.to_second_.translation.cwiseAbs() + y);
-  if (!relative.margin_.allFinite() || !is_within_reach(x)) return std::nullopt;
+  if (!relative.margin_.allFinite() || !is_within_range(x)) return std::nullopt;
   return relative;
 }
 

@@ -27,18 +27,18 @@ Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
 class SphereFilter {
  public:
   SphereFilter(const BoundTree& tree, const SphereQuery& query)
-      : center_(tree.largest_reach(), query.center),
+      : center_(tree.largest_abs(), query.center),
         above_(PointFilter::above(query.squared_radius)),
         below_(PointFilter::below(query.certain_squared_radius)) {}
 
-  HWY_INLINE Verdict judge(const VectorBox& box) const {
+  HWY_INLINE Classification classify(const VectorBox& box) const {
     const Floats d;
     return {bits_of(hn::Le(nearest_squared(center_, box), hn::Set(d, above_))),
             bits_of(hn::Le(farthest_squared(center_, box), hn::Set(d, below_)))};
   }
 
-  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
-    return judge_corners(*this, triangle);
+  HWY_INLINE Classification classify(const VectorTriangle& triangle) const {
+    return classify_corners(*this, triangle);
   }
   HWY_INLINE std::uint32_t contained(const VectorPoint& point) const {
     return bits_of(hn::Le(farthest_squared(center_, box_at(point)), hn::Set(Floats(), below_)));
@@ -68,7 +68,7 @@ HWY_EXPORT(walk_sphere);
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, FaceWalk<SphereQuery>& walk) {
-  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_reach(), walk.shape.center)) {
+  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), walk.shape.center)) {
     return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);

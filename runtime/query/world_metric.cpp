@@ -120,15 +120,15 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   }
   // Images of the second tree's points are off by to_second_error; those of the first tree's, which
   // the hull of a box holds as they are computed, by gamma_4 of the terms.
-  const Eigen::Vector3d terms =
-      pose.to_second().linear.cwiseAbs() * first.reach() + pose.to_second().translation.cwiseAbs();
+  const Eigen::Vector3d terms = pose.to_second().linear.cwiseAbs() * first.max_abs() +
+                                pose.to_second().translation.cwiseAbs();
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
     metric.in_second_.margin[k] =
         (pose.to_second_error()[axis] + 8 * kRoundoffF64 * terms[axis]) * kMore;
   }
 
-  metric.place_ = first.reach() + pose.to_first().linear.cwiseAbs() * second.reach() +
+  metric.place_ = first.max_abs() + pose.to_first().linear.cwiseAbs() * second.max_abs() +
                   pose.to_first().translation.cwiseAbs();
 
   // |G z| = |(G C^-1) (C z)|, C the lengths of the columns.

@@ -127,9 +127,9 @@ class WorldMetric {
   [[nodiscard]] double farthest(const Box<S>& a, const Box<T>& b) const noexcept {
     double sum = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const double reach =
+      const double max_abs =
           std::max(double{a.high[k]} - double{b.low[k]}, double{b.high[k]} - double{a.low[k]});
-      sum += (reach * column_[k]) * (reach * column_[k]);
+      sum += (max_abs * column_[k]) * (max_abs * column_[k]);
     }
     return stretch_ * std::sqrt(sum) + kLengthUnderflow;
   }

@@ -46,7 +46,7 @@ Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
   const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;
   const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
-  if (!bounds || !(to_world(bounds->magnitude) <= kReach)) return Errc::kInvalidPose;
+  if (!bounds || !(to_world(bounds->magnitude) <= kMaxCoordinate)) return Errc::kInvalidPose;
   moving.placed.pose = pose;
   moving.placed.placement = *placement;
   moving.bounds = *bounds;
@@ -170,7 +170,7 @@ std::optional<Placement> BoundScene::place_in_units(const BoundTree& tree,
                                                     const Pose& pose) const noexcept {
   Pose scaled = pose;
   scaled.affine() *= frame_.inverse_scale;
-  return is_within_reach(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
+  return is_within_range(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
 }
 
 Box<double> BoundScene::to_frame(const Box<double>& units) const noexcept {

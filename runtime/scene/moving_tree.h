@@ -33,7 +33,7 @@ class MovingTree {
         if (nodes[child].low[0] > nodes[child].high[0]) continue;  // no instance below
         out.add(nodes[child], NodeRef{child, 0}, child >= leaves);
       }
-      return NodeState::kSound;
+      return NodeState::kValid;
     }
   };
 

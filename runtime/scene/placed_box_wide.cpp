@@ -34,7 +34,7 @@ Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
 class PlacedBoxFilter {
  public:
   PlacedBoxFilter(const BoundTree& tree, const PlacedBoxQuery& query) {
-    const Eigen::Vector3d reach = tree.reach();
+    const Eigen::Vector3d max_abs = tree.max_abs();
     for (std::size_t k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>(k);
       const double middle = query.box.low[k] / 2 + query.box.high[k] / 2;
@@ -43,7 +43,7 @@ class PlacedBoxFilter {
       for (std::size_t j = 0; j < 3; ++j) {
         const double factor = query.to_world.linear(row, static_cast<Eigen::Index>(j));
         linear_[k][j] = static_cast<float>(factor);
-        terms += std::abs(factor) * reach[static_cast<Eigen::Index>(j)];
+        terms += std::abs(factor) * max_abs[static_cast<Eigen::Index>(j)];
       }
       const double placed = std::abs(query.to_world.translation[row]) + terms;
       const double error = 16 * kRoundoffF32 * terms + 8 * kRoundoffF64 * placed + kFloatUnderflow;
@@ -52,9 +52,11 @@ class PlacedBoxFilter {
     }
   }
 
-  HWY_INLINE Verdict judge(const VectorBox& box) const { return bounds_.judge(hull(box)); }
-  HWY_INLINE Verdict judge(const VectorTriangle& triangle) const {
-    return judge_corners(
+  HWY_INLINE Classification classify(const VectorBox& box) const {
+    return bounds_.classify(hull(box));
+  }
+  HWY_INLINE Classification classify(const VectorTriangle& triangle) const {
+    return classify_corners(
         bounds_, {image(triangle.corner[0]), image(triangle.corner[1]), image(triangle.corner[2])});
   }
 
@@ -105,7 +107,7 @@ namespace {
 
 HWY_EXPORT(walk_placed_box);
 
-// Whether no product or sum of the filter overflows: coordinates are at most kFloatReach.
+// Whether no product or sum of the filter overflows: coordinates are at most kFloatMaxAbs.
 bool is_in_range(const BoundTree& tree, const PlacedBoxQuery& query) {
   constexpr double kLargest = 0x1p80;
   double largest = 0;

@@ -52,7 +52,7 @@ std::optional<Placement> Placement::make(const Frame& frame, const Pose& pose) n
   placed.frame_origin_ = frame.origin;
   placed.frame_inverse_scale_ = frame.inverse_scale;
   if (!is_finite(placed.to_world_.linear) || !is_finite(placed.inverse_) ||
-      !is_within_reach(placed.to_world_.translation)) {
+      !is_within_range(placed.to_world_.translation)) {
     return std::nullopt;
   }
   return placed;
@@ -67,7 +67,7 @@ double Placement::condition() const noexcept {
 }
 
 double Placement::magnitude(const Box<double>& root) const noexcept {
-  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), reach_of(root)) +
+  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), max_abs_of(root)) +
                                 product(magnitudes(linear()), frame_origin_.cwiseAbs()) +
                                 translation_.cwiseAbs();
   return std::max({terms[0], terms[1], terms[2]});
@@ -75,7 +75,8 @@ double Placement::magnitude(const Box<double>& root) const noexcept {
 
 std::optional<PlacementBounds> Placement::bounds(const Box<double>& root) const noexcept {
   PlacementBounds bounds{to_world_.hull(root), condition(), magnitude(root)};
-  if (!std::isfinite(bounds.condition) || !(bounds.magnitude <= kReach)) return std::nullopt;
+  if (!std::isfinite(bounds.condition) || !(bounds.magnitude <= kMaxCoordinate))
+    return std::nullopt;
   for (std::size_t k = 0; k < 3; ++k) {
     bounds.world.low[k] -= bounds.error();
     bounds.world.high[k] += bounds.error();

@@ -75,7 +75,7 @@ struct LaterMoving {
 BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
                     const BoundScene::Placed& placed, const PlacementBounds& bounds,
                     ScenePairVisitor visitor, QueryWork& work) {
-  return {{scene, kPairQueries, scene.layer(placed.layer).meets, work},
+  return {{scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
           *placed.tree,
           placed.pose,
           bounds.condition,

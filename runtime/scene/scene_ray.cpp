@@ -31,14 +31,14 @@ struct SceneRayQuery {
 
   [[nodiscard]] TopLevelRay make_in_frame(const BoundScene& scene) const noexcept {
     const Eigen::Vector3d origin = scene.to_frame(ray.origin);
-    const double widened = reach(scene);
+    const double widened = max_abs(scene);
     return {origin, ray.direction, widened, RaySlab(origin, ray.direction, widened), ray.t_min};
   }
 
-  [[nodiscard]] double reach(const BoundScene& scene) const noexcept {
-    double largest = reach_of(scene.top_level());
+  [[nodiscard]] double max_abs(const BoundScene& scene) const noexcept {
+    double largest = max_abs_of(scene.top_level());
     if (!scene.moving_tree().empty()) {
-      largest = std::max(largest, reach_of(scene.moving_tree().root_box()).maxCoeff());
+      largest = std::max(largest, max_abs_of(scene.moving_tree().root_box()).maxCoeff());
     }
     const double origin = largest_magnitude(ray.origin);
     return largest + 16 * scene.condition() * (origin + largest);
@@ -87,7 +87,7 @@ SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, La
   QueryWork work(limits);
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
   const double length = largest_magnitude(ray.direction);
-  if (!is_valid(ray, length) || !is_within_reach(scene.to_units(ray.origin))) {
+  if (!is_valid(ray, length) || !is_within_range(scene.to_units(ray.origin))) {
     return Errc::kInvalidQuery;
   }
   SceneRayQuery query(scene, ray, stop_at_first, layers, work, exponent_of(length));

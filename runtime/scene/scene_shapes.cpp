@@ -15,7 +15,7 @@
 namespace boxtree {
 namespace {
 
-// What boxes and spheres share: `ask(placed, faces)` answers for one instance.
+// What boxes and spheres share: `run_query(placed, faces)` answers for one instance.
 template <class Shape>
 struct ShapeInScene {
   Admission admission;
@@ -33,7 +33,7 @@ struct ShapeInScene {
     return shape.walk(top, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
-    const Result<Visit> visited = shape.ask(placed, {visitor, instance}, admission.work);
+    const Result<Visit> visited = shape.run_query(placed, {visitor, instance}, admission.work);
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
     return !is_done();
@@ -41,8 +41,8 @@ struct ShapeInScene {
 };
 
 template <class Shape>
-Result<Visit> ask_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
-                        LayerMask layers, const QueryLimits& limits) {
+Result<Visit> query_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
+                          LayerMask layers, const QueryLimits& limits) {
   QueryWork work(limits);
   ShapeInScene<Shape> query{{scene, kBoxQueries, layers, work}, shape, visitor};
   return outcome_of(visit_overlapping_instances(scene, query), query);
@@ -61,8 +61,8 @@ struct WorldBox {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const BoundScene::Placed& placed, const FacesOfInstance& faces,
-                                  QueryWork& work) const {
+  [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
+                                        const FacesOfInstance& faces, QueryWork& work) const {
     const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
     return visit_faces(*placed.tree, query, faces, work);
   }
@@ -86,7 +86,7 @@ double frame_bound(double distance, double error) noexcept {
 // nothing: then all its triangles are compared.
 struct PointInTree {
   PointInTree(const Placement& placement, const Eigen::Vector3d& point) noexcept
-      : at(placement.to_tree(point)), is_near(is_within_reach(at)) {
+      : at(placement.to_tree(point)), is_near(is_within_range(at)) {
     if (!is_near) at.setZero();
   }
   Eigen::Vector3d at;
@@ -106,12 +106,12 @@ struct SphereInUnits {
   [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
     return walk_top_level(top, instances, center_in_frame, squared_radius_in_frame);
   }
-  [[nodiscard]] Result<Visit> ask(const BoundScene::Placed& placed, const FacesOfInstance& faces,
-                                  QueryWork& work) const {
+  [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
+                                        const FacesOfInstance& faces, QueryWork& work) const {
     const Placement& placement = placed.placement;
     const PlacedSphere exact{placement.to_world(), center, radius * radius};
     const PointInTree in_tree(placement, center);
-    double most = 4 * kReach;
+    double most = 4 * kMaxCoordinate;
     double certain = 0;
     if (in_tree.is_near) {
       const Stretch stretch = stretch_of(placement.to_world().linear);
@@ -183,14 +183,14 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
   // No instance reaches farther.
   const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
-    const Eigen::Vector3d a = low.cwiseMax(-kReach).cwiseMin(kReach);
-    const Eigen::Vector3d b = high.cwiseMax(-kReach).cwiseMin(kReach);
+    const Eigen::Vector3d a = low.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
+    const Eigen::Vector3d b = high.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
     return Box<double>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   };
   const WorldBox shape{
       clamped(box.min(), box.max()),
       scene.to_frame(clamped(scene.to_units(box.min()), scene.to_units(box.max())))};
-  return ask_scene(scene, shape, visitor, layers, limits);
+  return query_scene(scene, shape, visitor, layers, limits);
 }
 
 Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center, double radius,
@@ -201,10 +201,11 @@ Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(center);
   const double length = scene.to_units(radius);
-  if (!(length >= 0) || !(length <= kReach) || !is_within_reach(at)) return Errc::kInvalidQuery;
+  if (!(length >= 0) || !(length <= kMaxCoordinate) || !is_within_range(at))
+    return Errc::kInvalidQuery;
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, scene_error(scene, at))};
-  return ask_scene(scene, shape, visitor, layers, limits);
+  return query_scene(scene, shape, visitor, layers, limits);
 }
 
 ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& point,
@@ -215,7 +216,7 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(point);
   const double most = scene.to_units(max_distance);
-  if (!is_within_reach(at) || !(most >= 0)) return Errc::kInvalidQuery;
+  if (!is_within_range(at) || !(most >= 0)) return Errc::kInvalidQuery;
   PointInScene query{{scene, kPointQueries, layers, work},
                      at,
                      scene.to_frame(at),

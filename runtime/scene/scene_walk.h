@@ -67,7 +67,7 @@ template <class Query>
 Errc walk_static(const BoundScene& scene, Query& query) {
   WalkBound visits(scene.instance_count());
   return query.walk(scene.top_level(), [&](std::uint32_t instance) {
-    query.error = visits.count(NodeState::kSound);
+    query.error = visits.count(NodeState::kValid);
     if (query.error != Errc::kOk) return false;
     if (scene.is_detached(instance)) return true;
     const std::optional<InstanceRecord> record = scene.record_of(instance);

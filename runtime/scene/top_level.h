@@ -32,8 +32,8 @@ struct TopLevel {
 };
 
 /// Largest magnitude of any box coordinate.
-[[nodiscard]] inline double reach_of(const TopLevel& top) noexcept {
-  return reach_of(Box<double>{top.scene.root_low, top.scene.root_high}).maxCoeff();
+[[nodiscard]] inline double max_abs_of(const TopLevel& top) noexcept {
+  return max_abs_of(Box<double>{top.scene.root_low, top.scene.root_high}).maxCoeff();
 }
 
 /// The root box; writers store f32 values.

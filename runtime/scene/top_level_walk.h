@@ -22,7 +22,7 @@ using InstanceVisitor = FunctionRef<bool(std::uint32_t)>;
 struct TopLevelRay {
   Eigen::Vector3d origin;
   Eigen::Vector3d direction;
-  double reach;  // on every axis, that `slab` was made with
+  double max_abs;  // on every axis, that `slab` was made with
   RaySlab slab;
   double s_min;
 };

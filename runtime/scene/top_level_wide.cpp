@@ -42,9 +42,10 @@ struct AskedBox {
 
   // All keys are alike: in no promised order.
   [[nodiscard]] static float limit_of(double /*bound*/) { return 0; }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float /*limit*/, FloatVector& key) const {
+  HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, float /*limit*/,
+                                     FloatVector& key) const {
     key = hn::Zero(Floats());
-    return bounds.judge(boxes).touched;
+    return bounds.classify(boxes).touched;
   }
 };
 
@@ -52,7 +53,7 @@ struct AskedPoint {
   PointFilter point;
 
   [[nodiscard]] static float limit_of(double bound) { return PointFilter::above(bound); }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
+  HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, float limit, FloatVector& key) const {
     key = nearest_squared(point, boxes);
     return bits_of(hn::Le(key, hn::Set(Floats(), limit)));
   }
@@ -62,7 +63,7 @@ struct AskedRay {
   RayBoxFilter ray;
 
   [[nodiscard]] float limit_of(double bound) const { return ray.bound(bound); }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, float limit, FloatVector& key) const {
+  HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, float limit, FloatVector& key) const {
     const Floats d;
     FloatVector leave = hn::Set(d, limit);
     key = hn::Zero(d);
@@ -93,8 +94,8 @@ class Instances {
 
   [[nodiscard]] float bound() const { return limit_; }
   [[nodiscard]] WalkBound& nodes() { return nodes_; }
-  HWY_INLINE std::uint32_t meet(const VectorBox& boxes, FloatVector& key) const {
-    return asked_.meet(boxes, limit_, key);
+  HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, FloatVector& key) const {
+    return asked_.intersect(boxes, limit_, key);
   }
   void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
   bool leaf(std::uint32_t number) {
@@ -125,15 +126,15 @@ Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit
 
 Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk(top, AskedPoint{PointFilter(reach_of(top), point)}, bound, visit);
+  return walk(top, AskedPoint{PointFilter(max_abs_of(top), point)}, bound, visit);
 }
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
               InstanceVisitor visit) {
-  const RayBoxFilter filter(ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction),
-                            std::max(enter, ray.s_min),
-                            RayBoxFilter::rounding(reach_of(top)) +
-                                RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.reach));
+  const RayBoxFilter filter(
+      ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction), std::max(enter, ray.s_min),
+      RayBoxFilter::rounding(max_abs_of(top)) +
+          RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.max_abs));
   return walk(top, AskedRay{filter}, bound, visit);
 }
 #endif
@@ -160,7 +161,7 @@ Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVi
 
 Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                          InstanceVisitor visit) {
-  if (!top.has_float_nodes() || !PointFilter::is_near(reach_of(top), point)) {
+  if (!top.has_float_nodes() || !PointFilter::is_near(max_abs_of(top), point)) {
     return walk_top_level_scalar(top, point, bound, visit);
   }
   if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
@@ -169,12 +170,12 @@ Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, cons
 
 Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                          InstanceVisitor visit) {
-  const double reach = reach_of(top);
+  const double max_abs = max_abs_of(top);
   // Where a map that is hard to undo makes the query give away more, its margin alone is what
   // decides.
-  const double origin_reach = largest_magnitude(ray.origin);
-  const bool is_near =
-      origin_reach <= 0x1p30 * reach && RayBoxFilter::given_away(origin_reach, ray.reach) <= reach;
+  const double origin_max_abs = largest_magnitude(ray.origin);
+  const bool is_near = origin_max_abs <= 0x1p30 * max_abs &&
+                       RayBoxFilter::given_away(origin_max_abs, ray.max_abs) <= max_abs;
   if (!top.has_float_nodes() || !is_near) return walk_top_level_scalar(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;

@@ -69,7 +69,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   }
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
-  tree.leaves_.prepare_floats(tree.largest_reach_);
+  tree.leaves_.prepare_floats(tree.largest_abs_);
   return bound;
 }
 
@@ -89,8 +89,8 @@ void BoundTree::keep(const TreeRecord& record) {
   root_f64_ = {record.root_low, record.root_high};
   root_f32_ = rounded_outward<float>(root_f64_);
   root_lanes_ = BoxLanes(root_f32_);
-  reach_ = reach_of(root_f64_);
-  largest_reach_ = reach_.maxCoeff();
+  max_abs_ = max_abs_of(root_f64_);
+  largest_abs_ = max_abs_.maxCoeff();
 }
 
 Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {

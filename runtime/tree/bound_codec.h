@@ -27,8 +27,8 @@ struct CodecWalks;
 /// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 
-/// What a walk needs: decodes one node after the other. Whatever the bytes, it reads nothing outside
-/// of the nodes that it was made for.
+/// What a walk needs: decodes one node after the other. Whatever the bytes, it reads nothing
+/// outside of the nodes that it was made for.
 template <class D>
 concept NodeDecoder = requires(const D& decoder, NodeRef ref, const Box<typename D::Scalar>& box,
                                typename D::Children& out) {
@@ -103,7 +103,7 @@ template <Codec C>
         typename C::Children children;
         const NodeState state =
             codec.as<C>().expand(ref, box_cast<typename C::Scalar>(box), children);
-        if (state != NodeState::kSound) return state;
+        if (state != NodeState::kValid) return state;
         out.count = children.count;
         out.leaf_mask = children.leaf_mask;
         for (std::uint32_t i = 0; i < children.count; ++i) {

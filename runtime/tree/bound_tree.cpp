@@ -36,7 +36,7 @@ NodeState BoundTree::expand(const Node& node, NodeChildren& out) const noexcept 
   out.count = 0;
   AnyChildren children;
   const NodeState state = functions_->expand(nodes_, node.ref, node.box, children);
-  if (state != NodeState::kSound) return state;
+  if (state != NodeState::kValid) return state;
   for (std::uint32_t i = 0; i < children.count; ++i) {
     out.child[i] = {children.box(i), children.ref[i], children.is_leaf(i)};
   }

@@ -85,8 +85,8 @@ class BoundTree {
   [[nodiscard]] const Box<float>& root_f32() const noexcept { return root_f32_; }
   [[nodiscard]] const BoxLanes& root_lanes() const noexcept { return root_lanes_; }
   /// Largest magnitude of any box coordinate, on each axis and on all.
-  [[nodiscard]] const Eigen::Vector3d& reach() const noexcept { return reach_; }
-  [[nodiscard]] double largest_reach() const noexcept { return largest_reach_; }
+  [[nodiscard]] const Eigen::Vector3d& max_abs() const noexcept { return max_abs_; }
+  [[nodiscard]] double largest_abs() const noexcept { return largest_abs_; }
   /// Whether it has nodes that filters in single precision may be used for; see float_range.h.
   [[nodiscard]] bool has_float_nodes() const noexcept { return has_float_nodes_; }
   [[nodiscard]] bool has_face_ids() const noexcept;
@@ -175,8 +175,8 @@ class BoundTree {
   NumberView duplicates_;  // the original of each, ascending
   LeafReader leaves_;
   // What every query needs, computed when the tree is bound.
-  Eigen::Vector3d reach_ = Eigen::Vector3d::Zero();
-  double largest_reach_ = 0;
+  Eigen::Vector3d max_abs_ = Eigen::Vector3d::Zero();
+  double largest_abs_ = 0;
   Box<float> root_f32_{};
   BoxLanes root_lanes_ = BoxLanes(Box<float>{});  // of root_f32_
   bool has_float_nodes_ = false;

@@ -23,19 +23,19 @@
 namespace boxtree {
 
 /// Largest magnitude of a coordinate, and largest extent, that float filters are proven for.
-inline constexpr double kFloatReach = 0x1p40;
+inline constexpr double kFloatMaxAbs = 0x1p40;
 inline constexpr double kFloatExtent = 0x1p20;
 
 /// Exceeds what underflow takes from an affine image: three factors rounded to subnormal numbers,
-/// off by 2^-150 each, times coordinates up to kFloatReach, and seven products and sums.
+/// off by 2^-150 each, times coordinates up to kFloatMaxAbs, and seven products and sums.
 inline constexpr double kFloatUnderflow = 0x1p-105;
 
 /// Whether float filters may be used for a tree with this root box.
 [[nodiscard]] inline bool is_in_float_range(const Box<double>& root) noexcept {
   double extent = 0;
   for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, root.high[k] - root.low[k]);
-  const double reach = reach_of(root).maxCoeff();
-  return 1 <= reach && reach <= kFloatReach && extent <= kFloatExtent;
+  const double max_abs = max_abs_of(root).maxCoeff();
+  return 1 <= max_abs && max_abs <= kFloatMaxAbs && extent <= kFloatExtent;
 }
 
 }  // namespace boxtree

@@ -47,19 +47,19 @@ struct Frame {
 
 /// Tree-space coordinates beyond this would overflow in the predicates. Every honest box lies far
 /// inside: queries beyond are refused or clamped, stored vertices beyond are corrupt.
-inline constexpr double kReach = 0x1p200;
+inline constexpr double kMaxCoordinate = 0x1p200;
 
-[[nodiscard]] inline bool is_within_reach(const Eigen::Vector3d& point) noexcept {
-  return (point.cwiseAbs().array() <= kReach).all();  // false for NaN
+[[nodiscard]] inline bool is_within_range(const Eigen::Vector3d& point) noexcept {
+  return (point.cwiseAbs().array() <= kMaxCoordinate).all();  // false for NaN
 }
 
 /// Largest magnitude of a coordinate of a box, on each axis.
-[[nodiscard]] inline Eigen::Vector3d reach_of(const Box<double>& box) noexcept {
-  Eigen::Vector3d reach;
+[[nodiscard]] inline Eigen::Vector3d max_abs_of(const Box<double>& box) noexcept {
+  Eigen::Vector3d max_abs;
   for (std::size_t k = 0; k < 3; ++k) {
-    reach[static_cast<Eigen::Index>(k)] = std::max(std::abs(box.low[k]), std::abs(box.high[k]));
+    max_abs[static_cast<Eigen::Index>(k)] = std::max(std::abs(box.low[k]), std::abs(box.high[k]));
   }
-  return reach;
+  return max_abs;
 }
 
 }  // namespace boxtree

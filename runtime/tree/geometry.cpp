@@ -29,9 +29,9 @@ Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexce
   return {p[0], p[1], p[2]};
 }
 
-void LeafReader::prepare_floats(double reach) noexcept {
+void LeafReader::prepare_floats(double max_abs) noexcept {
   floats_.rounding =
-      float_above(reach * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()});
+      float_above(max_abs * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()});
   if (is_grid()) {
     floats_.scale = static_cast<float>(grid_step_);
     floats_.is_direct = mesh_.corners_per_face == 3;
@@ -109,7 +109,7 @@ Errc LeafReader::read_as(std::uint32_t first, std::uint32_t count,
       const auto p = load<std::array<Scalar, 3>>(mesh_.positions +
                                                  std::size_t{vertex} * mesh_.position_stride);
       position[i] = frame_.to_tree({p[0], p[1], p[2]});
-      if (!is_within_reach(position[i])) return Errc::kVertexNotFinite;
+      if (!is_within_range(position[i])) return Errc::kVertexNotFinite;
     }
     for (std::uint32_t second = 1; second + 1 < corner_count; ++second) {
       for (std::size_t axis = 0; axis < 3; ++axis) {

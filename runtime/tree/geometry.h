@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answer to the one question every geometry store answers: the triangles of this leaf.
+// The answer to the one query every geometry store answers: the triangles of this leaf.
 #pragma once
 
 #include <array>
@@ -71,7 +71,7 @@ class LeafReader {
   void set_order(NumberView order) noexcept { order_ = order; }
 
   /// Comes last: `reach` is the largest magnitude of a coordinate in tree space.
-  void prepare_floats(double reach) noexcept;
+  void prepare_floats(double max_abs) noexcept;
   [[nodiscard]] const FloatLeaves& floats() const noexcept { return floats_; }
 
   /// The arrays; with a grid, counts alone.

@@ -26,7 +26,7 @@ class BoxBounds {
     inner_high_[axis] = float_below(high - error);
   }
 
-  HWY_INLINE Verdict judge(const VectorBox& box) const {
+  HWY_INLINE Classification classify(const VectorBox& box) const {
     const Floats d;
     auto touched =
         hn::And(hn::Le(box.low[0], hn::Set(d, high_[0])), hn::Ge(box.high[0], hn::Set(d, low_[0])));

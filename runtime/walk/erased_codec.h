@@ -29,7 +29,7 @@ struct ErasedCodecOf {
     } else {
       AnyChildren children;
       const NodeState state = functions.expand(tree->nodes(), ref, box, children);
-      if (state != NodeState::kSound || children.count > Width) return NodeState::kCorrupt;
+      if (state != NodeState::kValid || children.count > Width) return NodeState::kCorrupt;
       out.clear();
       for (std::uint32_t i = 0; i < children.count; ++i) {
         out.add(children.box(i), children.ref[i], children.is_leaf(i));

@@ -97,7 +97,7 @@ class LeafFloats {
       const auto p = boxtree::load<std::array<float, 3>>(
           mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
       triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
-      is_finite &= is_within_reach(triangle.corner[c]);
+      is_finite &= is_within_range(triangle.corner[c]);
     }
     if (!is_finite) {
       error_ = Errc::kVertexNotFinite;

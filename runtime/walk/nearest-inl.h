@@ -11,7 +11,7 @@
 #include <array>
 
 #include "runtime/walk/decode-inl.h"
-#include "runtime/walk/waiting-inl.h"
+#include "runtime/walk/traversal_stack-inl.h"
 #include "runtime/walk/work.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -45,11 +45,11 @@ class NearestWalk {
       if (error != Errc::kOk) return error;
       if (depth == open_.size()) return Errc::kDepthExceeded;
       open_[depth].links = links;
-      query_.expanding(links,
-                       meet(node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1));
+      query_.expanding(
+          links, intersect(node, box, open_[depth].boxes, depth, (1u << links.child_count) - 1));
       for (;;) {
-        typename decltype(waiting_)::Child at;
-        if (!waiting_.pop(query_.bound(), at)) return Errc::kOk;
+        typename decltype(stack_)::Child at;
+        if (!stack_.pop(query_.bound(), at)) return Errc::kOk;
         const Children& of = open_[at.depth];
         if (((of.links.inner_mask >> at.number) & 1u) != 0) {
           box = of.boxes.box(at.number);
@@ -69,23 +69,23 @@ class NearestWalk {
   };
 
   // Lets those of a node's children wait that can matter; bit i is child i.
-  HWY_INLINE std::uint32_t meet(const NodeView<Node>& node, const Box<float>& box,
-                                ChildBoxes& children, std::size_t depth, std::uint32_t all) {
+  HWY_INLINE std::uint32_t intersect(const NodeView<Node>& node, const Box<float>& box,
+                                     ChildBoxes& children, std::size_t depth, std::uint32_t all) {
     HWY_ALIGN float keys[kWideChildren];
     std::uint32_t passing = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
       FloatVector key;
-      passing |= query_.meet(decode(node, box, part, children), key) << (part * kLanes);
+      passing |= query_.intersect(decode(node, box, part, children), key) << (part * kLanes);
       hn::Store(key, Floats(), keys + part * kLanes);
     }
     passing &= all;
-    waiting_.push(passing, keys, depth);
+    stack_.push(passing, keys, depth);
     return passing;
   }
 
   const WideCodec<Node>& codec_;
   Query& query_;
-  Waiting<WideCodec<Node>::kDepthLimit> waiting_;
+  TraversalStack<WideCodec<Node>::kDepthLimit> stack_;
   std::array<Children, WideCodec<Node>::kDepthLimit> open_;
 };
 

@@ -113,7 +113,7 @@ HWY_INLINE NodeState check_links(const WideCodec<Node>& codec, std::uint32_t num
       (inner == 0) | ((links.first_node > number) & (links.first_node + inner <= codec.node_count));
   const bool leaves_fit =
       (leaves == 0) | ((links.first_leaf + leaves - 1) * kLeafFaces < codec.face_count);
-  return sound_if(has_children & nodes_fit & leaves_fit);
+  return valid_if(has_children & nodes_fit & leaves_fit);
 }
 
 /// Calls visit(child) for each set bit, from the lowest on, while it returns true; whether all did.

@@ -20,19 +20,20 @@ namespace boxtree::HWY_NAMESPACE {
 /// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
 /// only when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the
 /// shape beyond doubt.
-struct Verdict {
+struct Classification {
   std::uint32_t touched;
   std::uint32_t inside;
 };
 
-/// The verdict of a shape on triangles, by their bounds and corners; `inside`: they touch it beyond
-/// doubt. shape.judge(const VectorBox&) and shape.contained(const VectorPoint&), a bit set only for
-/// a point that lies in the shape beyond doubt.
+/// The classification of a shape on triangles, by their bounds and corners; `inside`: they touch it
+/// beyond doubt. shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), a bit
+/// set only for a point that lies in the shape beyond doubt.
 template <class Shape>
-HWY_INLINE Verdict judge_corners(const Shape& shape, const VectorTriangle& triangle) {
-  Verdict verdict = shape.judge(bounds_of(triangle));
-  for (const VectorPoint& corner : triangle.corner) verdict.inside |= shape.contained(corner);
-  return verdict;
+HWY_INLINE Classification classify_corners(const Shape& shape, const VectorTriangle& triangle) {
+  Classification classification = shape.classify(bounds_of(triangle));
+  for (const VectorPoint& corner : triangle.corner)
+    classification.inside |= shape.contained(corner);
+  return classification;
 }
 
 /// The leaves that a shape meets: the same for both codecs, and compiled once. Each returns whether
@@ -61,9 +62,9 @@ class OverlapLeaves {
     for (std::size_t group = 0; group < leaf_.groups(); ++group) {
       std::uint32_t touched = 0, certain = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
-        const Verdict verdict = filter_.judge(leaf_.triangles(group, part));
-        touched |= verdict.touched << (part * kLanes);
-        certain |= verdict.inside << (part * kLanes);
+        const Classification classification = filter_.classify(leaf_.triangles(group, part));
+        touched |= classification.touched << (part * kLanes);
+        certain |= classification.inside << (part * kLanes);
       }
       const bool go_on = for_each_bit(touched & leaf_.lanes(group), [&](std::uint32_t i) {
         const auto lane = static_cast<std::uint32_t>(group * kWideChildren) + i;
@@ -115,28 +116,29 @@ class OverlapWalk {
       const WideLinks links = children.links = node.links();
       const Errc error = walk_.nodes.count(check_links(codec_, number, links));
       if (error != Errc::kOk) return error;
-      const Verdict verdict = judge(node, links, box, inside, children.boxes);
-      prefetch_.leaves(links, verdict.touched & ~verdict.inside & ~links.inner_mask);
-      prefetch_.nodes(links, verdict.touched & links.inner_mask);
-      const bool go_on = for_each_bit(verdict.touched & ~links.inner_mask, [&](std::uint32_t i) {
-        const std::uint32_t first = first_face(links, i);
-        const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
-        return ((verdict.inside >> i) & 1u) != 0 ? leaves_.report(first, count)
-                                                 : leaves_.visit(first, count);
-      });
+      const Classification classification = classify(node, links, box, inside, children.boxes);
+      prefetch_.leaves(links, classification.touched & ~classification.inside & ~links.inner_mask);
+      prefetch_.nodes(links, classification.touched & links.inner_mask);
+      const bool go_on =
+          for_each_bit(classification.touched & ~links.inner_mask, [&](std::uint32_t i) {
+            const std::uint32_t first = first_face(links, i);
+            const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
+            return ((classification.inside >> i) & 1u) != 0 ? leaves_.report(first, count)
+                                                            : leaves_.visit(first, count);
+          });
       if (!go_on) return Errc::kOk;
-      children.waiting = verdict.touched & links.inner_mask;
-      children.inside = verdict.inside;
-      depth += children.waiting != 0 ? 1 : 0;
+      children.pending = classification.touched & links.inner_mask;
+      children.inside = classification.inside;
+      depth += children.pending != 0 ? 1 : 0;
       if (depth == 0) return Errc::kOk;
       // The place of a node whose last child is taken is free for that child's own children.
       Children& last = open_[depth - 1];
-      const auto i = static_cast<std::uint32_t>(std::countr_zero(last.waiting));
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(last.pending));
       box = last.boxes.box(i);
       number = node_number(last.links, i);
       inside = ((last.inside >> i) & 1u) != 0;
-      last.waiting &= last.waiting - 1;
-      depth -= last.waiting == 0 ? 1 : 0;
+      last.pending &= last.pending - 1;
+      depth -= last.pending == 0 ? 1 : 0;
     }
   }
 
@@ -145,22 +147,23 @@ class OverlapWalk {
   struct Children {
     ChildBoxes boxes;  // unspecified when the node is inside the shape
     WideLinks links;
-    std::uint32_t waiting;
+    std::uint32_t pending;
     std::uint32_t inside;
   };
 
-  HWY_INLINE Verdict judge(const NodeView<Node>& node, const WideLinks& links,
-                           const Box<float>& box, bool inside, ChildBoxes& children) const {
+  HWY_INLINE Classification classify(const NodeView<Node>& node, const WideLinks& links,
+                                     const Box<float>& box, bool inside,
+                                     ChildBoxes& children) const {
     const std::uint32_t all = (1u << links.child_count) - 1;
     if (inside) return {all, all};
-    Verdict verdict{0, 0};
+    Classification classification{0, 0};
     for (std::size_t part = 0; part < kParts; ++part) {
-      const Verdict of_part = filter_.judge(decode(node, box, part, children));
-      verdict.touched |= of_part.touched << (part * kLanes);
-      verdict.inside |= of_part.inside << (part * kLanes);
+      const Classification of_part = filter_.classify(decode(node, box, part, children));
+      classification.touched |= of_part.touched << (part * kLanes);
+      classification.inside |= of_part.inside << (part * kLanes);
     }
-    verdict.touched &= all;
-    return verdict;
+    classification.touched &= all;
+    return classification;
   }
 
   const WideCodec<Node>& codec_;

@@ -50,7 +50,7 @@ class WalkBound {
   /// else kNodeCorrupt if it is corrupt or no honest walk meets so many; else kOk, and the walk may
   /// go on to its children.
   [[nodiscard]] Errc count(NodeState state) noexcept {
-    if (left_ != 0 && state == NodeState::kSound) [[likely]] {
+    if (left_ != 0 && state == NodeState::kValid) [[likely]] {
       --left_;
       return Errc::kOk;
     }
@@ -72,7 +72,7 @@ class SharedWalkBound {
   /// kNodeCorrupt or kOk.
   [[nodiscard]] Errc count(NodeState state) noexcept {
     std::uint32_t left = left_.load(std::memory_order_relaxed);
-    while (state == NodeState::kSound && left > 0) {
+    while (state == NodeState::kValid && left > 0) {
       if (left_.compare_exchange_weak(left, left - 1, std::memory_order_relaxed)) return Errc::kOk;
     }
     return Errc::kNodeCorrupt;

@@ -60,7 +60,7 @@ int main(int argument_count, char** arguments) {
     if (fall < 1e-4) break;
     frame /= 2;
   }
-  std::printf("after %d frames and %d questions the crate rests at height %.4f on", frames, asked,
+  std::printf("after %d frames and %d queries the crate rests at height %.4f on", frames, asked,
               pose.translation()[1]);
   for (const std::string& name : met) std::printf(" \"%s\"", name.c_str());
   std::printf("\n");

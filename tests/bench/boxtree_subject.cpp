@@ -133,11 +133,11 @@ class BoxtreeSubject : public Subject {
     return true;
   }
   // The bound that some two points realise, as other libraries return it.
-  bool distances(std::span<const DistanceQuestion> questions, std::span<double> out) override {
-    for (std::size_t i = 0; i < questions.size(); ++i) {
+  bool distances(std::span<const DistanceRequest> queries, std::span<double> out) override {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
       DistanceOptions options;
-      options.relative_error = questions[i].relative_error;
-      out[i] = require(distance(tree_, Pose::Identity(), tree_, questions[i].pose, options)).upper;
+      options.relative_error = queries[i].relative_error;
+      out[i] = require(distance(tree_, Pose::Identity(), tree_, queries[i].pose, options)).upper;
     }
     return true;
   }
@@ -202,7 +202,7 @@ class BlobSubject : public Subject {
     const double seconds = cooker::median_seconds(runs, [&] {
       const File opened = require(open_blob(file.path()));
       const Tree tree = require(Tree::bind(opened, 0));
-      if (const Status asked = cooker::ask_first(tree); !asked) {
+      if (const Status asked = cooker::first_query(tree); !asked) {
         throw std::runtime_error(asked.error().message());
       }
     });

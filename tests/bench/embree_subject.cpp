@@ -79,13 +79,13 @@ class EmbreeSubject : public Subject {
     };
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       Request request{&mesh_, &boxes[i], 0};
-      ask(boxes[i].center(), boxes[i].diagonal().norm() / 2, &request,
-          [](RTCPointQueryFunctionArguments* arguments) {
-            auto& r = *static_cast<Request*>(arguments->userPtr);
-            const Triangle triangle = r.mesh->triangle(arguments->primID);
-            r.count += triangle_intersects_box(triangle, r.box->min(), r.box->max()) ? 1 : 0;
-            return false;
-          });
+      run_query(boxes[i].center(), boxes[i].diagonal().norm() / 2, &request,
+                [](RTCPointQueryFunctionArguments* arguments) {
+                  auto& r = *static_cast<Request*>(arguments->userPtr);
+                  const Triangle triangle = r.mesh->triangle(arguments->primID);
+                  r.count += triangle_intersects_box(triangle, r.box->min(), r.box->max()) ? 1 : 0;
+                  return false;
+                });
       out[i] = request.count;
     }
     return true;
@@ -98,25 +98,25 @@ class EmbreeSubject : public Subject {
     };
     for (std::size_t i = 0; i < points.size(); ++i) {
       Request request{&mesh_, &points[i], std::numeric_limits<double>::infinity()};
-      ask(points[i], std::numeric_limits<float>::infinity(), &request,
-          [](RTCPointQueryFunctionArguments* arguments) {
-            auto& r = *static_cast<Request*>(arguments->userPtr);
-            const Eigen::Vector3d closest =
-                closest_point_on_triangle(*r.point, r.mesh->triangle(arguments->primID));
-            const double distance = (closest - *r.point).norm();
-            if (distance >= r.best) return false;
-            r.best = distance;
-            arguments->query->radius = static_cast<float>(distance);
-            return true;
-          });
+      run_query(points[i], std::numeric_limits<float>::infinity(), &request,
+                [](RTCPointQueryFunctionArguments* arguments) {
+                  auto& r = *static_cast<Request*>(arguments->userPtr);
+                  const Eigen::Vector3d closest =
+                      closest_point_on_triangle(*r.point, r.mesh->triangle(arguments->primID));
+                  const double distance = (closest - *r.point).norm();
+                  if (distance >= r.best) return false;
+                  r.best = distance;
+                  arguments->query->radius = static_cast<float>(distance);
+                  return true;
+                });
       out[i] = request.best;
     }
     return true;
   }
 
  private:
-  void ask(const Eigen::Vector3d& centre, double radius, void* request,
-           RTCPointQueryFunction function) {
+  void run_query(const Eigen::Vector3d& centre, double radius, void* request,
+                 RTCPointQueryFunction function) {
     RTCPointQueryContext context;
     rtcInitPointQueryContext(&context);
     RTCPointQuery query{};

@@ -13,13 +13,13 @@
 namespace boxtree::bench {
 namespace {
 
-// Work in triangle tests for each kind of question: a few seconds.
+// Work in triangle tests for each kind of query: a few seconds.
 constexpr double kTests = 1e8;
 constexpr std::size_t kFewest = 4;
 
-std::size_t affordable(std::size_t questions, double tests_each) {
+std::size_t affordable(std::size_t queries, double tests_each) {
   const auto most = static_cast<std::size_t>(kTests / tests_each);
-  return std::min(questions, std::max(most, kFewest));
+  return std::min(queries, std::max(most, kFewest));
 }
 
 double closest_t(const std::vector<Triangle>& triangles, const Ray& ray) {

@@ -6,7 +6,7 @@
 
 namespace boxtree::bench {
 
-/// Answers to the first questions of each kind of a workload, as many as are affordable: brute
+/// Answers to the first queries of each kind of a workload, as many as are affordable: brute
 /// force over n triangles (n log n and the overlaps along one axis for pairs).
 struct ExactAnswers {
   std::vector<double> rays;

@@ -44,14 +44,14 @@ class FclSubject : public Subject {
     }
     return true;
   }
-  // The other volumes do not turn with a pose: FCL would build the copy anew for each question.
-  bool distances(std::span<const DistanceQuestion> questions, std::span<double> out) override {
+  // The other volumes do not turn with a pose: FCL would build the copy anew for each query.
+  bool distances(std::span<const DistanceRequest> queries, std::span<double> out) override {
     if constexpr (!std::is_same_v<Volume, fcl::OBBRSSd>) return false;
-    for (std::size_t i = 0; i < questions.size(); ++i) {
-      const fcl::DistanceRequestd request(true, false, questions[i].relative_error, 0);
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      const fcl::DistanceRequestd request(true, false, queries[i].relative_error, 0);
       fcl::DistanceResultd result;
       out[i] = fcl::distance(model_.get(), fcl::Transform3d::Identity(), model_.get(),
-                             transform_of(questions[i].pose), request, result);
+                             transform_of(queries[i].pose), request, result);
     }
     return true;
   }

@@ -142,15 +142,16 @@ class OriginalPairs {
       return true;
     }
     std::array<Intervals, 2> first;
-    std::array<bool, 2> first_meets{};
+    std::array<bool, 2> first_intersects{};
     for (std::size_t side = 0; side < 2; ++side) {
       if (e->inner.child[side] == nullptr) continue;
       first[side] = entered(ei, first_frames(), e->cutplane, side, e->inner.cut[side]);
-      first_meets[side] = !moved_apart(first[side], fi, first_frames(), e->cutplane, side);
+      first_intersects[side] = !moved_apart(first[side], fi, first_frames(), e->cutplane, side);
     }
     if (f->is_leaf()) {
       for (std::size_t side = 0; side < 2; ++side) {
-        if (first_meets[side] && !check(e->inner.child[side], first[side], f, fi)) return false;
+        if (first_intersects[side] && !check(e->inner.child[side], first[side], f, fi))
+          return false;
       }
       return true;
     }
@@ -160,7 +161,7 @@ class OriginalPairs {
       const Intervals second =
           entered(fi, second_frames(), f->cutplane, right, f->inner.cut[right]);
       for (std::size_t left = 0; left < 2; ++left) {
-        if (!first_meets[left] ||
+        if (!first_intersects[left] ||
             moved_apart(second, first[left], second_frames(), f->cutplane, right)) {
           continue;
         }

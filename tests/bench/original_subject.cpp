@@ -111,10 +111,10 @@ class OriginalSubject : public Subject {
   }
 
   bool rays(std::span<const Ray> rays, std::span<double> out) override {
-    const Eigen::Vector3d reach =
+    const Eigen::Vector3d max_abs =
         mesh_.bounds.min().cwiseAbs().cwiseMax(mesh_.bounds.max().cwiseAbs());
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      RayQuery query{RaySlab(rays[i].origin, rays[i].direction, widened(reach).maxCoeff()),
+      RayQuery query{RaySlab(rays[i].origin, rays[i].direction, widened(max_abs).maxCoeff()),
                      RayShear(rays[i].origin, rays[i].direction)};
       if (query.key(tree_.root_box()) != kInfinity) {
         descend_nearest(tree_.root(), tree_.root_box(), query);
@@ -188,9 +188,9 @@ class OriginalSubject : public Subject {
  private:
   // Cuts in f32 leave planes that are off by their rounding; what the original's 1e-6 does for
   // pairs, this does for rays.
-  static Eigen::Vector3d widened(const Eigen::Vector3d& reach) {
+  static Eigen::Vector3d widened(const Eigen::Vector3d& max_abs) {
     constexpr double kShareOfSlabMargin = 1e-6 / (8 * 0x1p-53);
-    return reach * kShareOfSlabMargin;
+    return max_abs * kShareOfSlabMargin;
   }
 
   const TriangleMesh& mesh_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// boxtree_peers: every codec, the original and other libraries on the same questions in one run,
+// boxtree_peers: every codec, the original and other libraries on the same queries in one run,
 // each time beside its answers, each answer beside brute force.
 #include <algorithm>
 #include <chrono>
@@ -28,7 +28,7 @@ struct Arguments {
   std::size_t tumble_steps = 0;
   double longest_edge = 0;
   std::string builder = "sah";
-  std::vector<std::string> questions = {"single", "pairs", "distances", "tumble"};
+  std::vector<std::string> queries = {"single", "pairs", "distances", "tumble"};
   bool quick = false;
   bool json = false;
 };
@@ -58,7 +58,7 @@ class Rows {
   nlohmann::ordered_json& rows_;
 };
 
-// A run of one kind of question takes no longer than about this; slow libraries are asked less.
+// A run of one kind of query takes no longer than about this; slow libraries are asked less.
 constexpr double kSecondsPerRun = 4;
 
 double sum(const std::vector<double>& values) {
@@ -67,7 +67,7 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-// In how many of the questions that brute force answered the two differ by more than `slack`.
+// In how many of the queries that brute force answered the two differ by more than `slack`.
 double count_wrong(const std::vector<double>& found, const std::vector<double>& exact,
                    double slack) {
   double wrong = 0;
@@ -104,7 +104,7 @@ double count_finite(const std::vector<double>& values) {
                                            [](double value) { return std::isfinite(value); }));
 }
 
-// How one kind of question is reported.
+// How one kind of query is reported.
 struct Kind {
   std::string name;   // of its rows
   std::string unit;   // of its time
@@ -113,20 +113,20 @@ struct Kind {
   double (*total_of)(const std::vector<double>&) = sum;
 };
 
-template <class Question>
-using Query = bool (Subject::*)(std::span<const Question>, std::span<double>);
+template <class Query>
+using QueryFunction = bool (Subject::*)(std::span<const Query>, std::span<double>);
 
-// The median over single questions, each one's time the least of the runs, in seconds. By the wall
+// The median over single queries, each one's time the least of the runs, in seconds. By the wall
 // clock, which is read in a fraction of what the processor time of a thread takes to read.
-template <class Question>
-double median_of_each(Subject& subject, Query<Question> query, std::span<const Question> questions,
+template <class Query>
+double median_of_each(Subject& subject, QueryFunction<Query> query, std::span<const Query> queries,
                       std::span<double> answers, std::size_t runs) {
   using Clock = std::chrono::steady_clock;
-  std::vector<double> least(questions.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> least(queries.size(), std::numeric_limits<double>::infinity());
   for (std::size_t run = 0; run < runs; ++run) {
-    for (std::size_t i = 0; i < questions.size(); ++i) {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
       const Clock::time_point start = Clock::now();
-      (subject.*query)(questions.subspan(i, 1), answers.subspan(i, 1));
+      (subject.*query)(queries.subspan(i, 1), answers.subspan(i, 1));
       const std::chrono::duration<double> taken = Clock::now() - start;
       least[i] = std::min(least[i], taken.count());
     }
@@ -134,36 +134,36 @@ double median_of_each(Subject& subject, Query<Question> query, std::span<const Q
   return cooker::median(std::move(least));
 }
 
-// Times one kind of question and adds the rows of time and answers. Nothing if the library does not
-// know the question. The run that is not counted finds out how many questions are affordable;
+// Times one kind of query and adds the rows of time and answers. Nothing if the library does not
+// know the query. The run that is not counted finds out how many queries are affordable;
 // answers to the others are cut off.
-template <class Question>
-std::optional<std::vector<double>> ask(Subject& subject, Query<Question> query,
-                                       const std::vector<Question>& questions, const Kind& kind,
-                                       std::size_t runs, Rows& rows) {
-  std::vector<double> answers(questions.size());
-  const auto ask_first = [&](std::size_t count) {
-    return (subject.*query)(std::span(questions).first(count), std::span(answers).first(count));
+template <class Query>
+std::optional<std::vector<double>> run_query(Subject& subject, QueryFunction<Query> query,
+                                             const std::vector<Query>& queries, const Kind& kind,
+                                             std::size_t runs, Rows& rows) {
+  std::vector<double> answers(queries.size());
+  const auto first_query = [&](std::size_t count) {
+    return (subject.*query)(std::span(queries).first(count), std::span(answers).first(count));
   };
-  if (questions.empty() || !ask_first(1)) return std::nullopt;
+  if (queries.empty() || !first_query(1)) return std::nullopt;
   std::size_t asked = 1;
-  for (bool affordable = true; affordable && asked < questions.size();) {
-    const std::size_t more = std::min(questions.size(), 2 * asked);
-    const double taken = cooker::seconds_taken([&] { ask_first(more); });
+  for (bool affordable = true; affordable && asked < queries.size();) {
+    const std::size_t more = std::min(queries.size(), 2 * asked);
+    const double taken = cooker::seconds_taken([&] { first_query(more); });
     asked = more;
     affordable = 2 * taken < kSecondsPerRun;
   }
   answers.resize(asked);
   std::vector<double> seconds;
   for (std::size_t run = 0; run < runs; ++run) {
-    seconds.push_back(cooker::seconds_taken([&] { ask_first(asked); }));
+    seconds.push_back(cooker::seconds_taken([&] { first_query(asked); }));
   }
   const double each = cooker::median(std::move(seconds)) / static_cast<double>(asked);
   rows.add(kind.name + "_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * each, kind.unit);
   const double middle =
-      median_of_each(subject, query, std::span(questions).first(asked), std::span(answers), runs);
+      median_of_each(subject, query, std::span(queries).first(asked), std::span(answers), runs);
   rows.add(kind.name + "_median_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * middle, kind.unit);
-  rows.add(kind.name + "_asked", static_cast<double>(asked), "questions");
+  rows.add(kind.name + "_queries", static_cast<double>(asked), "queries");
   rows.add(kind.total, kind.total_of(answers), kind.total_unit);
   return answers;
 }
@@ -173,37 +173,37 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
   // A library in f32 cannot know distances better than this share of the scene.
   const double scene = 4 * mesh.bounds.diagonal().norm();
   const double slack = scene * 1e-5;
-  if (const auto found = ask(subject, &Subject::rays, workload.rays,
-                             {"ray", "ns", "ray_hits", "hits", count_finite}, runs, rows)) {
-    rows.add("ray_checked", checked(*found, exact.rays), "questions");
-    rows.add("ray_wrong", count_wrong(*found, exact.rays, slack), "questions");
+  if (const auto found = run_query(subject, &Subject::rays, workload.rays,
+                                   {"ray", "ns", "ray_hits", "hits", count_finite}, runs, rows)) {
+    rows.add("ray_checked", checked(*found, exact.rays), "queries");
+    rows.add("ray_wrong", count_wrong(*found, exact.rays, slack), "queries");
     rows.add("ray_error", largest_error(*found, exact.rays) / scene, "of the scene");
   }
-  if (const auto found = ask(subject, &Subject::boxes, workload.boxes,
-                             {"box", "ns", "box_tris", "triangles"}, runs, rows)) {
-    rows.add("box_checked", checked(*found, exact.boxes), "questions");
-    rows.add("box_wrong", count_wrong(*found, exact.boxes, 0), "questions");
+  if (const auto found = run_query(subject, &Subject::boxes, workload.boxes,
+                                   {"box", "ns", "box_tris", "triangles"}, runs, rows)) {
+    rows.add("box_checked", checked(*found, exact.boxes), "queries");
+    rows.add("box_wrong", count_wrong(*found, exact.boxes, 0), "queries");
   }
-  if (const auto found = ask(subject, &Subject::points, workload.points,
-                             {"point", "ns", "point_distance", "summed"}, runs, rows)) {
-    rows.add("point_checked", checked(*found, exact.points), "questions");
-    rows.add("point_wrong", count_wrong(*found, exact.points, slack), "questions");
+  if (const auto found = run_query(subject, &Subject::points, workload.points,
+                                   {"point", "ns", "point_distance", "summed"}, runs, rows)) {
+    rows.add("point_checked", checked(*found, exact.points), "queries");
+    rows.add("point_wrong", count_wrong(*found, exact.points, slack), "queries");
     rows.add("point_error", largest_error(*found, exact.points) / scene, "of the scene");
   }
 }
 
 void measure_pairs(Subject& subject, const cooker::Workload& workload, const ExactAnswers& exact,
                    std::size_t runs, Rows& rows) {
-  if (const auto found = ask(subject, &Subject::first_contacts, workload.poses,
-                             {"pair_first", "us", "pair_hits", "contacts"}, runs, rows)) {
+  if (const auto found = run_query(subject, &Subject::first_contacts, workload.poses,
+                                   {"pair_first", "us", "pair_hits", "contacts"}, runs, rows)) {
     std::vector<double> touching = exact.pairs;
     for (double& count : touching) count = count > 0 ? 1 : 0;
-    rows.add("pair_checked", checked(*found, exact.pairs), "questions");
-    rows.add("pair_first_wrong", count_wrong(*found, touching, 0), "questions");
+    rows.add("pair_checked", checked(*found, exact.pairs), "queries");
+    rows.add("pair_first_wrong", count_wrong(*found, touching, 0), "queries");
   }
-  if (const auto found = ask(subject, &Subject::all_pairs, workload.poses,
-                             {"pair_all", "us", "pair_pairs", "pairs"}, runs, rows)) {
-    rows.add("pair_all_wrong", count_wrong(*found, exact.pairs, 0), "questions");
+  if (const auto found = run_query(subject, &Subject::all_pairs, workload.poses,
+                                   {"pair_all", "us", "pair_pairs", "pairs"}, runs, rows)) {
+    rows.add("pair_all_wrong", count_wrong(*found, exact.pairs, 0), "queries");
     rows.add("pair_all_error", excess(*found, exact.pairs), "pairs too many");
   }
 }
@@ -219,11 +219,11 @@ void measure_distances(const TriangleMesh& mesh, Subject& subject, const cooker:
   };
   for (const Allowed& allowed : {Allowed{"distance", 0}, Allowed{"distance_1_percent", 0.01},
                                  Allowed{"distance_10_percent", 0.1}}) {
-    std::vector<DistanceQuestion> questions;
-    for (const Pose& pose : workload.apart) questions.push_back({pose, allowed.error});
+    std::vector<DistanceRequest> queries;
+    for (const Pose& pose : workload.apart) queries.push_back({pose, allowed.error});
     const std::string name = allowed.name;
-    const auto found = ask(subject, &Subject::distances, questions,
-                           {name, "us", name + "_sum", "summed"}, runs, rows);
+    const auto found = run_query(subject, &Subject::distances, queries,
+                                 {name, "us", name + "_sum", "summed"}, runs, rows);
     if (!found) return;
     double wrong = 0;
     double largest = 0;
@@ -234,8 +234,8 @@ void measure_distances(const TriangleMesh& mesh, Subject& subject, const cooker:
       wrong += holds ? 0 : 1;
       largest = std::max(largest, std::abs((*found)[i] - truth) / truth);
     }
-    rows.add(name + "_checked", checked(*found, exact.distances), "questions");
-    rows.add(name + "_wrong", wrong, "questions");
+    rows.add(name + "_checked", checked(*found, exact.distances), "queries");
+    rows.add(name + "_wrong", wrong, "queries");
     rows.add(name + "_error", largest, "of the distance");
   }
 }
@@ -263,7 +263,7 @@ void measure_tumble(Subject& subject, const std::vector<Pose>& poses, std::size_
     const Query<Pose> query = first_only ? &Subject::first_contacts : &Subject::all_pairs;
     const Kind kind = first_only ? Kind{name, "us", name + "_hits", "contacts"}
                                  : Kind{name, "us", name + "_pairs", "pairs"};
-    auto found = ask(subject, query, poses, kind, runs, rows);
+    auto found = run_query(subject, query, poses, kind, runs, rows);
     if (!found) return;
     const auto asked = std::span(poses).first(found->size());
     const auto add = [&](const char* metric, std::uint64_t total, const char* unit) {
@@ -311,11 +311,11 @@ void measure_library(const TriangleMesh& mesh, const Library& library,
   measure_tumble(*subject, tumble, arguments.runs, rows);
 }
 
-// Questions that are not wanted are none.
+// Queries that are not wanted are none.
 cooker::WorkloadSize workload_size(const Arguments& arguments) {
   cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
   const auto wanted = [&](const char* kind) {
-    const auto& kinds = arguments.questions;
+    const auto& kinds = arguments.queries;
     return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
   };
   if (!wanted("single")) size.rays = size.boxes = size.points = 0;
@@ -376,7 +376,7 @@ int main(int argc, char** argv) {
   app.add_option("--runs", arguments.runs, "Runs whose median counts; one more goes before")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--questions", arguments.questions,
+  app.add_option("--queries", arguments.queries,
                  "single (rays, boxes, points), pairs, distances or tumble; may be repeated [all]")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"single", "pairs", "distances", "tumble"}));
@@ -386,7 +386,7 @@ int main(int argc, char** argv) {
   app.add_option("--builder", arguments.builder, "Builder of our trees")
       ->check(CLI::IsMember({"sah", "paper"}))
       ->capture_default_str();
-  app.add_flag("--quick", arguments.quick, "A tenth of the questions");
+  app.add_flag("--quick", arguments.quick, "A tenth of the queries");
   app.add_flag("--json", arguments.json, "Print one JSON document");
   CLI11_PARSE(app, argc, argv);
   try {

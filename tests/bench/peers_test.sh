@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# boxtree_peers: all our codecs and the original agree with brute force on every question that was
+# boxtree_peers: all our codecs and the original agree with brute force on every query that was
 # checked, and with each other; every library that answers does so with rows. No time is looked at.
 #   peers_test.sh BOXTREE_PEERS
 set -euo pipefail

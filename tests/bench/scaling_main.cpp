@@ -70,16 +70,16 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
   row.tree_bytes =
       static_cast<double>(encoded.nodes.bytes.size()) / static_cast<double>(row.triangles);
   row.depth = encoded.nodes.depth;
-  const auto per_question = [&](std::size_t questions, auto body) {
-    return cooker::median_seconds(arguments.runs, body) / static_cast<double>(questions);
+  const auto per_query = [&](std::size_t queries, auto body) {
+    return cooker::median_seconds(arguments.runs, body) / static_cast<double>(queries);
   };
-  row.ray_ns = 1e9 * per_question(workload.rays.size(), [&] {
+  row.ray_ns = 1e9 * per_query(workload.rays.size(), [&] {
                  row.ray_hits = 0;
                  for (const Ray& ray : workload.rays) {
                    row.ray_hits += require(closest_hit(tree, ray)).has_value() ? 1u : 0u;
                  }
                });
-  row.pair_first_us = 1e6 * per_question(workload.poses.size(), [&] {
+  row.pair_first_us = 1e6 * per_query(workload.poses.size(), [&] {
                         row.pair_hits = 0;
                         for (const Pose& pose : workload.poses) {
                           const auto contact = first_contact(tree, Pose::Identity(), tree, pose);
@@ -90,7 +90,7 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
   constexpr std::size_t kTimes = 16;
   std::vector<double> of_poses;
   for (const Pose& pose : workload.poses) {
-    of_poses.push_back(1e6 * per_question(kTimes, [&] {
+    of_poses.push_back(1e6 * per_query(kTimes, [&] {
                          for (std::size_t i = 0; i < kTimes; ++i) {
                            static_cast<void>(
                                require(first_contact(tree, Pose::Identity(), tree, pose)));
@@ -155,7 +155,7 @@ cooker::Page page_of(const std::vector<Row>& rows, const std::string& codec) {
       "Cost of a query against size",
       "Closest-hit rays from the sphere of twice the bounding radius toward random points of the "
       "bounds, and the first contact of a mesh with its turned copy; one thread, medians, caches "
-      "as the questions before left them.",
+      "as the queries before left them.",
       {table},
       {plot_of(rows, "closest-hit ray, ns", [](const Row& row) { return row.ray_ns; }),
        plot_of(rows, "first contact, mean, us", [](const Row& row) { return row.pair_first_us; }),
@@ -222,7 +222,7 @@ int main(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--html", arguments.html, "Write a page with tables and plots");
-  app.add_flag("--quick", arguments.quick, "Small meshes and few questions");
+  app.add_flag("--quick", arguments.quick, "Small meshes and few queries");
   app.add_flag("--json", arguments.json, "Print one JSON document");
   CLI11_PARSE(app, argc, argv);
   try {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // boxtree_scenes: a level of placed props as a scene, and as one tree over all their triangles:
-// bytes, and times of the same questions in one run.
+// bytes, and times of the same queries in one run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -33,7 +33,7 @@ struct Arguments {
   std::uint32_t props = 20;
   double spacing = 2;  // metres between props of about 1.5 metres
   std::string codec = "wide8";
-  int questions = 20000;
+  int queries = 20000;
   int rounds = 9;
   bool json = false;
 };
@@ -115,14 +115,14 @@ class Bench {
   Bench(const Scene& scene, const Tree& merged, const Tree& body, const Arguments& arguments)
       : scene_(scene), merged_(merged), body_(body), arguments_(arguments) {
     bounds_ = BoundTree::of(merged).to_object(BoundTree::of(merged).root().box);
-    for (int i = 0; i < arguments.questions; ++i) {
+    for (int i = 0; i < arguments.queries; ++i) {
       const Vector3d from =
           i % 2 == 0 ? Vector3d(point() + Vector3d(0, 1, 0))
                      : Vector3d(bounds_.center() + bounds_.diagonal().norm() * direction());
       rays_.push_back({from, point() - from});
       points_.push_back(point());
     }
-    for (int i = 0; i < arguments.questions / 10; ++i) {
+    for (int i = 0; i < arguments.queries / 10; ++i) {
       Pose pose = test::random_pose(random_, 1, false);
       pose.linear() *= 0.5;
       pose.translation() = point();
@@ -148,9 +148,9 @@ class Bench {
   // Both ways by turns, so that what slows the machine for a while slows both; the first round only
   // warms up. Counts the answers of the last.
   template <class OfScene, class OfTree>
-  Row compare(const char* kind, std::size_t questions, OfScene of_scene, OfTree of_tree) const {
+  Row compare(const char* kind, std::size_t queries, OfScene of_scene, OfTree of_tree) const {
     Row row{kind};
-    const double scale = 1e9 / static_cast<double>(questions);
+    const double scale = 1e9 / static_cast<double>(queries);
     std::vector<double> scene, merged, ratios;
     for (int round = 0; round <= arguments_.rounds; ++round) {
       const double of_one = cooker::seconds_taken([&] { row.scene_answers = of_scene(); });
@@ -165,11 +165,11 @@ class Bench {
     row.ratio = cooker::median(ratios);
     return row;
   }
-  // The sum of what `ask` says of each question.
-  template <class Questions, class Ask>
-  static std::uint64_t sum(const Questions& questions, Ask ask) {
+  // The sum of what `ask` says of each query.
+  template <class Queries, class RunQuery>
+  static std::uint64_t sum(const QuerySet& queries, RunQuery run_query) {
     std::uint64_t answers = 0;
-    for (const auto& question : questions) answers += ask(question);
+    for (const auto& query : queries) answers += run_query(query);
     return answers;
   }
   // Counts what a query visits.
@@ -317,7 +317,7 @@ int main(int argument_count, char** argument_values) {
   app.add_option("--props", arguments.props)->check(CLI::Range(1, 1000));
   app.add_option("--spacing", arguments.spacing, "Metres between props of about 1.5 metres");
   app.add_option("--codec", arguments.codec)->check(CLI::IsMember({"wide8", "wide4"}));
-  app.add_option("--questions", arguments.questions)->check(CLI::Range(10, 10'000'000));
+  app.add_option("--queries", arguments.queries)->check(CLI::Range(10, 10'000'000));
   app.add_option("--rounds", arguments.rounds)->check(CLI::Range(1, 1000));
   app.add_flag("--json", arguments.json);
   CLI11_PARSE(app, argument_count, argument_values);

@@ -7,7 +7,7 @@ set -euo pipefail
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 for codec in wide8 wide4; do
-  "$1" --instances 300 --questions 2000 --rounds 1 --codec "$codec" --json >"$work/out"
+  "$1" --instances 300 --queries 2000 --rounds 1 --codec "$codec" --json >"$work/out"
   jq -e '.scene_bytes * 10 < .merged_bytes' "$work/out" >/dev/null || { cat "$work/out"; exit 1; }
   jq -e '.rows | length == 5 and all(.scene_answers > 0 and
          ((.scene_answers - .merged_answers) | fabs) <= 1e-3 * .merged_answers)' "$work/out" >/dev/null ||

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a library under measurement is asked. Answers come one number a question, so that they can
+// What a library under measurement is asked. Answers come one number a query, so that they can
 // be compared one by one; asking a whole workload in one call keeps the indirection out of the
 // times.
 #pragma once
@@ -39,7 +39,7 @@ struct PairWork {
 };
 
 /// Of the mesh and its copy in that pose.
-struct DistanceQuestion {
+struct DistanceRequest {
   Pose pose;
   double relative_error = 0;  // allowed
 };
@@ -60,7 +60,7 @@ class Subject {
   /// Distance to the closest point.
   virtual bool points(std::span<const Eigen::Vector3d>, std::span<double>) { return false; }
   /// Distance to the copy: no more than the error allowed above the true one.
-  virtual bool distances(std::span<const DistanceQuestion>, std::span<double>) { return false; }
+  virtual bool distances(std::span<const DistanceRequest>, std::span<double>) { return false; }
   /// Of the mesh against its copy in that pose: 1 if they touch, else 0.
   virtual bool first_contacts(std::span<const Pose>, std::span<double>) { return false; }
   /// Likewise: the number of pairs of triangles that touch.

@@ -94,7 +94,7 @@ same "$(jq -c '.hit' out)" false
 
 # Answers with bounds: exact ones, allowed errors, budgets. The cube is one leaf.
 expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 3,0,0 --json
-same "$(jq -c '[.lower <= 2, .upper >= 2, .upper - .lower < 1e-12, .near_enough, .found]' out)" \
+same "$(jq -c '[.lower <= 2, .upper >= 2, .upper - .lower < 1e-12, .converged, .found]' out)" \
   '[true,true,true,true,true]'
 same "$(jq -c '[.points[][0], .faces[]]' out)" '[1,3,5,4]'
 expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 1,0.25,0.25 --json
@@ -103,12 +103,12 @@ expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 3,0,0 --max-distance
 same "$(jq -c '[.lower >= 1, .lower <= 2, .upper, .found]' out)" '[true,true,null,false]'
 for kind in 'point --at 3,0.5,0.5' 'distance cube.bxt --pose 3,0,0'; do
   expect 0 "$boxtree" query cube.bxt $kind --relative-error 0.5 --absolute-error 0.1 --json
-  jq -e '.lower <= 2 and .upper >= 2 and .upper <= 1.5 * .lower + 1e-12 and .near_enough' out >/dev/null
+  jq -e '.lower <= 2 and .upper >= 2 and .upper <= 1.5 * .lower + 1e-12 and .converged' out >/dev/null
   expect 0 "$boxtree" query cube.bxt $kind --budget 0 --json
-  jq -e '.lower <= 2 and .lower > 1.9 and .upper == null and .near_enough == false and .nodes == 0' \
+  jq -e '.lower <= 2 and .lower > 1.9 and .upper == null and .converged == false and .nodes == 0' \
     out >/dev/null
   expect 0 "$boxtree" query cube.bxt $kind --budget 9 --json
-  jq -e '.lower <= 2 and .upper >= 2 and .near_enough and .nodes > 0 and .nodes <= 9' out >/dev/null
+  jq -e '.lower <= 2 and .upper >= 2 and .converged and .nodes > 0 and .nodes <= 9' out >/dev/null
   for bad in '--relative-error=-1' '--absolute-error=nan' '--budget=-1' '--budget=x'; do
     expect 1 "$boxtree" query cube.bxt $kind "$bad"
   done
@@ -246,7 +246,7 @@ expect 0 "$boxtree" query cube.bxt pair external.bxt --mesh2 cube.obj --json
 same "$(jq -c '.hit' out)" true
 
 # Batches: JSON lines, or one document; a bad line gets an error in its place.
-cat >questions.jsonl <<'BATCH'
+cat >queries.jsonl <<'BATCH'
 {"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1]}
 {"kind":"box","min":[0.9,0.4,0.4],"max":[1.5,0.6,0.6]}
 
@@ -258,12 +258,12 @@ cat >questions.jsonl <<'BATCH'
 {"kind":"overlap","file":"cube.bxt","pose":"1,0.25,0.25","within":0}
 {"kind":"box","min":[2,2,2],"max":[3,3,3],"within":0.5}
 BATCH
-expect 0 "$boxtree" query cube.bxt --batch questions.jsonl
+expect 0 "$boxtree" query cube.bxt --batch queries.jsonl
 same "$(wc -l <out)" 9
 same "$(jq -cs '[.[0].t,.[1].faces,.[2].count,.[3].distance,.[4].count]' out)" '[4,[5],1,2,1]'
 same "$(jq -cs '.[5:7] | map(.lower <= 2 and .upper >= 2)' out)" '[true,true]'
 same "$(jq -cs '.[7:] | map(.overlap)' out)" '["hit","free"]'
-expect 0 "$boxtree" query cube.bxt --batch questions.jsonl --json
+expect 0 "$boxtree" query cube.bxt --batch queries.jsonl --json
 same "$(jq -c '.answers | length' out)" 9
 expect 0 sh -c "echo '{\"at\":[0.5,0.5,3]}' | '$boxtree' query cube.bxt point --batch -"
 same "$(jq -c '.distance' out)" 2
@@ -294,8 +294,8 @@ cp out costs.json
 expect 0 "$boxtree" cook cube.obj -o own.bxt --costs costs.json --json
 jq -e '.trees[0].candidates | all(.cost.ray > 0)' out >/dev/null
 cp out before.json
-jq '.costs |= map(.ray |= map_values(. * 8))' costs.json >dearer.json
-expect 0 "$boxtree" cook cube.obj -o own.bxt --costs dearer.json --json
+jq '.costs |= map(.ray |= map_values(. * 8))' costs.json >slower.json
+expect 0 "$boxtree" cook cube.obj -o own.bxt --costs slower.json --json
 jq -e --slurpfile before before.json '[.trees[0].candidates, $before[0].trees[0].candidates] | transpose |
   all(.[0].codec == .[1].codec and (.[0].cost.ray / .[1].cost.ray - 8 | fabs) < 1e-9)' out >/dev/null
 jq '.costs |= .[1:]' costs.json >short.json

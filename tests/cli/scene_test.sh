@@ -48,7 +48,7 @@ jq -e '.count > 0 and ([.faces[].name] | unique | all(startswith("Step")))' out 
 expect 0 "$boxtree" query level.bxt point --at 3,2,1 --json
 same "$(jq -c '[.distance, .name]' out)" '[2,"Floor"]'
 
-# Instances that are moved for a question; contacts of what moves with the rest.
+# Instances that are moved for a query; contacts of what moves with the rest.
 expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.25,-7' --json
 same "$(jq -c '[.hit, .count]' out)" '[false,0]'
 expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --json
@@ -94,10 +94,10 @@ for file in level shown; do
   same "$(jq -c .name out)" '"Step 2"'
 done
 cmp level.names shown.names
-for question in 'ray --origin 5,10,-3.3 --direction 0.1,-1,0' 'point --at 3,2,1' 'point --at=-7,1.5,4'; do
+for query in 'ray --origin 5,10,-3.3 --direction 0.1,-1,0' 'point --at 3,2,1' 'point --at=-7,1.5,4'; do
   for file in level shown flat shown-flat; do
     # shellcheck disable=SC2086
-    expect 0 "$boxtree" query $file.bxt $question --json
+    expect 0 "$boxtree" query $file.bxt $query --json
     jq '.t // .distance' out
   done | jq -se 'max - min < 1e-6' >/dev/null
 done

@@ -2,7 +2,7 @@
 // Any text as a line of a batch, answered by a small tree.
 #include <string_view>
 
-#include "cooker/cli/question.h"
+#include "cooker/cli/query.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -12,13 +12,13 @@ namespace boxtree::fuzz {
 void run(Bytes input) {
   static const test::CookedTree cooked = test::cook_tree(test::city(2, 1), CodecId::kWide8);
   const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-  const auto question = cooker::parse_question(text, "ray");
-  if (!question) {
-    if (question.code() != Errc::kInvalidQuery) finding("an error of another kind");
+  const auto query = cooker::parse_request(text, "ray");
+  if (!query) {
+    if (query.code() != Errc::kInvalidQuery) finding("an error of another kind");
     return;
   }
   cooker::TreeCache others;
-  const auto answer = cooker::ask(cooked.tree, *question, others);
+  const auto answer = cooker::run_query(cooked.tree, *query, others);
   if (!answer && answer.code() == Errc::kInternal) finding("an answer is kInternal");
   if (answer && cooker::line_of(*answer).empty()) finding("an answer without words");
 }

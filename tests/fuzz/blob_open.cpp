@@ -2,7 +2,7 @@
 // Any bytes as a blob; what comes out is opened and bound.
 #include <boxtree/blob.h>
 
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {
@@ -13,7 +13,7 @@ void run(Bytes bytes) {
   const Result<File> file = open_blob(input.file(), kMemory);
   if (!file) return;
   const Result<Tree> tree = Tree::bind(*file);
-  if (tree) static_cast<void>(any_hit(*tree, {input.question.vector(0), {0, 0, 1}}));
+  if (tree) static_cast<void>(any_hit(*tree, {input.query.vector(0), {0, 0, 1}}));
 }
 
 }  // namespace boxtree::fuzz

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// How inputs that are a .bxt file and a question are changed: inside their sections, with the
+// How inputs that are a .bxt file and a query are changed: inside their sections, with the
 // checksums made right again, so that what lies behind the checks of the container is reached.
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "format/container.h"
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 #include "tests/support/cooked.h"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t most);
@@ -136,19 +136,19 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* data, std::size_t s
                                                std::size_t most, unsigned seed) {
   using namespace boxtree;
   using namespace boxtree::fuzz;
-  if (size <= kQuestionBytes || most <= kQuestionBytes) return LLVMFuzzerMutate(data, size, most);
+  if (size <= kQueryBytes || most <= kQueryBytes) return LLVMFuzzerMutate(data, size, most);
   Random random(seed);
-  std::uint8_t* const question = data + (size - kQuestionBytes);
+  std::uint8_t* const query = data + (size - kQueryBytes);
   if (random() % 3 == 0) {
-    const std::size_t at = below(random, kQuestionBytes - 4);
-    const std::size_t length = random() % 2 == 0 ? 4 : kQuestionBytes - at;
-    LLVMFuzzerMutate(question + at, length, length);
+    const std::size_t at = below(random, kQueryBytes - 4);
+    const std::size_t length = random() % 2 == 0 ? 4 : kQueryBytes - at;
+    LLVMFuzzerMutate(query + at, length, length);
     return size;
   }
   const auto* const bytes = reinterpret_cast<const std::byte*>(data);
-  FileBytes file(bytes, bytes + (size - kQuestionBytes));
-  const std::vector<std::byte> tail(bytes + (size - kQuestionBytes), bytes + size);
-  change_file(random, file, most - kQuestionBytes);
+  FileBytes file(bytes, bytes + (size - kQueryBytes));
+  const std::vector<std::byte> tail(bytes + (size - kQueryBytes), bytes + size);
+  change_file(random, file, most - kQueryBytes);
   if (random() % 32 != 0) test::repair_checksums(file);
   file.insert(file.end(), tail.begin(), tail.end());
   std::memcpy(data, file.data(), file.size());
@@ -161,12 +161,12 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std:
                                                  std::size_t most, unsigned seed) {
   using namespace boxtree;
   using namespace boxtree::fuzz;
-  if (first_size <= kQuestionBytes || second_size <= kQuestionBytes || first_size > most) return 0;
+  if (first_size <= kQueryBytes || second_size <= kQueryBytes || first_size > most) return 0;
   Random random(seed);
   const auto* const a = reinterpret_cast<const std::byte*>(first);
   const auto* const b = reinterpret_cast<const std::byte*>(second);
-  FileBytes file(a, a + (first_size - kQuestionBytes));
-  const FileBytes other(b, b + (second_size - kQuestionBytes));
+  FileBytes file(a, a + (first_size - kQueryBytes));
+  const FileBytes other(b, b + (second_size - kQueryBytes));
   // A section of the other file's that has a place in this one.
   const std::vector<SectionEntry> from = sections_of(other);
   const std::vector<SectionEntry> to = sections_of(file);
@@ -178,9 +178,9 @@ extern "C" std::size_t LLVMFuzzerCustomCrossOver(const std::uint8_t* first, std:
                 std::min(target.size, source.size));
   }
   test::repair_checksums(file);
-  const FileBytes& question = random() % 2 == 0 ? other : file;
-  const auto* const tail = &question == &other ? second + other.size() : first + file.size();
+  const FileBytes& query = random() % 2 == 0 ? other : file;
+  const auto* const tail = &query == &other ? second + other.size() : first + file.size();
   std::memcpy(out, file.data(), file.size());
-  std::memcpy(out + file.size(), tail, kQuestionBytes);
-  return file.size() + kQuestionBytes;
+  std::memcpy(out + file.size(), tail, kQueryBytes);
+  return file.size() + kQueryBytes;
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `boxtree verify` of any file: the proof of each tree and of the scene.
 #include "cooker/proof/proof.h"
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {

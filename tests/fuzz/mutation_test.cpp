@@ -35,16 +35,16 @@ void exercise(Bytes bytes) {
   const Result<Tree> tree = Tree::bind(*file);
   if (!tree) return;
   static const std::vector<test::TreeQuery> queries = [] {
-    test::Questions questions;
-    questions.ray = {{0.3, 0.4, 9}, {0.01, 0.02, -1}};
-    questions.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)};
-    questions.point = {3, 2, 1};
-    questions.radius = 4;
-    questions.far.translation() = Eigen::Vector3d(4, 5, 1);
-    questions.node_budget = 100;
-    return test::tree_queries(questions);
+    test::QuerySet queries;
+    queries.ray = {{0.3, 0.4, 9}, {0.01, 0.02, -1}};
+    queries.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)};
+    queries.point = {3, 2, 1};
+    queries.radius = 4;
+    queries.far.translation() = Eigen::Vector3d(4, 5, 1);
+    queries.node_budget = 100;
+    return test::tree_queries(queries);
   }();
-  for (const test::TreeQuery& query : queries) static_cast<void>(query.ask(*tree, *tree, {}));
+  for (const test::TreeQuery& query : queries) static_cast<void>(query.run_query(*tree, *tree, {}));
 }
 
 class Mutation : public testing::TestWithParam<Encoding> {};

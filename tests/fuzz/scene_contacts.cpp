@@ -5,19 +5,19 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_scene(input, [](const Scene& scene, const Question& question, const auto& check) {
+  query_scene(input, [](const Scene& scene, const QueryInput& query, const auto& check) {
     const auto all = [](const ScenePair&) { return true; };
-    switch (question.option(2) % 3) {
+    switch (query.option(2) % 3) {
       case 0:
-        check(contacts(scene, all, question.limits()));
+        check(contacts(scene, all, query.limits()));
         break;
       case 1:
-        check(contacts_of(scene, question.option(3), all, question.limits()));
+        check(contacts_of(scene, query.option(3), all, query.limits()));
         break;
       default:
         if (scene.trees().empty()) return;
-        check(overlap_pairs(scene, scene.trees()[0], question.pose(), all, kAllLayers,
-                            question.limits()));
+        check(
+            overlap_pairs(scene, scene.trees()[0], query.pose(), all, kAllLayers, query.limits()));
     }
   });
 }

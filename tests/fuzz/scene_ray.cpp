@@ -5,11 +5,11 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_scene(input, [](const Scene& scene, const Question& question, const auto& check) {
-    const Ray ray{question.vector(0), question.vector(3)};
-    const LayerMask layers = question.option(1) == 0 ? kAllLayers : question.option(1);
-    const auto closest = closest_hit(scene, ray, layers, question.limits());
-    const auto any = any_hit(scene, ray, layers, question.limits());
+  query_scene(input, [](const Scene& scene, const QueryInput& query, const auto& check) {
+    const Ray ray{query.vector(0), query.vector(3)};
+    const LayerMask layers = query.option(1) == 0 ? kAllLayers : query.option(1);
+    const auto closest = closest_hit(scene, ray, layers, query.limits());
+    const auto any = any_hit(scene, ray, layers, query.limits());
     check(closest);
     check(any);
     if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {

@@ -5,21 +5,21 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_scene(input, [](const Scene& scene, const Question& question, const auto& check) {
-    const LayerMask layers = question.option(1) == 0 ? kAllLayers : question.option(1);
-    const Eigen::Vector3d at = question.vector(0);
+  query_scene(input, [](const Scene& scene, const QueryInput& query, const auto& check) {
+    const LayerMask layers = query.option(1) == 0 ? kAllLayers : query.option(1);
+    const Eigen::Vector3d at = query.vector(0);
     const auto all = [](const SceneFace&) { return true; };
-    switch (question.option(2) % 3) {
+    switch (query.option(2) % 3) {
       case 0:
-        check(overlap_box(scene, {at, at + question.vector(3).cwiseAbs()}, all, layers,
-                          question.limits()));
+        check(
+            overlap_box(scene, {at, at + query.vector(3).cwiseAbs()}, all, layers, query.limits()));
         break;
       case 1:
-        check(overlap_sphere(scene, at, question.number(3), all, layers, question.limits()));
+        check(overlap_sphere(scene, at, query.number(3), all, layers, query.limits()));
         break;
       default:
         check(closest_point(scene, at, std::numeric_limits<double>::infinity(), layers,
-                            question.limits()));
+                            query.limits()));
     }
   });
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Writes the inputs from which the targets that take .bxt files start: small files of every codec,
-// store and kind of section, each with a question. From time to time, when the format gains parts.
+// store and kind of section, each with a query. From time to time, when the format gains parts.
 //   seeds FOLDER    writes FOLDER/tree, FOLDER/scene and FOLDER/blob
 #include <array>
 #include <cstdio>
@@ -12,7 +12,7 @@
 
 #include <boxtree/blob.h>
 
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -24,12 +24,12 @@ namespace {
 namespace fs = std::filesystem;
 using test::require;
 
-using QuestionBytes = std::array<std::byte, fuzz::kQuestionBytes>;
+using QueryTail = std::array<std::byte, fuzz::kQueryBytes>;
 
 // Numbers of the size of the meshes, another set for each seed.
-QuestionBytes question(unsigned seed) {
+QueryTail query(unsigned seed) {
   std::mt19937 random(seed);
-  QuestionBytes bytes{};
+  QueryTail bytes{};
   for (std::size_t i = 0; i < 12; ++i) {
     const auto mantissa = static_cast<std::int16_t>(static_cast<int>(random() % 2048) - 512);
     std::memcpy(bytes.data() + 4 * i, &mantissa, sizeof(mantissa));
@@ -41,7 +41,7 @@ QuestionBytes question(unsigned seed) {
 
 bool write(const fs::path& folder, const std::string& name, Bytes file, unsigned seed) {
   fs::create_directories(folder);
-  const QuestionBytes tail = question(seed);
+  const QueryTail tail = query(seed);
   std::ofstream out(folder / name, std::ios::binary);
   out.write(reinterpret_cast<const char*>(file.data()), std::ssize(file));
   out.write(reinterpret_cast<const char*>(tail.data()), std::ssize(tail));

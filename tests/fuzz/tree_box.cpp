@@ -5,17 +5,17 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_tree(input, [](const Tree& tree, const Question& question, const auto& check) {
-    const Eigen::Vector3d low = question.vector(0);
-    const bool by_size = question.option(1) % 2 == 1;
-    const Eigen::AlignedBox3d box(
-        low, by_size ? low + question.vector(3).cwiseAbs() : question.vector(3));
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
+    const Eigen::Vector3d low = query.vector(0);
+    const bool by_size = query.option(1) % 2 == 1;
+    const Eigen::AlignedBox3d box(low,
+                                  by_size ? low + query.vector(3).cwiseAbs() : query.vector(3));
     std::uint64_t faces = 0;
     const auto all = overlap_box(
-        tree, box, [&faces](const FaceRef&) { return ++faces != 0; }, question.limits());
+        tree, box, [&faces](const FaceRef&) { return ++faces != 0; }, query.limits());
     check(all);
-    const std::uint64_t budget = question.option(2) == 0 ? kUnlimitedNodes : question.option(2);
-    const auto within = overlap_box_within(tree, box, question.number(6), budget);
+    const std::uint64_t budget = query.option(2) == 0 ? kUnlimitedNodes : query.option(2);
+    const auto within = overlap_box_within(tree, box, query.number(6), budget);
     check(within);
     // Who is sure of a hit has one.
     if (all && within && within->overlap == Overlap::kOverlapping && faces == 0) {

@@ -5,14 +5,13 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_tree(input, [](const Tree& tree, const Question& question, const auto& check) {
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
     std::uint64_t pairs = 0;
     const auto all = overlap_pairs(
-        tree, Pose::Identity(), tree, question.pose(),
-        [&pairs](const FacePair&) { return ++pairs != 0; }, question.limits());
+        tree, Pose::Identity(), tree, query.pose(),
+        [&pairs](const FacePair&) { return ++pairs != 0; }, query.limits());
     check(all);
-    const auto first =
-        first_contact(tree, Pose::Identity(), tree, question.pose(), question.limits());
+    const auto first = first_contact(tree, Pose::Identity(), tree, query.pose(), query.limits());
     check(first);
     if (all.ok() && first.ok() && first.has_value() != (pairs != 0)) {
       finding("overlap_pairs and first_contact differ");

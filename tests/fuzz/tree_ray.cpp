@@ -5,12 +5,12 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_tree(input, [](const Tree& tree, const Question& question, const auto& check) {
-    Ray ray{question.vector(0), question.vector(3)};
-    if (question.option(1) % 2 == 1) ray.t_min = question.number(6);
-    if (question.option(1) % 4 >= 2) ray.t_max = question.number(7);
-    const auto closest = closest_hit(tree, ray, question.limits());
-    const auto any = any_hit(tree, ray, question.limits());
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
+    Ray ray{query.vector(0), query.vector(3)};
+    if (query.option(1) % 2 == 1) ray.t_min = query.number(6);
+    if (query.option(1) % 4 >= 2) ray.t_max = query.number(7);
+    const auto closest = closest_hit(tree, ray, query.limits());
+    const auto any = any_hit(tree, ray, query.limits());
     check(closest);
     check(any);
     // Nothing is missed: both know whether there is a hit.

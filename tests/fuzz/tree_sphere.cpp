@@ -5,12 +5,12 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_tree(input, [](const Tree& tree, const Question& question, const auto& check) {
-    const std::uint32_t most = question.option(1) == 0 ? ~0u : question.option(1);
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
+    const std::uint32_t most = query.option(1) == 0 ? ~0u : query.option(1);
     std::uint32_t faces = 0;
     check(overlap_sphere(
-        tree, question.vector(0), question.number(3),
-        [&](const FaceRef&) { return ++faces < most; }, question.limits()));
+        tree, query.vector(0), query.number(3), [&](const FaceRef&) { return ++faces < most; },
+        query.limits()));
   });
 }
 

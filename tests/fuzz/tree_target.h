@@ -3,12 +3,12 @@
 // query says held against what `verify` says.
 #pragma once
 
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 #include "tests/fuzz/target.h"
 
 namespace boxtree::fuzz {
 
-/// Calls query(tree, question, check) when the file of the input opens and binds; `check` takes
+/// Calls query(tree, query, check) when the file of the input opens and binds; `check` takes
 /// each Result of a query.
 template <class Query>
 void query_tree(Bytes bytes, const Query& query) {
@@ -20,7 +20,7 @@ void query_tree(Bytes bytes, const Query& query) {
     check_error(*file, tree.code());
     return;
   }
-  query(*tree, input.question, [&](const auto& result) {
+  query(*tree, input.query, [&](const auto& result) {
     if (!result.ok()) check_error(*file, result.code());
   });
 }
@@ -35,21 +35,21 @@ void query_scene(Bytes bytes, const Query& query) {
     if (!result.ok()) check_error(*file, result.code());
   };
   SceneOptions options;
-  const std::uint32_t made_moving = input.question.option(11);
-  if (input.question.option(12) % 2 == 1) options.moving = std::span(&made_moving, 1);
+  const std::uint32_t made_moving = input.query.option(11);
+  if (input.query.option(12) % 2 == 1) options.moving = std::span(&made_moving, 1);
   Result<Scene> scene = Scene::bind(*file, options);
   if (!scene) {
     check(scene);
     return;
   }
-  if (input.question.option(12) % 4 >= 2) {
+  if (input.query.option(12) % 4 >= 2) {
     for (std::uint32_t i = 0; i < std::min(scene->instance_count(), 8u); ++i) {
-      const Status moved = scene->update(i, input.question.pose());
+      const Status moved = scene->update(i, input.query.pose());
       if (!moved.ok()) check_error(*file, moved.code());
     }
-    if (input.question.option(13) % 2 == 1) scene->rebuild();
+    if (input.query.option(13) % 2 == 1) scene->rebuild();
   }
-  query(*scene, input.question, check);
+  query(*scene, input.query, check);
 }
 
 }  // namespace boxtree::fuzz

@@ -5,10 +5,9 @@
 namespace boxtree::fuzz {
 
 void run(Bytes input) {
-  query_tree(input, [](const Tree& tree, const Question& question, const auto& check) {
-    const std::uint64_t budget = question.option(2) == 0 ? kUnlimitedNodes : question.option(2);
-    check(
-        overlap_within(tree, Pose::Identity(), tree, question.pose(), question.number(0), budget));
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
+    const std::uint64_t budget = query.option(2) == 0 ? kUnlimitedNodes : query.option(2);
+    check(overlap_within(tree, Pose::Identity(), tree, query.pose(), query.number(0), budget));
   });
 }
 

@@ -4,7 +4,7 @@
 reader (tests/golden/read_bxt.py, written from docs/FORMAT.md alone) must accept, too. What ours
 refuses and theirs accepts is counted by code: theirs does not look at everything.
 
-    two_readers_test.py VERDICTS GOLDEN_DIR CORPUS_DIR [--files N] [--seed S]
+    two_readers_test.py VERIFY GOLDEN_DIR CORPUS_DIR [--files N] [--seed S]
 """
 import argparse
 import collections
@@ -16,7 +16,7 @@ import sys
 
 import xxhash
 
-QUESTION_BYTES = 64  # behind each file of the corpus
+QUERY_BYTES = 64  # behind each file of the corpus
 
 
 def repair(data):
@@ -62,7 +62,7 @@ class Ours:
     def __init__(self, program):
         self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE)
 
-    def verdict(self, data):
+    def answer(self, data):
         self.process.stdin.write(struct.pack("<I", len(data)) + data)
         self.process.stdin.flush()
         return self.process.stdout.readline().decode(errors="replace").rstrip("\n")
@@ -91,9 +91,9 @@ def main():
               for path in sorted(glob.glob(arguments.golden + "/v*.hex"))]
     for path in sorted(glob.glob(arguments.corpus + "/*")):
         with open(path, "rb") as file:
-            wholes.append(file.read()[:-QUESTION_BYTES])
+            wholes.append(file.read()[:-QUERY_BYTES])
     ours = Ours(arguments.verdicts)
-    wholes = [whole for whole in wholes if ours.verdict(whole) == "ok"]
+    wholes = [whole for whole in wholes if ours.answer(whole) == "ok"]
     if len(wholes) < 10:
         sys.exit(f"only {len(wholes)} whole files to begin with")
     for whole in wholes:
@@ -106,7 +106,7 @@ def main():
     only_ours = collections.Counter()
     for number in range(arguments.files):
         data = damaged(rng.choice(wholes), rng)
-        first, second = ours.verdict(data), theirs(read_bxt, data)
+        first, second = ours.answer(data), theirs(read_bxt, data)
         if first == "ok" and second != "ok":
             with open(f"two-readers-{number}.bxt", "wb") as file:
                 file.write(data)

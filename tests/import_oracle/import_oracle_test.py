@@ -82,7 +82,7 @@ def is_between(a, b, p):
     return all(min(a[k], b[k]) <= p[k] <= max(a[k], b[k]) for k in range(2))
 
 
-def segments_meet(a, b, c, d):
+def segments_intersect(a, b, c, d):
     turns = [turn(a, b, c), turn(a, b, d), turn(c, d, a), turn(c, d, b)]
     signs = [(t > 0) - (t < 0) for t in turns]
     if signs[0] * signs[1] < 0 and signs[2] * signs[3] < 0:
@@ -101,7 +101,7 @@ def is_simple(points):
         if turn(a, b, c) == 0 and dot(minus(b, a), minus(c, b)) < 0:
             return False  # an edge folds back on its neighbour
         for j in range(i + 2, n):
-            if (j + 1) % n != i and segments_meet(a, b, points[j], points[(j + 1) % n]):
+            if (j + 1) % n != i and segments_intersect(a, b, points[j], points[(j + 1) % n]):
                 return False
     return True
 
@@ -119,8 +119,8 @@ def quad_kind(points):
     area = max(abs(x) for x in normal)
     if volume == 0 and all(t > 0 for t in turns):
         return "kept"
-    reach = max(abs(x) for p in points for x in p)  # of this the coordinates were rounded
-    is_clear = area > size * size / 100 and size > reach / 1000
+    largest = max(abs(x) for p in points for x in p)  # of this the coordinates were rounded
+    is_clear = area > size * size / 100 and size > largest / 1000
     if is_clear and (any(t < -area * area / 1000 for t in turns)
                      or abs(volume) > size * size * size / 1000):
         return "split"

@@ -22,7 +22,7 @@ cooker::EncodedTree cook_one(const Triangle& triangle, CodecId codec) {
   return require(cooker::cook_as(mesh, codec));
 }
 
-bool trees_meet(const Triangle& p, const Triangle& q, CodecId codec) {
+bool trees_intersect(const Triangle& p, const Triangle& q, CodecId codec) {
   const cooker::EncodedTree first = cook_one(p, codec), second = cook_one(q, codec);
   const Tree a = require(cooker::bind_encoded(first));
   const Tree b = require(cooker::bind_encoded(second));
@@ -36,7 +36,7 @@ void add_boxtree_testers(std::vector<PairTester>& testers) {
   constexpr unsigned kEvery = 100;  // cooking takes its time
   testers.push_back({"boxtree", "trees, 1 in 100",
                      [turn = std::size_t{0}](const Triangle& p, const Triangle& q) mutable {
-                       return trees_meet(p, q, kCodecs[turn++ % kCodecs.size()].id);
+                       return trees_intersect(p, q, kCodecs[turn++ % kCodecs.size()].id);
                      },
                      kEvery});
 }

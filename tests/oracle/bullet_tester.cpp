@@ -20,7 +20,7 @@ btPrimitiveTriangle to_bullet(const Triangle& triangle) {
   return out;
 }
 
-bool meet(const Triangle& p, const Triangle& q) {
+bool intersect(const Triangle& p, const Triangle& q) {
   btPrimitiveTriangle a = to_bullet(p), b = to_bullet(q);
   GIM_TRIANGLE_CONTACT contact;
   return a.overlap_test_conservative(b) && a.find_triangle_collision_clip_method(b, contact);
@@ -29,7 +29,7 @@ bool meet(const Triangle& p, const Triangle& q) {
 }  // namespace
 
 void add_bullet_testers(std::vector<PairTester>& testers) {
-  testers.push_back({"bullet", "gimpact", meet});
+  testers.push_back({"bullet", "gimpact", intersect});
 }
 
 }  // namespace boxtree::test

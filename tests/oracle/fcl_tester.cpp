@@ -18,7 +18,7 @@ std::shared_ptr<Model> model_of(const Triangle& triangle) {
   return model;
 }
 
-bool meet(const Triangle& p, const Triangle& q) {
+bool intersect(const Triangle& p, const Triangle& q) {
   const auto first = model_of(p), second = model_of(q);
   fcl::CollisionResultd result;
   const fcl::Transform3d here = fcl::Transform3d::Identity();
@@ -29,7 +29,7 @@ bool meet(const Triangle& p, const Triangle& q) {
 }  // namespace
 
 void add_fcl_testers(std::vector<PairTester>& testers) {
-  testers.push_back({"fcl", "collide", meet});
+  testers.push_back({"fcl", "collide", intersect});
 }
 
 }  // namespace boxtree::test

@@ -46,7 +46,7 @@ class TriangleMesh {
   dGeomID mesh_ = nullptr;
 };
 
-bool meet(const Triangle& p, const Triangle& q) {
+bool intersect(const Triangle& p, const Triangle& q) {
   static const OdeSession session;
   constexpr float kFar = 1000;
   const TriangleMesh a(p, kFar), b(q, -kFar);
@@ -57,7 +57,7 @@ bool meet(const Triangle& p, const Triangle& q) {
 }  // namespace
 
 void add_ode_testers(std::vector<PairTester>& testers) {
-  testers.push_back({"ode", "opcode", meet});
+  testers.push_back({"ode", "opcode", intersect});
 }
 
 }  // namespace boxtree::test

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 
 #include "tests/bench/libraries.h"
-#include "tests/oracle/cgal_judge.h"
+#include "tests/oracle/cgal_classifier.h"
 #include "tests/oracle/pair_tester.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/unit/primitive/triangle_cases.h"
@@ -90,19 +90,19 @@ struct Wrong {
 };
 
 // Returns how many of ours were wrong.
-std::uint64_t judge_pairs(std::size_t count) {
+std::uint64_t classify_pairs(std::size_t count) {
   std::vector<PairTester> testers = all_testers();
   std::vector<std::vector<Wrong>> wrong(testers.size(), std::vector<Wrong>(kFamilies.size()));
-  std::vector<std::uint64_t> meeting(kFamilies.size(), 0);
+  std::vector<std::uint64_t> intersecting(kFamilies.size(), 0);
   for (std::size_t f = 0; f < kFamilies.size(); ++f) {
     FloatPairs pairs(kFamilies[f]);
     for (std::size_t i = 0; i < count; ++i) {
       const TrianglePair pair = pairs.next();
-      const bool truth = cgal_triangles_meet<ExactKernel>(pair.first, pair.second);
-      meeting[f] += truth ? 1u : 0u;
+      const bool truth = cgal_triangles_intersect<ExactKernel>(pair.first, pair.second);
+      intersecting[f] += truth ? 1u : 0u;
       for (std::size_t t = 0; t < testers.size(); ++t) {
         if (i % testers[t].every != 0) continue;
-        const bool answer = testers[t].meet(pair.first, pair.second);
+        const bool answer = testers[t].intersect(pair.first, pair.second);
         wrong[t][f].missed += truth && !answer ? 1u : 0u;
         wrong[t][f].invented += !truth && answer ? 1u : 0u;
       }
@@ -112,8 +112,8 @@ std::uint64_t judge_pairs(std::size_t count) {
   for (const Family family : kFamilies) fmt::print(" {} |", name_of(family));
   fmt::print("\n|---|");
   for (std::size_t f = 0; f < kFamilies.size(); ++f) fmt::print("---|");
-  fmt::print("\n| pairs that meet |");
-  for (const std::uint64_t n : meeting) fmt::print(" {} |", n);
+  fmt::print("\n| pairs that intersect |");
+  for (const std::uint64_t n : intersecting) fmt::print(" {} |", n);
   std::uint64_t ours = 0;
   for (std::size_t t = 0; t < testers.size(); ++t) {
     fmt::print("\n| {} {} |", testers[t].library, testers[t].variant);
@@ -207,7 +207,7 @@ int main(int argc, char** argv) {
   app.add_option("--rays", rays, "rays at each closed mesh [20000]");
   CLI11_PARSE(app, argc, argv);
   try {
-    const std::uint64_t wrong = (pairs > 0 ? boxtree::test::judge_pairs(pairs) : 0) +
+    const std::uint64_t wrong = (pairs > 0 ? boxtree::test::classify_pairs(pairs) : 0) +
                                 (rays > 0 ? boxtree::test::count_leaks(rays) : 0);
     for (const std::string& library : boxtree::bench::missing_libraries()) {
       fmt::print("{} is not installed\n", library);

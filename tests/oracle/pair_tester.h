@@ -14,7 +14,7 @@ namespace boxtree::test {
 struct PairTester {
   std::string library;
   std::string variant;
-  std::function<bool(const Triangle&, const Triangle&)> meet;
+  std::function<bool(const Triangle&, const Triangle&)> intersect;
   unsigned every = 1;  // only every n-th pair, of slow ones
 };
 

@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "runtime/primitive/predicates.h"
-#include "tests/oracle/cgal_judge.h"
+#include "tests/oracle/cgal_classifier.h"
 
 namespace boxtree {
 namespace {
@@ -64,15 +64,15 @@ class PredicatesOracle : public testing::TestWithParam<test::Family> {};
 TEST_P(PredicatesOracle, TrianglesIntersect) {
   test::TriangleCases cases(0x0c6a1, 1 << 20);
   Disturber disturber(0xd15);
-  int meeting = 0;
+  int intersecting = 0;
   for (int i = 0; i < kPairsPerFamily; ++i) {
     test::TrianglePair pair = cases.pair(GetParam());
     disturber.disturb(pair);
-    const bool expected = test::cgal_triangles_meet<Kernel>(pair.first, pair.second);
-    meeting += expected;
+    const bool expected = test::cgal_triangles_intersect<Kernel>(pair.first, pair.second);
+    intersecting += expected;
     ASSERT_EQ(triangles_intersect(pair.first, pair.second), expected) << "pair " << i;
   }
-  RecordProperty("meeting", meeting);
+  RecordProperty("intersecting", intersecting);
 }
 
 TEST_P(PredicatesOracle, Orientation) {

@@ -20,16 +20,16 @@ class Maker {
     size_ = bounds_.diagonal().cwiseMax(extent > 0 ? extent / 16 : 1);
   }
 
-  Questions make(const QuestionCounts& counts) {
-    Questions questions;
-    for (std::size_t i = 0; i < counts.rays; ++i) questions.rays.push_back(ray(i));
-    for (std::size_t i = 0; i < counts.boxes; ++i) questions.boxes.push_back(box(i));
-    for (std::size_t i = 0; i < counts.spheres; ++i) questions.spheres.push_back(sphere(i));
+  QuerySet make(const QueryCounts& counts) {
+    QuerySet queries;
+    for (std::size_t i = 0; i < counts.rays; ++i) queries.rays.push_back(ray(i));
+    for (std::size_t i = 0; i < counts.boxes; ++i) queries.boxes.push_back(box(i));
+    for (std::size_t i = 0; i < counts.spheres; ++i) queries.spheres.push_back(sphere(i));
     for (std::size_t i = 0; i < counts.points; ++i) {
-      questions.points.push_back(i % 5 == 0 ? vertex() : point());
+      queries.points.push_back(i % 5 == 0 ? vertex() : point());
     }
-    for (std::size_t i = 0; i < counts.poses; ++i) questions.poses.push_back(pose(i));
-    return questions;
+    for (std::size_t i = 0; i < counts.poses; ++i) queries.poses.push_back(pose(i));
+    return queries;
   }
 
  private:
@@ -121,7 +121,7 @@ std::uint64_t code_of(const R& result) {
   return static_cast<std::uint64_t>(result.code());
 }
 
-std::vector<std::uint64_t> ask_ray(const Tree& tree, const Ray& ray, int exponent) {
+std::vector<std::uint64_t> query_ray(const Tree& tree, const Ray& ray, int exponent) {
   Writer out(exponent);
   const auto hit = closest_hit(tree, ray);
   out.add(code_of(hit));
@@ -136,7 +136,8 @@ std::vector<std::uint64_t> ask_ray(const Tree& tree, const Ray& ray, int exponen
   return out.take();
 }
 
-std::vector<std::uint64_t> ask_point(const Tree& tree, const Eigen::Vector3d& point, int exponent) {
+std::vector<std::uint64_t> query_point(const Tree& tree, const Eigen::Vector3d& point,
+                                       int exponent) {
   Writer out(exponent);
   const auto closest = closest_point(tree, point);
   out.add(code_of(closest));
@@ -150,7 +151,7 @@ std::vector<std::uint64_t> ask_point(const Tree& tree, const Eigen::Vector3d& po
 
 // Query: visitor -> result of a query that visits faces.
 template <class Query>
-std::vector<std::uint64_t> ask_faces(Query query) {
+std::vector<std::uint64_t> query_faces(Query query) {
   Writer out(0);
   const auto result = query([&](const FaceRef& face) {
     out.add(face.id);
@@ -161,7 +162,7 @@ std::vector<std::uint64_t> ask_faces(Query query) {
   return out.take();
 }
 
-std::vector<std::uint64_t> ask_pairs(const Tree& tree, const Pose& pose) {
+std::vector<std::uint64_t> query_pairs(const Tree& tree, const Pose& pose) {
   Writer out(0);
   const auto result = overlap_pairs(tree, Pose::Identity(), tree, pose, [&](const FacePair& pair) {
     out.add(std::uint64_t{pair.first.id} << 32 | pair.second.id);
@@ -176,14 +177,13 @@ std::vector<std::uint64_t> ask_pairs(const Tree& tree, const Pose& pose) {
 
 }  // namespace
 
-Questions questions_about(const SourceMesh& mesh, std::uint64_t seed,
-                          const QuestionCounts& counts) {
+QuerySet queries_for(const SourceMesh& mesh, std::uint64_t seed, const QueryCounts& counts) {
   return Maker(mesh, seed).make(counts);
 }
 
-Questions scaled(const Questions& questions, int exponent) {
+QuerySet scaled(const QuerySet& queries, int exponent) {
   const double factor = std::ldexp(1.0, exponent);
-  Questions out = questions;
+  QuerySet out = queries;
   for (Ray& ray : out.rays) {
     ray.origin *= factor;
     ray.direction *= factor;
@@ -195,22 +195,22 @@ Questions scaled(const Questions& questions, int exponent) {
   return out;
 }
 
-Answers ask(const Tree& tree, const Questions& questions, int exponent) {
+Answers run_query(const Tree& tree, const QuerySet& queries, int exponent) {
   Answers answers;
-  for (const Ray& ray : questions.rays) answers.push_back(ask_ray(tree, ray, exponent));
-  for (const Eigen::AlignedBox3d& box : questions.boxes) {
+  for (const Ray& ray : queries.rays) answers.push_back(query_ray(tree, ray, exponent));
+  for (const Eigen::AlignedBox3d& box : queries.boxes) {
     answers.push_back(
-        ask_faces([&](FaceVisitor visitor) { return overlap_box(tree, box, visitor); }));
+        query_faces([&](FaceVisitor visitor) { return overlap_box(tree, box, visitor); }));
   }
-  for (const Sphere& sphere : questions.spheres) {
-    answers.push_back(ask_faces([&](FaceVisitor visitor) {
+  for (const Sphere& sphere : queries.spheres) {
+    answers.push_back(query_faces([&](FaceVisitor visitor) {
       return overlap_sphere(tree, sphere.center, sphere.radius, visitor);
     }));
   }
-  for (const Eigen::Vector3d& point : questions.points) {
-    answers.push_back(ask_point(tree, point, exponent));
+  for (const Eigen::Vector3d& point : queries.points) {
+    answers.push_back(query_point(tree, point, exponent));
   }
-  for (const Pose& pose : questions.poses) answers.push_back(ask_pairs(tree, pose));
+  for (const Pose& pose : queries.poses) answers.push_back(query_pairs(tree, pose));
   return answers;
 }
 

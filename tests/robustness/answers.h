@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Questions of every kind to one tree, and the answers as bits, so that "the same" means the same.
+// Queries of every kind to one tree, and the answers as bits, so that "the same" means the same.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ struct Sphere {
 };
 
 /// In object space. Pairs are the tree against itself, the second one in that pose.
-struct Questions {
+struct QuerySet {
   std::vector<Ray> rays;
   std::vector<Eigen::AlignedBox3d> boxes;
   std::vector<Sphere> spheres;
@@ -25,7 +25,7 @@ struct Questions {
 };
 
 /// How many of each kind.
-struct QuestionCounts {
+struct QueryCounts {
   std::size_t rays = 200;
   std::size_t boxes = 60;
   std::size_t spheres = 60;
@@ -33,22 +33,22 @@ struct QuestionCounts {
   std::size_t poses = 6;
 };
 
-/// Seeded questions about a mesh; a part of each kind is degenerate on purpose: along axes, through
+/// Seeded queries about a mesh; a part of each kind is degenerate on purpose: along axes, through
 /// vertices, of no size, in the planes of vertices.
-[[nodiscard]] Questions questions_about(const SourceMesh& mesh, std::uint64_t seed,
-                                        const QuestionCounts& counts = {});
+[[nodiscard]] QuerySet queries_for(const SourceMesh& mesh, std::uint64_t seed,
+                                   const QueryCounts& counts = {});
 
 /// Every coordinate and length times 2^exponent; directions too, so that parameters stay.
-[[nodiscard]] Questions scaled(const Questions& questions, int exponent);
+[[nodiscard]] QuerySet scaled(const QuerySet& queries, int exponent);
 
-/// The answers to one question after the other, in the order of Questions: error code, face ids
+/// The answers to one query after the other, in the order of Queries: error code, face ids
 /// (sorted where the order is not promised) and the bits of all numbers.
 using Answers = std::vector<std::vector<std::uint64_t>>;
 
 /// `exponent`: lengths are divided by 2^exponent before their bits are taken.
-[[nodiscard]] Answers ask(const Tree& tree, const Questions& questions, int exponent = 0);
+[[nodiscard]] Answers run_query(const Tree& tree, const QuerySet& queries, int exponent = 0);
 
-/// How many answers differ; all when the numbers of questions do.
+/// How many answers differ; all when the numbers of queries do.
 [[nodiscard]] std::size_t count_differing(const Answers& a, const Answers& b);
 
 /// How many answers name a face.

@@ -49,10 +49,10 @@ class Brute {
   void check_ray(const Ray& ray, std::size_t number) {
     const RayShear shear(frame_.to_tree(ray.origin), ray.direction);
     const double scale = frame_.scale;
-    const double reach = BoundTree::of(subject_.tree()).largest_reach();
+    const double max_abs = BoundTree::of(subject_.tree()).largest_abs();
     // The product keeps t within the slabs of the triangle, which are as wide as its error bound.
     const double length = ray.direction.cwiseAbs().maxCoeff();
-    const double doubt = 0x1p-46 * scale * (shear.origin.cwiseAbs().maxCoeff() + reach) / length;
+    const double doubt = 0x1p-46 * scale * (shear.origin.cwiseAbs().maxCoeff() + max_abs) / length;
     std::optional<double> surely;
     const auto hit = closest_hit(subject_.tree(), ray);
     const auto any = any_hit(subject_.tree(), ray);
@@ -117,8 +117,8 @@ class Brute {
     if (closest.has_value()) {
       const double distance = closest->distance * frame_.inverse_scale;
       right &= std::abs(distance - best) <=
-               0x1p-48 * (best + at.cwiseAbs().maxCoeff() +
-                          BoundTree::of(subject_.tree()).largest_reach());
+               0x1p-48 *
+                   (best + at.cwiseAbs().maxCoeff() + BoundTree::of(subject_.tree()).largest_abs());
     }
     complain(right, "point", number);
   }
@@ -156,7 +156,7 @@ class Brute {
   std::vector<DecodedTriangle> triangles_;
 };
 
-bool boxes_meet(const Box<double>& a, const Box<double>& b) {
+bool boxes_intersect(const Box<double>& a, const Box<double>& b) {
   for (std::size_t k = 0; k < 3; ++k) {
     if (a.low[k] > b.high[k] || b.low[k] > a.high[k]) return false;
   }
@@ -165,29 +165,29 @@ bool boxes_meet(const Box<double>& a, const Box<double>& b) {
 
 }  // namespace
 
-void check_brute_force(Run& run, const Subject& subject, const Questions& questions) {
+void check_brute_force(Run& run, const Subject& subject, const QuerySet& queries) {
   Brute brute(run, subject);
-  for (std::size_t i = 0; i < questions.rays.size(); ++i) brute.check_ray(questions.rays[i], i);
-  for (std::size_t i = 0; i < questions.boxes.size(); ++i) brute.check_box(questions.boxes[i], i);
-  for (std::size_t i = 0; i < questions.spheres.size(); ++i) {
-    brute.check_sphere(questions.spheres[i], i);
+  for (std::size_t i = 0; i < queries.rays.size(); ++i) brute.check_ray(queries.rays[i], i);
+  for (std::size_t i = 0; i < queries.boxes.size(); ++i) brute.check_box(queries.boxes[i], i);
+  for (std::size_t i = 0; i < queries.spheres.size(); ++i) {
+    brute.check_sphere(queries.spheres[i], i);
   }
-  for (std::size_t i = 0; i < questions.points.size(); ++i) {
-    brute.check_point(questions.points[i], i);
+  for (std::size_t i = 0; i < queries.points.size(); ++i) {
+    brute.check_point(queries.points[i], i);
   }
-  for (std::size_t i = 0; i < questions.poses.size(); ++i) brute.check_pose(questions.poses[i], i);
+  for (std::size_t i = 0; i < queries.poses.size(); ++i) brute.check_pose(queries.poses[i], i);
 }
 
-std::size_t check_answers(Run& run, const SourceMesh& mesh, const Questions& questions) {
+std::size_t check_answers(Run& run, const SourceMesh& mesh, const QuerySet& queries) {
   std::size_t hits = 0;
   for (const Store& store : kStores) {
     Answers first;
     for (const CodecInfo& codec : kCodecs) {
       const Subject subject = make_subject(mesh, codec.id, store);
-      const Answers answers = ask(subject.tree(), questions);
+      const Answers answers = run_query(subject.tree(), queries);
       hits += count_hits(answers);
       if (codec.id == kCodecs.front().id) {
-        check_brute_force(run, subject, questions);
+        check_brute_force(run, subject, queries);
         first = answers;
         continue;
       }
@@ -224,7 +224,7 @@ FacePairs brute_pairs(const Tree& first, const Pose& first_pose, const Tree& sec
   FacePairs pairs;
   for (const Bounded& s : a) {
     for (const Bounded& t : b) {
-      if (!boxes_meet(s.bounds, t.bounds)) continue;
+      if (!boxes_intersect(s.bounds, t.bounds)) continue;
       if (!triangles_intersect(s.decoded.triangle, t.decoded.triangle)) continue;
       pairs.emplace_back(s.decoded.face, t.decoded.face);
     }

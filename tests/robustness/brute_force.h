@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every question to every decoded triangle, without a tree.
+// Every query to every decoded triangle, without a tree.
 #pragma once
 
 #include "tests/robustness/answers.h"
@@ -8,11 +8,11 @@
 namespace boxtree::robustness {
 
 /// Checks the answers of a tree one by one against a loop over its decoded triangles.
-void check_brute_force(Run& run, const Subject& subject, const Questions& questions);
+void check_brute_force(Run& run, const Subject& subject, const QuerySet& queries);
 
 /// Cooks the mesh in every codec and store; each store's answers are held against brute force and
 /// are the same bits in all codecs. Returns how many answers named a face.
-std::size_t check_answers(Run& run, const SourceMesh& mesh, const Questions& questions);
+std::size_t check_answers(Run& run, const SourceMesh& mesh, const QuerySet& queries);
 
 /// The pairs that loops over both meshes find, in the first tree's space. Sorted, each once.
 using FacePairs = std::vector<std::pair<std::uint32_t, std::uint32_t>>;

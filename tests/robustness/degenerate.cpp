@@ -83,7 +83,7 @@ class DegenerateKind {
     FacePairs pairs;
     for (std::uint32_t i = 0; i < corners_.size(); ++i) {
       for (std::uint32_t j = 0; j < proper_.size(); ++j) {
-        if (test::hulls_meet(whole(corners_[i]), whole(proper_[j]))) pairs.emplace_back(i, j);
+        if (test::hulls_intersect(whole(corners_[i]), whole(proper_[j]))) pairs.emplace_back(i, j);
       }
     }
     const Boxes boxes = make_boxes();
@@ -118,7 +118,7 @@ class DegenerateKind {
       }
       boxes.faces.emplace_back();
       for (std::uint32_t f = 0; f < corners_.size(); ++f) {
-        if (test::hulls_meet(corners, whole(corners_[f]))) boxes.faces.back().push_back(f);
+        if (test::hulls_intersect(corners, whole(corners_[f]))) boxes.faces.back().push_back(f);
       }
     }
     return boxes;
@@ -306,7 +306,7 @@ void coincident_faces(Run& run) {
   std::vector<SourceMesh> meshes = test::coincident_kinds(run.is_full() ? 400 : 72);
   meshes.push_back(test::mixed(test::city(3, 2), test::city(3, 2)));
   for (const SourceMesh& mesh : meshes) {
-    const std::size_t hits = check_answers(run, mesh, questions_about(mesh, 13));
+    const std::size_t hits = check_answers(run, mesh, queries_for(mesh, 13));
     run.premise(hits > 100, mesh.name + ": hardly any answer names a face");
   }
 }
@@ -348,10 +348,10 @@ void few_triangles(Run& run) {
                        Eigen::Vector3d(0.25, 1, 0.5)};
   for (const auto& triangles : {std::vector<Corners>{one}, std::vector<Corners>{one, two}}) {
     const SourceMesh mesh = from_triangles(std::to_string(triangles.size()), triangles);
-    run.premise(check_answers(run, mesh, questions_about(mesh, 21)) > 100, "hardly any hit");
+    run.premise(check_answers(run, mesh, queries_for(mesh, 21)) > 100, "hardly any hit");
     // Coordinates that f32 does not hold: boxes and spheres at the corners tell.
     const SourceMesh fine = times(in_double(mesh), 1.0 / 3);
-    run.premise(check_answers(run, fine, questions_about(fine, 22)) > 100, "hardly any hit");
+    run.premise(check_answers(run, fine, queries_for(fine, 22)) > 100, "hardly any hit");
   }
 }
 
@@ -371,9 +371,9 @@ void flat_bounds(Run& run) {
   }
   std::size_t hits = 0;
   for (const SourceMesh& mesh : meshes) {
-    hits += check_answers(run, mesh, questions_about(mesh, 31));
+    hits += check_answers(run, mesh, queries_for(mesh, 31));
     const SourceMesh away = plus(mesh, Eigen::Vector3d(1e4, -5e3, 77));
-    hits += check_answers(run, away, questions_about(away, 32));
+    hits += check_answers(run, away, queries_for(away, 32));
   }
   run.premise(hits > 10'000, "hardly any answer names a face");
 }

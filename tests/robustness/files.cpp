@@ -112,16 +112,16 @@ bool is_accepted(Bytes bytes) {
 }
 
 // Whatever comes back, it must come back.
-void ask_everything(Bytes bytes) {
+void query_everything(Bytes bytes) {
   const auto file = File::open(bytes);
   if (!file) return;
   const auto tree = Tree::bind(*file);
   if (!tree) return;
-  static_cast<void>(ask(*tree, {{{{0.3, 0.4, 9}, {0.01, 0.02, -1}}},
-                                {{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}},
-                                {{{0, 0, 0}, 4}},
-                                {{3, 2, 1}},
-                                {Pose::Identity()}}));
+  static_cast<void>(run_query(*tree, {{{{0.3, 0.4, 9}, {0.01, 0.02, -1}}},
+                                      {{Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)}},
+                                      {{{0, 0, 0}, 4}},
+                                      {{3, 2, 1}},
+                                      {Pose::Identity()}}));
 }
 
 void hostile_files(Run& run) {
@@ -143,7 +143,7 @@ void hostile_files(Run& run) {
         run.check(!is_accepted(bytes), name("damaged at", at));
         std::vector<std::byte> repaired = bytes;
         test::repair_checksums(repaired);
-        ask_everything(repaired);
+        query_everything(repaired);
         bytes[at] ^= damage;
       }
     }

@@ -33,7 +33,7 @@ void exact_pairs(Run& run) {
     FacePairs expected;
     for (std::uint32_t i = 0; i < count; ++i) {
       for (std::uint32_t j = 0; j < count; ++j) {
-        if (test::hulls_meet(whole_corners({first[i]}), whole_corners({second[j]}))) {
+        if (test::hulls_intersect(whole_corners({first[i]}), whole_corners({second[j]}))) {
           expected.emplace_back(i, j);
         }
       }
@@ -116,7 +116,7 @@ void touching_sweep(Run& run) {
 }
 
 // Surfaces are compared: a cube inside a cube is no contact. Whether it is inside is another
-// question, which the number of times that a ray comes out answers.
+// query, which the number of times that a ray comes out answers.
 void containment(Run& run) {
   for (const Store& store : kStores) {
     for (const CodecInfo& codec : kCodecs) {
@@ -146,17 +146,17 @@ void no_nan(Run& run) {
   std::size_t misses = 0;
   const auto is_weight = [](double x) { return x >= 0 && x <= 1; };
   for (const SourceMesh& mesh : meshes) {
-    const Questions questions = questions_about(mesh, 27, {300, 0, 0, 100, 4});
+    const QuerySet queries = queries_for(mesh, 27, {300, 0, 0, 100, 4});
     for_each_subject(mesh, [&](const Subject& subject) {
       const auto name = [&] { return subject.name; };
-      for (const Ray& ray : questions.rays) {
+      for (const Ray& ray : queries.rays) {
         const auto hit = closest_hit(subject.tree(), ray);
         misses += hit.has_value() ? 0u : 1u;
         if (!hit.has_value()) continue;
         run.check(hit->t >= ray.t_min && hit->t <= ray.t_max && std::isfinite(hit->t), name);
         run.check(is_weight(hit->u) && is_weight(hit->v), name);
       }
-      for (const Eigen::Vector3d& point : questions.points) {
+      for (const Eigen::Vector3d& point : queries.points) {
         const auto closest = closest_point(subject.tree(), point);
         run.check(closest.has_value() && closest->point.allFinite() && closest->distance >= 0,
                   name);

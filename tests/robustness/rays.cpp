@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays where slab tests divide by zero and triangle tests leave gaps; questions that make no sense.
+// Rays where slab tests divide by zero and triangle tests leave gaps; queries that make no sense.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -48,41 +48,41 @@ Ray lattice_ray(Lattice& lattice, bool along_axis) {
 
 void zero_directions(Run& run) {
   Lattice lattice(10);
-  Questions questions;
+  QuerySet queries;
   for (std::size_t i = 0; i < run.count(600, 20'000); ++i) {
-    questions.rays.push_back(lattice_ray(lattice, true));
+    queries.rays.push_back(lattice_ray(lattice, true));
   }
-  const std::size_t hits = check_answers(run, test::city(30, 2), questions);
+  const std::size_t hits = check_answers(run, test::city(30, 2), queries);
   run.premise(hits > 1000, "hardly any ray hits");
 }
 
 void rays_in_planes(Run& run) {
   Lattice lattice(11);
-  Questions questions;
+  QuerySet queries;
   for (std::size_t i = 0; i < run.count(600, 20'000); ++i) {
-    questions.rays.push_back(lattice_ray(lattice, false));
+    queries.rays.push_back(lattice_ray(lattice, false));
   }
-  std::size_t hits = check_answers(run, test::city(30, 2), questions);
+  std::size_t hits = check_answers(run, test::city(30, 2), queries);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    hits += check_answers(run, flat_square(12, axis), questions);
+    hits += check_answers(run, flat_square(12, axis), queries);
   }
   run.premise(hits > 1000, "hardly any ray hits");
 }
 
 void boxes_in_planes(Run& run) {
   Lattice lattice(12);
-  Questions questions;
+  QuerySet queries;
   for (std::size_t i = 0; i < run.count(300, 5'000); ++i) {
     const Eigen::Vector3d a = lattice.point(), b = lattice.point();
     Eigen::AlignedBox3d box(a.cwiseMin(b), a.cwiseMax(b));
     const int axis = lattice.integer(0, 2);
     if (i % 2 == 0) box.max()[axis] = box.min()[axis];
     if (i % 6 == 0) box.max()[(axis + 1) % 3] = box.min()[(axis + 1) % 3];
-    questions.boxes.push_back(box);
+    queries.boxes.push_back(box);
   }
-  std::size_t hits = check_answers(run, test::city(30, 2), questions);
+  std::size_t hits = check_answers(run, test::city(30, 2), queries);
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    hits += check_answers(run, flat_square(12, axis), questions);
+    hits += check_answers(run, flat_square(12, axis), queries);
   }
   run.premise(hits > 1000, "hardly any box touches");
 }
@@ -97,8 +97,8 @@ void negative_zero(Run& run) {
     negative.positions.f32[i] = -0.0F;
   }
   run.premise(zeros > 10, "hardly a zero");
-  Questions questions = questions_about(positive, 13);
-  Questions turned = questions;
+  QuerySet queries = queries_for(positive, 13);
+  QuerySet turned = queries;
   for (Ray& ray : turned.rays) {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (ray.origin[k] == 0) ray.origin[k] = -ray.origin[k];
@@ -115,11 +115,11 @@ void negative_zero(Run& run) {
     for (const CodecInfo& codec : kCodecs) {
       const Subject a = make_subject(positive, codec.id, store);
       const Subject b = make_subject(negative, codec.id, store);
-      const Answers expected = ask(a.tree(), questions);
-      run.check(count_differing(ask(b.tree(), questions), expected) == 0,
+      const Answers expected = run_query(a.tree(), queries);
+      run.check(count_differing(run_query(b.tree(), queries), expected) == 0,
                 [&] { return b.name + ": zeros of the mesh"; });
-      run.check(count_differing(ask(a.tree(), turned), expected) == 0,
-                [&] { return a.name + ": zeros of the questions"; });
+      run.check(count_differing(run_query(a.tree(), turned), expected) == 0,
+                [&] { return a.name + ": zeros of the queries"; });
     }
   }
 }
@@ -275,9 +275,9 @@ void rays_from_afar(Run& run) {
   });
 }
 
-// Questions without sense are refused with a code. That no node is read for it is seen on a tree
+// Queries without sense are refused with a code. That no node is read for it is seen on a tree
 // whose nodes are all damaged: any look at them would be another code.
-void invalid_questions(Run& run) {
+void invalid_queries(Run& run) {
   const auto all = [](const auto&) { return true; };
   const SourceMesh mesh = test::sphere(10, 12);
   for (const CodecInfo& codec : kCodecs) {
@@ -345,9 +345,8 @@ void invalid_questions(Run& run) {
 
 std::vector<Case> ray_cases() {
   return {
-      {"R09", "InvalidQuestions",
-       "NaN, infinity, zero directions, singular poses are refused unread", "not refused", 0,
-       invalid_questions},
+      {"R09", "InvalidQueries", "NaN, infinity, zero directions, singular poses are refused unread",
+       "not refused", 0, invalid_queries},
       {"R10", "ZeroDirections", "rays along axes in box faces, components +0 and -0",
        "wrong answers", 0, zero_directions},
       {"R11", "Watertight", "rays at edges and vertices from inside closed meshes", "leaks", 0,
@@ -358,7 +357,7 @@ std::vector<Case> ray_cases() {
        "wrong answers", 0, boxes_in_planes},
       {"E02", "RaysInPlanes", "diagonal rays that lie in planes of the mesh", "wrong answers", 0,
        rays_in_planes},
-      {"E03", "NegativeZero", "-0 for 0 in meshes and in questions", "trees that differ", 0,
+      {"E03", "NegativeZero", "-0 for 0 in meshes and in queries", "trees that differ", 0,
        negative_zero},
       {"E12", "SeamsWithoutArea", "rays at seams that triangles without area close", "leaks", 0,
        seams_without_area},

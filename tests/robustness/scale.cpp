@@ -13,19 +13,19 @@
 namespace boxtree::robustness {
 namespace {
 
-// Mesh and questions times 2^exponent give the same bits times 2^exponent, in every codec and
+// Mesh and queries times 2^exponent give the same bits times 2^exponent, in every codec and
 // store.
 void check_scaling(Run& run, const SourceMesh& mesh, const std::vector<int>& exponents,
                    const std::vector<Store>& stores = {kStores.begin(), kStores.end()}) {
-  const Questions questions = questions_about(mesh, 6);
+  const QuerySet queries = queries_for(mesh, 6);
   for (const Store& store : stores) {
     for (const CodecInfo& codec : kCodecs) {
       const Subject unit = make_subject(mesh, codec.id, store);
-      const Answers expected = ask(unit.tree(), questions);
+      const Answers expected = run_query(unit.tree(), queries);
       run.premise(count_hits(expected) > 100, unit.name + ": hardly any answer names a face");
       for (const int exponent : exponents) {
         const Subject other = make_subject(times(mesh, std::ldexp(1.0, exponent)), codec.id, store);
-        const Answers answers = ask(other.tree(), scaled(questions, exponent), exponent);
+        const Answers answers = run_query(other.tree(), scaled(queries, exponent), exponent);
         const std::size_t differing = count_differing(answers, expected);
         run.check(differing == 0, [&] {
           return other.name + ", 2^" + std::to_string(exponent) + ": " + std::to_string(differing) +
@@ -87,16 +87,16 @@ void far_from_origin(Run& run) {
   }
 }
 
-// The same questions with and without a state of the floating-point unit, cooked without it.
+// The same queries with and without a state of the floating-point unit, cooked without it.
 template <class State>
 void check_state(Run& run, const SourceMesh& mesh) {
-  const Questions questions = questions_about(mesh, 7);
+  const QuerySet queries = queries_for(mesh, 7);
   for_each_subject(mesh, [&](const Subject& subject) {
-    const Answers expected = ask(subject.tree(), questions);
+    const Answers expected = run_query(subject.tree(), queries);
     Answers answers;
     {
       const State state;
-      answers = ask(subject.tree(), questions);
+      answers = run_query(subject.tree(), queries);
     }
     const std::size_t differing = count_differing(answers, expected);
     run.check(differing == 0,
@@ -166,10 +166,10 @@ void huge_among_tiny(Run& run) {
       const Subject subject = make_subject(mesh, codec.id, kExactStore);
       const WalkFigures figures = walk_tree(subject.tree());
       run.check(figures.escapes == 0 && figures.missed == 0, [&] { return subject.name; });
-      // Questions at both scales.
-      check_brute_force(run, subject, questions_about(mesh, 8));
+      // Queries at both scales.
+      check_brute_force(run, subject, queries_for(mesh, 8));
       check_brute_force(run, subject,
-                        questions_about(times(test::soup(200, 3), 1e-30), 9, {200, 60, 60, 60, 0}));
+                        queries_for(times(test::soup(200, 3), 1e-30), 9, {200, 60, 60, 60, 0}));
     }
   }
 }

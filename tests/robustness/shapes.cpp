@@ -53,7 +53,7 @@ void equal_centroids(Run& run) {
   meshes.push_back(one_middle);
   std::size_t hits = 0;
   for (const SourceMesh& mesh : meshes) {
-    hits += check_answers(run, mesh, questions_about(mesh, 19));
+    hits += check_answers(run, mesh, queries_for(mesh, 19));
   }
   run.premise(hits > 5000, "hardly any answer names a face");
   // A file may not claim a depth beyond the stacks of its readers.
@@ -77,7 +77,7 @@ void equal_centroids(Run& run) {
 void deep_chains(Run& run) {
   std::size_t hits = 0;
   for (const SourceMesh& mesh : {chain(100, 1), chain(60, 12), chain(20, 64)}) {
-    hits += check_answers(run, mesh, questions_about(mesh, 33));
+    hits += check_answers(run, mesh, queries_for(mesh, 33));
     for_each_subject(mesh, [&](const Subject& subject) {
       const WalkFigures figures = walk_tree(subject.tree());
       const std::uint32_t most =

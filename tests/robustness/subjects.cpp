@@ -36,7 +36,7 @@ class Walk {
     } else {
       figures_.depth = std::max(figures_.depth, static_cast<std::uint32_t>(path_.size()));
       NodeChildren children;
-      if (BoundTree::of(tree_).expand(node, children) != NodeState::kSound)
+      if (BoundTree::of(tree_).expand(node, children) != NodeState::kValid)
         throw std::runtime_error("corrupt node");
       for (std::uint32_t i = 0; i < children.count; ++i) visit(children.child[i]);
     }

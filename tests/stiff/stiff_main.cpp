@@ -44,7 +44,7 @@ std::string limit_text(const Row& row) {
   return "-";
 }
 
-const char* verdict(const Row& row) {
+const char* result_text(const Row& row) {
   if (row.relation == Row::Limit::kNone) return "-";
   return row.pass() ? "pass" : "FAIL";
 }
@@ -52,7 +52,7 @@ const char* verdict(const Row& row) {
 void print_row(const Row& row) {
   const std::string line =
       fmt::format("{}  {:<44}  {:<48}  {:>10.3g}  {:>9}  {}\n", row.id, row.setting, row.what,
-                  row.figure, limit_text(row), verdict(row));
+                  row.figure, limit_text(row), result_text(row));
   static_cast<void>(std::fwrite(line.data(), 1, line.size(), stdout));
   static_cast<void>(std::fflush(stdout));
 }

@@ -87,11 +87,11 @@ void World::find_contacts() {
   const auto count = static_cast<std::uint32_t>(bodies.size());
   for (std::uint32_t i = 0; i < count; ++i) {
     find_level_contacts(i);
-    // Bodies too far apart to touch are not worth a question: their circumscribed spheres.
+    // Bodies too far apart to touch are not worth a query: their circumscribed spheres.
     for (std::uint32_t j = i + 1; j < count; ++j) {
-      const double reach = bodies[i].half_extents.norm() + bodies[j].half_extents.norm();
+      const double radii = bodies[i].half_extents.norm() + bodies[j].half_extents.norm();
       const Eigen::Vector3d apart = bodies[i].position - bodies[j].position;
-      if (apart.squaredNorm() <= reach * reach) find_body_contacts(i, j);
+      if (apart.squaredNorm() <= radii * radii) find_body_contacts(i, j);
     }
   }
 }

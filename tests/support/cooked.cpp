@@ -74,7 +74,7 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
       continue;
     }
     NodeChildren children;
-    EXPECT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
+    EXPECT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kValid);
     for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
   }
   for (std::uint32_t face = BoundTree::of(tree).counts().faces_in_leaves; face < tree.face_count();

@@ -31,7 +31,7 @@ CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes, cooker::ScenePart
 
 // Numbers are drawn in braces, whose order is that of the text with every compiler: the scenes are
 // the same ones in every build.
-Pose random_pose(std::mt19937_64& random, double reach, bool unevenly) {
+Pose random_pose(std::mt19937_64& random, double spread, bool unevenly) {
   const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
   const Eigen::Quaterniond turn = Eigen::Quaterniond{unit(), unit(), unit(), unit()}.normalized();
   Pose pose = Pose::Identity();
@@ -42,7 +42,7 @@ Pose random_pose(std::mt19937_64& random, double reach, bool unevenly) {
     const Eigen::Vector3d scale(std::exp2(unit()), -std::exp2(unit()), std::exp2(unit()));
     pose.linear() = pose.linear() * shear * scale.asDiagonal();
   }
-  pose.translation() = reach * Eigen::Vector3d{unit(), unit(), unit()};
+  pose.translation() = spread * Eigen::Vector3d{unit(), unit(), unit()};
   return pose;
 }
 

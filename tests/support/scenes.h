@@ -29,7 +29,7 @@ struct CookedScene {
 
 /// An affine pose: turned, moved within `reach`, scaled by 1/2 to 2; `unevenly` also by another
 /// factor on each axis, mirrored and sheared.
-[[nodiscard]] Pose random_pose(std::mt19937_64& random, double reach, bool unevenly);
+[[nodiscard]] Pose random_pose(std::mt19937_64& random, double spread, bool unevenly);
 
 /// `count` instances of trees 0 to `trees` - 1, every `moving`-th of which moves, in `layers`
 /// layers that all meet.

@@ -15,10 +15,11 @@ Outcome outcome(const QueryResult<T>& result, const Value& value) {
   return {Errc::kOk, result.has_value() ? static_cast<double>(value(*result)) : -1};
 }
 // Of a query with a visitor: how many it was told of.
-template <class Ask>
-Outcome outcome_of_visit(const Ask& ask) {
+template <class RunQuery>
+Outcome outcome_of_visit(const RunQuery& run_query) {
   std::size_t told = 0;
-  return outcome(ask([&told](const auto&) { return ++told > 0; }), [&](Visit) { return told; });
+  return outcome(run_query([&told](const auto&) { return ++told > 0; }),
+                 [&](Visit) { return told; });
 }
 
 double distance_of(const RayHit& hit) {
@@ -30,7 +31,7 @@ double number_of(const FacePair& pair) {
 
 }  // namespace
 
-std::vector<TreeQuery> tree_queries(const Questions& q) {
+std::vector<TreeQuery> tree_queries(const QuerySet& q) {
   const Pose here = Pose::Identity();
   PointOptions bounds;
   bounds.relative_error = 1e-3;

@@ -12,7 +12,7 @@
 namespace boxtree::test {
 
 /// Where queries look, in object space.
-struct Questions {
+struct QuerySet {
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
   Eigen::AlignedBox3d box;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -34,10 +34,11 @@ struct TreeQuery {
   std::size_t stack_kilobytes;  // at most, as its page states
   bool is_of_pairs;             // of two trees; others do not look at the second
   bool takes_limits;            // others do not look at the limits
-  std::function<Outcome(const Tree& first, const Tree& second, const QueryLimits& limits)> ask;
+  std::function<Outcome(const Tree& first, const Tree& second, const QueryLimits& limits)>
+      run_query;
 };
 
 /// A query that is added to the public headers has a line here, and none in those tests.
-[[nodiscard]] std::vector<TreeQuery> tree_queries(const Questions& questions);
+[[nodiscard]] std::vector<TreeQuery> tree_queries(const QuerySet& queries);
 
 }  // namespace boxtree::test

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Traversals of your own: for shapes and questions that no query answers.
+// Traversals of your own: for shapes and queries that no query answers.
 #pragma once
 
 #include <cstdint>

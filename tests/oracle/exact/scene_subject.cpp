@@ -27,7 +27,7 @@ Pose draw_pose(Draw& d, const SceneSubject& subject, std::uint32_t tree) {
   const double size = subject.world_size;
   const double scale = size / largest_of(subject.meshes[tree]) * d.power(-2, 1);
   Pose pose = Pose::Identity();
-  if (d.one_in(3)) {  // nothing is rounded, so that features meet exactly
+  if (d.one_in(3)) {  // nothing is rounded, so that features intersect exactly
     const double whole = std::ldexp(1.0, std::ilogb(scale));
     pose.linear() = draw_exact_linear(d, 0, 0) * whole;
     for (Eigen::Index k = 0; k < 3; ++k) pose.translation()[k] = d.between(-4, 4) * size / 4;

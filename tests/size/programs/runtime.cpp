@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Asks every query there is of a mapped file: what boxtree::runtime alone takes.
-#include "ask.h"
+#include "queries.h"
 
 int main(int, char** argv) {
   const auto file = boxtree::File::open(argv[1]);
   if (!file) return std::puts(file.error().detail.c_str()), 1;
-  return ask(*file);
+  return run_query(*file);
 }

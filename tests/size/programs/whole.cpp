@@ -3,7 +3,7 @@
 #include <boxtree/blob.h>
 #include <boxtree/paper.h>
 
-#include "ask.h"
+#include "queries.h"
 
 int main(int, char** argv) {
   boxtree::use_paper_codecs();
@@ -11,5 +11,5 @@ int main(int, char** argv) {
   if (!file && file.code() == boxtree::Errc::kFeatureUnsupported)
     file = boxtree::open_blob(argv[1]);
   if (!file) return std::puts(file.error().detail.c_str()), 1;
-  return ask(*file);
+  return run_query(*file);
 }

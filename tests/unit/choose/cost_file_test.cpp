@@ -72,13 +72,13 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
                   value.dump());
   }
   EXPECT_EQ(refusal([](Json& j) {
-              j["costs"][0]["ray"] = {{"question_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
+              j["costs"][0]["ray"] = {{"query_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
             }),
             "costs: plain-f32, exact, ray: all steps are 0, but no query is free");
   EXPECT_EQ(parse_costs("{").error().detail, "costs: no JSON");
   // Numbers that double cannot hold.
   EXPECT_FALSE(parse_costs(R"({"costs":[{"codec":"wide8","geometry":"exact","ray":)"
-                           R"({"question_ns":1e999,"node_ns":1,"leaf_ns":1}}]})"));
+                           R"({"query_ns":1e999,"node_ns":1,"leaf_ns":1}}]})"));
 }
 
 // On a machine where wide4 were a hundred times as fast, it would be the fastest.
@@ -91,7 +91,7 @@ TEST(CostFile, OwnConstantsDecide) {
   for (CodecCost& cost : options.costs) {
     if (cost.codec != CodecId::kWide4) continue;
     for (StepCost& step : cost.of_kind) {
-      step = {step.question / 100, step.node / 100, step.leaf / 100};
+      step = {step.query / 100, step.node / 100, step.leaf / 100};
     }
   }
   EXPECT_EQ(require(cook_mesh(mesh, options)).tree.nodes.codec, CodecId::kWide4);

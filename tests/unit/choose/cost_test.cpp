@@ -28,10 +28,10 @@ TEST(FitSteps, FindsTheStepsThatMadeTheTimes) {
   const StepCost truth{80, 15, 40};
   std::vector<Measured> measured;
   for (const Work work : {Work{3, 1}, Work{10, 2}, Work{40, 31}, Work{100, 12}}) {
-    measured.push_back({work, truth.question + work.nodes * truth.node + work.leaves * truth.leaf});
+    measured.push_back({work, truth.query + work.nodes * truth.node + work.leaves * truth.leaf});
   }
   const StepCost found = fit_steps(measured);
-  EXPECT_NEAR(found.question, truth.question, 1e-6);
+  EXPECT_NEAR(found.query, truth.query, 1e-6);
   EXPECT_NEAR(found.node, truth.node, 1e-6);
   EXPECT_NEAR(found.leaf, truth.leaf, 1e-6);
 }
@@ -41,10 +41,10 @@ TEST(FitSteps, FindsTheStepsThatMadeTheTimes) {
 TEST(FitSteps, NoStepIsNegative) {
   const std::vector<Measured> measured = {{{1, 1}, 100}, {{10, 1}, 90}, {{20, 1}, 80}};
   const StepCost found = fit_steps(measured);
-  EXPECT_GE(found.question, 0);
+  EXPECT_GE(found.query, 0);
   EXPECT_GE(found.node, 0);
   EXPECT_GE(found.leaf, 0);
-  EXPECT_NEAR(found.question + found.leaf + 10 * found.node, 90, 5);
+  EXPECT_NEAR(found.query + found.leaf + 10 * found.node, 90, 5);
 }
 
 }  // namespace

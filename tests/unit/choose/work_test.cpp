@@ -31,7 +31,7 @@ void count(const Tree& tree, const Node& node, const Eigen::AlignedBox3d& box, R
   }
   ++reached.nodes;
   NodeChildren children;
-  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kValid);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     count(tree, children.child[i], box, reached);
   }
@@ -42,17 +42,17 @@ TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
   for (const CodecInfo& codec : kCodecs) {
     const EncodedTree encoded = require(cook_as(mesh, codec.id));
     const Tree tree = require(bind_encoded(encoded));
-    Workload questions;
-    questions.boxes = choice_questions(bounds_of(mesh)).boxes;
+    Workload queries;
+    queries.boxes = choice_queries(bounds_of(mesh)).boxes;
     Reached reached;
-    for (const Eigen::AlignedBox3d& box : questions.boxes) {
+    for (const Eigen::AlignedBox3d& box : queries.boxes) {
       count(tree, BoundTree::of(tree).root(),
             {BoundTree::of(tree).frame().to_tree(box.min()),
              BoundTree::of(tree).frame().to_tree(box.max())},
             reached);
     }
-    const auto boxes = static_cast<double>(questions.boxes.size());
-    const Work work = require(count_work(tree, questions))[1];
+    const auto boxes = static_cast<double>(queries.boxes.size());
+    const Work work = require(count_work(tree, queries))[1];
     EXPECT_EQ(work.nodes, static_cast<double>(reached.nodes) / boxes) << codec.name;
     EXPECT_EQ(work.leaves, static_cast<double>(reached.leaves) / boxes) << codec.name;
     EXPECT_GT(reached.leaves, 0u);
@@ -61,11 +61,11 @@ TEST(CountWork, OfBoxesEqualsAWalkOverAllNodes) {
 
 TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
   const SourceMesh mesh = test::torus(40, 24);
-  const Workload questions = choice_questions(bounds_of(mesh));
+  const Workload queries = choice_queries(bounds_of(mesh));
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide4));
   const Tree tree = require(bind_encoded(encoded));
-  const WorkOfKinds first = require(count_work(tree, questions));
-  const WorkOfKinds second = require(count_work(tree, questions));
+  const WorkOfKinds first = require(count_work(tree, queries));
+  const WorkOfKinds second = require(count_work(tree, queries));
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     EXPECT_GT(first[kind].nodes, 0) << kQueryNames[kind];
     EXPECT_GT(first[kind].leaves, 0) << kQueryNames[kind];
@@ -74,13 +74,13 @@ TEST(CountWork, EveryKindIsCountedAndTwiceTheSame) {
   }
 }
 
-// Found by a robustness test: every question met every triangle, and pairs met every pair.
+// Found by a robustness test: every query met every triangle, and pairs met every pair.
 TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
   SourceMesh mesh = test::torus(3, 3);
   mesh.faces.assign(200'000, mesh.faces.front());
   const EncodedTree encoded = require(cook_as(mesh, CodecId::kWide8));
   const Tree tree = require(bind_encoded(encoded));
-  for (const Work& work : require(count_work(tree, choice_questions(bounds_of(mesh))))) {
+  for (const Work& work : require(count_work(tree, choice_queries(bounds_of(mesh))))) {
     EXPECT_LE(work.nodes + work.leaves, 1'000'008);
   }
 }
@@ -88,8 +88,8 @@ TEST(CountWork, EndsWhereAllFacesLieOnTopOfEachOther) {
 TEST(CountWork, ATreeWithoutFacesHasNone) {
   const EncodedTree encoded = require(cook_as(SourceMesh(), CodecId::kWide8));
   const Tree tree = require(bind_encoded(encoded));
-  const Workload questions = choice_questions(bounds_of(test::torus(4, 4)));
-  for (const Work& work : require(count_work(tree, questions))) {
+  const Workload queries = choice_queries(bounds_of(test::torus(4, 4)));
+  for (const Work& work : require(count_work(tree, queries))) {
     EXPECT_EQ(work.nodes, 0);
     EXPECT_EQ(work.leaves, 0);
   }

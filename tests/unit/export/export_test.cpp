@@ -63,7 +63,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t level, Walked::Leaf 
     return;
   }
   NodeChildren children;
-  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kValid);
   for (std::uint32_t i = 0; i < children.count; ++i) {
     walk(tree, children.child[i], level + 1, path, out);
   }

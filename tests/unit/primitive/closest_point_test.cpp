@@ -64,10 +64,10 @@ LongVector reference_of_segments(const Eigen::Vector3d& point, const Triangle& t
   return best;
 }
 
-double reach_of(const Eigen::Vector3d& p, const Triangle& t) {
-  double reach = p.cwiseAbs().maxCoeff();
-  for (const auto& c : t.corner) reach = std::max(reach, c.cwiseAbs().maxCoeff());
-  return reach;
+double max_abs_of(const Eigen::Vector3d& p, const Triangle& t) {
+  double max_abs = p.cwiseAbs().maxCoeff();
+  for (const auto& c : t.corner) max_abs = std::max(max_abs, c.cwiseAbs().maxCoeff());
+  return max_abs;
 }
 
 double distance(const Eigen::Vector3d& a, const LongVector& b) {
@@ -114,8 +114,9 @@ TEST(ClosestPoint, DistanceIsAccurateForSlivers) {
     const Eigen::Vector3d p = source.point();
     const Eigen::Vector3d q = closest_point_on_triangle(p, t);
     const double expected = distance(p, reference(p, t));
-    ASSERT_NEAR(distance(p, widen(q)), expected, 8 * kUlp * reach_of(p, t)) << i;
-    ASSERT_LE(distance(q, reference(q, t)), 4 * kUlp * reach_of(p, t)) << "off the triangle " << i;
+    ASSERT_NEAR(distance(p, widen(q)), expected, 8 * kUlp * max_abs_of(p, t)) << i;
+    ASSERT_LE(distance(q, reference(q, t)), 4 * kUlp * max_abs_of(p, t))
+        << "off the triangle " << i;
   }
 }
 
@@ -146,7 +147,7 @@ TEST(ClosestPoint, DegenerateTrianglesAreSegments) {
     for (auto& c : t.corner) c *= scale;
     p *= scale;
     const Eigen::Vector3d q = closest_point_on_triangle(p, t);
-    ASSERT_LE(distance(q, reference(p, t)), 4 * kUlp * reach_of(p, t)) << i;
+    ASSERT_LE(distance(q, reference(p, t)), 4 * kUlp * max_abs_of(p, t)) << i;
   }
 }
 
@@ -168,7 +169,7 @@ TEST(ClosestPoint, NoiseIsNotTakenForAnArea) {
     Eigen::Vector3d p = 4 * cases.point(range);
     if (i % 4 != 0) p = static_cast<double>(cases.integer(-range, range)) * direction;
     const Eigen::Vector3d q = closest_point_on_triangle(p, t);
-    ASSERT_LE(distance(q, reference_of_segments(p, t)), 4 * kUlp * reach_of(p, t)) << i;
+    ASSERT_LE(distance(q, reference_of_segments(p, t)), 4 * kUlp * max_abs_of(p, t)) << i;
   }
   EXPECT_GT(noisy, 10000);
 }
@@ -186,7 +187,7 @@ TEST(ClosestPoint, PointsAboveNeedlesProjectIntoThem) {
     const Eigen::Vector3d p =
         (1 - u - v) * t.corner[0] + u * t.corner[1] + v * t.corner[2];  // in the plane, nearly
     const Eigen::Vector3d q = closest_point_on_triangle(p, t);
-    ASSERT_LE((p - q).norm(), 8 * kUlp * reach_of(p, t)) << i << ", 2^-" << thinness;
+    ASSERT_LE((p - q).norm(), 8 * kUlp * max_abs_of(p, t)) << i << ", 2^-" << thinness;
   }
 }
 
@@ -235,7 +236,7 @@ TEST(ClosestPoint, OneVeryShortEdge) {
         i % 5 == 0 ? Eigen::Vector3d(origin + 0.3 * (b - origin)) : source.point();
     const double expected = distance(p, reference_of_segments(p, t));
     ASSERT_NEAR(distance(p, widen(closest_point_on_triangle(p, t))), expected,
-                8 * kUlp * reach_of(p, t))
+                8 * kUlp * max_abs_of(p, t))
         << i;
   }
 }

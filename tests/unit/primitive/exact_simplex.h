@@ -71,7 +71,7 @@ inline bool tetrahedron_has_origin(const IntVector& a, const IntVector& b, const
 }
 
 /// Whether the hulls of two sets of integer points share a point.
-inline bool hulls_meet(std::span<const IntVector> p, std::span<const IntVector> q) {
+inline bool hulls_intersect(std::span<const IntVector> p, std::span<const IntVector> q) {
   std::vector<IntVector> d;
   for (const IntVector& a : p) {
     for (const IntVector& b : q) d.push_back({a.x - b.x, a.y - b.y, a.z - b.z});

@@ -93,19 +93,19 @@ BoxCase random_case(test::TriangleCases& cases, std::int64_t range, std::int64_t
 }
 
 TEST(TriangleBox, AgreesWithIntegers) {
-  int meeting = 0;
+  int intersecting = 0;
   for (const int bits : {4, 12, 20, 36}) {
     const std::int64_t range = std::int64_t{1} << bits;
     test::TriangleCases cases(0xb0c5 + static_cast<std::uint64_t>(bits), 64);
     for (int i = 0; i < 20000; ++i) {
       const BoxCase c = random_case(cases, range, i % 2 == 0 ? range / 2 : 3);
       const bool expected = !exactly_apart(c);
-      meeting += expected;
+      intersecting += expected;
       ASSERT_EQ(triangle_intersects_box(c.triangle, c.low, c.high), expected)
           << bits << " bits, case " << i;
     }
   }
-  EXPECT_GT(meeting, 20000);
+  EXPECT_GT(intersecting, 20000);
 }
 
 // The integer oracle above is separating axes, too; this one is not.
@@ -120,7 +120,7 @@ TEST(TriangleBox, AgreesWithHullOfDifferences) {
     for (std::size_t k = 0; k < 8; ++k) {
       box[k] = {k & 1 ? high.x : low.x, k & 2 ? high.y : low.y, k & 4 ? high.z : low.z};
     }
-    const bool expected = test::hulls_meet(triangle, box);
+    const bool expected = test::hulls_intersect(triangle, box);
     ASSERT_EQ(!exactly_apart(c), expected) << i;
     ASSERT_EQ(triangle_intersects_box(c.triangle, c.low, c.high), expected) << i;
   }

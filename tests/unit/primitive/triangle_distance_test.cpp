@@ -31,20 +31,20 @@ class TriangleDistanceFamily : public testing::TestWithParam<test::Family> {};
 
 void check(const Triangle& p, const Triangle& q) {
   const TriangleDistance found = triangle_distance(p, q);
-  const double reach = largest_coordinate(p, q);
+  const double max_abs = largest_coordinate(p, q);
   const bool touch = triangles_intersect(p, q);
   // The reference is good to its own rounding, far below that of double.
   const double expected = touch ? 0 : test::distance_in_extended_precision(p, q);
-  ASSERT_LE(found.lower, expected * (1 + 1e-17) + 1e-19 * reach);
-  ASSERT_GE(found.upper, expected - 1e-19 * reach);
+  ASSERT_LE(found.lower, expected * (1 + 1e-17) + 1e-19 * max_abs);
+  ASSERT_GE(found.upper, expected - 1e-19 * max_abs);
   // Two that touch under a small angle do so in a place that double finds only so well.
-  ASSERT_LE(found.upper - expected, (touch ? 1e-9 : 1e-14) * reach);
-  ASSERT_NEAR((found.second - found.first).norm(), found.upper, 1e-14 * reach);
+  ASSERT_LE(found.upper - expected, (touch ? 1e-9 : 1e-14) * max_abs);
+  ASSERT_NEAR((found.second - found.first).norm(), found.upper, 1e-14 * max_abs);
   const auto off = [](const Eigen::Vector3d& x, const Triangle& t) {
     return test::distance_in_extended_precision(x, t);
   };
-  ASSERT_LE(off(found.first, p), 1e-13 * reach);
-  ASSERT_LE(off(found.second, q), 1e-13 * reach);
+  ASSERT_LE(off(found.first, p), 1e-13 * max_abs);
+  ASSERT_LE(off(found.second, q), 1e-13 * max_abs);
   if (touch) {
     ASSERT_EQ(found.lower, 0);
   }

@@ -23,7 +23,7 @@ std::array<test::IntVector, 3> to_integer(const Triangle& t) {
 }
 
 bool exact_answer(const Triangle& p, const Triangle& q) {
-  return test::hulls_meet(to_integer(p), to_integer(q));
+  return test::hulls_intersect(to_integer(p), to_integer(q));
 }
 
 Triangle permuted(const Triangle& t, int permutation) {
@@ -38,15 +38,15 @@ TEST_P(TriangleTriangleFamily, AgreesWithExactArithmetic) {
   // Small coordinates meet often; large ones need more than 53 bits for a determinant.
   for (const std::int64_t range : {std::int64_t{64}, std::int64_t{1} << 32}) {
     test::TriangleCases cases(0x5eed + static_cast<std::uint64_t>(range), range);
-    int meeting = 0;
+    int intersecting = 0;
     for (int i = 0; i < kPairsPerFamily / 2; ++i) {
       const auto [p, q] = cases.pair(GetParam());
       const bool expected = exact_answer(p, q);
-      meeting += expected;
+      intersecting += expected;
       ASSERT_EQ(triangles_intersect(p, q), expected) << "range " << range << ", pair " << i;
     }
-    EXPECT_GT(meeting, kPairsPerFamily / 200) << "the family has lost its teeth";
-    EXPECT_LT(meeting, kPairsPerFamily / 2) << "the family has lost its teeth";
+    EXPECT_GT(intersecting, kPairsPerFamily / 200) << "the family has lost its teeth";
+    EXPECT_LT(intersecting, kPairsPerFamily / 2) << "the family has lost its teeth";
   }
 }
 

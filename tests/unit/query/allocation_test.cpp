@@ -36,15 +36,15 @@ TEST(Allocation, QueriesNeverAllocate) {
   const std::vector<std::byte> bytes = cooker::serialize(std::span(&cooked->tree, 1));
   const Result<File> file = File::open(bytes);
   const Result<Tree> tree = Tree::bind(*file);
-  test::Questions questions;
-  questions.ray = {{1, 0, 9}, {0, 0, -1}};
-  questions.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)};
-  questions.point = {1, 0, 0};
-  questions.near.translation().x() = 0.5;
-  questions.far.translation().z() = 5;
-  for (const test::TreeQuery& query : test::tree_queries(questions)) {
+  test::QuerySet queries;
+  queries.ray = {{1, 0, 9}, {0, 0, -1}};
+  queries.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)};
+  queries.point = {1, 0, 0};
+  queries.near.translation().x() = 0.5;
+  queries.far.translation().z() = 5;
+  for (const test::TreeQuery& query : test::tree_queries(queries)) {
     const std::size_t before = allocations;
-    const test::Outcome outcome = query.ask(*tree, *tree, {});
+    const test::Outcome outcome = query.run_query(*tree, *tree, {});
     EXPECT_EQ(allocations, before) << query.name;
     EXPECT_EQ(outcome.error, Errc::kOk) << query.name;
     EXPECT_NE(outcome.answer, -1) << query.name << " found nothing";

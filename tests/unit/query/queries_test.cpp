@@ -365,7 +365,7 @@ TEST_P(Queries, OneFaceInDoubleIsFoundAtItsCorners) {
   }
 }
 
-TEST_P(Queries, InvalidQuestionsAreRefused) {
+TEST_P(Queries, InvalidQueriesAreRefused) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(6, 8), GetParam());
   const Tree* tree = &cooked.tree;
   const double nan = std::numeric_limits<double>::quiet_NaN();

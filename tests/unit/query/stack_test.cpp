@@ -79,23 +79,23 @@ class Stack : public testing::TestWithParam<CodecId> {
 TEST_P(Stack, OfQueriesOfATreeIsAsDocumented) {
   const test::CookedTree cooked = test::cook_tree(test::terrain(120, 3), GetParam());
   const Tree& tree = cooked.tree;
-  test::Questions questions;
-  questions.point = tree.bounds().center();
-  questions.ray = {questions.point + Eigen::Vector3d(0.1, 0.2, 50), {0.001, 0.002, -1}};
-  questions.box = tree.bounds();
-  questions.radius = 1e3;
-  questions.near.translation() = Eigen::Vector3d(0.3, 0.2, 0.05);
-  questions.far.translation() = Eigen::Vector3d(0, 0, 40);
+  test::QuerySet queries;
+  queries.point = tree.bounds().center();
+  queries.ray = {queries.point + Eigen::Vector3d(0.1, 0.2, 50), {0.001, 0.002, -1}};
+  queries.box = tree.bounds();
+  queries.radius = 1e3;
+  queries.near.translation() = Eigen::Vector3d(0.3, 0.2, 0.05);
+  queries.far.translation() = Eigen::Vector3d(0, 0, 40);
   const test::CookedTree other = test::cook_tree(test::terrain(60, 4), CodecId::kPackedF64);
-  for (const test::TreeQuery& query : test::tree_queries(questions)) {
+  for (const test::TreeQuery& query : test::tree_queries(queries)) {
     expect_at_most(query.stack_kilobytes, query.name,
-                   [&] { EXPECT_EQ(query.ask(tree, tree, {}).error, Errc::kOk); });
+                   [&] { EXPECT_EQ(query.run_query(tree, tree, {}).error, Errc::kOk); });
     if (!query.is_of_pairs) continue;
     expect_at_most(query.stack_kilobytes, std::string(query.name) + " of two codecs",
-                   [&] { EXPECT_EQ(query.ask(tree, other.tree, {}).error, Errc::kOk); });
+                   [&] { EXPECT_EQ(query.run_query(tree, other.tree, {}).error, Errc::kOk); });
   }
   expect_at_most(64, "overlap_box_within of a point", [&] {
-    EXPECT_TRUE(overlap_box_within(tree, Eigen::AlignedBox3d(questions.point), 0).ok());
+    EXPECT_TRUE(overlap_box_within(tree, Eigen::AlignedBox3d(queries.point), 0).ok());
   });
 }
 

@@ -14,7 +14,7 @@ namespace {
 class Threads : public testing::TestWithParam<CodecId> {};
 
 // One number from all kinds of query.
-double ask_everything(const File& file, const Tree& tree) {
+double query_everything(const File& file, const Tree& tree) {
   double sum = 0;
   const Result<Tree> own = Tree::bind(file);  // binding is safe too
   for (int i = 0; i < 200; ++i) {
@@ -38,11 +38,11 @@ double ask_everything(const File& file, const Tree& tree) {
 
 TEST_P(Threads, GetTheAnswersOfOne) {
   const test::CookedTree cooked = test::cook_tree(test::torus(24, 16), GetParam());
-  const double expected = ask_everything(cooked.file, cooked.tree);
+  const double expected = query_everything(cooked.file, cooked.tree);
   std::vector<double> sums(8);
   std::vector<std::thread> threads;
   for (double& sum : sums) {
-    threads.emplace_back([&cooked, &sum] { sum = ask_everything(cooked.file, cooked.tree); });
+    threads.emplace_back([&cooked, &sum] { sum = query_everything(cooked.file, cooked.tree); });
   }
   for (std::thread& thread : threads) thread.join();
   for (const double sum : sums) EXPECT_EQ(sum, expected);

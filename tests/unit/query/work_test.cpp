@@ -31,7 +31,7 @@ using test::Outcome;
 // A query under a limit.
 struct LimitedQuery {
   const char* name;
-  std::function<Outcome(const QueryLimits&)> ask;
+  std::function<Outcome(const QueryLimits&)> run_query;
 };
 
 template <class T, class Value>
@@ -43,20 +43,20 @@ Outcome outcome_of_hit(const QueryResult<T>& result, double (*value)(const T&)) 
   return {result.code(), result.has_value() ? value(*result) : result.ok() ? -1 : 0};
 }
 // Of a query with a visitor: how many it was told of.
-Outcome outcome_of_visit(const std::function<Result<Visit>(std::size_t& told)>& ask) {
+Outcome outcome_of_visit(const std::function<Result<Visit>(std::size_t& told)>& run_query) {
   std::size_t told = 0;
-  const Result<Visit> visit = ask(told);
+  const Result<Visit> visit = run_query(told);
   return outcome(visit, [&](Visit) { return static_cast<double>(told); });
 }
 
 // The least limit under which a query is answered; every larger one gives the same answer, every
 // smaller one kWorkLimit.
 std::uint64_t least_limit(const LimitedQuery& query) {
-  const Outcome whole = query.ask({});
+  const Outcome whole = query.run_query({});
   EXPECT_EQ(whole.error, Errc::kOk);
   std::uint64_t nodes = 0;
   for (; nodes < 100000; ++nodes) {
-    const Outcome limited = query.ask({nodes});
+    const Outcome limited = query.run_query({nodes});
     if (limited.error == Errc::kOk) {
       EXPECT_EQ(limited.answer, whole.answer) << nodes;
       break;
@@ -64,20 +64,20 @@ std::uint64_t least_limit(const LimitedQuery& query) {
     EXPECT_EQ(limited.error, Errc::kWorkLimit) << nodes;
   }
   for (const std::uint64_t more : {nodes + 1, 2 * nodes + 9}) {
-    const Outcome limited = query.ask({more});
+    const Outcome limited = query.run_query({more});
     EXPECT_EQ(limited.error, Errc::kOk) << more;
     EXPECT_EQ(limited.answer, whole.answer) << more;
   }
   return nodes;
 }
 
-test::Questions questions() {
-  test::Questions questions;
-  questions.ray = {{0.1, 0.2, 50}, {0.01, 0.02, -1}};
-  questions.box = everywhere();
-  questions.point = {1, 0.5, 0.25};
-  questions.near.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
-  return questions;
+test::QuerySet queries() {
+  test::QuerySet queries;
+  queries.ray = {{0.1, 0.2, 50}, {0.01, 0.02, -1}};
+  queries.box = everywhere();
+  queries.point = {1, 0.5, 0.25};
+  queries.near.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1, 2, 3).normalized()));
+  return queries;
 }
 
 class Limits : public testing::TestWithParam<CodecId> {};
@@ -90,12 +90,13 @@ std::uint64_t most_pairs_with_itself(const Tree& tree) {
 TEST_P(Limits, TellWhenTheyDoNotSuffice) {
   const test::CookedTree cooked = test::cook_tree(test::torus(12, 8), GetParam());
   const std::uint64_t nodes = BoundTree::of(cooked.tree).node_count();
-  for (const test::TreeQuery& query : test::tree_queries(questions())) {
+  for (const test::TreeQuery& query : test::tree_queries(queries())) {
     if (!query.takes_limits) continue;
     SCOPED_TRACE(query.name);
-    const std::uint64_t least = least_limit({query.name, [&](const QueryLimits& limits) {
-                                               return query.ask(cooked.tree, cooked.tree, limits);
-                                             }});
+    const std::uint64_t least =
+        least_limit({query.name, [&](const QueryLimits& limits) {
+                       return query.run_query(cooked.tree, cooked.tree, limits);
+                     }});
     EXPECT_GT(least, 0u);
     EXPECT_LE(least, query.is_of_pairs ? most_pairs_with_itself(cooked.tree) : nodes);
     // Everything is inside the box: every node is taken apart.

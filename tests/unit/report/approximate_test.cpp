@@ -40,23 +40,22 @@ Triangle moved(const Triangle& triangle, const Pose& pose) {
 TEST(Approximate, TruthsAreThoseOfBruteForce) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(5, 6), CodecId::kPlainF32);
   const std::vector<Triangle> triangles = in_object_space(cooked.tree);
-  const Workload questions =
-      make_workload(bounds_in_object_space(cooked.tree), {0, 0, 40, 0, 8}, 5);
-  const TrueDistances truth = require(true_distances(cooked.tree, questions));
+  const Workload queries = make_workload(bounds_in_object_space(cooked.tree), {0, 0, 40, 0, 8}, 5);
+  const TrueDistances truth = require(true_distances(cooked.tree, queries));
   ASSERT_EQ(truth.points.size(), 40u);
   ASSERT_EQ(truth.poses.size(), 8u);
-  for (std::size_t i = 0; i < questions.points.size(); ++i) {
+  for (std::size_t i = 0; i < queries.points.size(); ++i) {
     double least = std::numeric_limits<double>::infinity();
     for (const Triangle& triangle : triangles) {
-      least = std::min(least, test::distance_in_extended_precision(questions.points[i], triangle));
+      least = std::min(least, test::distance_in_extended_precision(queries.points[i], triangle));
     }
     EXPECT_NEAR(truth.points[i].lower, least, kRounding) << i;
     EXPECT_NEAR(truth.points[i].upper, least, kRounding) << i;
   }
-  for (std::size_t i = 0; i < questions.apart.size(); ++i) {
+  for (std::size_t i = 0; i < queries.apart.size(); ++i) {
     double least = std::numeric_limits<double>::infinity();
     for (const Triangle& second : triangles) {
-      const Triangle there = moved(second, questions.apart[i]);
+      const Triangle there = moved(second, queries.apart[i]);
       for (const Triangle& first : triangles) {
         least = std::min(least, test::distance_in_extended_precision(first, there));
       }
@@ -102,8 +101,8 @@ TEST(Approximate, BoundsHoldTheTruthAndErrorsKeepToWhatIsAllowed) {
         const std::string what =
             fmt::format("{} {} {}", point->name(), kApproximateNames[kind], step.relative_error);
         EXPECT_EQ(step.false_bounds, 0u) << what;
-        EXPECT_EQ(step.found, step.questions) << what;
-        EXPECT_EQ(step.near_enough, step.questions) << what;
+        EXPECT_EQ(step.found, step.queries) << what;
+        EXPECT_EQ(step.converged, step.queries) << what;
         EXPECT_LE(step.gap_max, step.relative_error + 1e-9) << what;
         EXPECT_LE(step.error_max, step.gap_max + 1e-9) << what;
         EXPECT_LE(step.error_median, step.error_max) << what;
@@ -117,13 +116,13 @@ TEST(Approximate, BoundsHoldTheTruthAndErrorsKeepToWhatIsAllowed) {
       }
       // Each sweep begins where a budget ends most walks and comes to where it ends few or none.
       const std::vector<ApproximateStep>& budgets = point->approximate[kind].by_budget;
-      EXPECT_LT(budgets.front().near_enough, budgets.front().questions / 2) << point->name();
-      EXPECT_GT(budgets.back().near_enough, budgets.back().questions * 3 / 4) << point->name();
+      EXPECT_LT(budgets.front().converged, budgets.front().queries / 2) << point->name();
+      EXPECT_GT(budgets.back().converged, budgets.back().queries * 3 / 4) << point->name();
     }
   }
 }
 
-// Pairs are taken in an order that the error does not change, so each question by itself takes no
+// Pairs are taken in an order that the error does not change, so each query by itself takes no
 // more of them; closest points without a budget are found depth-first, where only the mean is sure
 // to follow. A budget that is larger sees more of the same order: nothing is farther then.
 TEST(Approximate, WorkFallsAsTheAllowedErrorGrowsAndErrorsAsTheBudgetDoes) {
@@ -136,7 +135,7 @@ TEST(Approximate, WorkFallsAsTheAllowedErrorGrowsAndErrorsAsTheBudgetDoes) {
         EXPECT_LE(curves.by_error[i].nodes_mean, curves.by_error[i - 1].nodes_mean)
             << point->name() << ' ' << kApproximateNames[kind] << ' ' << i;
         if (kind == kDistance) {
-          EXPECT_EQ(curves.by_error[i].dearer, 0u) << point->name() << ' ' << i;
+          EXPECT_EQ(curves.by_error[i].slower, 0u) << point->name() << ' ' << i;
         }
       }
       EXPECT_LT(curves.by_error.back().nodes_mean, curves.by_error.front().nodes_mean);
@@ -144,9 +143,9 @@ TEST(Approximate, WorkFallsAsTheAllowedErrorGrowsAndErrorsAsTheBudgetDoes) {
         const ApproximateStep& less = curves.by_budget[i - 1];
         const ApproximateStep& more = curves.by_budget[i];
         EXPECT_GT(more.node_budget, less.node_budget);
-        EXPECT_GE(more.near_enough, less.near_enough) << point->name() << ' ' << i;
+        EXPECT_GE(more.converged, less.converged) << point->name() << ' ' << i;
         EXPECT_GE(more.found, less.found) << point->name() << ' ' << i;
-        if (less.found < less.questions) continue;  // of other questions than the next step's
+        if (less.found < less.queries) continue;  // of other queries than the next step's
         EXPECT_LE(more.error_max, less.error_max) << point->name() << ' ' << i;
         EXPECT_LE(more.error_median, less.error_median) << point->name() << ' ' << i;
         EXPECT_LE(more.gap_max, less.gap_max + 1e-12) << point->name() << ' ' << i;
@@ -157,17 +156,16 @@ TEST(Approximate, WorkFallsAsTheAllowedErrorGrowsAndErrorsAsTheBudgetDoes) {
 
 TEST(Approximate, FalseBoundsAreCounted) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(5, 6), CodecId::kWide8);
-  const Workload questions =
-      make_workload(bounds_in_object_space(cooked.tree), {0, 0, 20, 0, 4}, 5);
-  TrueDistances lie = require(true_distances(cooked.tree, questions));
+  const Workload queries = make_workload(bounds_in_object_space(cooked.tree), {0, 0, 20, 0, 4}, 5);
+  TrueDistances lie = require(true_distances(cooked.tree, queries));
   for (auto* truths : {&lie.points, &lie.poses}) {
     for (TrueDistance& truth : *truths) truth = {2.5 * truth.lower, 2.5 * truth.upper};
   }
   const ApproximateFigures figures =
-      require(measure_approximate(cooked.tree, questions, lie, {true, 0}));
+      require(measure_approximate(cooked.tree, queries, lie, {true, 0}));
   for (const ApproximateCurves& curves : figures) {
     for (const ApproximateStep& step : curves.by_error) {
-      EXPECT_EQ(step.false_bounds, step.questions) << step.relative_error;
+      EXPECT_EQ(step.false_bounds, step.queries) << step.relative_error;
       EXPECT_EQ(step.times.median_ns, 0) << "no times were asked for";
     }
   }
@@ -195,7 +193,7 @@ TEST(ApproximatePage, ShowsEveryStepAndSaysWhatIsPromised) {
     EXPECT_EQ(section.plots.size(), 3u);
   }
   EXPECT_NE(sections[0].text.find("on average only"), std::string::npos);
-  EXPECT_NE(sections[1].text.find("no question takes more"), std::string::npos);
+  EXPECT_NE(sections[1].text.find("no query takes more"), std::string::npos);
   EXPECT_TRUE(approximate_sections({}).empty());
 }
 

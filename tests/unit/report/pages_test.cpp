@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The counter counts what is read, and local questions read little of a large file.
+// The counter counts what is read, and local queries read little of a large file.
 #include "cooker/report/pages.h"
 
 #include <algorithm>
@@ -75,7 +75,7 @@ TEST(ColdFiles, NodesInACircleEnd) {
 class ColdFileOf : public testing::TestWithParam<test::Encoding> {};
 
 // The promise is 64 pages for 10 M triangles; a level more of a tree is a page or two more.
-TEST_P(ColdFileOf, LocalQuestionsReadLittle) {
+TEST_P(ColdFileOf, LocalQueriesReadLittle) {
   const SourceMesh mesh = bench::make_city(1'000'000, 1);
   CookOptions options;
   options.geometry = GetParam().geometry;
@@ -88,7 +88,7 @@ TEST_P(ColdFileOf, LocalQuestionsReadLittle) {
   EXPECT_GT(figures->file_pages, 1000u);
   EXPECT_LE(figures->open, 3u);  // header and tables at the start, the tree table
   for (const PageCount& count : {figures->ray, figures->box, figures->point}) {
-    EXPECT_EQ(count.questions, 200u);
+    EXPECT_EQ(count.queries, 200u);
     EXPECT_GT(count.median, figures->open);
     EXPECT_LE(count.median, count.worst);
   }

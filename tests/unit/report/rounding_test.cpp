@@ -29,7 +29,7 @@ TEST(Rounding, OutwardFindsAllThatF32Finds) {
       aligned_contact(mesh, *cook_as(mesh, CodecId::kPlainF32, options),
                       *cook_as(mesh, CodecId::kPlainF16, options));
   ASSERT_TRUE(figures) << figures.error().message();
-  EXPECT_EQ(figures->questions, 24u * 6 * 3);
+  EXPECT_EQ(figures->queries, 24u * 6 * 3);
   EXPECT_GT(figures->pairs_f32, 0u);
   EXPECT_EQ(figures->pairs_outward, figures->pairs_f32);
   EXPECT_LE(figures->pairs_nearest, figures->pairs_f32);

@@ -78,7 +78,7 @@ TEST(Tradeoff, PagesAreThoseOfTheFile) {
     EXPECT_EQ(pages.file_pages, (point.bytes.total() + 4095) / 4096) << point.name();
     EXPECT_EQ(pages.open, 1u) << point.name();
     for (const PageCount& count : {pages.ray, pages.box, pages.point}) {
-      EXPECT_EQ(count.questions, 300u) << point.name();
+      EXPECT_EQ(count.queries, 300u) << point.name();
       EXPECT_GE(count.median, pages.open) << point.name();
       EXPECT_LE(count.median, count.worst) << point.name();
       EXPECT_LE(count.worst, pages.file_pages) << point.name();
@@ -105,7 +105,7 @@ double decoded_move(int grid_bits) {
     todo.pop_back();
     if (!node.is_leaf) {
       NodeChildren children;
-      EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kSound);
+      EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kValid);
       for (std::uint32_t i = 0; i < children.count; ++i) todo.push_back(children.child[i]);
       continue;
     }
@@ -169,7 +169,7 @@ TEST(Tradeoff, ExactGeometryGivesTheAnswersOfTheReference) {
 }
 
 // What overlaps a box overlaps every box around it. Rays and closest points visit the nearest box
-// first, so that single questions may gain by coarser ones; between wide8 and wide4 the mean may
+// first, so that single queries may gain by coarser ones; between wide8 and wide4 the mean may
 // not.
 TEST(Tradeoff, CoarserBoxesNeverSaveWork) {
   constexpr auto kBox = static_cast<std::size_t>(QueryKind::kBox);

@@ -97,7 +97,7 @@ class CookedFileOf {
 
 // Compares rays, boxes, spheres and closest points with brute force over the source; counts in
 // `hits` the rays that hit.
-void expect_brute_force(const fs::path& source, const Scene& scene, int questions,
+void expect_brute_force(const fs::path& source, const Scene& scene, int queries,
                         std::size_t& hits) {
   const SourceScene from = require(import_scene(source));
   const std::vector<PlacedFace> faces = placed_faces(from);
@@ -107,16 +107,16 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int question
     for (const Eigen::Vector3d& corner : face.triangle.corner) bounds.extend(corner);
   }
   std::mt19937_64 random(17);
-  const auto point = [&](double reach) {
+  const auto point = [&](double spread) {
     Eigen::Vector3d p;
     for (Eigen::Index k = 0; k < 3; ++k) {
-      const double share = std::uniform_real_distribution<double>(-reach, 1 + reach)(random);
+      const double share = std::uniform_real_distribution<double>(-spread, 1 + spread)(random);
       p[k] = bounds.min()[k] + share * bounds.sizes()[k];
     }
     return p;
   };
   const auto id_of = [&](std::uint32_t instance) { return require(scene.info(instance)).id; };
-  for (int i = 0; i < questions; ++i) {
+  for (int i = 0; i < queries; ++i) {
     const Eigen::Vector3d from_point = point(1);
     const Ray ray{from_point, point(0) - from_point};
     const RayShear shear(ray.origin, ray.direction);

@@ -85,7 +85,7 @@ TEST(MovingTree, NeighboursInTheTreeAreNeighboursInSpace) {
     MovingTree tree;
     tree.build(boxes);
     ChildSet<2, double> children;
-    ASSERT_EQ(tree.decoder().expand(tree.root_ref(), tree.root_box(), children), NodeState::kSound);
+    ASSERT_EQ(tree.decoder().expand(tree.root_ref(), tree.root_box(), children), NodeState::kValid);
     ASSERT_EQ(children.count, 2u);
     const double apart = 1000 - 20;
     EXPECT_TRUE(children.box(0).high[axis] < -apart && children.box(1).low[axis] > apart) << axis;

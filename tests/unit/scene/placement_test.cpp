@@ -48,7 +48,7 @@ TEST(Placement, RefusesWhatCannotBeUndone) {
   pose = Pose::Identity();
   pose.translation()[0] = std::numeric_limits<double>::infinity();
   EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
-  pose.translation()[0] = 2 * kReach;
+  pose.translation()[0] = 2 * kMaxCoordinate;
   EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
 }
 
@@ -57,7 +57,7 @@ TEST(Placement, HasNoBoundsBeyondReach) {
   const auto placed = Placement::make(Frame(), pose);
   ASSERT_TRUE(placed.has_value());
   EXPECT_TRUE(placed->bounds({{-1, -1, -1}, {1, 1, 1}}).has_value());
-  EXPECT_FALSE(placed->bounds({{-1, -1, -1}, {1, 2 * kReach, 1}}).has_value());
+  EXPECT_FALSE(placed->bounds({{-1, -1, -1}, {1, 2 * kMaxCoordinate, 1}}).has_value());
 }
 
 // There and back in long double: what the bounds promise of coordinates that were rounded.

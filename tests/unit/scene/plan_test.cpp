@@ -26,7 +26,7 @@ TEST_F(PlanTest, WithoutAProfileEverythingStaysAndNothingMoves) {
   EXPECT_EQ(plan->layers[0].name, "other");
   EXPECT_EQ(plan->layers[0].queries, kAllQueries);
   EXPECT_FALSE(plan->layers[0].moves);
-  EXPECT_EQ(plan->layers[0].meets, 1u) << "what is moved after all meets the rest";
+  EXPECT_EQ(plan->layers[0].collides_with, 1u) << "what is moved after all meets the rest";
   EXPECT_EQ(plan->queries, kAllQueries);
   for (const PlannedInstance& instance : plan->instances) {
     EXPECT_TRUE(instance.kept && instance.names);
@@ -121,7 +121,7 @@ object = "other"
   EXPECT_EQ(planned.instances[2].object, 2u);
 }
 
-TEST_F(PlanTest, MeetsIsSymmetricAndLeavesOutWhatNeverMeets) {
+TEST_F(PlanTest, CollidesWithIsSymmetricAndLeavesOutWhatNeverCollides) {
   const ScenePlan planned = plan(forest(), R"([[object]]
 name = "hero"
 match = ["Hero"]
@@ -132,7 +132,7 @@ match = ["Tree*"]
 [[object]]
 name = "ghost"
 motion = "moving"
-never_meets = ["trees", "ghost"]
+never_collides_with = ["trees", "ghost"]
 [[object]]
 name = "seen"
 motion = "moving"
@@ -140,14 +140,14 @@ queries = ["ray"]
 )");
   ASSERT_EQ(planned.layers.size(), 5u);
   const std::uint32_t hero = 1, trees = 2, ghost = 4, other = 16;
-  EXPECT_EQ(planned.layers[0].meets, hero | trees | ghost | other);
-  EXPECT_EQ(planned.layers[1].meets, hero | trees | other);
-  EXPECT_EQ(planned.layers[2].meets, hero | other);
-  EXPECT_EQ(planned.layers[3].meets, 0u) << "answers no pairs";
-  EXPECT_EQ(planned.layers[4].meets, hero | trees | ghost | other);
+  EXPECT_EQ(planned.layers[0].collides_with, hero | trees | ghost | other);
+  EXPECT_EQ(planned.layers[1].collides_with, hero | trees | other);
+  EXPECT_EQ(planned.layers[2].collides_with, hero | other);
+  EXPECT_EQ(planned.layers[3].collides_with, 0u) << "answers no pairs";
+  EXPECT_EQ(planned.layers[4].collides_with, hero | trees | ghost | other);
   for (std::size_t a = 0; a < 5; ++a) {
     for (std::size_t b = 0; b < 5; ++b) {
-      EXPECT_EQ(planned.layers[a].meets >> b & 1, planned.layers[b].meets >> a & 1);
+      EXPECT_EQ(planned.layers[a].collides_with >> b & 1, planned.layers[b].collides_with >> a & 1);
     }
   }
   EXPECT_EQ(std::count_if(planned.decisions.begin(), planned.decisions.end(),
@@ -184,7 +184,7 @@ queries = []
 name = "trees"
 match = ["Tree_1"]
 queries = ["pair"]
-never_meets = ["other"]
+never_collides_with = ["other"]
 )");
   EXPECT_FALSE(planned.instances[0].kept);
   EXPECT_FALSE(planned.meshes[0].kept);

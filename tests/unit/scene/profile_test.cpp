@@ -91,7 +91,7 @@ face_ids = false
 name = "scenery"
 match = ["Tree*", "Rock?"]
 codec = "wide4"
-never_meets = ["hero", "other", "scenery"]
+never_collides_with = ["hero", "other", "scenery"]
 [[object]]
 name = "hero"
 motion = "moving"
@@ -114,10 +114,10 @@ exact = false
   EXPECT_TRUE(says(scenery.needs.codec, CodecId::kWide4, 7));
   EXPECT_TRUE(says(scenery.needs.tolerance, 0.01, 2));
   EXPECT_TRUE(says(scenery.needs.face_ids, false, 3));
-  ASSERT_EQ(scenery.never_meets.size(), 3u);
-  EXPECT_TRUE(says(scenery.never_meets[0], 1u, 8));
-  EXPECT_EQ(scenery.never_meets[1].value, 4u);
-  EXPECT_EQ(scenery.never_meets[2].value, 0u);
+  ASSERT_EQ(scenery.never_collides_with.size(), 3u);
+  EXPECT_TRUE(says(scenery.never_collides_with[0], 1u, 8));
+  EXPECT_EQ(scenery.never_collides_with[1].value, 4u);
+  EXPECT_EQ(scenery.never_collides_with[2].value, 0u);
   const ProfileObject& hero = profile.objects[1];
   EXPECT_TRUE(says(hero.moves, true, 11));
   EXPECT_TRUE(says(hero.needs.exact, true, 12));
@@ -336,7 +336,7 @@ constexpr ProfileFault kNames[] = {
     {"[[object]]\nname = 'a'\nmotion = 'moves'\n",
      "scene.toml:3: motion: expected static or moving (nearest: \"moving\"), found \"moves\""},
     {"[[object]]\nname = 'hero'\nnever_meets = ['other',\n'hreo']\n",
-     "scene.toml:4: never_meets: expected the name of an object (nearest: \"hero\"), found "
+     "scene.toml:4: never_collides_with: expected the name of an object (nearest: \"hero\"), found "
      "\"hreo\""},
     {"[[mesh]]\nname='crate'\nfile='m'\n[[instance]]\nmesh='crates'\n",
      "scene.toml:5: mesh: expected the name of a [[mesh]] (nearest: \"crate\"), found "
@@ -450,7 +450,7 @@ file = "crate.obj"
 name = "loose"
 match = ["Crate*"]
 motion = "moving"
-never_meets = ["other"]
+never_collides_with = ["other"]
 [[instance]]
 mesh = "crate"
 axis = [0, 0, 1]

@@ -29,8 +29,8 @@ class SceneDuplicates : public testing::TestWithParam<CodecId> {
         scene_(require(Scene::bind(cooked_.file))),
         triangles_(test::world_triangles(cooked_, scene_)) {}
 
-  Eigen::Vector3d point(double reach = 4) {
-    return reach * Eigen::Vector3d{unit(), unit(), unit()};
+  Eigen::Vector3d point(double spread = 4) {
+    return spread * Eigen::Vector3d{unit(), unit(), unit()};
   }
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
 

@@ -46,8 +46,8 @@ class SceneQueries : public testing::TestWithParam<CodecId> {
     body(test::world_triangles(cooked_, scene_));
   }
 
-  Eigen::Vector3d point(double reach = 5) {
-    return reach * Eigen::Vector3d{unit(), unit(), unit()};
+  Eigen::Vector3d point(double spread = 5) {
+    return spread * Eigen::Vector3d{unit(), unit(), unit()};
   }
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
 
@@ -278,9 +278,9 @@ INSTANTIATE_TEST_SUITE_P(Codecs, SceneQueries,
 TEST(SceneLayers, AreFilteredAndAskedForTheirKindsAlone) {
   cooker::SceneParts parts = test::random_parts(30, 2, 3, 3, 4);
   parts.layers[1].queries = kRayQueries;
-  parts.layers[2].meets = 0b011;
-  parts.layers[0].meets = 0b111;
-  parts.layers[1].meets = 0b101 | 0b010;
+  parts.layers[2].collides_with = 0b011;
+  parts.layers[0].collides_with = 0b111;
+  parts.layers[1].collides_with = 0b101 | 0b010;
   const CookedScene cooked = test::cook_scene({test::sphere(6, 8), test::torus(6, 8)}, parts);
   const Scene scene = require(Scene::bind(cooked.file));
   std::mt19937_64 random(3);
@@ -342,7 +342,7 @@ TEST(SceneContacts, ThatOnlyTouchAreFound) {
   }
 }
 
-TEST(SceneQueriesErrors, InvalidQuestionsAreRefused) {
+TEST(SceneQueriesErrors, InvalidQueriesAreRefused) {
   const CookedScene cooked =
       test::cook_scene({test::sphere(6, 8)}, test::random_parts(4, 1, 0, 1, 1));
   const Scene scene = require(Scene::bind(cooked.file));

@@ -48,9 +48,9 @@ class SceneRange : public testing::TestWithParam<CodecId> {
     std::mt19937_64 random(7);
     const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
     const double scale = std::ldexp(1.0, exponent);
-    const auto point = [&](double reach) -> Eigen::Vector3d {
+    const auto point = [&](double spread) -> Eigen::Vector3d {
       const double x = unit(), y = unit();
-      return Eigen::Vector3d(x, y, unit()) * reach * scale;
+      return Eigen::Vector3d(x, y, unit()) * spread * scale;
     };
     const auto list = [](std::vector<std::pair<std::uint32_t, std::uint32_t>>& faces) {
       return [&faces](const SceneFace& face) {
@@ -114,16 +114,16 @@ TEST_P(SceneRange, OneInstanceOfAnySize) {
     ASSERT_TRUE(scene.update(instance, pose).ok());
     const std::vector<WorldTriangle> triangles = test::world_triangles(cooked, scene);
     for (int i = 0; i < 20; ++i) {
-      const double reach = i % 2 == 0 ? 3 : 3 * std::ldexp(1.0, exponent);
+      const double spread = i % 2 == 0 ? 3 : 3 * std::ldexp(1.0, exponent);
       const Eigen::Vector3d at =
-          Eigen::Vector3d{unit(), unit(), unit()} * reach + pose.translation();
+          Eigen::Vector3d{unit(), unit(), unit()} * spread + pose.translation();
       // In units of 2^exponent where all of it is small, so that squares do not underflow.
-      const double up = reach < 1 && pose.translation().isZero(0) ? std::ldexp(1.0, -exponent) : 1;
+      const double up = spread < 1 && pose.translation().isZero(0) ? std::ldexp(1.0, -exponent) : 1;
       double best = std::numeric_limits<double>::infinity();
       for (const WorldTriangle& candidate : triangles) {
         Triangle t = candidate.triangle;
         for (Eigen::Vector3d& c : t.corner) c *= up;
-        if (!is_within_reach(t.corner[0]) || !is_within_reach(t.corner[1])) continue;
+        if (!is_within_range(t.corner[0]) || !is_within_range(t.corner[1])) continue;
         const Eigen::Vector3d closest = closest_point_on_triangle(at * up, t);
         best = std::min(best, std::sqrt(squared_length(closest - at * up)) / up);
       }

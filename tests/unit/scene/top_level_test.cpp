@@ -28,8 +28,8 @@ using Numbers = std::vector<std::uint32_t>;
 // Instances of one small mesh, `reach` apart at most, and their boxes in the scene's frame.
 class Level {
  public:
-  Level(std::uint32_t count, double reach, unsigned seed)
-      : cooked_(test::cook_scene({test::sphere(4, 4)}, parts(count, reach, seed))),
+  Level(std::uint32_t count, double spread, unsigned seed)
+      : cooked_(test::cook_scene({test::sphere(4, 4)}, parts(count, spread, seed))),
         scene_(test::require(Scene::bind(cooked_.file))),
         random_(seed) {
     for (std::uint32_t i = 0; i < count; ++i) {
@@ -64,9 +64,9 @@ class Level {
   }
 
  private:
-  static cooker::SceneParts parts(std::uint32_t count, double reach, unsigned seed) {
+  static cooker::SceneParts parts(std::uint32_t count, double spread, unsigned seed) {
     cooker::SceneParts parts = test::random_parts(count, 1, 0, 1, seed);
-    for (cooker::PlacedTree& placed : parts.instances) placed.pose.translation() *= reach;
+    for (cooker::PlacedTree& placed : parts.instances) placed.pose.translation() *= spread;
     return parts;
   }
 
@@ -163,11 +163,11 @@ TEST_P(TopLevelWalk, RaysVisitAllThatTheyMeet) {
       }
       if (direction.isZero(0)) continue;
       direction = std::ldexp(1.0, -exponent_of(largest_magnitude(direction))) * direction;
-      const double largest = reach_of(level.top());
+      const double largest = max_abs_of(level.top());
       const double origin = from.cwiseAbs().maxCoeff();
-      const double reach = largest + 16 * level.condition() * (origin + largest);
+      const double spread = largest + 16 * level.condition() * (origin + largest);
       const double s_min = i % 3 == 0 ? direction.norm() * largest * std::abs(level.unit()) : 0;
-      const TopLevelRay ray{from, direction, reach, RaySlab(from, direction, reach), s_min};
+      const TopLevelRay ray{from, direction, spread, RaySlab(from, direction, spread), s_min};
       const double bound = i % 2 == 0 ? kInfinity : s_min + 2 * largest * std::abs(level.unit());
       tally.add(level.top(), level.all([&](const Box<double>& b) {
         const double key = ray.slab.key(b, s_min);

@@ -61,18 +61,19 @@ void PrintTo(const Corruption& corruption, std::ostream* out) {
 std::vector<std::pair<std::string, Errc>> answers(const Tree& broken, const Tree& whole,
                                                   const Eigen::Vector3d& corner) {
   const Eigen::Vector3d near = Eigen::Vector3d::Constant(1e-3);
-  test::Questions questions;
-  questions.ray = {corner - Eigen::Vector3d(0, 0, 50), {0, 0, 1}};
-  questions.box = {corner - near, corner + near};
-  questions.point = corner;
-  questions.radius = 1e-3;
-  questions.far.translation() = Eigen::Vector3d(100, 0, 0);
-  questions.node_budget = kUnlimitedNodes;
+  test::QuerySet queries;
+  queries.ray = {corner - Eigen::Vector3d(0, 0, 50), {0, 0, 1}};
+  queries.box = {corner - near, corner + near};
+  queries.point = corner;
+  queries.radius = 1e-3;
+  queries.far.translation() = Eigen::Vector3d(100, 0, 0);
+  queries.node_budget = kUnlimitedNodes;
   std::vector<std::pair<std::string, Errc>> codes;
-  for (const test::TreeQuery& query : test::tree_queries(questions)) {
-    codes.emplace_back(query.name, query.ask(broken, whole, {}).error);
+  for (const test::TreeQuery& query : test::tree_queries(queries)) {
+    codes.emplace_back(query.name, query.run_query(broken, whole, {}).error);
     if (!query.is_of_pairs) continue;
-    codes.emplace_back(std::string(query.name) + " as second", query.ask(whole, broken, {}).error);
+    codes.emplace_back(std::string(query.name) + " as second",
+                       query.run_query(whole, broken, {}).error);
   }
   return codes;
 }

@@ -235,13 +235,13 @@ class LyingBytes {
     const Result<File> changed = File::open(Bytes(bytes));
     if (!changed) return {changed.code()};
     for (const Error& finding : cooker::verify_file(*changed)) codes.insert(finding.code);
-    if (const Result<Tree> tree = Tree::bind(*changed)) ask(*tree);
+    if (const Result<Tree> tree = Tree::bind(*changed)) run_query(*tree);
     return codes;
   }
 
  private:
   // Whatever the answers are, they must come.
-  static void ask(const Tree& tree) {
+  static void run_query(const Tree& tree) {
     std::size_t met = 0;
     const auto count = [&](const auto&) { return ++met < 100'000; };
     const Eigen::AlignedBox3d box(Eigen::Vector3d(-9, -9, -9), Eigen::Vector3d(9, 9, 9));

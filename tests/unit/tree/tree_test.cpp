@@ -16,7 +16,7 @@ using cooker::SourceMesh;
 
 TEST(Frames, ReachIsTheLargestMagnitudeOnEachAxis) {
   const Box<double> box{{-3, 1, -5}, {2, 4, -1}};
-  EXPECT_EQ(reach_of(box), Eigen::Vector3d(3, 4, 5));
+  EXPECT_EQ(max_abs_of(box), Eigen::Vector3d(3, 4, 5));
 }
 
 class Trees : public testing::TestWithParam<CodecId> {};
@@ -41,7 +41,7 @@ void walk(const Tree& tree, const Node& node, std::uint32_t depth, Faces& faces)
     return;
   }
   NodeChildren children;
-  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kSound);
+  ASSERT_EQ(BoundTree::of(tree).expand(node, children), NodeState::kValid);
   ASSERT_GE(children.count, 1u);
   ASSERT_LT(depth, BoundTree::of(tree).depth());
   for (std::uint32_t i = 0; i < children.count; ++i) {
@@ -303,7 +303,7 @@ TEST_P(Trees, BoxesOfObjectSpaceHoldThePositionsOfTheSource) {
         above.push_back(BoundTree::of(cooked.tree).to_object(node.box));
         NodeChildren children;
         if (!node.is_leaf) {
-          ASSERT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kSound);
+          ASSERT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kValid);
         }
         for (std::uint32_t i = 0; i < children.count; ++i) walk_down(children.child[i], above);
         for (std::uint32_t i = 0; node.is_leaf && i < node.ref.second; ++i) {

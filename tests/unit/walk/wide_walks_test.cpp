@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // The walks of wide8 and wide4, in every instruction set that this machine has, against plain-f32,
 // whose scalar walk shares nothing with them but the leaf predicates: the same faces and the same
-// numbers to the bit, over a million random and degenerate questions in all.
+// numbers to the bit, over a million random and degenerate queries in all.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -44,11 +44,11 @@ void for_each_target(Body body) {
 #endif
 }
 
-// Questions about one mesh. A part of each kind is degenerate on purpose: along axes, in planes of
+// Queries about one mesh. A part of each kind is degenerate on purpose: along axes, in planes of
 // the root box, through vertices, from far away, of no size.
-class Questions {
+class QuerySet {
  public:
-  Questions(const SourceMesh& mesh, const Tree& tree, std::uint64_t seed)
+  QuerySet(const SourceMesh& mesh, const Tree& tree, std::uint64_t seed)
       : mesh_(mesh),
         box_(BoundTree::of(tree).to_object(BoundTree::of(tree).root().box)),
         random_(seed) {}
@@ -149,7 +149,7 @@ using FacePairs = std::multiset<std::pair<std::uint32_t, std::uint32_t>>;
 
 // All that a ray's answer says; without a hit the face is the last value.
 using RayAnswer = std::tuple<double, std::uint32_t, std::uint32_t, double, double>;
-RayAnswer ask_ray(const Tree& tree, const Ray& ray) {
+RayAnswer query_ray(const Tree& tree, const Ray& ray) {
   const auto hit = closest_hit(tree, ray);
   const auto any = any_hit(tree, ray);
   EXPECT_TRUE(hit.ok() && any.ok());
@@ -159,14 +159,14 @@ RayAnswer ask_ray(const Tree& tree, const Ray& ray) {
 }
 
 using PointAnswer = std::tuple<double, std::uint32_t, double, double, double>;
-PointAnswer ask_point(const Tree& tree, const Eigen::Vector3d& point) {
+PointAnswer query_point(const Tree& tree, const Eigen::Vector3d& point) {
   const auto closest = closest_point(tree, point);
   EXPECT_TRUE(closest.ok() && closest.has_value());
   const Eigen::Vector3d& at = closest->point;
   return {closest->distance, closest->face.id, at[0], at[1], at[2]};
 }
 
-Faces ask_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
+Faces query_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
   Faces faces;
   EXPECT_TRUE(overlap_box(tree, box, [&](const FaceRef& face) {
                 faces.insert(face.id);
@@ -175,7 +175,7 @@ Faces ask_box(const Tree& tree, const Eigen::AlignedBox3d& box) {
   return faces;
 }
 
-Faces ask_sphere(const Tree& tree, const std::pair<Eigen::Vector3d, double>& sphere) {
+Faces query_sphere(const Tree& tree, const std::pair<Eigen::Vector3d, double>& sphere) {
   Faces faces;
   EXPECT_TRUE(overlap_sphere(tree, sphere.first, sphere.second, [&](const FaceRef& face) {
                 faces.insert(face.id);
@@ -184,7 +184,7 @@ Faces ask_sphere(const Tree& tree, const std::pair<Eigen::Vector3d, double>& sph
   return faces;
 }
 
-FacePairs ask_pairs(const Tree& tree, const Pose& pose) {
+FacePairs query_pairs(const Tree& tree, const Pose& pose) {
   FacePairs pairs;
   EXPECT_TRUE(overlap_pairs(tree, Pose::Identity(), tree, pose, [&](const FacePair& pair) {
                 pairs.insert({pair.first.id, pair.second.id});
@@ -199,18 +199,18 @@ FacePairs ask_pairs(const Tree& tree, const Pose& pose) {
   return pairs;
 }
 
-// Asks all trees all questions; answers[i] are plain-f32's.
-template <class Question, class Ask>
-void expect_same(const std::vector<Question>& questions, const Tree& plain,
-                 const std::vector<const Tree*>& trees, Ask ask) {
-  using Answer = std::invoke_result_t<Ask, const Tree&, const Question&>;
+// Asks all trees all queries; answers[i] are plain-f32's.
+template <class Query, class RunQuery>
+void expect_same(const std::vector<Query>& queries, const Tree& plain,
+                 const std::vector<const Tree*>& trees, RunQuery run_query) {
+  using Answer = std::invoke_result_t<RunQuery, const Tree&, const Query&>;
   std::vector<Answer> answers;
-  for (const Question& question : questions) answers.push_back(ask(plain, question));
+  for (const Query& query : queries) answers.push_back(run_query(plain, query));
   for (const Tree* tree : trees) {
     for_each_target([&](const char* target) {
-      for (std::size_t i = 0; i < questions.size(); ++i) {
-        ASSERT_EQ(ask(*tree, questions[i]), answers[i])
-            << codec_name(BoundTree::of(*tree).codec()) << ", " << target << ", question " << i;
+      for (std::size_t i = 0; i < queries.size(); ++i) {
+        ASSERT_EQ(run_query(*tree, queries[i]), answers[i])
+            << codec_name(BoundTree::of(*tree).codec()) << ", " << target << ", query " << i;
       }
     });
   }
@@ -262,26 +262,26 @@ TEST(WideTargets, HoldPlainCodeAndEveryInstructionSetOfMachineAndBuild) {
 }
 #endif
 
-// Asks all three codecs of one mesh all kinds of questions.
+// Asks all three codecs of one mesh all kinds of queries.
 void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, std::uint64_t seed) {
   SCOPED_TRACE(mesh.name);
   const test::CookedTree plain = test::cook_tree(mesh, CodecId::kPlainF32, options);
   const test::CookedTree wide8 = test::cook_tree(mesh, CodecId::kWide8, options);
   const test::CookedTree wide4 = test::cook_tree(mesh, CodecId::kWide4, options);
   const std::vector<const Tree*> trees = {&wide8.tree, &wide4.tree};
-  Questions questions(mesh, plain.tree, seed);
+  QuerySet queries(mesh, plain.tree, seed);
   // Answers of thousands of faces cost more than the queries do.
   const bool is_large = mesh.faces.size() > 10'000;
-  expect_same(questions.rays(is_large ? 1500 : 6000), plain.tree, trees, ask_ray);
-  expect_same(questions.boxes(is_large ? 50 : 1500), plain.tree, trees, ask_box);
-  const auto spheres = questions.spheres(is_large ? 50 : 1500);
-  expect_same(spheres, plain.tree, trees, ask_sphere);
+  expect_same(queries.rays(is_large ? 1500 : 6000), plain.tree, trees, query_ray);
+  expect_same(queries.boxes(is_large ? 50 : 1500), plain.tree, trees, query_box);
+  const auto spheres = queries.spheres(is_large ? 50 : 1500);
+  expect_same(spheres, plain.tree, trees, query_sphere);
   std::vector<Eigen::Vector3d> points;
   for (const auto& sphere : spheres) points.push_back(sphere.first);
-  expect_same(points, plain.tree, trees, ask_point);
+  expect_same(points, plain.tree, trees, query_point);
   std::vector<Pose> poses;
-  for (int i = 0; i < (is_large ? 10 : 40); ++i) poses.push_back(questions.pose());
-  expect_same(poses, plain.tree, trees, ask_pairs);
+  for (int i = 0; i < (is_large ? 10 : 40); ++i) poses.push_back(queries.pose());
+  expect_same(poses, plain.tree, trees, query_pairs);
 }
 
 class WideWalks : public testing::TestWithParam<std::size_t> {};

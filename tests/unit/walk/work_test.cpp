@@ -11,16 +11,16 @@
 namespace boxtree {
 namespace {
 
-constexpr NodeState kSound = NodeState::kSound;
+constexpr NodeState kValid = NodeState::kValid;
 constexpr NodeState kCorrupt = NodeState::kCorrupt;
 
 TEST(WalkBound, AllowsAsManyNodesAsAnHonestWalkMeets) {
   WalkBound nodes(2);
-  EXPECT_EQ(nodes.count(kSound), Errc::kOk);
-  EXPECT_EQ(nodes.count(kSound), Errc::kOk);
-  EXPECT_EQ(nodes.count(kSound), Errc::kNodeCorrupt);
-  EXPECT_EQ(nodes.count(kSound), Errc::kNodeCorrupt);
-  EXPECT_EQ(WalkBound(0).count(kSound), Errc::kNodeCorrupt);
+  EXPECT_EQ(nodes.count(kValid), Errc::kOk);
+  EXPECT_EQ(nodes.count(kValid), Errc::kOk);
+  EXPECT_EQ(nodes.count(kValid), Errc::kNodeCorrupt);
+  EXPECT_EQ(nodes.count(kValid), Errc::kNodeCorrupt);
+  EXPECT_EQ(WalkBound(0).count(kValid), Errc::kNodeCorrupt);
 }
 
 TEST(WalkBound, ACorruptNodeIsNotCounted) {
@@ -28,7 +28,7 @@ TEST(WalkBound, ACorruptNodeIsNotCounted) {
   {
     WalkBound nodes(2, &work);
     EXPECT_EQ(nodes.count(kCorrupt), Errc::kNodeCorrupt);
-    EXPECT_EQ(nodes.count(kSound), Errc::kOk);
+    EXPECT_EQ(nodes.count(kValid), Errc::kOk);
   }
   EXPECT_EQ(work.left, 9u);
 }
@@ -38,19 +38,19 @@ TEST(WalkBound, ALimitIsSharedAndToldAsOne) {
   QueryWork work(QueryLimits{3});
   {
     WalkBound first(2, &work);
-    EXPECT_EQ(first.count(kSound), Errc::kOk);
-    EXPECT_EQ(first.count(kSound), Errc::kOk);
-    EXPECT_EQ(first.count(kSound), Errc::kNodeCorrupt);  // the tree's own bound
+    EXPECT_EQ(first.count(kValid), Errc::kOk);
+    EXPECT_EQ(first.count(kValid), Errc::kOk);
+    EXPECT_EQ(first.count(kValid), Errc::kNodeCorrupt);  // the tree's own bound
   }
   EXPECT_EQ(work.left, 1u);
   {
     WalkBound second(5, &work);
-    EXPECT_EQ(second.count(kSound), Errc::kOk);
-    EXPECT_EQ(second.count(kSound), Errc::kWorkLimit);
+    EXPECT_EQ(second.count(kValid), Errc::kOk);
+    EXPECT_EQ(second.count(kValid), Errc::kWorkLimit);
     EXPECT_EQ(second.count(kCorrupt), Errc::kWorkLimit);
   }
   EXPECT_EQ(work.left, 0u);
-  EXPECT_EQ(WalkBound(5, &work).count(kSound), Errc::kWorkLimit);
+  EXPECT_EQ(WalkBound(5, &work).count(kValid), Errc::kWorkLimit);
 }
 
 TEST(SharedWalkBound, CountsOnceForAllThreads) {
@@ -60,12 +60,12 @@ TEST(SharedWalkBound, CountsOnceForAllThreads) {
   std::vector<std::thread> threads;
   for (int i = 0; i < 4; ++i) {
     threads.emplace_back([&] {
-      for (std::uint32_t n = 0; n < kMost; ++n) counted += nodes.count(kSound) == Errc::kOk ? 1 : 0;
+      for (std::uint32_t n = 0; n < kMost; ++n) counted += nodes.count(kValid) == Errc::kOk ? 1 : 0;
     });
   }
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(counted, kMost);
-  EXPECT_EQ(nodes.count(kSound), Errc::kNodeCorrupt);
+  EXPECT_EQ(nodes.count(kValid), Errc::kNodeCorrupt);
   EXPECT_EQ(SharedWalkBound(1).count(kCorrupt), Errc::kNodeCorrupt);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Parsing, asking, and the JSON of answers.
-#include "cooker/cli/question.h"
+#include "cooker/cli/query_request.h"
 
 #include <algorithm>
 #include <charconv>
@@ -21,8 +21,8 @@ Json face_json(const FaceRef& face) {
   return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
 }
 
-Result<Json> answer(const Tree& tree, const RayQuestion& question) {
-  const auto hit = question.any ? any_hit(tree, question.ray) : closest_hit(tree, question.ray);
+Result<Json> answer(const Tree& tree, const RayRequest& request) {
+  const auto hit = request.any ? any_hit(tree, request.ray) : closest_hit(tree, request.ray);
   if (!hit.ok()) return hit.error();
   Json json = {{"hit", hit.has_value()}};
   if (hit.has_value()) {
@@ -62,22 +62,21 @@ const char* name_of(Overlap overlap) {
   return "";
 }
 
-Result<Json> answer(const Tree& tree, const BoxQuestion& question) {
-  if (question.with_overlap) {
-    const auto found = overlap_box_within(tree, question.box, question.overlap.within,
-                                          question.overlap.node_budget);
+Result<Json> answer(const Tree& tree, const BoxRequest& request) {
+  if (request.with_overlap) {
+    const auto found =
+        overlap_box_within(tree, request.box, request.overlap.within, request.overlap.node_budget);
     if (!found) return found.error();
     Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
     if (found->face) json["face"] = face_json(*found->face);
     return json;
   }
-  return answer_faces(
-      [&](FaceVisitor visitor) { return overlap_box(tree, question.box, visitor); });
+  return answer_faces([&](FaceVisitor visitor) { return overlap_box(tree, request.box, visitor); });
 }
 
-Result<Json> answer(const Tree& tree, const SphereQuestion& question) {
+Result<Json> answer(const Tree& tree, const SphereRequest& request) {
   return answer_faces([&](FaceVisitor visitor) {
-    return overlap_sphere(tree, question.center, question.radius, visitor);
+    return overlap_sphere(tree, request.center, request.radius, visitor);
   });
 }
 
@@ -95,39 +94,39 @@ template <class Bounded>
 Json bounds_json(const Bounded& bounds) {
   return {{"lower", bounds.lower},
           {"upper", bounds.upper},
-          {"near_enough", bounds.converged},
+          {"converged", bounds.converged},
           {"nodes", bounds.nodes_expanded}};
 }
 
-Result<Json> answer(const Tree& tree, const PointQuestion& question) {
-  if (question.with_bounds) {
-    const auto found = closest_point(tree, question.at, question.options);
+Result<Json> answer(const Tree& tree, const PointRequest& request) {
+  if (request.with_bounds) {
+    const auto found = closest_point(tree, request.at, request.options);
     if (!found) return found.error();
     Json json = bounds_json(*found);
     add_closest(json, found->witness);
     return json;
   }
-  const auto closest = closest_point(tree, question.at, question.options.max_distance);
+  const auto closest = closest_point(tree, request.at, request.options.max_distance);
   if (!closest.ok()) return closest.error();
   Json json;
   add_closest(json, closest.as_optional());
   return json;
 }
 
-Result<Json> answer_pair(const Tree& first, const Tree& second, const PairQuestion& question) {
+Result<Json> answer_pair(const Tree& first, const Tree& second, const PairRequest& request) {
   Json pairs = Json::array();
   const Result<Visit> visit = overlap_pairs(
-      first, Pose::Identity(), second, question.second.pose, [&](const FacePair& pair) {
+      first, Pose::Identity(), second, request.second.pose, [&](const FacePair& pair) {
         pairs.push_back({face_json(pair.first), face_json(pair.second)});
-        return !question.first_only;
+        return !request.first_only;
       });
   if (!visit) return visit.error();
   return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
 }
 
-Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceQuestion& question) {
+Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceRequest& request) {
   const auto found =
-      distance(first, Pose::Identity(), second, question.second.pose, question.options);
+      distance(first, Pose::Identity(), second, request.second.pose, request.options);
   if (!found) return found.error();
   Json json = bounds_json(*found);
   json["found"] = found->witness.has_value();
@@ -139,9 +138,9 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceQu
   return json;
 }
 
-Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapQuestion& question) {
-  const auto found = overlap_within(first, Pose::Identity(), second, question.second.pose,
-                                    question.options.within, question.options.node_budget);
+Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapRequest& request) {
+  const auto found = overlap_within(first, Pose::Identity(), second, request.second.pose,
+                                    request.options.within, request.options.node_budget);
   if (!found) return found.error();
   Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
   if (found->contact) {
@@ -150,7 +149,7 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapQue
   return json;
 }
 
-Result<Json> answer(const Tree& /*tree*/, const ContactsQuestion& /*question*/) {
+Result<Json> answer(const Tree& /*tree*/, const ContactsRequest& /*request*/) {
   return Error{Errc::kNoScene, "contacts are those of a scene, and this is one tree"};
 }
 
@@ -158,7 +157,7 @@ Error invalid(std::string what) {
   return {Errc::kInvalidQuery, std::move(what)};
 }
 
-// Reads the keys of one question and remembers the first that is missing, wrong or unknown.
+// Reads the keys of one request and remembers the first that is missing, wrong or unknown.
 class KeyFields {
  public:
   explicit KeyFields(const Json& json) : json_(json) {}
@@ -261,13 +260,13 @@ std::string names_of_kinds() {
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
 }
 
-Result<Question> question_of(std::string_view kind, KeyFields& fields) {
-  std::optional<Question> result;
+Result<QueryRequest> request_of(std::string_view kind, KeyFields& fields) {
+  std::optional<QueryRequest> result;
   for_each_kind([&]<class Kind>() {
     if (kind != Kind::kKind) return;
-    Kind question;
-    question.describe(fields);
-    result = question;
+    Kind request;
+    request.describe(fields);
+    result = request;
   });
   if (!result) return invalid(fmt::format("kind \"{}\": expected {}", kind, names_of_kinds()));
   if (Status status = fields.finish(kind); !status) return status.error();
@@ -343,7 +342,7 @@ std::optional<Pose> parse_pose(std::string_view text) {
   return pose;
 }
 
-Result<Question> parse_question(std::string_view line, std::string_view default_kind) {
+Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return invalid("expected one JSON object a line");
   std::string kind(default_kind);
@@ -352,12 +351,12 @@ Result<Question> parse_question(std::string_view line, std::string_view default_
     kind = given->get<std::string>();
   }
   KeyFields fields(json);
-  return question_of(kind, fields);
+  return request_of(kind, fields);
 }
 
-Result<Json> ask(const Tree& tree, const Question& question, TreeCache& others) {
-  return ask_one_or_two(
-      question, others, [&](const auto& q) { return answer(tree, q); },
+Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others) {
+  return query_one_or_two(
+      request, others, [&](const auto& q) { return answer(tree, q); },
       [&](const Tree& second, const auto& q) { return answer_pair(tree, second, q); });
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Moving, asking, and the JSON of answers.
-#include "cooker/cli/scene_question.h"
+#include "cooker/cli/scene_query.h"
 
 #include <charconv>
 #include <vector>
@@ -25,8 +25,8 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
   json["material"] = name.empty() ? Json(material) : Json(name);
 }
 
-Result<Json> answer(const Scene& scene, const RayQuestion& question) {
-  const auto hit = question.any ? any_hit(scene, question.ray) : closest_hit(scene, question.ray);
+Result<Json> answer(const Scene& scene, const RayRequest& request) {
+  const auto hit = request.any ? any_hit(scene, request.ray) : closest_hit(scene, request.ray);
   if (!hit.ok()) return hit.error();
   Json json = {{"hit", hit.has_value()}};
   if (hit.has_value()) {
@@ -59,21 +59,21 @@ Error not_for_scenes(const std::string& what) {
           what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
 }
 
-Result<Json> answer(const Scene& scene, const BoxQuestion& question) {
-  if (question.with_overlap) return not_for_scenes("whether something is within a distance");
+Result<Json> answer(const Scene& scene, const BoxRequest& request) {
+  if (request.with_overlap) return not_for_scenes("whether something is within a distance");
   return answer_faces(
-      scene, [&](SceneFaceVisitor visitor) { return overlap_box(scene, question.box, visitor); });
+      scene, [&](SceneFaceVisitor visitor) { return overlap_box(scene, request.box, visitor); });
 }
 
-Result<Json> answer(const Scene& scene, const SphereQuestion& question) {
+Result<Json> answer(const Scene& scene, const SphereRequest& request) {
   return answer_faces(scene, [&](SceneFaceVisitor visitor) {
-    return overlap_sphere(scene, question.center, question.radius, visitor);
+    return overlap_sphere(scene, request.center, request.radius, visitor);
   });
 }
 
-Result<Json> answer(const Scene& scene, const PointQuestion& question) {
-  if (question.with_bounds) return not_for_scenes("an allowed error or a budget");
-  const auto found = closest_point(scene, question.at, question.options.max_distance);
+Result<Json> answer(const Scene& scene, const PointRequest& request) {
+  if (request.with_bounds) return not_for_scenes("an allowed error or a budget");
+  const auto found = closest_point(scene, request.at, request.options.max_distance);
   if (!found.ok()) return found.error();
   Json json = {{"found", found.has_value()}};
   if (found.has_value()) {
@@ -87,10 +87,10 @@ Result<Json> answer(const Scene& scene, const PointQuestion& question) {
 }
 
 // Pairs as two objects each, of which the second is the other body's.
-template <class Ask>
-Result<Json> answer_pairs(const Scene& scene, bool first_only, Ask ask_pairs) {
+template <class AnswerRequest>
+Result<Json> answer_pairs(const Scene& scene, bool first_only, AnswerRequest query_pairs) {
   Json pairs = Json::array();
-  const Result<Visit> visit = ask_pairs([&](const ScenePair& pair) {
+  const Result<Visit> visit = query_pairs([&](const ScenePair& pair) {
     Json first, second;
     add_face(scene, pair.first, first);
     if (pair.second.instance == kNoInstance) {
@@ -106,20 +106,20 @@ Result<Json> answer_pairs(const Scene& scene, bool first_only, Ask ask_pairs) {
   return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
 }
 
-Result<Json> answer(const Scene& scene, const ContactsQuestion& question) {
-  return answer_pairs(scene, question.first_only,
+Result<Json> answer(const Scene& scene, const ContactsRequest& request) {
+  return answer_pairs(scene, request.first_only,
                       [&](ScenePairVisitor visitor) { return contacts(scene, visitor); });
 }
 
-Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairQuestion& question) {
-  return answer_pairs(scene, question.first_only, [&](ScenePairVisitor visitor) {
-    return overlap_pairs(scene, second, question.second.pose, visitor);
+Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairRequest& request) {
+  return answer_pairs(scene, request.first_only, [&](ScenePairVisitor visitor) {
+    return overlap_pairs(scene, second, request.second.pose, visitor);
   });
 }
-Result<Json> answer_pair(const Scene&, const Tree&, const DistanceQuestion&) {
+Result<Json> answer_pair(const Scene&, const Tree&, const DistanceRequest&) {
   return not_for_scenes("a distance");
 }
-Result<Json> answer_pair(const Scene&, const Tree&, const OverlapQuestion&) {
+Result<Json> answer_pair(const Scene&, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");
 }
 
@@ -171,9 +171,9 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
   return OpenedScene{std::move(file), std::move(*scene)};
 }
 
-Result<Json> ask(const Scene& scene, const Question& question, TreeCache& others) {
-  return ask_one_or_two(
-      question, others, [&](const auto& q) { return answer(scene, q); },
+Result<Json> answer(const Scene& scene, const QueryRequest& request, TreeCache& others) {
+  return query_one_or_two(
+      request, others, [&](const auto& q) { return answer(scene, q); },
       [&](const Tree& second, const auto& q) { return answer_pair(scene, second, q); });
 }
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // The stack of a walk from near to far: children that wait for their turn, as one word each.
-#if defined(BOXTREE_RUNTIME_WALK_WAITING_INL_H) == defined(HWY_TARGET_TOGGLE)
-#ifdef BOXTREE_RUNTIME_WALK_WAITING_INL_H
-#undef BOXTREE_RUNTIME_WALK_WAITING_INL_H
+#if defined(BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H) == defined(HWY_TARGET_TOGGLE)
+#ifdef BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H
+#undef BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H
 #else
-#define BOXTREE_RUNTIME_WALK_WAITING_INL_H
+#define BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H
 #endif
 
 #include <bit>
@@ -19,7 +19,7 @@ namespace boxtree::HWY_NAMESPACE {
 /// key, a float that is not negative, so that words compare as keys do; the lowest bits name the
 /// child instead. Room for the children of `kDepths` nodes.
 template <std::size_t kDepths>
-class Waiting {
+class TraversalStack {
  public:
   struct Child {
     std::size_t depth;

@@ -9,7 +9,7 @@
 inline const Eigen::AlignedBox3d kBox{Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
 inline const boxtree::Ray kRay{{0, 0, 10}, {0, 0, -1}};
 
-inline bool ask(const boxtree::Tree& tree) {
+inline bool run_query(const boxtree::Tree& tree) {
   const boxtree::Pose pose = boxtree::Pose::Identity();
   int faces = 0;
   const auto count = [&faces](const boxtree::FaceRef&) { return ++faces > 0; };
@@ -26,7 +26,7 @@ inline bool ask(const boxtree::Tree& tree) {
   return all;
 }
 
-inline bool ask(boxtree::Scene& scene, const boxtree::Tree& tree) {
+inline bool run_query(boxtree::Scene& scene, const boxtree::Tree& tree) {
   const boxtree::Pose pose = boxtree::Pose::Identity();
   const auto face = [](const boxtree::SceneFace&) { return true; };
   const auto pair = [](const boxtree::ScenePair&) { return true; };
@@ -39,11 +39,11 @@ inline bool ask(boxtree::Scene& scene, const boxtree::Tree& tree) {
 }
 
 // The status of the program.
-inline int ask(const boxtree::File& file) {
+inline int run_query(const boxtree::File& file) {
   const auto tree = boxtree::Tree::bind(file);
   if (!tree) return std::puts(tree.error().detail.c_str()), 1;
-  bool all = ask(*tree);
+  bool all = run_query(*tree);
   auto scene = boxtree::Scene::bind(file);
-  if (scene) all = all && ask(*scene, *tree);
+  if (scene) all = all && run_query(*scene, *tree);
   return all ? 0 : 1;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "tests/fuzz/question.h"
+#include "tests/fuzz/query_input.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,18 +16,18 @@ namespace {
 constexpr std::size_t kOptions = 48;  // behind 12 numbers of 4 bytes
 
 Bytes tail(Bytes input) {
-  return input.last(std::min(input.size(), kQuestionBytes));
+  return input.last(std::min(input.size(), kQueryBytes));
 }
 
 }  // namespace
 
-Question::Question(Bytes bytes) {
+QueryInput::QueryInput(Bytes bytes) {
   if (!bytes.empty()) {
     std::memcpy(bytes_.data(), bytes.data(), std::min(bytes.size(), bytes_.size()));
   }
 }
 
-double Question::number(std::size_t index) const {
+double QueryInput::number(std::size_t index) const {
   const std::byte* const at = bytes_.data() + 4 * index;
   const double mantissa = load<std::int16_t>(at);
   const int exponent = load<std::int8_t>(at + 2);
@@ -47,11 +47,11 @@ double Question::number(std::size_t index) const {
   }
 }
 
-Eigen::Vector3d Question::vector(std::size_t index) const {
+Eigen::Vector3d QueryInput::vector(std::size_t index) const {
   return {number(index), number(index + 1), number(index + 2)};
 }
 
-Pose Question::pose() const {
+Pose QueryInput::pose() const {
   Pose pose = Pose::Identity();
   const unsigned kind = option(0) & 3u;
   if (kind != 0) pose.translation() = vector(9);
@@ -63,17 +63,17 @@ Pose Question::pose() const {
   return pose;
 }
 
-std::uint8_t Question::option(std::size_t index) const {
+std::uint8_t QueryInput::option(std::size_t index) const {
   return std::to_integer<std::uint8_t>(bytes_[kOptions + index]);
 }
 
-QueryLimits Question::limits() const {
+QueryLimits QueryInput::limits() const {
   const std::uint8_t nodes = option(14);
   return nodes == 0 ? QueryLimits() : QueryLimits{nodes};
 }
 
-Input::Input(Bytes bytes) : question(tail(bytes)), shift(question.option(15) % 8u) {
-  const Bytes file = bytes.first(bytes.size() - std::min(bytes.size(), kQuestionBytes));
+Input::Input(Bytes bytes) : query(tail(bytes)), shift(query.option(15) % 8u) {
+  const Bytes file = bytes.first(bytes.size() - std::min(bytes.size(), kQueryBytes));
   memory.resize(shift + file.size());
   memory.shrink_to_fit();
   std::copy(file.begin(), file.end(), memory.begin() + static_cast<std::ptrdiff_t>(shift));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether two triangles share a point, as CGAL's kernels tell it: exact rationals judge, doubles
-// are one more library to be judged.
+// Whether two triangles share a point, as CGAL's kernels tell it: exact rationals classifier,
+// doubles are one more library to be judged.
 #pragma once
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -37,9 +37,9 @@ CgalShape<Kernel> to_cgal(const Triangle& t) {
 
 /// The kernel's answer; exact with ExactKernel.
 template <class Kernel>
-bool cgal_triangles_meet(const Triangle& p, const Triangle& q) {
+bool cgal_triangles_intersect(const Triangle& p, const Triangle& q) {
   using Point = typename Kernel::Point_3;
-  const auto meet = []<class A, class B>(const A& a, const B& b) -> bool {
+  const auto intersect = []<class A, class B>(const A& a, const B& b) -> bool {
     if constexpr (std::is_same_v<A, Point> && std::is_same_v<B, Point>) {
       return a == b;
     } else if constexpr (std::is_same_v<A, Point>) {
@@ -50,7 +50,7 @@ bool cgal_triangles_meet(const Triangle& p, const Triangle& q) {
       return CGAL::do_intersect(a, b);
     }
   };
-  return std::visit(meet, to_cgal<Kernel>(p), to_cgal<Kernel>(q));
+  return std::visit(intersect, to_cgal<Kernel>(p), to_cgal<Kernel>(q));
 }
 
 }  // namespace boxtree::test

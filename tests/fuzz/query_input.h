@@ -14,12 +14,12 @@
 
 namespace boxtree::fuzz {
 
-inline constexpr std::size_t kQuestionBytes = 64;
+inline constexpr std::size_t kQueryBytes = 64;
 
 /// Numbers of every magnitude, and options, out of any 64 bytes.
-class Question {
+class QueryInput {
  public:
-  explicit Question(Bytes bytes);
+  explicit QueryInput(Bytes bytes);
 
   /// Number 0 to 11: small fractions mostly, also powers of two of every size, infinities and NaN.
   [[nodiscard]] double number(std::size_t index) const;
@@ -32,17 +32,17 @@ class Question {
   [[nodiscard]] QueryLimits limits() const;
 
  private:
-  std::array<std::byte, kQuestionBytes> bytes_{};
+  std::array<std::byte, kQueryBytes> bytes_{};
 };
 
-/// An input, split into file and question. The file lies at the end of memory of its own, at an
+/// An input, split into file and query. The file lies at the end of memory of its own, at an
 /// offset of 0 to 7 from an aligned address, so that a read behind it is found and misaligned ones
 /// happen.
 struct Input {
   explicit Input(Bytes bytes);
   [[nodiscard]] Bytes file() const { return Bytes(memory).subspan(shift); }
 
-  Question question;
+  QueryInput query;
   std::size_t shift;
   std::vector<std::byte> memory;
 };

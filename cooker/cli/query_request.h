@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Questions as data: from options or from a line of a batch, to an answer in JSON.
+// Queries as data: from options or from a line of a batch, to an answer in JSON.
 #pragma once
 
 #include <cstdint>
@@ -19,14 +19,14 @@
 
 namespace boxtree::cooker {
 
-// A kind of question states its name, a line of help, and what it is made of: describe() tells a
+// A kind of request states its name, a line of help, and what it is made of: describe() tells a
 // reader of options each of them once. There are two such readers, for lines of a batch and for the
 // command line, where key "t_max" is option --t-max. They have
 //   required(key, value, help)           a Vector3d or a double
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if it is
 //   there second(tree)                         a SecondTree
 
-struct RayQuestion {
+struct RayRequest {
   static constexpr const char* kKind = "ray";
   static constexpr const char* kHelp = "Closest hit of a ray";
 
@@ -55,7 +55,7 @@ struct OverlapOptions {
   }
 };
 
-struct BoxQuestion {
+struct BoxRequest {
   static constexpr const char* kKind = "box";
   static constexpr const char* kHelp = "Faces that touch an axis-aligned box";
 
@@ -71,7 +71,7 @@ struct BoxQuestion {
   }
 };
 
-struct SphereQuestion {
+struct SphereRequest {
   static constexpr const char* kKind = "sphere";
   static constexpr const char* kHelp = "Faces within a radius of a point";
 
@@ -96,7 +96,7 @@ void describe_approximation(Fields& fields, Approximation& options, bool* given 
   fields.optional("budget", options.node_budget, "Stop after so many nodes", given);
 }
 
-struct PointQuestion {
+struct PointRequest {
   static constexpr const char* kKind = "point";
   static constexpr const char* kHelp = "Closest point of the surface";
 
@@ -118,7 +118,7 @@ struct SecondTree {
   Pose pose = Pose::Identity();
 };
 
-struct PairQuestion {
+struct PairRequest {
   static constexpr const char* kKind = "pair";
   static constexpr const char* kHelp = "Pairs of faces of two trees that touch";
 
@@ -132,7 +132,7 @@ struct PairQuestion {
   }
 };
 
-struct DistanceQuestion {
+struct DistanceRequest {
   static constexpr const char* kKind = "distance";
   static constexpr const char* kHelp = "Distance of two trees";
 
@@ -146,7 +146,7 @@ struct DistanceQuestion {
   }
 };
 
-struct OverlapQuestion {
+struct OverlapRequest {
   static constexpr const char* kKind = "overlap";
   static constexpr const char* kHelp = "Whether two trees touch: hit or free";
 
@@ -161,7 +161,7 @@ struct OverlapQuestion {
 };
 
 /// Of a scene: what moves against the rest.
-struct ContactsQuestion {
+struct ContactsRequest {
   static constexpr const char* kKind = "contacts";
   static constexpr const char* kHelp =
       "Of a scene: pairs of faces of what moves and all else that touch";
@@ -175,16 +175,16 @@ struct ContactsQuestion {
 };
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
-using Question = std::variant<RayQuestion, BoxQuestion, SphereQuestion, PointQuestion, PairQuestion,
-                              DistanceQuestion, OverlapQuestion, ContactsQuestion>;
+using QueryRequest = std::variant<RayRequest, BoxRequest, SphereRequest, PointRequest, PairRequest,
+                                  DistanceRequest, OverlapRequest, ContactsRequest>;
 
-/// Calls visit.template operator()<Kind>() for each kind of question, in order.
+/// Calls visit.template operator()<Kind>() for each kind of request, in order.
 template <class Visit>
 void for_each_kind(const Visit& visit) {
   [&]<std::size_t... kIndex>(std::index_sequence<kIndex...>) {
-    (visit.template operator()<std::variant_alternative_t<kIndex, Question>>(), ...);
+    (visit.template operator()<std::variant_alternative_t<kIndex, QueryRequest>>(), ...);
   }
-  (std::make_index_sequence<std::variant_size_v<Question>>());
+  (std::make_index_sequence<std::variant_size_v<QueryRequest>>());
 }
 
 /// A file, one of its trees, and the mesh that it is bound to if its geometry is external.
@@ -202,7 +202,7 @@ Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::strin
 Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
                              const std::string& which, const std::filesystem::path& mesh);
 
-/// Second trees of questions about two, each opened once.
+/// Second trees of queries about two, each opened once.
 class TreeCache {
  public:
   Result<const Tree*> get(const SecondTree& second);
@@ -214,16 +214,16 @@ class TreeCache {
 /// "X,Y,Z", or the 12 numbers of a 3x4 matrix row by row. Nothing if it is neither.
 [[nodiscard]] std::optional<Pose> parse_pose(std::string_view text);
 
-/// A question from one line of a batch: an object with the names of the options as keys, as in
+/// A request from one line of a batch: an object with the names of the options as keys, as in
 /// {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}. Without "kind" it is `default_kind`.
 /// Error: kInvalidQuery with what was expected.
-Result<Question> parse_question(std::string_view line, std::string_view default_kind);
+Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind);
 
-/// Answers questions about one thing by alone(question), those about it and a second tree by
-/// together(second, question).
+/// Answers queries about one thing by alone(request), those about it and a second tree by
+/// together(second, request).
 template <class Alone, class Together>
-Result<Json> ask_one_or_two(const Question& question, TreeCache& others, const Alone& alone,
-                            const Together& together) {
+Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, const Alone& alone,
+                              const Together& together) {
   return std::visit(
       [&](const auto& q) -> Result<Json> {
         if constexpr (requires { q.second; }) {
@@ -234,10 +234,10 @@ Result<Json> ask_one_or_two(const Question& question, TreeCache& others, const A
           return alone(q);
         }
       },
-      question);
+      request);
 }
 
 /// The answer in the form that `boxtree query --json` prints.
-Result<Json> ask(const Tree& tree, const Question& question, TreeCache& others);
+Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others);
 
 }  // namespace boxtree::cooker

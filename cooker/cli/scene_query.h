@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Questions to scenes.
+// Queries to scenes.
 #pragma once
 
 #include <filesystem>
@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cooker/cli/open_file.h"
-#include "cooker/cli/question.h"
+#include "cooker/cli/query_request.h"
 
 namespace boxtree::cooker {
 
@@ -23,6 +23,6 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
 
 /// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.
 /// Error: kInvalidQuery for kinds that only trees answer.
-Result<Json> ask(const Scene& scene, const Question& question, TreeCache& others);
+Result<Json> answer(const Scene& scene, const QueryRequest& request, TreeCache& others);
 
 }  // namespace boxtree::cooker
