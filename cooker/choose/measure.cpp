@@ -14,7 +14,7 @@ namespace {
 
 // Seconds a query, and the first error that any gave.
 template <class Queries, class RunQuery>
-double per_query(const QuerySet& queries, std::size_t runs, Status& status, RunQuery run_query) {
+double per_query(const Queries& queries, std::size_t runs, Status& status, RunQuery run_query) {
   if (queries.empty()) return 0;
   const double seconds = median_seconds(runs, [&] {
     for (const auto& query : queries) {

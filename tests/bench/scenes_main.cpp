@@ -167,7 +167,7 @@ class Bench {
   }
   // The sum of what `ask` says of each query.
   template <class Queries, class RunQuery>
-  static std::uint64_t sum(const QuerySet& queries, RunQuery run_query) {
+  static std::uint64_t sum(const Queries& queries, RunQuery run_query) {
     std::uint64_t answers = 0;
     for (const auto& query : queries) answers += run_query(query);
     return answers;
