@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
 """Dependencies point one way: cooker -> runtime -> format, and inside each of them no folder includes
-one that comes after it. Looks at what sources include and, given a build, at what the libraries ask
-the linker for.
+one that comes after it. Looks at what sources include and, given a build, at what the libraries need of
+the linker.
 
-    check_arrows.py SOURCE_DIR [BUILD_DIR]       exit 1 and a line for each include that is against it
+    check_dependencies.py SOURCE_DIR [BUILD_DIR]       exit 1 and a line for each include against the order
 """
 import pathlib
 import re
@@ -43,7 +43,7 @@ def fault_of(source, folder, name, quoted):
     part = source.split("/")[0]
     if name.startswith(PUBLIC):
         if part == "format" and name not in OF_FORMAT:
-            return "format knows nothing of the runtime"
+            return "format does not depend on the runtime"
         return None
     if folder == "include" and (quoted or name.split("/")[0] in PARTS):
         return "a public header includes nothing private"
@@ -60,7 +60,7 @@ def fault_of(source, folder, name, quoted):
         order = ORDER[part]
         for each in (folder, other_folder):
             if each not in order:
-                return f"{part}/{each} has no place in the order of {part}'s folders"
+                return f"{part}/{each} is missing in the order of {part}'s folders"
         if order.index(other_folder) > order.index(folder):
             return f"{part}/{folder} comes before {part}/{other_folder}"
         return None
@@ -87,12 +87,12 @@ def check_includes(source_dir):
 
 
 OUTPUT = r"\b(printf|puts|abort|exit|std::cout|std::cerr)\b|Assimp|tbb::|XXH"
-# What each library may not ask the linker for.
+# Symbols that each library must not need.
 SYMBOLS = {
     "format/libboxtree_format.a": OUTPUT,
     "runtime/libboxtree_runtime.a": OUTPUT + r"|fmt::|nlohmann|boxtree::cooker",
 }
-# Templates of headers are compiled into whoever uses them: these neither asked for nor there.
+# Templates of headers are compiled into whoever uses them: the runtime neither needs nor has these.
 PAPER = r"PlainCodec|PackedCodec|k(Plain|Packed|Dedup)\w*Functions"
 
 
@@ -122,7 +122,7 @@ def main():
         print(fault)
     if faults:
         sys.exit(1)
-    print("arrows point one way")
+    print("dependencies point one way")
 
 
 if __name__ == "__main__":
