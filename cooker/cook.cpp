@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cook_record.h"
+#include "cooker/import/mesh_arrays.h"
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/plan.h"
 #include "cooker/scene/precision.h"
@@ -164,6 +165,7 @@ class Cook {
       const SearchOptions search = search_options(m, (*grids)[m].has_value());
       Result<TriedTree> tried = try_encodings(mesh, search, (*grids)[m]);
       if (!tried) return in_mesh(m, tried.error());
+      edges_.push_back(count_surface_edges(arrays_of(mesh)));
       mesh.positions = {};
       mesh.faces = {};
       mesh.face_ids = {};
@@ -204,7 +206,7 @@ class Cook {
   }
 
   // Whether a tree has the geometry store that others have, so that what touches still does. In a
-  // scene it has its own where the profile, or what it asks of the tree, has decided already, and
+  // scene it has its own where the profile, or what it needs of the tree, has decided already, and
   // touches within its tolerance.
   [[nodiscard]] bool shares_store(std::size_t tree) const {
     const auto has = [&](GeometryId store) {
@@ -398,6 +400,7 @@ class Cook {
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       CookedTree tree;
       tree.tree.name = input_.scene.meshes[mesh_of_tree_[t]].mesh.name;
+      tree.edges = edges_[t];
       tree.collapsed = tried_[t].collapsed_of(chosen_[t]);
       if (!input_.has_top_level && !options_.face_ids) {
         const std::uint64_t bytes = std::uint64_t{file_.trees[t].face_count} * 4;
@@ -443,6 +446,7 @@ class Cook {
   // One a tree of the file.
   std::vector<std::size_t> mesh_of_tree_;
   std::vector<TriedTree> tried_;
+  std::vector<SurfaceEdges> edges_;
   std::vector<Contest> contests_;
   std::vector<Wishes> wishes_;
   std::vector<bool> may_use_grid_;

@@ -12,6 +12,7 @@
 #include "cooker/choose/search.h"
 #include "cooker/encode/encoded_scene.h"
 #include "cooker/import/import.h"
+#include "cooker/import/surface_edges.h"
 #include "cooker/scene/cook_input.h"
 #include "cooker/write/file_writer.h"
 #include "format/blob.h"
@@ -19,7 +20,7 @@
 namespace boxtree::cooker {
 
 struct CookOptions : SearchOptions {
-  std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be asked
+  std::optional<BlobMethod> blob;  // compress the whole file; it must be decompressed to be queried
   bool cook_record = true;  // tool version, options and source hashes, for humans and build systems
   ImportOptions import;
 };
@@ -33,6 +34,7 @@ struct LeftOut {
 
 struct CookedTree {
   EncodedTree tree;
+  SurfaceEdges edges;           // of the mesh as it was imported, without hidden faces
   std::uint32_t collapsed = 0;  // triangles that lost their area on the grid; they are kept
   Contest contest;
   std::vector<LeftOut> left_out;  // without a top level; of a scene SceneSummary::why says it

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "cooker/cook.h"
+#include "cooker/import/mesh_arrays.h"
 
 namespace boxtree::cooker {
 
@@ -15,6 +16,7 @@ Result<CookedTree> cook_mesh(const SourceMesh& mesh, const CookOptions& options,
   const auto chosen = choose(std::span(&tried->contest, 1), options.wishes);
   if (!chosen) return Error{chosen.code(), mesh.name + ": " + chosen.error().detail};
   CookedTree cooked;
+  cooked.edges = count_surface_edges(arrays_of(mesh));
   cooked.collapsed = tried->collapsed_of(chosen->front());
   cooked.tree = tried->take(chosen->front());
   cooked.contest = std::move(tried->contest);

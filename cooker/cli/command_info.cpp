@@ -12,6 +12,8 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/scene_info.h"
+#include "cooker/cli/surface_text.h"
+#include "cooker/export/decoded_faces.h"
 #include "format/certificate_record.h"
 #include "format/container.h"
 #include "format/tree_record.h"
@@ -48,6 +50,23 @@ double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
              : static_cast<double>(bytes) / static_cast<double>(record.triangle_count);
 }
 
+// Of what is stored: on a grid, edges of the rounded mesh. Faces that cannot be read keep nothing
+// from being said of the rest of the file.
+Json surface_of_tree(const File& file, std::uint32_t index, GeometryId geometry) {
+  if (geometry == GeometryId::kExternal) return nullptr;
+  const Result<Tree> tree = Tree::bind(file, index);
+  if (!tree) return {{"error", tree.error().message()}};
+  const Result<DecodedFaces> faces = DecodedFaces::decode(*tree, ExportOrder::kTree);
+  if (!faces) return {{"error", faces.error().message()}};
+  return surface_json(count_surface_edges(faces->arrays()));
+}
+
+std::string text_of_surface(const Json& surface) {
+  if (surface.is_null()) return "not in the file";
+  if (surface.contains("error")) return "unreadable: " + shown(surface["error"].get<std::string>());
+  return surface_text(surface_of(surface));
+}
+
 Json tree_json(const File& file, std::uint32_t index) {
   const TreeRecord record = OpenFile::of(file).tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
@@ -81,6 +100,7 @@ Json tree_json(const File& file, std::uint32_t index) {
   }
   json["bounds"] = {{"min", to_json(frame.to_object(low))},
                     {"max", to_json(frame.to_object(high))}};
+  json["surface"] = surface_of_tree(file, index, record.geometry);
   return json;
 }
 
@@ -117,6 +137,7 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["tree"].get<double>(),
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
+    fmt::print("  surface: {}\n", text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
                line_of(tree["bounds"]["max"]));
   }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/output.h"
+#include "cooker/cli/surface_text.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -69,13 +70,13 @@ Json import_json(const ImportReport& report) {
 void print_contest(const CookedTree& cooked) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
-  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>5} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
-             "geometry", "tree B/tri", "with geom.", "times", "ray ns", "box ns", "point ns",
+  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
+             "geometry", "tree B/tri", "with geom.", "slowdown", "ray ns", "box ns", "point ns",
              "pairs us", "error");
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     fmt::print(
-        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
+        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
         "  {:>9.2g}{}{}\n",
         candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
         geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
@@ -98,13 +99,16 @@ void print_contest(const CookedTree& cooked) {
 }
 
 void print_import(const ImportReport& import) {
+  std::string notes;
   if (import.points_skipped + import.lines_skipped > 0) {
-    fmt::print("  skipped {} points and {} lines: they have no surface\n", import.points_skipped,
-               import.lines_skipped);
+    notes = fmt::format("skipped {} points and {} lines: they have no surface",
+                        import.points_skipped, import.lines_skipped);
   }
   if (import.degenerate_faces > 0) {
-    fmt::print("  kept {} faces without area\n", import.degenerate_faces);
+    notes += fmt::format("{}kept {} faces without area", notes.empty() ? "" : "; ",
+                         import.degenerate_faces);
   }
+  if (!notes.empty()) fmt::print("  {}\n", notes);
   if (import.has_open_end) {
     fmt::print(
         "  the last line of the source has no end: a file that was cut short looks the same\n");
@@ -126,7 +130,8 @@ void print_grid(const CookedTree& cooked) {
 void print_choice(const CookedTree& cooked) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
-  fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
+  fmt::print("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
+             surface_text(cooked.edges));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     if (!candidate.rejected.empty()) continue;
@@ -144,19 +149,21 @@ void print_choice(const CookedTree& cooked) {
 void print_choices(const Summary& summary) {
   std::size_t width = 4;
   for (const CookedTree& cooked : summary.trees) width = std::max(width, cooked.tree.name.size());
-  fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>5}  {:>9}\n", "tree", width,
-             "triangles", "codec", "geometry", "tree B/tri", "with geom.", "times", "error");
+  fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>8}  {:>9}  {}\n", "tree", width,
+             "triangles", "codec", "geometry", "tree B/tri", "with geom.", "slowdown", "error",
+             "surface");
   for (const CookedTree& cooked : summary.trees) {
     const std::vector<Candidate>& candidates = cooked.contest.candidates;
     const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
       if (!candidate.rejected.empty()) continue;
-      fmt::print(
-          "  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>5.2f}  {:>9.2g}\n",
-          shown(cooked.tree.name), width, cooked.tree.triangle_count, codec_name(candidate.codec),
-          geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
-          per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.max_vertex_error);
+      fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f}  {:>9.2g}  {}\n",
+                 shown(cooked.tree.name), width, cooked.tree.triangle_count,
+                 codec_name(candidate.codec), geometry_name(candidate.geometry),
+                 per_triangle(candidate.tree_bytes, cooked.tree),
+                 per_triangle(candidate.bytes(), cooked.tree), slower[i],
+                 candidate.max_vertex_error, surface_text(cooked.edges));
     }
   }
 }
@@ -184,7 +191,8 @@ Json trees_json(const Summary& summary) {
     Json tree = {{"name", cooked.tree.name},
                  {"triangles", cooked.tree.triangle_count},
                  {"chosen", codec_name(cooked.tree.nodes.codec)},
-                 {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)}};
+                 {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)},
+                 {"surface", surface_json(cooked.edges)}};
     tree["candidates"] = Json::array();
     const std::vector<double> slower = slowdowns(cooked.contest.candidates, cooked.contest.queries);
     for (std::size_t c = 0; c < slower.size(); ++c) {
@@ -245,7 +253,8 @@ Json summary_json(const Summary& summary) {
 void print_trees(const Summary& summary, bool candidates) {
   if (candidates) {
     for (const CookedTree& cooked : summary.trees) {
-      fmt::print("{}: {} triangles\n", shown(cooked.tree.name), cooked.tree.triangle_count);
+      fmt::print("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
+                 surface_text(cooked.edges));
       print_contest(cooked);
       print_grid(cooked);
     }

@@ -34,7 +34,7 @@ class DecodedFaces {
   ~DecodedFaces() = default;
 
   /// Everything is checked here, so that reading cannot fail. Errors: kPartLeftOut when the order
-  /// of the source is asked for and the tree has no face ids; kFaceOutOfRange, kVertexOutOfRange
+  /// of the source is requested and the tree has no face ids; kFaceOutOfRange, kVertexOutOfRange
   /// and kVertexNotFinite for corrupt bytes.
   static Result<DecodedFaces> decode(const Tree& tree, ExportOrder order);
 
@@ -42,6 +42,8 @@ class DecodedFaces {
   [[nodiscard]] std::uint32_t face_count() const { return arrays_.face_count; }
   [[nodiscard]] std::uint64_t triangle_count() const { return triangle_count_; }
 
+  /// Both of the above, and what they refer to: valid as long as this and the tree's file.
+  [[nodiscard]] const MeshArrays& arrays() const { return arrays_; }
   /// Precondition: vertex < vertex_count().
   [[nodiscard]] Eigen::Vector3d position(std::uint32_t vertex) const {
     return position_of(arrays_, vertex);

@@ -42,7 +42,7 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   // Made up: faces of a subdivision surface instead of those in the file.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_EVAL_SUBDIVISION, false);
-  // Made up: other files, found by their names, joined to the one asked for.
+  // Made up: other files, found by their names, joined to the one requested.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD3_HANDLE_MULTIPART, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD5_NO_ANIM_AUTOLOAD, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_SMD_LOAD_ANIMATION_LIST, false);

@@ -75,7 +75,7 @@ struct Imported {
 /// Degenerate faces stay.
 ///
 /// Errors name the file and the face or vertex: kFileNotFound, kFileUnreadable (a directory, a
-/// pipe, no permission), kImportFailed (empty, or not what its format asks for: often assimp's
+/// pipe, no permission), kImportFailed (empty, or not what its format requires: often assimp's
 /// own message), kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1
 /// faces, or out of memory). No exception leaves it, nothing is printed by it, it reads and writes
 /// no global state: safe to call from several threads, in any locale.

@@ -88,7 +88,7 @@ Pose pose_of(const Transform& transform) {
   return pose;
 }
 
-// What is wrong with a pose, or nullptr. Asks what RelativePose asks, in its arithmetic, of a body
+// What is wrong with a pose, or nullptr. The tests of RelativePose, in its arithmetic, on a body
 // seen from itself: the inverse is finite, and so is that of the product of the two (a determinant
 // beyond all doubles makes the first one zero).
 const char* pose_fault(const Pose& pose) {

@@ -12,7 +12,7 @@
 
 namespace boxtree::cooker {
 
-/// How vertex positions are held. f32 unless the caller asks for f64: most sources are f32.
+/// How vertex positions are held. f32 unless the caller needs f64: most sources are f32.
 enum class Precision : std::uint8_t { kF32, kF64 };
 
 /// Positions of all vertices, three numbers each, in object space (the units of the source).

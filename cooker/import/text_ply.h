@@ -13,7 +13,7 @@
 namespace boxtree::cooker {
 
 /// Reads `text`, all of the file named, into `mesh`. Every element that the header states has to be
-/// there, a line each, with as many words as its properties ask for, all of them numbers; what
+/// there, a line each, with as many words as its properties need, all of them numbers; what
 /// follows the last one is not looked at. Errors as for import_mesh, naming the line.
 template <class T>
 Status read_text_ply(std::string_view text, const PlyLayout& layout, const std::string& file,

@@ -233,7 +233,7 @@ TEST(PolygonSplit, RandomSimplePolygons) {
   }
 }
 
-// Random closed walks: crossing, touching, doubling back. Only what holds for all is asked.
+// Random closed walks: crossing, touching, doubling back. Only what holds for all is tested.
 TEST(PolygonSplit, RandomWalksOnAGrid) {
   std::mt19937 random(13);
   for (int i = 0; i < 5000; ++i) {

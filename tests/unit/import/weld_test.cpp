@@ -39,7 +39,7 @@ TEST(Weld, DoublesDifferInTheLastBit) {
   EXPECT_EQ(welder.add({1, 1, 1}), 0u);
 }
 
-// Against std::map, through many growths of the table and with room asked for on the way.
+// Against std::map, through many growths of the table and with room requested on the way.
 template <class T>
 void expect_like_map(unsigned seed, int values) {
   std::mt19937 random(seed);
