@@ -5,7 +5,7 @@ set(BOXTREE_ALL_CODECS plain-f32 plain-f16 packed-f32 packed-f16 packed-f64 dedu
 set(BOXTREE_ALL_QUERIES ray box sphere point pair distance within scene)
 set(BOXTREE_CODECS all CACHE STRING "Codecs that the runtime reads: all, or some of ${BOXTREE_ALL_CODECS}")
 set(BOXTREE_QUERIES all CACHE STRING "Queries that it answers: all, or some of ${BOXTREE_ALL_QUERIES}")
-# AVX-512 gains at most 3 % of the time and takes as much code as AVX2: whoever wants it asks for it.
+# AVX-512 gains at most 3 % of the time and takes as much code as AVX2: so it is opt-in.
 set(BOXTREE_INSTRUCTION_SETS sse4 avx2 CACHE STRING
     "On x86-64, vectors that walks of the wide codecs are compiled for: some of sse4 avx2 avx512")
 option(BOXTREE_BLOB "Build boxtree::blob, which opens files that are compressed whole" ON)
@@ -39,7 +39,7 @@ set(BOXTREE_PAPER_CODECS ${BOXTREE_BUILT_CODECS})
 list(FILTER BOXTREE_PAPER_CODECS EXCLUDE REGEX "^wide")
 boxtree_choose(BOXTREE_BUILT_QUERIES BOXTREE_QUERIES "${BOXTREE_QUERIES}" ${BOXTREE_ALL_QUERIES})
 
-# A scene answers all of these, each by asking its trees.
+# A scene answers all of these, each by querying its trees.
 if(scene IN_LIST BOXTREE_BUILT_QUERIES)
   foreach(query ray box sphere point pair)
     if(NOT query IN_LIST BOXTREE_BUILT_QUERIES)

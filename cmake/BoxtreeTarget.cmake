@@ -10,7 +10,7 @@ include(${CMAKE_CURRENT_LIST_DIR}/BoxtreeParts.cmake)
 function(boxtree_set_target target)
   target_compile_features(${target} PUBLIC cxx_std_20)
   set_target_properties(${target} PROPERTIES CXX_EXTENSIONS OFF POSITION_INDEPENDENT_CODE ON)
-  # Same bytes and same answers everywhere: no fused multiply-add that the source does not ask for.
+  # Same bytes and same answers everywhere: no fused multiply-add that the source does not need.
   # Programs that use the library compile its inline functions, too.
   target_compile_options(${target} PUBLIC
     $<$<COMPILE_LANG_AND_ID:CXX,GNU,Clang,AppleClang>:-ffp-contract=off>)

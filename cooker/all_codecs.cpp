@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whoever links the cooker can bind all that it cooks: an object that is linked whether or not
-// somebody asks for it.
+// somebody needs it.
 #include <boxtree/paper.h>
 
 namespace {

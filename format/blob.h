@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A whole .bxt file, compressed inside another one: for cold storage and for comparison. It cannot
-// be mapped and asked; boxtree::blob decompresses it when it is opened.
+// be mapped and queried; boxtree::blob decompresses it when it is opened.
 #pragma once
 
 #include <array>

@@ -21,7 +21,7 @@ struct NodeRef {
 };
 
 /// What was found of the bytes of a node that was decoded. It says nothing of the walk that met the
-/// node: those go on through WalkBound::count (runtime/walk/work.h), which asks for it.
+/// node: those go on through WalkBound::count (runtime/walk/work.h), which needs it.
 enum class [[nodiscard]] NodeState : bool{kCorrupt, kValid};
 
 [[nodiscard]] constexpr NodeState valid_if(bool is_valid) noexcept {

@@ -26,7 +26,8 @@ inline constexpr std::uint32_t kPlainNoChild = 0xffffffffu;
 /// One node. `cutplane`: bits 0-1 the axis, bits 2-3 kind of the left child, bits 4-5 kind of the
 /// right child, the rest zero. cut[0] is taken off the box's high side to give the left child,
 /// cut[1] is added to its low side to give the right child; both in tree space, never negative.
-/// The root is node 0; every child stands behind its parent, a first child mostly right behind.
+/// The root is node 0; every child has a larger index than its parent, a first child mostly right
+/// behind.
 template <class Cut>
 struct PlainNode {
   std::uint32_t cutplane;

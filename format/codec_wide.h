@@ -129,7 +129,7 @@ template <class Node>
 }
 
 /// Decodes nodes of one tree. NodeRef::first of a subtree is the number of its node; the root is
-/// node 0, and children stand behind their parents.
+/// node 0, and children have larger indices than their parents.
 template <class NodeType>
 struct WideCodec {
   using Node = NodeType;

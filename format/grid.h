@@ -25,7 +25,7 @@ inline constexpr std::uint64_t kClusterUnit = 4;
 inline constexpr int kMinGridBits = 8;
 inline constexpr int kMaxGridBits = 30;
 
-/// Zero bytes after the last cluster: the longest leaf (see docs/FORMAT.md) and the reach of a
+/// Zero bytes after the last cluster: the longest leaf (see docs/FORMAT.md) and the width of a
 /// reader of bits, so that reading one needs no check at every field.
 inline constexpr std::size_t kClusterPadding = 96;
 

@@ -22,7 +22,7 @@ namespace boxtree {
 }
 
 /// The largest f16 not above `value`: rounded toward zero, saturating at 65504, so that a cut never
-/// takes away more than was asked for. Precondition: value >= 0 and not NaN.
+/// takes away more than was requested. Precondition: value >= 0 and not NaN.
 [[nodiscard]] constexpr std::uint16_t half_toward_zero(float value) noexcept {
   if (value >= 65504.0f) return 0x7bff;
   if (value < 0x1p-14f) return static_cast<std::uint16_t>(value * 0x1p24f);  // subnormal: truncates

@@ -22,7 +22,7 @@ Error error_with(Errc code, std::string_view place, std::string_view text,
 }
 
 Error section_size_error(std::uint64_t found, std::uint64_t expected) {
-  return error_with(Errc::kSectionSize, {}, "# bytes, its record asks for #", {found, expected});
+  return error_with(Errc::kSectionSize, {}, "# bytes, its record states #", {found, expected});
 }
 
 }  // namespace boxtree

@@ -33,7 +33,7 @@ struct SceneRecord {
   std::uint32_t depth;         // inner nodes on the longest path
   std::uint8_t pose_bytes;     // of a number in section poses: 4 or 8
   std::uint8_t layer_count;    // 1 to kMaxLayers
-  QueryKinds query_kinds;      // what the scene may be asked
+  QueryKinds query_kinds;      // queries that the scene answers
   std::uint8_t reserved0;
   std::int32_t scale_exponent;
   std::uint32_t material_count;
@@ -68,7 +68,7 @@ static_assert(offsetof(InstanceRecord, layer) == 14);
 
 /// What the instances of one layer answer and meet.
 struct LayerRecord {
-  std::uint32_t collides_with;  // bit n: contacts with layer n are asked for; symmetric
+  std::uint32_t collides_with;  // bit n: contacts with layer n are requested; symmetric
   std::uint32_t query_kinds;    // QueryKinds that instances of the layer answer
   std::uint32_t name_offset;    // into the names section
   std::uint32_t name_bytes;

@@ -58,7 +58,7 @@ static_assert(offsetof(TreeRecord, grid_exponent) == 128);
 static_assert(offsetof(TreeRecord, duplicate_bytes) == 35);
 static_assert(offsetof(TreeRecord, duplicate_count) == 132);
 
-/// What codecs ask of it. Faces that leaves hold are the first so many in tree order; the others
+/// What codecs need of it. Faces that leaves hold are the first so many in tree order; the others
 /// are copies of these.
 [[nodiscard]] constexpr TreeCounts counts_of(const TreeRecord& record) noexcept {
   return {record.node_count, record.face_count - record.duplicate_count};

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # From a fresh Debian 12 to answered queries: installs what is missing, builds, cooks real meshes
-# from Debian's own packages, and asks them.
+# from Debian's own packages, and queries them.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=samples/packages.sh

@@ -84,7 +84,7 @@ class Recursion {
     return split_at(faces, left_leaves * kLeafFaces, widest_axis(bounds));
   }
 
-  // The left side stands behind its parent, the right one behind all of the left.
+  // The left side has a larger index than its parent, the right one behind all of the left.
   static Sides sides(const Set& set, const Split& split) {
     const std::size_t left_leaves = split.left_count / kLeafFaces;
     const std::size_t middle = set.first + split.left_count;

@@ -20,8 +20,8 @@ enum class Goal : std::uint8_t { kMemory, kSpeed, kBalance };
 
 [[nodiscard]] const char* goal_name(Goal goal) noexcept;
 
-/// What is asked of a choice. Among the candidates that keep to both budgets: the fewest bytes, the
-/// least slowdown, or the smallest product of both.
+/// What is required of a choice. Among the candidates that keep to both budgets: the fewest bytes,
+/// the least slowdown, or the smallest product of both.
 struct Wishes {
   Goal goal = Goal::kBalance;
   std::optional<double> max_bytes_per_triangle;  // nodes and geometry
@@ -61,7 +61,7 @@ struct Contest {
 
 /// Which candidates may be chosen: those that pass their gates and that boxtree::runtime alone can
 /// read. Codecs of boxtree::paper are there to compare with, and chosen where nothing else was
-/// tried, as when one was asked for.
+/// tried, as when one was requested.
 [[nodiscard]] std::vector<bool> may_be_chosen(std::span<const Candidate> candidates);
 
 /// How many times as long each candidate takes as the fastest one that may be chosen: the mean over

@@ -112,9 +112,9 @@ Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_
     const Result<Tree> bound = Tree::bind(*file, tree);
     if (!bound) return bound.error();
     const double opened = thread_seconds();
-    const Status asked = first_query(*bound);
+    const Status queried = first_query(*bound);
     const double answered = thread_seconds();
-    if (!asked) return asked.error();
+    if (!queried) return queried.error();
     ::getrusage(RUSAGE_SELF, &after);
     if (i == 0) continue;
     open_us.push_back(1e6 * (opened - start));

@@ -56,7 +56,8 @@ struct KindTimes {
 /// What reading the clock twice takes: it is in every time of a single query.
 [[nodiscard]] double clock_cost_ns();
 
-/// Times each query on its own. `ask` returns an Errc; `status` gets the first that is not kOk.
+/// Times each query on its own. `run_query` returns an Errc; `status` gets the first that is not
+/// kOk.
 template <class Query, class RunQuery>
 [[nodiscard]] KindTimes time_each(const std::vector<Query>& queries, std::size_t runs,
                                   Status& status, RunQuery run_query) {
@@ -92,8 +93,8 @@ struct QueryFigures {
   std::uint64_t pair_pairs = 0;
 };
 
-/// Asks one tree everything, single-threaded; pairs are the tree against itself. Errors: those of
-/// the queries.
+/// Runs every kind of query on one tree, single-threaded; pairs are the tree against itself.
+/// Errors: those of the queries.
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs);
 
 /// One ray across the middle: the first answer in all times to it.

@@ -322,10 +322,11 @@ class Search {
   [[nodiscard]] std::string why_not(CodecId codec) const {
     if (is_wide(codec)) return "";
     if (codec == CodecId::kPackedF64 && mesh_.positions.precision != Precision::kF64) {
-      return "digits that the boxes of f32 positions do not have";
+      return "skipped: the mesh is f32";
     }
     if (mesh_.faces.size() < kTryAllFaces) return "";
-    return "a face a leaf: more than ten times the bytes of nodes, and slower on every mesh "
+    return "one triangle per leaf: more than ten times the bytes of nodes, and slower on every "
+           "mesh "
            "measured";
   }
 

@@ -64,7 +64,7 @@ struct TriedTree {
 /// Deterministic. Precondition: what import promises of a mesh. `scene`: the grid shared with other
 /// meshes; by default one for this mesh alone. Errors: kMeshTooLarge; kMeshUnsupported when faces
 /// of an n-gon would have to stay external, or the only geometry allowed is a grid that cannot be
-/// as fine as asked.
+/// as fine as requested.
 Result<TriedTree> try_encodings(const SourceMesh& mesh, const SearchOptions& options,
                                 const std::optional<Grid>& scene = {});
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The walks of the runtime, listened to. Any codec by the same walk: boxes of f32 codecs come and
-// go through double unchanged, so that it meets the nodes that a query meets.
+// go through double unchanged, so that it visits the nodes that a query visits.
 #include "cooker/choose/work.h"
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace boxtree::cooker {
 namespace {
 
-// Where a query meets all of a mesh, as when its faces lie on top of each other, a few say as
-// much as hundreds: from so many steps of a kind on, nothing more is asked, and the query at
+// Where a query visits all of a mesh, as when its faces lie on top of each other, a few say as
+// much as hundreds: from so many steps of a kind on, nothing more is queried, and the query at
 // hand ends.
 constexpr std::uint64_t kMostSteps = 1'000'000;
 
@@ -103,14 +103,14 @@ Errc run_query(const BoundTree& tree, const Pose& pose, Counts& counts) {
 template <class Query>
 Result<Work> mean_work(const Tree& tree, const std::vector<Query>& queries) {
   Counts counts;
-  std::size_t asked = 0;
+  std::size_t run_count = 0;
   for (const Query& query : queries) {
     const Errc error = run_query(BoundTree::of(tree), query, counts);
-    ++asked;
+    ++run_count;
     if (counts.are_enough()) break;  // and so ended the query, whatever it says
     if (error != Errc::kOk) return error;
   }
-  const auto each = static_cast<double>(std::max<std::size_t>(asked, 1));
+  const auto each = static_cast<double>(std::max<std::size_t>(run_count, 1));
   return Work{static_cast<double>(counts.nodes) / each, static_cast<double>(counts.leaves) / each};
 }
 
@@ -126,11 +126,11 @@ Workload choice_queries(const Eigen::AlignedBox3d& bounds) {
   return queries;
 }
 
-Result<WorkOfKinds> count_work(const Tree& asked, const Workload& queries) {
+Result<WorkOfKinds> count_work(const Tree& whole, const Workload& queries) {
   WorkOfKinds work{};
-  if (asked.empty()) return work;
+  if (whole.empty()) return work;
   // Copies cost no step, and of n faces in one place there are n * n pairs.
-  const Tree tree = asked.without_duplicates();
+  const Tree tree = whole.without_duplicates();
   const auto enter = [&](QueryKind kind, const auto& of_kind) -> Status {
     const Result<Work> mean = mean_work(tree, of_kind);
     if (!mean) return mean.error();

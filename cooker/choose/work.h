@@ -17,7 +17,7 @@ enum class QueryKind : std::uint8_t { kRay, kBox, kPoint, kPair };
 inline constexpr std::size_t kQueryKinds = 4;
 inline constexpr std::array<const char*, kQueryKinds> kQueryNames = {"ray", "box", "point", "pair"};
 
-/// Means over the queries of a kind. Of pairs: nodes taken apart against a box of the other tree,
+/// Means over the queries of a kind. Of pairs: nodes expanded against a box of the other tree,
 /// and pairs of leaves compared.
 struct Work {
   double nodes = 0;
@@ -27,11 +27,11 @@ using WorkOfKinds = std::array<Work, kQueryKinds>;
 
 /// The fixed queries that candidates are compared by, for a mesh with these bounds. Pairs: all
 /// contacts of the tree and its copy, in poses in which their bounds just touch, so that no
-/// candidate is judged by how many contacts the mesh has with itself.
+/// candidate is classified by how many contacts the mesh has with itself.
 [[nodiscard]] Workload choice_queries(const Eigen::AlignedBox3d& bounds);
 
-/// Asks one tree everything and counts, up to a million nodes and leaves of a kind. Errors: those
-/// of the queries. A tree without faces has no work.
+/// Runs every kind of query on one tree and counts, up to a million nodes and leaves of a kind.
+/// Errors: those of the queries. A tree without faces has no work.
 Result<WorkOfKinds> count_work(const Tree& tree, const Workload& queries);
 
 }  // namespace boxtree::cooker

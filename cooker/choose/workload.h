@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The queries that measurements ask: seeded, the same on every machine and for every library.
+// The queries that measurements run: seeded, the same on every machine and for every library.
 #pragma once
 
 #include <cstdint>

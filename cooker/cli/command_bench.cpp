@@ -138,11 +138,11 @@ void print_row(const Json& row) {
              row["open_alone_us"].get<double>());
 }
 
-// A row for each codec and store: nanoseconds of a request, a node and a leaf for each kind.
+// A row for each codec and store: nanoseconds of a query, a node and a leaf for each kind.
 void print_row(const CodecCost& cost) {
   fmt::print("{:<10} {:<5}", codec_name(cost.codec), geometry_name(cost.geometry));
   for (const StepCost& step : cost.of_kind) {
-    fmt::print("  {:8.1f} {:6.2f} {:6.2f}", step.request, step.node, step.leaf);
+    fmt::print("  {:8.1f} {:6.2f} {:6.2f}", step.query, step.node, step.leaf);
   }
   fmt::print("\n");
 }
@@ -169,7 +169,7 @@ int run_calibration(const Arguments& arguments) {
 
 void print_row(const char* kind, const PageCount& count) {
   fmt::print("  {:<5} {:5} pages at the median, {:5} at worst, of {} queries\n", kind, count.median,
-             count.worst, count.requests);
+             count.worst, count.queries);
 }
 
 // What queries read of a file of which nothing has been read.

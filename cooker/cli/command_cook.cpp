@@ -89,8 +89,8 @@ int run(Arguments& arguments) {
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
-  // The grid of 24 bits that is tried by default would cost f64 positions digits that were asked
-  // for.
+  // The grid of 24 bits that is tried by default would cost f64 positions digits that were
+  // requested for.
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
                          !options.blob && is_grid_welcome;
@@ -208,9 +208,10 @@ void add_cook_command(CLI::App& app, int& status) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"exact", "estimated"}))
       ->capture_default_str();
-  rare(command.add_option("--shrink-share", arguments->job.options.shrink_share,
-                          "Codecs with a face a leaf cut off empty slabs from this share of a box "
-                          "on; 1: never"))
+  rare(command.add_option(
+           "--shrink-share", arguments->job.options.shrink_share,
+           "Codecs with one triangle per leaf cut off empty slabs from this share of a box "
+           "on; 1: never"))
       ->type_name("SHARE")
       ->check(share_fault, "0.01 to 1")
       ->capture_default_str();

@@ -62,7 +62,7 @@ std::optional<std::vector<LevelRange>> parse_levels(std::string_view text) {
   }
 }
 
-// What is asked for by name is shown; without any name, triangles and the first levels.
+// What is requested by name is shown; without any name, triangles and the first levels.
 std::optional<ExportOptions> options_of(const Arguments& arguments) {
   ExportOptions options;
   options.triangles = arguments.triangles || !arguments.boxes;
@@ -139,7 +139,7 @@ class SourceMeshes {
   std::vector<std::uint64_t> hashes_;  // of content, one a mesh
 };
 
-// The trees asked for, bound to `meshes` where their geometry is external.
+// The trees requested, bound to `meshes` where their geometry is external.
 Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& file,
                                      bool with_triangles, std::optional<SourceMeshes>& meshes) {
   const Result<std::vector<std::uint32_t>> numbers = chosen_trees(arguments, file);
@@ -167,7 +167,7 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
   return trees;
 }
 
-// The scene of the file, unless trees are asked for.
+// The scene of the file, unless trees are requested.
 Result<ExportReport> export_file(const Arguments& arguments, const File& file,
                                  std::span<const Tree> trees, const ExportOptions& options) {
   if (!file.has_scene() || arguments.trees || !arguments.tree.empty()) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `boxtree query`: asks one tree of a mapped file, or two trees against each other, one request
+// `boxtree query`: queries one tree of a mapped file, or two trees against each other, one request
 // from options or many from a file of JSON lines.
 #include <algorithm>
 #include <cerrno>

@@ -56,7 +56,7 @@ int main(int argc, char** argv) {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
 #endif
   try {
-    CLI::App app{"Cooks meshes into small collision trees and asks them.", "boxtree"};
+    CLI::App app{"Cooks meshes into small collision trees and queries them.", "boxtree"};
     app.set_version_flag("-V,--version", fmt::format("boxtree {}", cooker::kVersion));
     app.formatter(std::make_shared<cooker::HelpFormatter>());
     app.set_help_flag("-h,--help", "Print the common options");

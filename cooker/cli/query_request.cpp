@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Parsing, asking, and the JSON of answers.
+// Parsing, querying, and the JSON of answers.
 #include "cooker/cli/query_request.h"
 
 #include <algorithm>
@@ -51,9 +51,9 @@ Result<Json> answer_faces(Overlap overlap) {
 const char* name_of(Overlap overlap) {
   switch (overlap) {
     case Overlap::kOverlapping:
-      return "hit";
+      return "overlapping";
     case Overlap::kDisjoint:
-      return "free";
+      return "disjoint";
     case Overlap::kUndecided:
       return "undecided";
     case Overlap::kBudgetSpent:

@@ -49,7 +49,7 @@ struct OverlapOptions {
 
   template <class Fields>
   void describe(Fields& fields, bool* given = nullptr) {
-    fields.optional("within", within, "Answer hit or free, or undecided if closer than this",
+    fields.optional("within", within, "Answer overlapping or disjoint, or undecided if closer",
                     given);
     fields.optional("budget", node_budget, "Stop after so many nodes", given);
   }
@@ -148,7 +148,7 @@ struct DistanceRequest {
 
 struct OverlapRequest {
   static constexpr const char* kKind = "overlap";
-  static constexpr const char* kHelp = "Whether two trees touch: hit or free";
+  static constexpr const char* kHelp = "Whether two trees overlap";
 
   SecondTree second;
   OverlapOptions options;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Moving, asking, and the JSON of answers.
+// Moving, querying, and the JSON of answers.
 #include "cooker/cli/scene_query.h"
 
 #include <charconv>

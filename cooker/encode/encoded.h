@@ -72,7 +72,8 @@ struct EncodedGeometry {
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
 
-/// Source faces in the order of the leaves of a tree with a face a leaf, from left to right.
+/// Source faces in the order of the leaves of a tree with one triangle per leaf, from left to
+/// right.
 [[nodiscard]] std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree);
 
 /// Faces in `order`, vertices in order of first use by them, positions bit for bit.

@@ -23,7 +23,7 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 
 /// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. `mesh` is
 /// the source of the tree and serves f64 alone: the build tree's own bounds are f32. Precondition:
-/// a tree with a face a leaf. `shrink_share` is above 0.
+/// a tree with one triangle per leaf. `shrink_share` is above 0.
 [[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
                                         FaceOrder order, double shrink_share = kShrinkShare);
 

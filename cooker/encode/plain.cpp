@@ -254,7 +254,7 @@ EncodedNodes encode(const BuildTree& tree, FaceOrder order, double shrink_share,
 }
 
 // What each node of the build tree must hold, without rounding to f32: from the leaves up, which
-// stand behind their parents.
+// have larger indices than their parents.
 std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMesh& mesh) {
   const Frame frame = tree.frame();
   std::vector<Box<double>> bounds(tree.nodes.size());

@@ -11,7 +11,7 @@ namespace boxtree::cooker {
 WideCollapse::WideCollapse(const BuildTree& tree, double node_cost)
     : tree_(tree), forests_(tree.nodes.size()), own_division_(tree.nodes.size()) {
   const double root_area = half_area(tree.nodes[0].bounds);
-  // Children stand behind their parents.
+  // Children have larger indices than their parents.
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
     if (tree.nodes[i].is_leaf()) continue;  // a leaf is one root and costs the same everywhere
     const auto node = static_cast<std::uint32_t>(i);

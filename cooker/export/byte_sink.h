@@ -16,7 +16,7 @@
 
 namespace boxtree::cooker {
 
-/// Remembers the first error and drops what comes after it: callers ask once, by finish().
+/// Remembers the first error and drops what comes after it: callers look once, by finish().
 class ByteSink {
  public:
   /// `file` must outlive it.

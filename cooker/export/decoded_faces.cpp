@@ -26,7 +26,7 @@ std::vector<std::uint32_t> face_ids_of(const Tree& tree) {
   return ids;
 }
 
-// Which stored face comes when; nothing if they are stored in the order asked for.
+// Which stored face comes when; nothing if they are stored in the order requested.
 Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder order) {
   const std::uint32_t count = tree.face_count();
   if (order == ExportOrder::kSource && !tree.has_face_ids() && !tree.empty()) {

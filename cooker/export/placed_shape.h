@@ -24,7 +24,7 @@ namespace boxtree::cooker {
 [[nodiscard]] bool mirrors(const Pose& pose);
 
 /// Matrices of nested nodes, the outermost first, whose product is `pose`. glTF 2.0 demands that
-/// each be made of a translation, a rotation and a scale, and viewers that take a matrix apart lose
+/// each be made of a translation, a rotation and a scale, and viewers that decompose a matrix lose
 /// what is not: a pose that shears becomes two, equal to it but for rounding. Any other pose is one
 /// matrix, as it is.
 [[nodiscard]] std::vector<Pose> node_matrices(const Pose& pose);

@@ -54,8 +54,8 @@ class SceneWalk {
                                   ", the top level has " + std::to_string(found));
   }
 
-  // The bounds of all instances below, in the scene's frame. Children stand behind their parents,
-  // so that numbers grow on every path; the depth is limited all the same.
+  // The bounds of all instances below, in the scene's frame. Children have larger indices than
+  // their parents, so that numbers grow on every path; the depth is limited all the same.
   Box<double> visit_node(NodeRef node, const Box<float>& box, std::uint32_t depth) {
     Box<double> content = empty_box<double>();
     if (depth > kMaxWideDepth) {

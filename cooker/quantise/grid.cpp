@@ -81,13 +81,13 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   const int bits = extent_exponent - grid.step_exponent;
   if (half > 0 && bits > kMaxGridBits) {
     const double possible = std::ldexp(1.0, extent_exponent - kMaxGridBits);
-    const std::string asked = choice.step_exponent
-                                  ? fmt::format("a step of 2^{}", *choice.step_exponent)
-                                  : fmt::format("a tolerance of {}", choice.tolerance.value_or(0));
+    const std::string requested =
+        choice.step_exponent ? fmt::format("a step of 2^{}", *choice.step_exponent)
+                             : fmt::format("a tolerance of {}", choice.tolerance.value_or(0));
     return Error{Errc::kMeshUnsupported,
-                 fmt::format("{} asks for a grid of {} bits over an extent of {}; at most {} are "
+                 fmt::format("{} needs a grid of {} bits over an extent of {}; at most {} are "
                              "possible, a tolerance of {}",
-                             asked, bits, 2 * half, kMaxGridBits, 0.8661 * possible)};
+                             requested, bits, 2 * half, kMaxGridBits, 0.8661 * possible)};
   }
   grid.step_exponent = std::clamp(grid.step_exponent, -kMaxStepExponent, kMaxStepExponent);
   for (Eigen::Index k = 0; k < 3; ++k) {

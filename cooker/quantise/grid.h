@@ -34,7 +34,7 @@ struct Grid {
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh);
 
 /// A grid over `bounds` of all meshes that go into one file. Its origin is a multiple of its step
-/// where double can hold one. kMeshUnsupported when a tolerance or a step asks for more than
+/// where double can hold one. kMeshUnsupported when a tolerance or a step needs more than
 /// kMaxGridBits, or a tolerance is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every query is asked in every setting; nodes and errors are of one run, times of several.
+// Every query is run in every setting; nodes and errors are of one run, times of several.
 #include "cooker/report/approximate.h"
 
 #include <algorithm>

@@ -18,7 +18,7 @@ struct ApproximateStep {
   double relative_error = 0;                    // allowed
   std::uint64_t node_budget = kUnlimitedNodes;  // allowed
   KindTimes times;                              // zero unless timed
-  double nodes_mean = 0;                        // nodes taken apart and leaves read
+  double nodes_mean = 0;                        // nodes expanded and leaves read
   double nodes_median = 0;
   double error_median = 0;  // of what was found: how much farther it is than the nearest
   double error_max = 0;
@@ -55,7 +55,7 @@ struct TrueDistances {
   std::vector<TrueDistance> poses;
 };
 
-/// Asks with no error allowed. Errors: those of the queries.
+/// Queries with no error allowed. Errors: those of the queries.
 Result<TrueDistances> true_distances(const Tree& tree, const Workload& queries);
 
 struct ApproximateEffort {

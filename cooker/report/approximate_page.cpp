@@ -43,13 +43,13 @@ std::string share(double value) {
   return value == 0 ? "0" : fmt::format("{:.3g} %", 100 * value);
 }
 
-// The encodings that were asked, in the order of kApproximateCodecs.
-std::vector<const TradePoint*> asked(const MeshTradeoff& mesh) {
+// The encodings that were queried, in the order of kApproximateCodecs.
+std::vector<const TradePoint*> queried_points(const MeshTradeoff& mesh) {
   std::vector<const TradePoint*> points;
   for (const CodecId codec : kApproximateCodecs) {
     for (const TradePoint& point : mesh.points) {
-      const bool is_asked = !point.approximate[0].by_error.empty();
-      if (point.codec == codec && is_asked) points.push_back(&point);
+      const bool is_queried = !point.approximate[0].by_error.empty();
+      if (point.codec == codec && is_queried) points.push_back(&point);
     }
   }
   return points;
@@ -132,7 +132,7 @@ PageTable table_of(const MeshTradeoff& mesh, const std::vector<const TradePoint*
   table.columns.insert(table.columns.end(),
                        {"nodes, mean", "error, max", "error, median", "stated, max"});
   if (by_budget) {
-    table.columns.insert(table.columns.end(), {"found", "near enough", "false bounds"});
+    table.columns.insert(table.columns.end(), {"found", "converged", "false bounds"});
   } else {
     table.columns.insert(table.columns.end(), {"false bounds", "slower"});
   }
@@ -213,7 +213,7 @@ PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePo
 }  // namespace
 
 std::vector<PageSection> approximate_sections(const MeshTradeoff& mesh) {
-  const std::vector<const TradePoint*> points = asked(mesh);
+  const std::vector<const TradePoint*> points = queried_points(mesh);
   if (points.empty()) return {};
   std::vector<PageSection> sections;
   for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {

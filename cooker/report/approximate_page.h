@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// One section for closest points and one for distances; none if no encoding was asked.
+/// One section for closest points and one for distances; none if no encoding was queried.
 [[nodiscard]] std::vector<PageSection> approximate_sections(const MeshTradeoff& mesh);
 
 }  // namespace boxtree::cooker

@@ -133,7 +133,7 @@ Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size
   return boxes;
 }
 
-// Opens and binds, and asks query after query, each of a file of which nothing was read.
+// Opens and binds, and runs query after query, each of a file of which nothing was read.
 class ColdFile {
  public:
   ColdFile(Watch& watch, std::uint32_t index) : watch_(watch), index_(index) {}

@@ -32,9 +32,10 @@ struct PageFigures {
   PageCount point;       // the middle of such a box
 };
 
-/// Asks `queries` of each kind about a tree with geometry inside, a file anew for each. Mapped
+/// Runs `queries` of each kind on a tree with geometry inside, a fresh file for each. Mapped
 /// pages are kept from being read, and signals of those that are nevertheless are counted; so not
-/// two of these at a time in one program. Errors: those of opening, binding and asking, kMapFailed.
+/// two of these at a time in one program. Errors: those of opening, binding and querying,
+/// kMapFailed.
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t tree,
                                   std::size_t queries);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Aligned contact, asked of trees that differ in the rounding of their cuts alone.
+// Aligned contact on trees that differ in the rounding of their cuts alone.
 #include "cooker/report/rounding.h"
 
 #include <array>

@@ -12,7 +12,7 @@
 
 namespace boxtree::cooker {
 
-/// The same contacts asked of three trees of one mesh.
+/// The same contacts on three trees of one mesh.
 struct RoundingFigures {
   std::uint64_t queries = 0;
   std::uint64_t pairs_f32 = 0;      // pairs of faces found with f32 cuts

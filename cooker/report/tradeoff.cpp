@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // One store of geometry after the other: its candidates are counted by the search of the cooker,
-// then asked here.
+// then queried here.
 #include "cooker/report/tradeoff.h"
 
 #include <algorithm>

@@ -23,7 +23,7 @@ inline constexpr std::size_t kTimedKinds = 4;
 inline constexpr std::array<const char*, kTimedKinds> kTimedNames = {"ray", "box", "point",
                                                                      "first_contact"};
 
-/// Codecs that are asked with allowed errors and budgets: ours and the paper's.
+/// Codecs that are queried with allowed errors and budgets: ours and the paper's.
 inline constexpr std::array kApproximateCodecs = {CodecId::kWide8, CodecId::kWide4,
                                                   CodecId::kPlainF32};
 
@@ -98,9 +98,9 @@ using ShareProgress = std::function<void(const std::string& step, double share)>
 
 /// Encodes a mesh as every codec with exact geometry and as wide8 and wide4 on each grid of the
 /// sweep; a grid that double precision cannot hold is left out. The reference for work is plain-f32
-/// (whose boxes are exact for f32 positions) for codecs with a face a leaf and wide8 for those with
-/// full leaves, which stand on a tree of their own; the reference for answers is plain-f32. Errors:
-/// kNoFaces, and those of cooking and queries.
+/// (whose boxes are exact for f32 positions) for codecs with one triangle per leaf and wide8 for
+/// those with full leaves, which stand on a tree of their own; the reference for answers is
+/// plain-f32. Errors: kNoFaces, and those of cooking and queries.
 Result<MeshTradeoff> measure_tradeoff(const SourceMesh& mesh, const TradeoffOptions& options,
                                       const ShareProgress& progress = {});
 

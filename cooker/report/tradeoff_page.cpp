@@ -273,7 +273,7 @@ PageSection gates_section(const MeshTradeoff& mesh) {
   for (const TradePoint& point : mesh.points) {
     table.rows.push_back(
         {point.name(), point.gates.pass() ? "pass" : "FAILED", std::to_string(point.gates.missed),
-         std::to_string(point.gates.escapes), point.gates.certificate ? "holds" : "does not hold",
+         std::to_string(point.gates.escapes), point.gates.certificate ? "valid" : "invalid",
          figure(point.surface_max), figure(point.surface_rms), figure(point.surface_bound),
          figure(point.answers.distance_max), figure(point.answers.distance_median),
          figure(point.answers.ray_median), fmt::format("{:.0f}", point.answers.flips_per_million)});
@@ -292,7 +292,8 @@ PageSection work_section(const MeshTradeoff& mesh) {
   section.text =
       "Nodes decoded and leaves tested for one query, the same on every machine, and how many "
       "more (+) or fewer (-) than in the reference with exact geometry: plain-f32, whose boxes are "
-      "exact, for codecs with a face a leaf; wide8 for the wide ones, which have a tree of their "
+      "exact, for codecs with one triangle per leaf; wide8 for the wide ones, which have a tree of "
+      "their "
       "own. Pairs are all contacts. Fewer is "
       "possible, too: rays and closest points go to the nearest box first, and a grid changes the "
       "mesh that the tree is built on.";

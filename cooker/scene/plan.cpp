@@ -141,9 +141,9 @@ void decide_queries(const Profile& profile, ScenePlan& plan) {
     }
     const bool kept = (plan.queries & bit) != 0;
     plan.decisions.push_back({kKinds[kind], OwnerKind::kFile, 0, kept,
-                              kept       ? "asked for"
+                              kept       ? "requested"
                               : of_scene ? "no object answers them"
-                                         : "the scene is never asked them",
+                                         : "the scene never answers them",
                               line});
   }
 }
@@ -157,11 +157,11 @@ void decide_names(const Profile& profile, ScenePlan& plan) {
     line = std::max(line, names.line);
     if (names.value) continue;
     plan.decisions.push_back({Aspect::kNames, OwnerKind::kObject, layer.object, false,
-                              "nobody asks for names of its instances", names.line});
+                              "no object needs names of its instances", names.line});
   }
   if (any) return;
   plan.decisions.push_back(
-      {Aspect::kNames, OwnerKind::kFile, 0, false, "no object asks for them", line});
+      {Aspect::kNames, OwnerKind::kFile, 0, false, "no object needs them", line});
 }
 
 }  // namespace

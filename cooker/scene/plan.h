@@ -50,7 +50,7 @@ struct Decision {
   OwnerKind owner_kind = OwnerKind::kFile;
   std::uint32_t owner = 0;  // of kFile: 0
   bool kept = true;  // of kPrecision: no vertex may move farther than the cooker lets it by itself
-  std::string reason;      // "no object that uses it asks for them"
+  std::string reason;      // "no object that uses it needs them"
   std::uint32_t line = 0;  // of the profile; 0: a default
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each mesh needs: of all objects that use it, what the most demanding asks for.
+// What each mesh needs: of all objects that use it, what the most demanding needs.
 #include "cooker/scene/plan_meshes.h"
 
 #include <algorithm>
@@ -70,7 +70,7 @@ class MeshPlanner {
   [[nodiscard]] bool can_be_shared(std::uint32_t mesh) const;
   void drop(std::uint32_t mesh);
   void decide_parts(std::uint32_t mesh);
-  void decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*asked, bool& kept);
+  void decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*needed, bool& kept);
   void decide_queries(std::uint32_t mesh);
   void decide_geometry(std::uint32_t mesh);
   void decide_precision(std::uint32_t mesh);
@@ -187,7 +187,7 @@ void MeshPlanner::drop(std::uint32_t mesh) {
   planned.queries = 0;
   if (planned.same_as) {
     decide(mesh, Aspect::kMesh, false,
-           fmt::format("equals mesh {} but for materials that nobody asks for",
+           fmt::format("equals mesh {} but for materials that no object needs",
                        scene_.meshes[*planned.same_as].mesh.name),
            object_of(uses_[mesh].front()).needs.materials.line);
     return;
@@ -202,18 +202,18 @@ void MeshPlanner::drop(std::uint32_t mesh) {
          line == 0 ? "it has no instances" : "none of its instances is kept", line);
 }
 
-// Kept if any object asks; dropped by the line of the first.
-void MeshPlanner::decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*asked,
+// Kept if any object needs it; dropped by the line of the first.
+void MeshPlanner::decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*needed,
                               bool& kept) {
   const std::vector<Use>& uses = uses_[mesh];
-  const auto asks = [&](const Use& use) { return (object_of(use).needs.*asked).value; };
-  const auto asking = std::find_if(uses.begin(), uses.end(), asks);
-  kept = asking != uses.end();
-  const ProfileObject& by = object_of(kept ? *asking : uses.front());
+  const auto needs_it = [&](const Use& use) { return (object_of(use).needs.*needed).value; };
+  const auto first_need = std::find_if(uses.begin(), uses.end(), needs_it);
+  kept = first_need != uses.end();
+  const ProfileObject& by = object_of(kept ? *first_need : uses.front());
   decide(mesh, aspect, kept,
-         kept ? kept_for(by.name.value, (by.needs.*asked).line, "asks for them")
-              : "no object that uses it asks for them",
-         (by.needs.*asked).line);
+         kept ? kept_for(by.name.value, (by.needs.*needed).line, "needs them")
+              : "no object that uses it needs them",
+         (by.needs.*needed).line);
 }
 
 void MeshPlanner::decide_parts(std::uint32_t mesh) {
@@ -261,7 +261,7 @@ void MeshPlanner::decide_geometry(std::uint32_t mesh) {
   if (said_of_[mesh] != nullptr && said_of_[mesh]->external) {
     const Stated<bool>& external = *said_of_[mesh]->external;
     planned.external = external.value;
-    decide(mesh, Aspect::kGeometry, !external.value, external.value ? kShared : "asked for",
+    decide(mesh, Aspect::kGeometry, !external.value, external.value ? kShared : "requested",
            external.line);
     return;
   }

@@ -38,7 +38,7 @@ struct ContactRule {
   bool of_object = false;         // stated for the object itself, not in [contact]
 };
 
-/// What is asked of the instances of one object; each value its own or that of [scene].
+/// What is required of the instances of one object; each value its own or that of [scene].
 struct Needs {
   Stated<QueryKinds> queries{kAllQueries};
   Stated<bool> face_ids{true};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Typed reading of a profile's tables: each key asked for is known, all others are complained of.
+// Typed reading of a profile's tables: each key requested is known, all others are complained of.
 #pragma once
 
 #include <cstdint>
@@ -76,7 +76,7 @@ class Fields {
                                          std::string_view wording);
   /// Complains of two keys that exclude each other, at the later one.
   void exclude(std::string_view first, std::string_view second);
-  /// Complains of all keys that were not asked for.
+  /// Complains of all keys that were not requested.
   void finish();
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What toml++ must not be given: it takes keys apart by recursion, a frame for each part, asserts
+// What toml++ must not be given: it expands keys by recursion, a frame for each part, asserts
 // on a table's name that does not end on its line, and looks up characters beyond ASCII outside of
 // quotes, which TOML 1.0 does not allow, in tables that it runs past.
 #pragma once

@@ -38,7 +38,7 @@ Result<FileLayout> layout_of(const FileParts& parts);
 /// Writes the file, maps what was written, proves every tree of it (cooker/proof/proof.h), and only
 /// then lets it take the place of `path`. On any error the old file is untouched. Returns its size.
 /// Errors: kWriteFailed; kMeshTooLarge for more trees than a file can hold; those of encode_scene;
-/// the first finding if the proof fails, which is a defect of ours.
+/// the first finding if the proof fails, which is an internal error.
 Result<std::uint64_t> write_file(const std::filesystem::path& path, const FileParts& parts);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The leaf predicates: what a query asks of one triangle. All sets are closed (touching counts),
+// The leaf predicates: what a query needs of one triangle. All sets are closed (touching counts),
 // all functions are pure, never allocate, and accept degenerate triangles. Coordinates must be
 // finite and of magnitude at most 2^200, so that no product overflows.
 #pragma once

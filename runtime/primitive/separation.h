@@ -28,7 +28,7 @@ inline constexpr double kShortestDirection = 0x1p-400;
 
 /// A lower bound of the distance between the convex hulls of two sets of points, by the gap between
 /// them along `direction`, which points from the first to the second; 0 where that shows no gap.
-/// `reach` is the largest magnitude of any coordinate.
+/// `max_abs` is the largest absolute coordinate.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_along(const Eigen::Vector3d& direction,
                                       const std::array<Eigen::Vector3d, N>& first,

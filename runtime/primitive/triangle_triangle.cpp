@@ -85,7 +85,7 @@ constexpr Crossing find_crossing(const Signs& s) {
   for (std::uint8_t i = 0; i < 3; ++i) {  // an apex in the plane, the others both to one side
     if (s[i] == 0 && s[(i + 1u) % 3] != 0) return {i, s[(i + 1u) % 3] > 0};
   }
-  return {0, false};  // strictly one-sided or all zero: never asked for
+  return {0, false};  // strictly one-sided or all zero: never needed
 }
 
 constexpr std::array<Crossing, 27> kCrossings = [] {
@@ -236,7 +236,7 @@ bool segment_intersects_triangle(const Segment& s, const Triangle& t,
 }
 
 // Coplanar segments meet if their projections do along an axis that is not in their plane. Looking
-// along all three asks for no less and needs no choice.
+// along all three needs no less and needs no choice.
 bool segments_intersect(const Segment& s, const Segment& t) {
   if (orient3d(s.from, s.to, t.from, t.to) != 0) return false;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

@@ -3,8 +3,8 @@
 // boxtree/distance.h.
 //
 // Every pair of nodes has a key, the squared lower bound of its boxes' distance, never above that
-// of anything inside. Pairs are taken apart in the order of their keys, so a walk that may err more
-// takes the same pairs apart in the same order and stops sooner. The answer's lower bound is the
+// of anything inside. Pairs are expanded in the order of their keys, so a walk that may err more
+// expands the same pairs in the same order and stops sooner. The answer's lower bound is the
 // least of the keys of all pairs that were left alone and of the bounds of all triangles compared.
 #pragma once
 
@@ -103,7 +103,7 @@ class DistanceWalk {
   static constexpr std::size_t kWidth = std::max(A::Children::kWidth, B::Children::kWidth);
 
   // Until some triangles have been compared the walk goes straight down, to the nearest child of
-  // the pair taken apart last; from then on the nearest pair of all is next.
+  // the pair expanded last; from then on the nearest pair of all is next.
   bool take(double& key, Entry& entry) noexcept {
     if (has_next_ && next_key_ < nearest_.enough()) {
       has_next_ = false;
@@ -119,7 +119,7 @@ class DistanceWalk {
       const Errc error = bound_.compare(entry.first, entry.second);
       return error != Errc::kOk ? error : nearest_.compare(entry.first, entry.second);
     }
-    // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
+    // The larger box is expanded, a leaf never. A pair (a, b) is met once: only one of the pairs
     // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
     const Box<double> image = pose_.hull_in_first(entry.second_box);
     if (!entry.first_leaf && (entry.second_leaf || extent(entry.first_box) > extent(image))) {

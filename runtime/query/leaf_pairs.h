@@ -23,7 +23,7 @@ struct LeafPair {
   NodeRef second;
 };
 
-/// Asked about each triangle of the first leaf and of the second, brought into the first one's
+/// Called with each triangle of the first leaf and of the second, brought into the first one's
 /// space, that do not touch: whether the walk is to end.
 using TriangleWatch = FunctionRef<bool(const Triangle& first, const Triangle& moved)>;
 
@@ -37,7 +37,7 @@ class LeafPairTest {
   /// Each pair of faces once. `watch` may be null. Errors: those of corrupt leaves and copies.
   [[nodiscard]] Errc run(const LeafPair& leaves, const TriangleWatch* watch);
 
-  /// Whether the visitor or the watch asked to stop.
+  /// Whether the visitor or the watch stopped it.
   [[nodiscard]] bool stopped() const noexcept { return stopped_ || report_.stopped(); }
 
  private:

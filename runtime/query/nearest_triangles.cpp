@@ -60,7 +60,7 @@ void NearestTriangles::set_enough() noexcept {
   best_ = std::min(best * best, most);
 }
 
-// Those whose bounds are as far as the best are left alone. Not those that are near enough to it:
+// Those whose bounds are as far as the best are left alone. Not those that are nearly as near:
 // then what is found in a leaf would depend on the error allowed, and a walk that may err more
 // could miss what ends another one early.
 Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {

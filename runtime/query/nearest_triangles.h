@@ -54,7 +54,7 @@ class NearestTriangles {
   /// Between the nearest points so far; first, what face() was told.
   [[nodiscard]] const Direction& direction() const noexcept { return direction_; }
 
-  /// Squared: what is as far as this need not be looked at; it is near enough to the best, be it by
+  /// Squared: what is as far as this need not be looked at; it is as good as the best, be it by
   /// the error allowed or by what rounding leaves anyway, or too far.
   [[nodiscard]] double enough() const noexcept { return enough_; }
   /// Takes note of what is left alone, by the lower bound of its squared distance.

@@ -89,7 +89,7 @@ struct BoxSearch {
   BoxOverlap result;
   TriangleBatch batch;
 
-  // How far the farthest point of a node's box is from the box asked about.
+  // How far the farthest point of a node's box is from the box queried.
   template <class S>
   [[nodiscard]] double farthest(const Box<S>& node) const noexcept {
     double sum = 0;
@@ -210,7 +210,7 @@ Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedB
     return Errc::kInvalidQuery;
   }
   if (tree.empty()) return BoxOverlap();
-  // Beyond the reach there is nothing to touch, and the predicates could overflow.
+  // Beyond kMaxCoordinate there is nothing to touch, and the predicates could overflow.
   const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {
     return tree.frame().to_tree(corner).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
   };

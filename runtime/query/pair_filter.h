@@ -19,9 +19,9 @@ namespace boxtree {
 /// x -> linear x + translation, for boxes given by center and half extent: the image has center
 /// linear c + translation and half extent |linear| h.
 struct FloatMap {
-  /// `reach`: largest magnitudes of x; `target_max_abs`: of the boxes that images are compared
-  /// with; `given_error`: of the map itself. No magnitude may exceed `limit`, or is_in_range is
-  /// false and the map must not be used.
+  /// `max_abs`: largest absolute coordinates of x; `target_max_abs`: of the boxes that images are
+  /// compared with; `given_error`: of the map itself. No magnitude may exceed `limit`, or
+  /// is_in_range is false and the map must not be used.
   FloatMap(const AffineMap& map, const Eigen::Vector3d& max_abs,
            const Eigen::Vector3d& target_max_abs, const Eigen::Vector3d& given_error,
            double limit) noexcept {

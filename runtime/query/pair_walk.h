@@ -17,12 +17,12 @@ namespace boxtree {
 
 /// What a pair walk tells about itself; this one does not listen and costs nothing.
 struct NoPairObserver {
-  /// A pair of nodes, not both leaves, is about to be taken apart.
+  /// A pair of nodes, not both leaves, is about to be expanded.
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
   // One that has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)` is
-  // asked by them whether the walk is to end: before either of the above, and about each triangle
+  // queried by them whether the walk is to end: before either of the above, and about each triangle
   // of the first leaf and of the second, brought into the first one's space, that do not touch.
 };
 
@@ -112,7 +112,7 @@ class PairWalk {
     }
   }
 
-  // The larger box is taken apart, a leaf never. A pair (a, b) is met once: only one of the pairs
+  // The larger box is expanded, a leaf never. A pair (a, b) is met once: only one of the pairs
   // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
   void descend_one(const Entry& entry) {
     const Box<double> second_image = pose_.hull_in_first(entry.second_box);

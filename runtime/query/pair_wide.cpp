@@ -155,7 +155,7 @@ class WidePairWalk {
     return from.side == 0 ? choose<0>(from, at.depth + 1) : choose<1>(from, at.depth + 1);
   }
 
-  // The larger box is taken apart, a leaf never. A pair is met once: only one of the pairs
+  // The larger box is expanded, a leaf never. A pair is met once: only one of the pairs
   // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose. Branches,
   // not selections, although they are hard to predict: with those the node is only known, and read,
   // after all of the above, which costs more.

@@ -46,7 +46,7 @@ class PairBound {
  public:
   PairBound(const BoundTree& first, const BoundTree& second, QueryWork* work) noexcept;
 
-  /// Counts a pair of nodes, or of a node and a leaf, that was taken apart; see WalkBound::count.
+  /// Counts a pair of nodes, or of a node and a leaf, that was expanded; see WalkBound::count.
   [[nodiscard]] Errc count(NodeState state) noexcept { return parts_.count(state); }
   /// Counts a pair of leaves about to be compared.
   [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept {
@@ -76,7 +76,7 @@ class PairReport {
     return tell_copies(first, second);
   }
 
-  /// Whether the visitor asked to stop.
+  /// Whether the visitor stopped it.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
   [[nodiscard]] Errc error() const noexcept { return error_; }
 

@@ -12,11 +12,11 @@
 namespace boxtree {
 
 /// `error` bounds, on every axis, how far a distance can be off: the point and a corner rounded to
-/// float, and their difference; with u = 2^-24 below 4u (|point| + reach). The point is spread to a
-/// small box of that size, so that differences are bounds; what squares and sums lose after that is
-/// in above().
+/// float, and their difference; with u = 2^-24 below 4u (|point| + max_abs). The point is spread to
+/// a small box of that size, so that differences are bounds; what squares and sums lose after that
+/// is in above().
 struct PointFilter {
-  /// `reach`: the largest magnitude of any coordinate of the tree's boxes.
+  /// `max_abs`: the largest absolute coordinate of the tree's boxes.
   PointFilter(double max_abs, const Eigen::Vector3d& point) noexcept {
     const double bound = 4 * kRoundoffF32 * (point.cwiseAbs().maxCoeff() + max_abs) +
                          double{std::numeric_limits<float>::min()};

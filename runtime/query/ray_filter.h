@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray in single precision: rejects boxes and triangles that the ray misses beyond doubt, so that
+// A ray in single precision: rejects boxes and triangles that the ray misses provably, so that
 // the exact tests in double see few. What it lets pass decides nothing.
 #pragma once
 
@@ -40,10 +40,10 @@ struct RayBoxFilter {
     }
   }
 
-  /// What a re-based ray, and planes at most `reach` away, lose in single precision: with u
-  /// = 2^-24 and M = 2 reach no extent and no distance of two points in the root box is larger, and
-  /// where the ray enters lies in it but for what the query's own tests give away. 16u M for origin
-  /// and direction (moved, rounded to float), for the distance of a plane or corner from the
+  /// What a re-based ray, and planes at most `max_abs` away, lose in single precision: with u
+  /// = 2^-24 and M = 2 max_abs no extent and no distance of two points in the root box is larger,
+  /// and where the ray enters lies in it but for what the query's own tests give away. 16u M for
+  /// origin and direction (moved, rounded to float), for the distance of a plane or corner from the
   /// origin, its product with a reciprocal that was rounded twice, and the sums after it. And 8u M
   /// for each of `levels` whose planes are computed from those of their parents.
   [[nodiscard]] static double rounding(double max_abs, std::uint32_t levels = 0) noexcept {
@@ -77,7 +77,7 @@ struct RayBoxFilter {
 /// and one of the distance, 8u M a level; and against triangles.
 struct RayFilter : RayBoxFilter {
   /// Whether single precision tells the parts of a tree apart for a ray from there: not from so far
-  /// away that double precision hardly does. Elsewhere `error` is below a thousandth of the reach,
+  /// away that double precision hardly does. Elsewhere `error` is below a thousandth of max_abs,
   /// and no parameter overflows.
   [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
     return query.origin_max_abs <= 0x1p30 * query.tree.largest_abs();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray on its way through one tree: what every walk, whatever the codec, asks of it.
+// A ray on its way through one tree: what every walk, whatever the codec, needs of it.
 #pragma once
 
 #include <algorithm>

@@ -39,7 +39,7 @@ struct SlabInterval {
 /// parameter is the smaller one: no sign needs to be looked at.
 class RaySlab {
  public:
-  /// `origin_max_abs` and `reach`: largest magnitude of a coordinate of the origin and of any box,
+  /// `origin_max_abs` and `max_abs`: largest absolute coordinate of the origin and of any box,
   /// on all axes.
   RaySlab(const AxisLanes& origin, double origin_max_abs, const AxisLanes& direction,
           double max_abs) noexcept {

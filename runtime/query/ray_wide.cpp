@@ -71,7 +71,7 @@ class RayLeaves {
   }
 
  private:
-  // Bit i: the ray misses triangle i beyond doubt. The test of triangle_ray.h in float: an area of
+  // Bit i: the ray misses triangle i provably. The test of triangle_ray.h in float: an area of
   // corners at most `size` from the ray, each coordinate off by at most 3 error, is off by less
   // than 8 (size + 3 error) 3 error.
   HWY_INLINE std::uint32_t missed(std::size_t group, std::size_t part) const {
@@ -221,7 +221,7 @@ class RayWalk {
   const WideCodec<Node>& codec_;
   RayQuery& query_;
   const RayFilter& filter_;
-  // Smaller trees are in the caches: there, asking for what comes next costs mispredicted branches
+  // Smaller trees are in the caches: there, requesting what comes next costs mispredicted branches
   // and gains nothing. 4096 nodes are some 200 000 triangles.
   static constexpr std::uint32_t kLargeTree = 4096;
 

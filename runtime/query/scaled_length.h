@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lengths times powers of two: exact but where a double ends, and there on the side that is asked.
+// Lengths times powers of two: exact but where a double ends, and there on the side requested.
 #pragma once
 
 #include <cmath>

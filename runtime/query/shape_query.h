@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shapes that overlap queries ask about: a monotone test of boxes and the exact test of
+// The shapes that overlap queries are about: a monotone test of boxes and the exact test of
 // triangles, both in tree space; and what receives the faces.
 #pragma once
 
@@ -52,7 +52,7 @@ struct SphereQuery {
   Eigen::Vector3d center;  // tree space
   double squared_radius;
   /// For a placed tree: decides in the world. The radius above then holds all that may touch, in
-  /// tree space; what lies within the one below touches without being asked.
+  /// tree space; what lies within the one below touches without being queried.
   const PlacedSphere* placed = nullptr;
   double certain_squared_radius = squared_radius;
 

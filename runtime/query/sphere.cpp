@@ -24,7 +24,7 @@ Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center,
   if (!(radius >= 0) || !std::isfinite(radius) || !is_within_range(tree_center)) {
     return Errc::kInvalidQuery;
   }
-  // Twice the reach spans every distance that can occur; a larger radius changes no answer.
+  // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
   const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
   QueryWork work(limits);
   return visit_sphere(tree, SphereQuery{tree_center, tree_radius * tree_radius}, visitor, work);

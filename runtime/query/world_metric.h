@@ -98,8 +98,8 @@ class Direction {
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
   }
 
-  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();   // the direction, asked of the first space
-  Eigen::Vector3d second_ = Eigen::Vector3d::Zero();  // its opposite, asked of the second
+  Eigen::Vector3d first_ = Eigen::Vector3d::Zero();   // the direction, in the first space
+  Eigen::Vector3d second_ = Eigen::Vector3d::Zero();  // its opposite, in the second
   double offset_ = 0;
   double scale_ = 0;  // world length of a unit
   double error_ = 0;  // of two ends

@@ -63,7 +63,7 @@ class BoundScene {
     std::uint32_t id;
     std::uint32_t layer;
 
-    /// Nothing when they are beyond reach.
+    /// Nothing when they are beyond kMaxCoordinate.
     [[nodiscard]] std::optional<PlacementBounds> bounds() const noexcept;
   };
   /// What the file says of an instance. Nothing where its tree or layer is not there.
@@ -104,7 +104,7 @@ class BoundScene {
   }
   [[nodiscard]] double to_world(double length) const noexcept { return length * frame_.scale; }
   /// A tree placed by a pose, in units of the scene. Nothing when it is not finite, cannot be
-  /// undone or leads beyond reach.
+  /// undone or leads beyond kMaxCoordinate.
   [[nodiscard]] std::optional<Placement> place_in_units(const BoundTree& tree,
                                                         const Pose& pose) const noexcept;
   /// A point or box of these units in the space of both trees. Rounded to nearest, which is

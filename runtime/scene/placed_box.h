@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A box asked of an instance of a scene: a shape like those of query/shape_query.h.
+// A box query on an instance of a scene: a shape like those of query/shape_query.h.
 #pragma once
 
 #include <boxtree/scene.h>
@@ -21,7 +21,7 @@ struct FacesOfInstance {
   bool operator()(const FaceRef& face) const { return visitor({instance, face}); }
 };
 
-/// A box of the world, asked of a tree that is placed there. Boxes of the tree are compared by the
+/// A box of the world against a tree that is placed there. Boxes of the tree are compared by the
 /// hulls of their images, which hold the images of what they hold exactly (AffineMap::hull).
 struct PlacedBoxQuery {
   using Visitor = FacesOfInstance;

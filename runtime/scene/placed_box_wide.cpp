@@ -28,7 +28,7 @@ Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
 }
 #else
 // The boxes and corners of a placed tree as hulls in the world, seen from the middle of the box
-// that is asked about, widened by what float loses: of the rows of the map, its products and sums,
+// of the query, widened by what float loses: of the rows of the map, its products and sums,
 // and of triangles that were rounded; less than 16 roundings of the largest sum. World coordinates
 // themselves are rounded to double, where they are, not seen from the box: less than 8 roundings.
 class PlacedBoxFilter {

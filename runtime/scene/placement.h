@@ -57,8 +57,8 @@ class Placement {
 
   /// See PlacementBounds.
   [[nodiscard]] double condition() const noexcept;
-  /// For a tree with this root box. Nothing when they are not finite or beyond reach. Precondition:
-  /// the tree is not empty.
+  /// For a tree with this root box. Nothing when they are not finite or beyond kMaxCoordinate.
+  /// Precondition: the tree is not empty.
   [[nodiscard]] std::optional<PlacementBounds> bounds(const Box<double>& root) const noexcept;
   /// How far, in the world, `tree` = to_tree(world) may be from there; no distance to a triangle of
   /// the tree is off by more. `root`: the box of the tree.

@@ -110,14 +110,14 @@ Status BoundScene::check_materials(const File& opened) {
 }
 
 Status BoundScene::check_parts(const SceneOptions& options) const {
-  const auto asked = [&](QueryKinds kind) {
+  const auto is_needed = [&](QueryKinds kind) {
     return (options.queries & kind) != 0 && (record().query_kinds & kind) == 0;
   };
   const std::string scene = "the scene";
-  if (asked(kRayQueries)) return left_out(Part::kRays, kNoOwner, scene);
-  if (asked(kBoxQueries)) return left_out(Part::kBoxes, kNoOwner, scene);
-  if (asked(kPointQueries)) return left_out(Part::kPoints, kNoOwner, scene);
-  if (asked(kPairQueries)) return left_out(Part::kPairs, kNoOwner, scene);
+  if (is_needed(kRayQueries)) return left_out(Part::kRays, kNoOwner, scene);
+  if (is_needed(kBoxQueries)) return left_out(Part::kBoxes, kNoOwner, scene);
+  if (is_needed(kPointQueries)) return left_out(Part::kPoints, kNoOwner, scene);
+  if (is_needed(kPairQueries)) return left_out(Part::kPairs, kNoOwner, scene);
   if (options.require_materials && record().material_count == 0) {
     return left_out(Part::kMaterials, kNoOwner, scene);
   }

@@ -23,9 +23,9 @@ struct Admission {
 
 // What a query of a scene has, below:
 // query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
-// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it asks about.
+// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it is about.
 // query.admission; and query.error, which is set when an instance is corrupt.
-// What the templates of walk/traversal.h ask of boxes, in the scene's frame.
+// What the templates of walk/traversal.h need of boxes, in the scene's frame.
 
 /// Counts an instance and visits it; whether to go on.
 template <class Query>
@@ -38,8 +38,8 @@ template <class Query>
 /// The query of walk/traversal.h over moving instances.
 template <class Query>
 struct MovingInstances {
-  MovingInstances(Query& asked, const MovingTree& tree) noexcept
-      : query(asked), nodes(tree.node_count()) {}
+  MovingInstances(Query& of, const MovingTree& tree) noexcept
+      : query(of), nodes(tree.node_count()) {}
 
   Query& query;
   WalkBound nodes;
@@ -87,7 +87,7 @@ Errc visit_overlapping_instances(const BoundScene& scene, Query& query) {
   return traverse_overlap(scene.moving_tree(), scene.moving_tree().decoder(), moving);
 }
 
-/// The same from near to far. Moving instances come first: they are few, and near what asks.
+/// The same from near to far. Moving instances come first: they are few, and near the query.
 template <class Query>
 Errc visit_nearest_instances(const BoundScene& scene, Query& query) {
   MovingInstances<Query> moving(query, scene.moving_tree());

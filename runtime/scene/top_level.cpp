@@ -20,11 +20,11 @@ struct Instances {
 };
 
 struct InstancesInBox : Instances {
-  const Box<double>& asked;
+  const Box<double>& region;
 
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return boxes_overlap(box, asked);
+    return boxes_overlap(box, region);
   }
 };
 

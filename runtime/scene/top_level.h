@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tree over the static instances of a scene, read from the mapped bytes: nodes of wide8 whose
-// leaf n is instance n. Has what the templates of walk/traversal.h ask of a tree.
+// leaf n is instance n. Has what the templates of walk/traversal.h need of a tree.
 #pragma once
 
 #include "format/codec_wide.h"

@@ -41,7 +41,7 @@ Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, cons
 Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                          InstanceVisitor visit);
 
-/// Visits all instances whose boxes meet what is asked for, and maybe some that only nearly do.
+/// Visits all instances whose boxes intersect the query, and maybe some that only nearly do.
 /// `shape`, in the scene's frame: a box; or a point or a ray, and a bound, a squared distance or a
 /// parameter: then from near to far. The bound is read again after each visit, which may lower it;
 /// instances beyond it are left out, those at it are not.

@@ -35,9 +35,9 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, con
   return walk_top_level_scalar(top, ray, bound, visit);
 }
 #else
-// What is asked about, against boxes: the query of NearestWalk below says what `meet` answers.
+// What is queried, against boxes: the query of NearestWalk below says what `meet` answers.
 // `limit_of(bound)` is a float that no key is above unless it is above the bound.
-struct AskedBox {
+struct BoxRegion {
   BoxBounds bounds;
 
   // All keys are alike: in no promised order.
@@ -49,7 +49,7 @@ struct AskedBox {
   }
 };
 
-struct AskedPoint {
+struct PointRegion {
   PointFilter point;
 
   [[nodiscard]] static float limit_of(double bound) { return PointFilter::above(bound); }
@@ -59,7 +59,7 @@ struct AskedPoint {
   }
 };
 
-struct AskedRay {
+struct RayRegion {
   RayBoxFilter ray;
 
   [[nodiscard]] float limit_of(double bound) const { return ray.bound(bound); }
@@ -82,51 +82,51 @@ struct AskedRay {
 };
 
 // The query of NearestWalk whose leaves are instances.
-template <class Asked>
+template <class Region>
 class Instances {
  public:
-  Instances(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit)
-      : asked_(asked),
+  Instances(const TopLevel& top, const Region& region, const double& bound, InstanceVisitor visit)
+      : region_(region),
         best_(bound),
-        limit_(asked.limit_of(bound)),
+        limit_(region.limit_of(bound)),
         visit_(visit),
         nodes_(top.scene.node_count) {}
 
   [[nodiscard]] float bound() const { return limit_; }
   [[nodiscard]] WalkBound& nodes() { return nodes_; }
   HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, FloatVector& key) const {
-    return asked_.intersect(boxes, limit_, key);
+    return region_.intersect(boxes, limit_, key);
   }
   void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
   bool leaf(std::uint32_t number) {
     const bool go_on = visit_(number);
-    limit_ = asked_.limit_of(best_);
+    limit_ = region_.limit_of(best_);
     return go_on;
   }
 
  private:
-  const Asked& asked_;
+  const Region& region_;
   const double& best_;  // a visit may lower it
   float limit_;         // of keys
   InstanceVisitor visit_;
   WalkBound nodes_;
 };
 
-template <class Asked>
-Errc walk(const TopLevel& top, const Asked& asked, const double& bound, InstanceVisitor visit) {
-  Instances<Asked> instances(top, asked, bound, visit);
-  return NearestWalk<Wide8Node, Instances<Asked>>(top.codec, instances).run(root_box<float>(top));
+template <class Region>
+Errc walk(const TopLevel& top, const Region& region, const double& bound, InstanceVisitor visit) {
+  Instances<Region> instances(top, region, bound, visit);
+  return NearestWalk<Wide8Node, Instances<Region>>(top.codec, instances).run(root_box<float>(top));
 }
 
 Errc walk_box(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
-  AskedBox asked;
-  for (std::size_t k = 0; k < 3; ++k) asked.bounds.set(k, box.low[k], box.high[k], 0);
-  return walk(top, asked, 0, visit);
+  BoxRegion region;
+  for (std::size_t k = 0; k < 3; ++k) region.bounds.set(k, box.low[k], box.high[k], 0);
+  return walk(top, region, 0, visit);
 }
 
 Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                 InstanceVisitor visit) {
-  return walk(top, AskedPoint{PointFilter(max_abs_of(top), point)}, bound, visit);
+  return walk(top, PointRegion{PointFilter(max_abs_of(top), point)}, bound, visit);
 }
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
@@ -135,7 +135,7 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const d
       ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction), std::max(enter, ray.s_min),
       RayBoxFilter::rounding(max_abs_of(top)) +
           RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.max_abs));
-  return walk(top, AskedRay{filter}, bound, visit);
+  return walk(top, RayRegion{filter}, bound, visit);
 }
 #endif
 

@@ -72,7 +72,7 @@ class BoundCodec {
 /// Children of a node of any codec. Boxes of f32 codecs come and go through double unchanged.
 using AnyChildren = ChildSet<kWideChildren, double>;
 
-/// What is asked of a codec whose type the caller does not know.
+/// What is required of a codec whose type the caller does not know.
 struct CodecFunctions {
   CodecId id;
   std::uint32_t width;  // children that a node has at most

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a Tree is inside: frame, codec and leaves over mapped bytes, for the queries and for those
-// who check and export trees. Of its record it keeps what they ask.
+// who check and export trees. Of its record it keeps what they need.
 #pragma once
 
 #include <array>

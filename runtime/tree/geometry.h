@@ -47,7 +47,7 @@ struct TriangleBatch {
   }
 };
 
-/// What walks by vectors ask of a store once a query, computed when a tree is bound.
+/// What walks by vectors need of a store once a query, computed when a tree is bound.
 struct FloatLeaves {
   float scale = 1;         // of stored coordinates, to tree space
   float rounding = 0;      // how far a coordinate is off once rounded to float
@@ -70,7 +70,7 @@ class LeafReader {
   /// whose order is not the tree's.
   void set_order(NumberView order) noexcept { order_ = order; }
 
-  /// Comes last: `reach` is the largest magnitude of a coordinate in tree space.
+  /// Comes last: `max_abs` is the largest absolute coordinate in tree space.
   void prepare_floats(double max_abs) noexcept;
   [[nodiscard]] const FloatLeaves& floats() const noexcept { return floats_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A box that is asked about, as vectors of float compare with it: what misses it and what is inside
-// it beyond doubt.
+// A box of the query, as vectors of float compare with it: what misses it and what is inside
+// it provably.
 #if defined(BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H
 #undef BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H
@@ -17,7 +17,7 @@ namespace boxtree::HWY_NAMESPACE {
 
 class BoxBounds {
  public:
-  /// The bounds on one axis of the box that is asked about. What will be judged is off by at most
+  /// The bounds on one axis of the box of the query. What will be classified is off by at most
   /// `error` on that axis.
   void set(std::size_t axis, double low, double high, double error) {
     low_[axis] = float_below(low - error);
@@ -37,7 +37,7 @@ class BoxBounds {
     return {bits_of(touched), contained(box)};
   }
 
-  /// Bit i: box i is inside the box that is asked about, beyond doubt.
+  /// Bit i: box i is inside the box of the query, provably.
   HWY_INLINE std::uint32_t contained(const VectorBox& box) const {
     const Floats d;
     auto inside = hn::And(hn::Ge(box.low[0], hn::Set(d, inner_low_[0])),

@@ -9,7 +9,7 @@
 namespace boxtree {
 
 /// The query of traverse_overlap for a shape.
-/// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap asks.
+/// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap requires.
 /// Shape::Visitor: what is called with each face, FaceVisitor or another one; whether to go on.
 /// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
 template <class Shape>

@@ -18,11 +18,11 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
-/// What the walk asks of `Query`:
+/// What the walk needs of `Query`:
 /// query.meet(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and their
 ///   keys, which are not negative.
 /// query.bound() -> float: keys above it cannot improve the answer.
-/// query.expanding(const WideLinks&, std::uint32_t passing): a node was taken apart, whose children
+/// query.expanding(const WideLinks&, std::uint32_t passing): a node was expanded, whose children
 ///   `passing` will wait.
 /// query.nodes() -> WalkBound&: of as many nodes as the codec has.
 /// query.leaf(number) -> bool: whether to go on; the query keeps its own error.

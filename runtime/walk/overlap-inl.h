@@ -18,16 +18,16 @@ namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 /// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
-/// only when box i misses the shape beyond doubt, bit i of `inside` is set only when it lies in the
-/// shape beyond doubt.
+/// only when box i misses the shape provably, bit i of `inside` is set only when it lies in the
+/// shape provably.
 struct Classification {
   std::uint32_t touched;
   std::uint32_t inside;
 };
 
 /// The classification of a shape on triangles, by their bounds and corners; `inside`: they touch it
-/// beyond doubt. shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), a bit
-/// set only for a point that lies in the shape beyond doubt.
+/// provably. shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), a bit
+/// set only for a point that lies in the shape provably.
 template <class Shape>
 HWY_INLINE Classification classify_corners(const Shape& shape, const VectorTriangle& triangle) {
   Classification classification = shape.classify(bounds_of(triangle));

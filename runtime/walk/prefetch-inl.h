@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks for what a walk will read soon, all of it at once: in a large tree each node and leaf is a
+// Requests what a walk will read soon, all of it at once: in a large tree each node and leaf is a
 // cache miss, and those of one node's children need not wait for each other.
 #if defined(BOXTREE_RUNTIME_WALK_PREFETCH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_PREFETCH_INL_H

@@ -70,8 +70,8 @@ template <class S>
 template <NodeDecoder C>
 inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
-/// How a walk for a visitor ended: `query` holds the error of a leaf, and whether its visitor asked
-/// to stop.
+/// How a walk for a visitor ended: `query` holds the error of a leaf, and whether its visitor
+/// stopped it to stop.
 template <class Query>
 [[nodiscard]] Result<Visit> outcome_of(Errc walked, const Query& query) {
   if (walked != Errc::kOk) return walked;
@@ -125,7 +125,7 @@ Errc traverse_overlap(const Source& tree, const C codec, Query& query) {
 /// query.bound() -> double: keys above it cannot improve the answer. Equal keys are still visited,
 ///   so that ties are decided by the query and not by the order of the walk.
 /// query.leaf(NodeRef) -> bool: whether to go on.
-/// query.nodes_expanded, if it has one, counts the nodes taken apart. query.nodes: as above.
+/// query.nodes_expanded, if it has one, counts the nodes expanded. query.nodes: as above.
 template <class Source, NodeDecoder C, class Query>
 Errc traverse_nearest(const Source& tree, const C codec, Query& query) {
   using S = typename C::Scalar;

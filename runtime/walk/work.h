@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a query may cost. Each walk ends on any bytes, because an honest walk takes each node apart
+// What a query may cost. Each walk ends on any bytes, because an honest walk expands each node
 // at most once: one that would go on has come to a node twice, and the file is corrupt. A caller
 // may allow less than that. Whatever the order and the purpose of a walk, it goes on through
 // WalkBound::count, or SharedWalkBound's: it is what a NodeState is good for. Circles cannot
-// be told otherwise in packed nodes; in plain and wide ones children stand behind their parents.
+// be told otherwise in packed nodes; in plain and wide ones children have larger indices than their
+// parents.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bullet asks for the triangles near each moving body: a box query.
+// Bullet needs the triangles near each moving body: a box query.
 #include "samples/bullet_drop/mapped_shape.h"
 
 #include <LinearMath/btAabbUtil2.h>

@@ -33,7 +33,7 @@ int main() {
     pose.translation() = Eigen::Vector3d(2.5, 0, height);
     const auto contact = boxtree::first_contact(*level, boxtree::Pose::Identity(), *crate, pose);
     if (!contact.ok()) return 1;
-    std::printf("crate at height %g: %s\n", height, contact ? "touches" : "free");
+    std::printf("crate at height %g: %s\n", height, contact ? "touches" : "disjoint");
   }
   return 0;
 }

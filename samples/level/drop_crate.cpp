@@ -36,7 +36,7 @@ int main(int argument_count, char** arguments) {
   // millimetre.
   boxtree::Pose pose = *start;
   double speed = 0, frame = 1.0 / 60;
-  int frames = 0, asked = 0;
+  int frames = 0, queries = 0;
   std::set<std::string> met;
   while (frames < 600) {
     const double fall = (speed + 9.81 * frame / 2) * frame;
@@ -49,7 +49,7 @@ int main(int argument_count, char** arguments) {
       return true;
     });
     if (!visit) return 1;
-    ++asked;
+    ++queries;
     if (touched.empty()) {
       pose = next;
       speed += 9.81 * frame;
@@ -60,7 +60,7 @@ int main(int argument_count, char** arguments) {
     if (fall < 1e-4) break;
     frame /= 2;
   }
-  std::printf("after %d frames and %d queries the crate rests at height %.4f on", frames, asked,
+  std::printf("after %d frames and %d queries the crate rests at height %.4f on", frames, queries,
               pose.translation()[1]);
   for (const std::string& name : met) std::printf(" \"%s\"", name.c_str());
   std::printf("\n");

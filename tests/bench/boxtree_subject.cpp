@@ -202,8 +202,8 @@ class BlobSubject : public Subject {
     const double seconds = cooker::median_seconds(runs, [&] {
       const File opened = require(open_blob(file.path()));
       const Tree tree = require(Tree::bind(opened, 0));
-      if (const Status asked = cooker::first_query(tree); !asked) {
-        throw std::runtime_error(asked.error().message());
+      if (const Status queried = cooker::first_query(tree); !queried) {
+        throw std::runtime_error(queried.error().message());
       }
     });
     return SubjectOpen{1e6 * seconds, static_cast<double>(blob_.size()),

@@ -97,7 +97,7 @@ class CgalSubject : public Subject {
   }
 
  private:
-  // CGAL's own pair of trees wants closed halfedge meshes; a soup is asked triangle by triangle.
+  // CGAL's own pair of trees wants closed halfedge meshes; a soup is queried triangle by triangle.
   template <class Test>
   bool any_of_copy(const Pose& pose, Test test) {
     const auto bounds = tree_.bbox();

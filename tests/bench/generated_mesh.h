@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Large meshes for benchmarks, of exactly as many triangles as asked for.
+// Large meshes for benchmarks, of exactly as many triangles as requested.
 #pragma once
 
 #include <cstddef>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The yardstick: the BoxTree as it was before the paper (its section 2.1 and table 2.1). Nodes and
+// The baseline: the BoxTree as it was before the paper (its section 2.1 and table 2.1). Nodes and
 // leaves are objects of their own on the heap, linked by pointers; each leaf holds one polygon of
 // three or four points. Its leaf tests are the runtime's, so that all differences are the tree's.
 #pragma once

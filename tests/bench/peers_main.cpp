@@ -58,7 +58,7 @@ class Rows {
   nlohmann::ordered_json& rows_;
 };
 
-// A run of one kind of query takes no longer than about this; slow libraries are asked less.
+// A run of one kind of query takes no longer than about this; slow libraries are queried less.
 constexpr double kSecondsPerRun = 4;
 
 double sum(const std::vector<double>& values) {
@@ -146,24 +146,24 @@ std::optional<std::vector<double>> run_query(Subject& subject, QueryFunction<Que
     return (subject.*query)(std::span(queries).first(count), std::span(answers).first(count));
   };
   if (queries.empty() || !first_query(1)) return std::nullopt;
-  std::size_t asked = 1;
-  for (bool affordable = true; affordable && asked < queries.size();) {
-    const std::size_t more = std::min(queries.size(), 2 * asked);
+  std::size_t query_count = 1;
+  for (bool affordable = true; affordable && query_count < queries.size();) {
+    const std::size_t more = std::min(queries.size(), 2 * query_count);
     const double taken = cooker::seconds_taken([&] { first_query(more); });
-    asked = more;
+    query_count = more;
     affordable = 2 * taken < kSecondsPerRun;
   }
-  answers.resize(asked);
+  answers.resize(query_count);
   std::vector<double> seconds;
   for (std::size_t run = 0; run < runs; ++run) {
-    seconds.push_back(cooker::seconds_taken([&] { first_query(asked); }));
+    seconds.push_back(cooker::seconds_taken([&] { first_query(query_count); }));
   }
-  const double each = cooker::median(std::move(seconds)) / static_cast<double>(asked);
+  const double each = cooker::median(std::move(seconds)) / static_cast<double>(query_count);
   rows.add(kind.name + "_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * each, kind.unit);
-  const double middle =
-      median_of_each(subject, query, std::span(queries).first(asked), std::span(answers), runs);
+  const double middle = median_of_each(subject, query, std::span(queries).first(query_count),
+                                       std::span(answers), runs);
   rows.add(kind.name + "_median_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * middle, kind.unit);
-  rows.add(kind.name + "_queries", static_cast<double>(asked), "queries");
+  rows.add(kind.name + "_queries", static_cast<double>(query_count), "queries");
   rows.add(kind.total, kind.total_of(answers), kind.total_unit);
   return answers;
 }
@@ -260,22 +260,23 @@ void measure_tumble(Subject& subject, const std::vector<Pose>& poses, std::size_
   const std::optional<CacheMissCounter> counter = CacheMissCounter::open();
   const auto measure = [&](bool first_only) {
     const std::string name = first_only ? "tumble_first" : "tumble_all";
-    const Query<Pose> query = first_only ? &Subject::first_contacts : &Subject::all_pairs;
+    const QueryFunction<Pose> query = first_only ? &Subject::first_contacts : &Subject::all_pairs;
     const Kind kind = first_only ? Kind{name, "us", name + "_hits", "contacts"}
                                  : Kind{name, "us", name + "_pairs", "pairs"};
     auto found = run_query(subject, query, poses, kind, runs, rows);
     if (!found) return;
-    const auto asked = std::span(poses).first(found->size());
+    const auto affordable = std::span(poses).first(found->size());
     const auto add = [&](const char* metric, std::uint64_t total, const char* unit) {
-      rows.add(name + metric, static_cast<double>(total) / static_cast<double>(asked.size()), unit);
+      rows.add(name + metric, static_cast<double>(total) / static_cast<double>(affordable.size()),
+               unit);
     };
     if (counter) {
       counter->start();
-      (subject.*query)(asked, *found);
+      (subject.*query)(affordable, *found);
       add("_cache_misses", counter->stop(), "a query (processor)");
     }
     CacheModel cache;
-    const std::optional<PairWork> work = subject.pair_work(asked, first_only, cache);
+    const std::optional<PairWork> work = subject.pair_work(affordable, first_only, cache);
     if (!work) return;
     add("_node_pairs", work->node_pairs, "a query");
     add("_leaf_tests", work->leaf_tests, "a query");

@@ -165,7 +165,7 @@ class Bench {
     row.ratio = cooker::median(ratios);
     return row;
   }
-  // The sum of what `ask` says of each query.
+  // The sum of what `run_query` says of each query.
   template <class Queries, class RunQuery>
   static std::uint64_t sum(const Queries& queries, RunQuery run_query) {
     std::uint64_t answers = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a library under measurement is asked. Answers come one number a query, so that they can
-// be compared one by one; asking a whole workload in one call keeps the indirection out of the
+// What a library under measurement is queried. Answers come one number a query, so that they can
+// be compared one by one; querying a whole workload in one call keeps the indirection out of the
 // times.
 #pragma once
 
@@ -34,7 +34,7 @@ struct SubjectOpen {
 
 /// What pair queries did, summed over all poses.
 struct PairWork {
-  std::uint64_t node_pairs = 0;  // pairs of nodes taken apart; the original also counts leaf pairs
+  std::uint64_t node_pairs = 0;  // pairs of nodes expanded; the original also counts leaf pairs
   std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
 };
 

@@ -113,16 +113,16 @@ for kind in 'point --at 3,0.5,0.5' 'distance cube.bxt --pose 3,0,0'; do
     expect 1 "$boxtree" query cube.bxt $kind "$bad"
   done
 done
-# Overlap: hits and frees are certain; what is near enough may be left open, even where it touches.
+# Overlap: overlapping and disjoint are certain; what is closer may be left undecided, even where it touches.
 for kind in 'overlap cube.bxt --pose' 'box --max 9,9,9 --min'; do
   expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --within 0 --json
-  same "$(jq -c '.overlap' out)" '"hit"'
+  same "$(jq -c '.overlap' out)" '"overlapping"'
   expect 0 "$boxtree" query cube.bxt $kind 1.25,0.25,0.25 --within 0 --json
-  same "$(jq -c '[.overlap, .face, .faces]' out)" '["free",null,null]'
+  same "$(jq -c '[.overlap, .face, .faces]' out)" '["disjoint",null,null]'
   expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --within 99 --json
   same "$(jq -c '.overlap' out)" '"undecided"'
   expect 0 "$boxtree" query cube.bxt $kind 1.0009765625,0.25,0.25 --within 0.0001 --json
-  same "$(jq -c '.overlap' out)" '"free"'
+  same "$(jq -c '.overlap' out)" '"disjoint"'
   expect 0 "$boxtree" query cube.bxt $kind 1,0.25,0.25 --budget 0 --json
   same "$(jq -c '[.overlap, .nodes]' out)" '["budget_spent",0]'
   for bad in '--within=-1' '--within=nan' '--budget=-1'; do
@@ -262,7 +262,7 @@ expect 0 "$boxtree" query cube.bxt --batch queries.jsonl
 same "$(wc -l <out)" 9
 same "$(jq -cs '[.[0].t,.[1].faces,.[2].count,.[3].distance,.[4].count]' out)" '[4,[5],1,2,1]'
 same "$(jq -cs '.[5:7] | map(.lower <= 2 and .upper >= 2)' out)" '[true,true]'
-same "$(jq -cs '.[7:] | map(.overlap)' out)" '["hit","free"]'
+same "$(jq -cs '.[7:] | map(.overlap)' out)" '["overlapping","disjoint"]'
 expect 0 "$boxtree" query cube.bxt --batch queries.jsonl --json
 same "$(jq -c '.answers | length' out)" 9
 expect 0 sh -c "echo '{\"at\":[0.5,0.5,3]}' | '$boxtree' query cube.bxt point --batch -"

@@ -3,7 +3,7 @@
 """Cook shows its steps on a terminal and only there, and only once it has worked half a second.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
-silence is asked only of runs that took less than half a second from start to end.
+silence is required only of runs that took less than half a second from start to end.
 
     progress_test.py BOXTREE
 """

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""The report's page in a real browser: it renders, says nothing on the console, asks no network,
+"""The report's page in a real browser: it renders, says nothing on the console, uses no network,
 follows light and dark, and a telephone needs no sideways scrolling but inside tables and plots.
 
     report_page_test.py BOXTREE
@@ -66,7 +66,7 @@ def probe(chromium, page, *options):
     width, window, resources, narrowest, back = re.fullmatch(
         r'\[([\d.]+),([\d.]+),([\d.]+),([\d.]+),(.*)\]',
         found[1].replace("&quot;", '"')).groups()
-    assert resources == "0", f"{resources} resources asked for"
+    assert resources == "0", f"{resources} resources requested"
     assert float(width) <= float(window), f"{width} wide in a window of {window}"
     assert float(narrowest) > 300, f"a plot of {narrowest} pixels cannot be read"
     return float(window), [int(part) for part in re.findall(r"\d+", back)[:3]], dom

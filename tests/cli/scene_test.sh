@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Scenes on the command line: cooked from a node graph or a profile, asked in world coordinates.
+# Scenes on the command line: cooked from a node graph or a profile, queried in world coordinates.
 set -euo pipefail
 # shellcheck source=tests/cli/expect.sh
 . "$(dirname "$0")/expect.sh"
@@ -133,7 +133,7 @@ jq -e '.trees | all(.left_out | any(.what == "face ids"))' out >/dev/null
 grep -q 'scene.toml' profiled.d
 grep -q 'level.gltf' profiled.d
 expect 0 "$boxtree" verify profiled.bxt
-# On grids and without face ids it is shown as it is asked.
+# On grids and without face ids it is shown in the order requested.
 for name in profiled.obj profiled.glb; do
   expect 0 "$boxtree" export profiled.bxt -o "$name"
   grep -q '^scene: 53 instances, 9648 triangles placed$' out
@@ -153,7 +153,7 @@ grep -Eq 'wrong.toml:[0-9]+: .*tolerance' err
 expect 1 "$boxtree" cook -o x.bxt
 [ ! -e x.bxt ]
 
-# A node that is scaled to nothing has no pose to be asked in; flattened it is a flat surface.
+# A node that is scaled to nothing has no pose to be queried in; flattened it is a flat surface.
 jq '(.nodes[] | select(.name == "Crate")).scale = [1, 0, 1]' level.gltf >squashed.gltf
 expect 1 "$boxtree" cook squashed.gltf -o x.bxt
 grep -q 'Crate.*--flatten' err

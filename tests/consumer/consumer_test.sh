@@ -20,7 +20,7 @@ for generator in Ninja "Unix Makefiles"; do
   cmake --build "$game" >"$work/log" || { cat "$work/log"; fail "$generator: build failed"; }
   "$game/game" >"$work/said"
   grep -q 'height 0.5, face 2' "$work/said" || fail "wrong ground: $(cat "$work/said")"
-  grep -q 'height 0.6: free' "$work/said" || fail "wrong contact: $(cat "$work/said")"
+  grep -q 'height 0.6: disjoint' "$work/said" || fail "wrong contact: $(cat "$work/said")"
   grep -q 'height 0.5: touches' "$work/said" || fail "missed contact: $(cat "$work/said")"
 
   cmake --build "$game" >"$work/log"

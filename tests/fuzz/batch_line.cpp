@@ -2,7 +2,7 @@
 // Any text as a line of a batch, answered by a small tree.
 #include <string_view>
 
-#include "cooker/cli/query.h"
+#include "cooker/cli/query_request.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -18,7 +18,7 @@ void run(Bytes input) {
     return;
   }
   cooker::TreeCache others;
-  const auto answer = cooker::run_query(cooked.tree, *query, others);
+  const auto answer = cooker::answer(cooked.tree, *query, others);
   if (!answer && answer.code() == Errc::kInternal) finding("an answer is kInternal");
   if (answer && cooker::line_of(*answer).empty()) finding("an answer without words");
 }

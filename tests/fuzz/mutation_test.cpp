@@ -27,7 +27,7 @@ std::vector<std::byte> small_file(const Encoding& encoding) {
   return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
 
-// Opens, proves and asks everything; whatever comes back, it must come back.
+// Opens, proves and queries everything; whatever comes back, it must come back.
 void exercise(Bytes bytes) {
   const Result<File> file = File::open(bytes);
   if (!file) return;

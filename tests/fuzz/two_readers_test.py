@@ -78,7 +78,7 @@ def theirs(read_bxt, data):
 
 def main():
     parser = argparse.ArgumentParser()
-    parser.add_argument("verdicts")
+    parser.add_argument("verify")
     parser.add_argument("golden")
     parser.add_argument("corpus")
     parser.add_argument("--files", type=int, default=20000)
@@ -92,7 +92,7 @@ def main():
     for path in sorted(glob.glob(arguments.corpus + "/*")):
         with open(path, "rb") as file:
             wholes.append(file.read()[:-QUERY_BYTES])
-    ours = Ours(arguments.verdicts)
+    ours = Ours(arguments.verify)
     wholes = [whole for whole in wholes if ours.answer(whole) == "ok"]
     if len(wholes) < 10:
         sys.exit(f"only {len(wholes)} whole files to begin with")

@@ -14,7 +14,7 @@ using namespace boxtree;
 
 constexpr std::uint32_t kMostBytes = 1u << 24;
 
-void print_verdict(Bytes bytes) {
+void print_result(Bytes bytes) {
   const Result<File> file = File::open(bytes);
   const cooker::Findings findings =
       file ? cooker::verify_file(*file) : cooker::Findings{file.error()};
@@ -37,7 +37,7 @@ int main() {
     if (size > kMostBytes) return 1;
     bytes.resize(size);
     if (size != 0 && std::fread(bytes.data(), size, 1, stdin) != 1) return 1;
-    print_verdict(bytes);
+    print_result(bytes);
   }
   return 0;
 }

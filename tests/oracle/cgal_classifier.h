@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Whether two triangles share a point, as CGAL's kernels tell it: exact rationals classifier,
-// doubles are one more library to be judged.
+// doubles are one more library to be classified.
 #pragma once
 
 #include <CGAL/Exact_predicates_exact_constructions_kernel.h>
@@ -20,7 +20,7 @@ typename Kernel::Point_3 to_cgal(const Eigen::Vector3d& v) {
   return {v[0], v[1], v[2]};
 }
 
-// CGAL's overlap tests ask for proper triangles; a degenerate one is handed over as what it is.
+// CGAL's overlap tests need proper triangles; a degenerate one is handed over as what it is.
 template <class Kernel>
 using CgalShape =
     std::variant<typename Kernel::Point_3, typename Kernel::Segment_3, typename Kernel::Triangle_3>;

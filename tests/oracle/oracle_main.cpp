@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kDifferenceFound = 7;  // as the command line of the cooker has it
 
-// Pairs of one family in f32, about the size of 1, so that no library is asked for more digits than
+// Pairs of one family in f32, about the size of 1, so that no library needs more digits than
 // it takes or for another size than it is made for.
 class FloatPairs {
  public:

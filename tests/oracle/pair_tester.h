@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each library is asked of single pairs of triangles.
+// What each library answers for single pairs of triangles.
 #pragma once
 
 #include <functional>

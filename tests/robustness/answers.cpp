@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asking, and the bits of what comes back.
+// Queries, and the bits of what comes back.
 #include "tests/robustness/answers.h"
 
 #include <algorithm>

@@ -251,9 +251,9 @@ void check_duplicates(Run& run, const Subject& subject, std::uint32_t copies) {
   for (std::uint32_t i = 0; i < copies; ++i) all[i] = i;
   const Eigen::AlignedBox3d box(Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(2, 2, 2));
   const Eigen::AlignedBox3d small(Eigen::Vector3d(0.25, 0.25, 0), Eigen::Vector3d(0.5, 0.5, 1));
-  for (const Eigen::AlignedBox3d& asked : {box, small}) {
+  for (const Eigen::AlignedBox3d& region : {box, small}) {
     run.check(faces_of([&](FaceVisitor visitor) {
-                return overlap_box(subject.tree(), asked, visitor);
+                return overlap_box(subject.tree(), region, visitor);
               }) == all,
               name);
   }

@@ -62,7 +62,7 @@ std::string as_stl(const SourceMesh& mesh) {
   return bytes;
 }
 
-// One bad triangle among 1000: the file is refused and the culprit named, or, where asked for, left
+// One bad triangle among 1000: the file is refused and the culprit named, or, where requested, left
 // out and reported; the other 999 are found in every codec.
 void bad_vertices(Run& run) {
   constexpr std::uint32_t kBad = 137;

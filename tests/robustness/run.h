@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A case of the robustness suite: what it asks, the figure it comes to, the limit it must keep.
+// A case of the robustness suite: what it examines, the figure it comes to, the limit it must keep.
 #pragma once
 
 #include <cstddef>

@@ -31,7 +31,7 @@ cp level.bxt before.bxt
 grep -Eq 'rests at height 1\.66[0-9]* on "Step 7"$|rests at height 1\.6[56][0-9]* on "Step 7"$' drop
 cmp before.bxt level.bxt
 
-# What the profile left out is refused by its line when it is asked for.
+# What the profile left out is refused by its line when it is requested.
 sed 's/queries = \["ray", "box", "pair"\]/queries = ["ray", "box"]/' "$level/scene.toml" >"$work/no_pairs.toml"
 cp "$level/level.gltf" "$work/level.gltf"
 "$programs/cook_level" no_pairs.toml no_pairs.bxt >/dev/null

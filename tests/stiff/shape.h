@@ -26,7 +26,7 @@ struct Store {
 [[nodiscard]] Store grid_store(int bits);
 [[nodiscard]] Store tolerance_store(double tolerance);
 
-/// Bound and ready to be asked. Movable; the tree points into `encoded`.
+/// Bound and ready to be queried. Movable; the tree points into `encoded`.
 struct Shape {
   std::string name;  // of the codec, or of what stands in for one
   std::unique_ptr<const cooker::EncodedTree> encoded;

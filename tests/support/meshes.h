@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generated meshes of the kinds that tests ask for. Seeded; the same on every machine.
+// Generated meshes of the kinds that tests need. Seeded; the same on every machine.
 #pragma once
 
 #include <string>

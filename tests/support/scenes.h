@@ -27,7 +27,7 @@ struct CookedScene {
                                      cooker::SceneParts parts,
                                      const std::vector<CodecId>& codecs = {CodecId::kWide8});
 
-/// An affine pose: turned, moved within `reach`, scaled by 1/2 to 2; `unevenly` also by another
+/// An affine pose: turned, moved within `spread`, scaled by 1/2 to 2; `unevenly` also by another
 /// factor on each axis, mirrored and sheared.
 [[nodiscard]] Pose random_pose(std::mt19937_64& random, double spread, bool unevenly);
 

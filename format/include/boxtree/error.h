@@ -51,7 +51,7 @@ enum class Errc : std::uint16_t {
   kVertexNotFinite = 41,
   kDuplicateDiffers = 42,
 
-  // 50..59: binding and asking.
+  // 50..59: binding and querying.
   kInvalidQuery = 50,
   kInvalidPose = 51,
   kPartLeftOut = 52,

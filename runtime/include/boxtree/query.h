@@ -106,7 +106,7 @@ using PairVisitor = FunctionRef<bool(const FacePair&)>;
 /// How a query with a visitor ended.
 enum class Visit : std::uint8_t {
   kComplete,  // every answer was visited
-  kStopped,   // the visitor asked to stop
+  kStopped,   // the visitor stopped it
 };
 
 /// No limit of the nodes that a query may visit.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks a file for the closest hit of a ray that falls from above the origin.
+// Queries a file for the closest hit of a ray that falls from above the origin.
 #include <cstdio>
 
 #include <boxtree/boxtree.h>

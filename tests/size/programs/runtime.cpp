@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks every query there is of a mapped file: what boxtree::runtime alone takes.
+// Runs every query there is on a mapped file: what boxtree::runtime alone takes.
 #include "queries.h"
 
 int main(int, char** argv) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Asks every query there is of a file, mapped or compressed, and of its scene if it has one.
+// Runs every query there is on a file, mapped or compressed, and of its scene if it has one.
 #include <boxtree/blob.h>
 #include <boxtree/paper.h>
 

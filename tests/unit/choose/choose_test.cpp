@@ -66,7 +66,7 @@ TEST(Choose, CodecsOfThePaperAreThereToCompareWith) {
   EXPECT_EQ(slowdowns(tree.candidates), (std::vector<double>{1, 2, 1.5, 0.5}));
   EXPECT_EQ(choice(tree, {Goal::kSpeed, 8, 1.5}), 2u);
   EXPECT_EQ(choose(std::span(&tree, 1), {Goal::kMemory, 5, {}}).code(), Errc::kBudgetUnreachable);
-  // Where nothing else was tried, as when one was asked for.
+  // Where nothing else was tried, as when one was requested.
   Contest alone{100, {tree.candidates[3]}, {}};
   EXPECT_EQ(choice(alone, {Goal::kMemory, 5, {}}), 0u);
 }

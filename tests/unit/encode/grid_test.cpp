@@ -235,8 +235,7 @@ TEST(Grid, HasTheStepThatIsAskedFor) {
   // An extent of 2^3: 30 bits are steps of 2^-27.
   const auto finer = cooker::choose_grid(bounds, {.step_exponent = -28});
   EXPECT_EQ(finer.code(), Errc::kMeshUnsupported);
-  EXPECT_NE(finer.error().detail.find("a step of 2^-28 asks for a grid of 31 bits"),
-            std::string::npos)
+  EXPECT_NE(finer.error().detail.find("a step of 2^-28 needs a grid of 31 bits"), std::string::npos)
       << finer.error().detail;
 }
 

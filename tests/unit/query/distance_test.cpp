@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Distances of trees against brute force in extended precision over the decoded triangles: bounds
-// are true and as near as asked, for every codec, store, pose, error and budget.
+// are true and as near as requested, for every codec, store, pose, error and budget.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -142,7 +142,7 @@ class Distances : public testing::TestWithParam<test::Encoding> {
   static test::CookedTree cook(const SourceMesh& mesh) { return test::cook_tree(mesh, GetParam()); }
 
   // Each pair of a few meshes in each kind of pose, apart and touching. With a grid, faces of the
-  // source are not those that were asked, so `exact` tells whether they may be compared.
+  // source are not those that were queried, so `exact` tells whether they may be compared.
   template <class Body>
   void for_each_case(int poses, Body body) {
     const std::vector<SourceMesh> meshes{test::torus(12, 8), test::city(9, 2), test::slivers(40, 4),

@@ -241,7 +241,8 @@ TEST_F(PairRange, AnyAffinePose) {
       return RelativePose::make(in_a, back, in_b, pose) &&
              RelativePose::make(in_b, pose, in_a, back);
     };
-    if (!relative_works()) continue;  // cannot be undone in double, or leads beyond reach: refused
+    if (!relative_works())
+      continue;  // cannot be undone in double, or leads beyond kMaxCoordinate: refused
     contacts += compare(first, back, second, pose, "pose " + std::to_string(i));
   }
   EXPECT_GT(contacts, 500u);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many threads ask one tree at once; the tsan build watches, and every thread gets the answers that
-// one thread got.
+// Many threads query one tree at once; the tsan build watches, and every thread gets the answers
+// that one thread got.
 #include <thread>
 
 #include <gtest/gtest.h>

@@ -99,7 +99,7 @@ TEST_P(Limits, TellWhenTheyDoNotSuffice) {
                      }});
     EXPECT_GT(least, 0u);
     EXPECT_LE(least, query.is_of_pairs ? most_pairs_with_itself(cooked.tree) : nodes);
-    // Everything is inside the box: every node is taken apart.
+    // Everything is inside the box: every node is expanded.
     if (std::string(query.name) == "overlap_box") {
       EXPECT_EQ(least, nodes);
     }
@@ -263,7 +263,7 @@ TEST(HostileLeaves, ThatHoldTheSameFacesEndPairQueries) {
   }
 }
 
-// Scenes of hostile trees are asked about each instance once.
+// Queries on scenes of hostile trees visit each instance once.
 TEST(HostileLeaves, OfATopLevelAreVisitedOnce) {
   test::CookedScene cooked =
       test::cook_scene({test::torus(12, 8)}, test::random_parts(40, 1, 0, 1, 1));

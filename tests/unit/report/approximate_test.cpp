@@ -76,7 +76,7 @@ const MeshTradeoff& counted() {
   return tradeoff;
 }
 
-std::vector<const TradePoint*> asked() {
+std::vector<const TradePoint*> queried_points() {
   std::vector<const TradePoint*> points;
   for (const TradePoint& point : counted().points) {
     if (!point.approximate[0].by_error.empty()) points.push_back(&point);
@@ -86,7 +86,7 @@ std::vector<const TradePoint*> asked() {
 
 TEST(Approximate, CodecsOfTheListAreAskedWithExactGeometry) {
   std::vector<CodecId> codecs;
-  for (const TradePoint* point : asked()) {
+  for (const TradePoint* point : queried_points()) {
     EXPECT_EQ(point->geometry, GeometryId::kExact);
     codecs.push_back(point->codec);
   }
@@ -95,7 +95,7 @@ TEST(Approximate, CodecsOfTheListAreAskedWithExactGeometry) {
 }
 
 TEST(Approximate, BoundsHoldTheTruthAndErrorsKeepToWhatIsAllowed) {
-  for (const TradePoint* point : asked()) {
+  for (const TradePoint* point : queried_points()) {
     for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
       for (const ApproximateStep& step : point->approximate[kind].by_error) {
         const std::string what =
@@ -127,7 +127,7 @@ TEST(Approximate, BoundsHoldTheTruthAndErrorsKeepToWhatIsAllowed) {
 // to follow. A budget that is larger sees more of the same order: nothing is farther then.
 TEST(Approximate, WorkFallsAsTheAllowedErrorGrowsAndErrorsAsTheBudgetDoes) {
   constexpr auto kDistance = static_cast<std::size_t>(ApproximateKind::kDistance);
-  for (const TradePoint* point : asked()) {
+  for (const TradePoint* point : queried_points()) {
     for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
       const ApproximateCurves& curves = point->approximate[kind];
       for (std::size_t i = 1; i < curves.by_error.size(); ++i) {
@@ -166,7 +166,7 @@ TEST(Approximate, FalseBoundsAreCounted) {
   for (const ApproximateCurves& curves : figures) {
     for (const ApproximateStep& step : curves.by_error) {
       EXPECT_EQ(step.false_bounds, step.queries) << step.relative_error;
-      EXPECT_EQ(step.times.median_ns, 0) << "no times were asked for";
+      EXPECT_EQ(step.times.median_ns, 0) << "no times were requested";
     }
   }
 }
@@ -178,7 +178,7 @@ TEST(ApproximatePage, ShowsEveryStepAndSaysWhatIsPromised) {
     const PageSection& section = sections[kind];
     std::size_t by_error = 0;
     std::size_t by_budget = 0;
-    for (const TradePoint* point : asked()) {
+    for (const TradePoint* point : queried_points()) {
       by_error += point->approximate[kind].by_error.size();
       by_budget += point->approximate[kind].by_budget.size();
     }
@@ -208,9 +208,9 @@ TEST(ApproximateData, JsonAndCsvSayWhatTheStepsSay) {
   const auto commas = std::count(line.begin(), line.end(), ',');
   for (std::size_t p = 0; p < counted().points.size(); ++p) {
     const TradePoint& point = counted().points[p];
-    const bool is_asked = !point.approximate[0].by_error.empty();
-    EXPECT_EQ(points[p].at("approximate").is_null(), !is_asked) << point.name();
-    if (!is_asked) continue;
+    const bool is_queried = !point.approximate[0].by_error.empty();
+    EXPECT_EQ(points[p].at("approximate").is_null(), !is_queried) << point.name();
+    if (!is_queried) continue;
     for (std::size_t kind = 0; kind < kApproximateKinds; ++kind) {
       const auto& curves = points[p].at("approximate").at(kApproximateNames[kind]);
       const auto compare = [&](const char* name, const std::vector<ApproximateStep>& steps) {

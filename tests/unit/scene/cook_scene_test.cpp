@@ -261,7 +261,7 @@ motion = "moving"
 }
 
 // Materials without face ids are told face by face.
-// A green and a red cube of one shape: one tree where nobody asks for materials.
+// A green and a red cube of one shape: one tree where no object needs materials.
 TEST(CookScene, ShapesWithoutTheirMaterialsAreStoredOnce) {
   const fs::path cubes = "/usr/share/assimp/models/FBX/cubes_with_mirroring_and_pivot.fbx";
   if (!fs::exists(cubes)) GTEST_SKIP() << "package assimp-testmodels is not installed";
@@ -321,7 +321,8 @@ TEST(CookScene, ABudgetOfBytesIsKeptOrRefusedWithTheNearest) {
   EXPECT_EQ(test::read_text(out), before);
 }
 
-// Objects ask for themselves: far scenery small, the rest fast, and the line that said so is told.
+// Each object has needs of its own: far scenery small, the rest fast, and the line that said so is
+// told.
 TEST(CookScene, EachObjectGetsItsCodecAndPrecision) {
   test::TempFolder folder;
   const fs::path text = folder.write("scene.toml", R"([scene]

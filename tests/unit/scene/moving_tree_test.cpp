@@ -26,13 +26,13 @@ struct All {
   const MovingTree& tree;
   const std::vector<Box<double>>& boxes;
   std::set<std::uint32_t> found;
-  Box<double> asked;
+  Box<double> region;
   WalkBound& nodes;
 
   [[nodiscard]] bool overlaps(const Box<double>& box) const noexcept {
     bool apart = false;
     for (std::size_t k = 0; k < 3; ++k) {
-      apart |= box.low[k] > asked.high[k] || box.high[k] < asked.low[k];
+      apart |= box.low[k] > region.high[k] || box.high[k] < region.low[k];
     }
     return !apart;
   }

@@ -28,7 +28,7 @@ tolerance = 0.3
   EXPECT_TRUE(planned.meshes[0].kept && planned.meshes[2].kept);
   EXPECT_FALSE(planned.meshes[1].kept || planned.meshes[3].kept);
   expect_decision(planned, Aspect::kMesh, OwnerKind::kMesh, 1, false, 2,
-                  "equals mesh red but for materials that nobody asks for");
+                  "equals mesh red but for materials that no object needs");
   // Precise enough for the largest crate, whatever its colour was.
   EXPECT_EQ(planned.meshes[0].largest_scale, 3);
   ASSERT_TRUE(planned.meshes[0].tolerance.has_value());

@@ -221,8 +221,8 @@ queries = ["ray", "box"]
   EXPECT_EQ(planned.meshes[0].queries, kRayAndBox);
   EXPECT_EQ(planned.meshes[1].queries, kRayQueries);
   const auto file = OwnerKind::kFile;
-  expect_decision(planned, Aspect::kRay, file, 0, true, 2, "asked for");
-  expect_decision(planned, Aspect::kPair, file, 0, false, 2, "the scene is never asked them");
+  expect_decision(planned, Aspect::kRay, file, 0, true, 2, "requested");
+  expect_decision(planned, Aspect::kPair, file, 0, false, 2, "the scene never answers them");
   expect_decision(planned, Aspect::kPoint, file, 0, false, 10, "no object answers them");
   expect_decision(planned, Aspect::kBox, OwnerKind::kObject, 0, false, 6,
                   "its instances do not answer them");
@@ -245,17 +245,16 @@ materials = true
 )");
   EXPECT_TRUE(planned.meshes[1].face_ids && planned.meshes[1].materials);
   EXPECT_FALSE(planned.meshes[0].face_ids || planned.meshes[1].names);
-  EXPECT_FALSE(planned.material_names) << "materials are numbers where nobody asks for names";
+  EXPECT_FALSE(planned.material_names) << "materials are numbers where no object needs names";
   for (const PlannedInstance& instance : planned.instances) EXPECT_FALSE(instance.names);
   expect_decision(planned, Aspect::kFaceIds, OwnerKind::kMesh, 1, true, 8,
-                  "object \"near\" asks for them");
+                  "object \"near\" needs them");
   expect_decision(planned, Aspect::kFaceIds, OwnerKind::kMesh, 0, false, 2,
-                  "no object that uses it asks for them");
+                  "no object that uses it needs them");
   expect_decision(planned, Aspect::kMaterials, OwnerKind::kMesh, 1, true, 9,
-                  "object \"near\" asks for them");
+                  "object \"near\" needs them");
   EXPECT_FALSE(has_decision(planned, Aspect::kMaterials, OwnerKind::kMesh, 0)) << "it has none";
-  expect_decision(planned, Aspect::kNames, OwnerKind::kFile, 0, false, 4,
-                  "no object asks for them");
+  expect_decision(planned, Aspect::kNames, OwnerKind::kFile, 0, false, 4, "no object needs them");
 }
 
 TEST_F(PlanTest, NamesOfSomeObjects) {
@@ -268,7 +267,7 @@ names = false
   EXPECT_FALSE(planned.instances[1].names || planned.meshes[1].names || planned.material_names);
   EXPECT_TRUE(planned.meshes[0].names);
   expect_decision(planned, Aspect::kNames, OwnerKind::kObject, 0, false, 4,
-                  "nobody asks for names of its instances");
+                  "no object needs names of its instances");
   EXPECT_FALSE(has_decision(planned, Aspect::kNames, OwnerKind::kFile, 0));
 }
 

@@ -335,7 +335,7 @@ constexpr ProfileFault kNames[] = {
      "scene.toml:2: for: expected memory, speed or balance (nearest: \"speed\"), found \"size\""},
     {"[[object]]\nname = 'a'\nmotion = 'moves'\n",
      "scene.toml:3: motion: expected static or moving (nearest: \"moving\"), found \"moves\""},
-    {"[[object]]\nname = 'hero'\nnever_meets = ['other',\n'hreo']\n",
+    {"[[object]]\nname = 'hero'\nnever_collides_with = ['other',\n'hreo']\n",
      "scene.toml:4: never_collides_with: expected the name of an object (nearest: \"hero\"), found "
      "\"hreo\""},
     {"[[mesh]]\nname='crate'\nfile='m'\n[[instance]]\nmesh='crates'\n",

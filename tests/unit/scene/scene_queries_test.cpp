@@ -162,7 +162,7 @@ TEST_P(SceneQueries, ClosestPointEqualsBruteForce) {
       ASSERT_TRUE(found.has_value());
       ASSERT_EQ(found->distance, std::sqrt(best));  // to the last bit
       ASSERT_EQ(std::tuple(require(scene_.info(found->instance)).id, found->face.id), first);
-      // Just within reach it is found, just beyond it is not.
+      // Just within the radius it is found, just beyond it is not.
       const double distance = found->distance;
       ASSERT_TRUE(require(closest_point(scene_, at, distance * (1 + 1e-15))).has_value());
       ASSERT_FALSE(require(closest_point(scene_, at, distance * (1 - 1e-15))).has_value());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walks of a scene's top level, by vectors and plainly, against the boxes of all its instances.
+// Walks of a scene's top level, by vectors and scalar, against the boxes of all its instances.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -25,7 +25,7 @@ using Eigen::Vector3d;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 using Numbers = std::vector<std::uint32_t>;
 
-// Instances of one small mesh, `reach` apart at most, and their boxes in the scene's frame.
+// Instances of one small mesh, `spread` apart at most, and their boxes in the scene's frame.
 class Level {
  public:
   Level(std::uint32_t count, double spread, unsigned seed)
@@ -100,17 +100,17 @@ struct Tally {
   std::size_t plain = 0;
   std::size_t walked = 0;
 
-  template <class... Asked>
-  void add(const TopLevel& top, const Numbers& expected, const Asked&... asked) {
-    const Numbers plainly =
-        visited([&](InstanceVisitor visit) { return walk_top_level_scalar(top, asked..., visit); });
+  template <class... Region>
+  void add(const TopLevel& top, const Numbers& expected, const Region&... region) {
+    const Numbers scalar = visited(
+        [&](InstanceVisitor visit) { return walk_top_level_scalar(top, region..., visit); });
     const Numbers fast =
-        visited([&](InstanceVisitor visit) { return walk_top_level(top, visit, asked...); });
-    ASSERT_TRUE(holds(plainly, expected));
+        visited([&](InstanceVisitor visit) { return walk_top_level(top, visit, region...); });
+    ASSERT_TRUE(holds(scalar, expected));
     ASSERT_TRUE(holds(fast, expected));
-    ASSERT_TRUE(holds(fast, plainly));
+    ASSERT_TRUE(holds(fast, scalar));
     needed += expected.size();
-    plain += plainly.size();
+    plain += scalar.size();
     walked += fast.size();
   }
 };
@@ -213,7 +213,7 @@ TEST_P(TopLevelWalk, FollowsABoundThatShrinks) {
   EXPECT_LE(walked, plain + plain / 20);
 }
 
-INSTANTIATE_TEST_SUITE_P(Reach, TopLevelWalk, testing::Values(0.0, 1e-3, 1.0, 1e3, 1e9));
+INSTANTIATE_TEST_SUITE_P(Spread, TopLevelWalk, testing::Values(0.0, 1e-3, 1.0, 1e3, 1e9));
 
 }  // namespace
 }  // namespace boxtree

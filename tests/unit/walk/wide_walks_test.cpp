@@ -199,7 +199,7 @@ FacePairs query_pairs(const Tree& tree, const Pose& pose) {
   return pairs;
 }
 
-// Asks all trees all queries; answers[i] are plain-f32's.
+// Runs all queries on all trees; answers[i] are plain-f32's.
 template <class Query, class RunQuery>
 void expect_same(const std::vector<Query>& queries, const Tree& plain,
                  const std::vector<const Tree*>& trees, RunQuery run_query) {
@@ -262,7 +262,7 @@ TEST(WideTargets, HoldPlainCodeAndEveryInstructionSetOfMachineAndBuild) {
 }
 #endif
 
-// Asks all three codecs of one mesh all kinds of queries.
+// All kinds of queries on all three codecs of one mesh.
 void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, std::uint64_t seed) {
   SCOPED_TRACE(mesh.name);
   const test::CookedTree plain = test::cook_tree(mesh, CodecId::kPlainF32, options);

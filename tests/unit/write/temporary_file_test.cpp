@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A name only while it is asked for, and no litter, of this owner's or of a dead one's.
+// A name only while it is requested, and no litter, of this owner's or of a dead one's.
 #include "cooker/write/temporary_file.h"
 
 #include <fcntl.h>
