@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""What the pages show is true: commands run as printed and print what stands below them, programs
+compile, and the README's answers what the command above it answers.
+
+    commands_test.py SOURCE_DIR BOXTREE CXX INCLUDES LIBRARIES     the last two separated by ;
+
+tests/bare_machine.sh runs what builds or installs the project (BUILDS below) on a bare Debian.
+"""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from blocks import blocks_of
+
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|cmake -S \. -B build )")
+
+# What programs of the pages use of the application around them.
+AROUND = """
+#include <charconv>
+#include <cstdio>
+#include <string>
+static int report(const std::string& what) { std::puts(what.c_str()); return 1; }
+template <class... Values> void use(const Values&...) {}
+static void use(double t, const Eigen::Vector3d&, const Eigen::Vector3d&, unsigned face) {
+  char digits[32] = {};
+  std::to_chars(digits, digits + sizeof(digits) - 1, t);
+  std::printf("t: %s\\nface: %u\\n", digits, face);
+}
+static void step_on(const std::optional<std::string_view>&) {}
+static void step_on(std::string_view) {}
+static void touch(const boxtree::ScenePair&) {}
+"""
+FREE = """
+extern boxtree::Result<boxtree::File> file;
+extern std::uint32_t crate;
+extern boxtree::Pose pose;
+"""
+
+
+def fail(page, line, what):
+    sys.exit(f"{page}:{line}: {what}")
+
+
+def as_pattern(line):
+    """A line of output; `...` stands for anything, a run of blanks for another."""
+    parts = [r"\s+".join(map(re.escape, part.split())) for part in line.strip().split("...")]
+    return re.compile(r"\s*" + r".*".join(parts) + r"\s*$" if parts[-1] == "" else
+                      r"\s*" + r".*".join(parts) + r"\s*$")
+
+
+class Pages:
+    def __init__(self, source, boxtree, compiler, includes, libraries, work):
+        self.source, self.compiler, self.work = source, compiler, work
+        self.includes = [flag for folder in includes.split(";") if folder for flag in ("-isystem", folder)]
+        self.libraries = [library for library in libraries.split(";") if library]
+        # The folder of the sources, in which nothing that is written stays.
+        for entry in source.iterdir():
+            if not entry.name.startswith((".", "build")):
+                (work / entry.name).symlink_to(entry)
+        self.environment = dict(os.environ, PATH=f"{pathlib.Path(boxtree).parent}:{os.environ['PATH']}")
+        self.said = ""
+        self.ran = 0
+
+    def run(self, page, text, line):
+        done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=self.work, text=True,
+                              env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if done.returncode != 0:
+            fail(page, line, f"status {done.returncode}:\n{text}\n{done.stdout}")
+        self.said = done.stdout
+        self.ran += text.count("\n")
+
+    def check_output(self, page, text, line):
+        lines = self.said.splitlines()
+        for wanted in text.splitlines():
+            if not any(as_pattern(wanted).match(found) for found in lines):
+                fail(page, line, f"not printed: {wanted}\nprinted:\n{self.said}")
+
+    def program(self, page, text, line):
+        """Compiled; linked and run where it needs nothing of an application, for its output."""
+        includes = "".join(re.findall(r"^#include.*\n", text, re.MULTILINE))
+        body = re.sub(r"^#include.*\n", "", text, flags=re.MULTILINE)
+        is_whole = "File::open" in body
+        code = (includes + AROUND + ("" if is_whole else FREE) +
+                "int run() {\n" + body + "  return 0;\n}\n" + ("int main() { return run(); }\n" if is_whole else ""))
+        path = self.work / "program.cpp"
+        path.write_text(code, encoding="utf-8")
+        command = [self.compiler, "-std=c++20", "-ffp-contract=off", *self.includes, str(path), "-o", "program"]
+        done = subprocess.run(command + (self.libraries if is_whole else ["-fsyntax-only"]), cwd=self.work,
+                              text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        if done.returncode != 0:
+            fail(page, line, done.stdout)
+        if is_whole:
+            self.run(page, "./program\n", line)
+
+    def profile(self, page, text, line):
+        """Lines of the sample's profile, in its order."""
+        lines = iter([re.sub(r"\s*#.*", "", each)
+                      for each in (self.source / "samples/level/scene.toml").read_text().splitlines()])
+        for wanted in filter(None, text.splitlines()):
+            if wanted not in lines:
+                fail(page, line, f"not in samples/level/scene.toml: {wanted}")
+
+    def check(self, page):
+        for language, text, line in blocks_of(self.source / page):
+            if language == "sh" and BUILDS.match(text):
+                continue
+            {"sh": self.run, "text": self.check_output, "cpp": self.program, "toml": self.profile,
+             "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
+
+
+def main():
+    source, boxtree, compiler, includes, libraries = sys.argv[1:]
+    with tempfile.TemporaryDirectory() as work:
+        pages = Pages(pathlib.Path(source), boxtree, compiler, includes, libraries, pathlib.Path(work))
+        pages.check("README.md")
+        # The README's program prints what its command does.
+        pages.run("README.md", "./program | grep ^t: >program.out\n"
+                  "boxtree query bunny.bxt ray --origin 0,0,10 --direction 0,0,-1 | grep ^t: >query.out\n"
+                  "cmp program.out query.out\n", 0)
+        pages.check("docs/GUIDE.md")
+        assert pages.ran > 30, f"only {pages.ran} commands were found"
+    print(f"{pages.ran} commands run as printed")
+
+
+if __name__ == "__main__":
+    main()
