@@ -17,7 +17,7 @@
 
 namespace boxtree {
 
-/// Layers of one scene: instances of a layer answer the same queries and meet the same layers.
+/// Layers of one scene: instances of a layer answer the same queries and collide with the same layers.
 inline constexpr std::uint32_t kMaxLayers = 32;
 
 /// Instances of one scene: as many as leaves that a wide codec can number.
@@ -66,7 +66,7 @@ struct InstanceRecord {
 static_assert(sizeof(InstanceRecord) == 16 && std::is_trivially_copyable_v<InstanceRecord>);
 static_assert(offsetof(InstanceRecord, layer) == 14);
 
-/// What the instances of one layer answer and meet.
+/// What the instances of one layer answer and collide with.
 struct LayerRecord {
   std::uint32_t collides_with;  // bit n: contacts with layer n are requested; symmetric
   std::uint32_t query_kinds;    // QueryKinds that instances of the layer answer

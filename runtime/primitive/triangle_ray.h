@@ -84,9 +84,9 @@ struct RayEdges {
 [[nodiscard]] RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
                                        const ShearedCorner& c) noexcept;
 
-/// Where the line of the ray meets the triangle, from either side, at any t (the caller bounds it);
-/// nothing when it misses or the sheared triangle is edge-on. Two triangles that share an edge or
-/// corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are in [0,
+/// Where the line of the ray intersects the triangle, from either side, at any t (the caller bounds
+/// it); nothing when it misses or the sheared triangle is edge-on. Two triangles that share an edge
+/// or corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are in [0,
 /// 1].
 ///
 /// A triangle without area is edge-on but for the rounding of the shear, so a ray that goes through

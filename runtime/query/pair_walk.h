@@ -21,9 +21,9 @@ struct NoPairObserver {
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
-  // One that has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)` is
-  // queried by them whether the walk is to end: before either of the above, and about each triangle
-  // of the first leaf and of the second, brought into the first one's space, that do not touch.
+  // If it has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)`, the walk
+  // calls them to see whether to end: before either of the above, and with each triangle of the
+  // first leaf and of the second, brought into the first one's space, that do not touch.
 };
 
 /// The children of one side of a pair: those of a node, or a leaf standing for itself.

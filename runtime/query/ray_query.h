@@ -100,8 +100,8 @@ struct RayQuery : RayInTree {
         any(stop_at_first),
         hit(best) {}
 
-  /// Whether the ray meets the root box, and only then is it made ready for what is inside. Comes
-  /// before any walk.
+  /// Whether the ray intersects the root box, and only then is it made ready for what is inside.
+  /// Comes before any walk.
   [[nodiscard]] bool enters_root() noexcept {
     enter = key(tree.root_lanes());
     if (!(enter <= t_max) || enter == std::numeric_limits<double>::infinity()) return false;
@@ -139,7 +139,7 @@ struct RayQuery : RayInTree {
 
   const BoundTree& tree;
   WalkBound& nodes;
-  double enter;  // where it meets the root box
+  double enter;  // where it intersects the root box
   RayShear shear;
   bool any;
   RayCandidate& hit;

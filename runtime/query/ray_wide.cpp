@@ -33,7 +33,7 @@ struct RayChildren {
   WideLinks links;
 };
 
-// The leaves that a ray meets: the same for both codecs, and compiled once.
+// The leaves that a ray intersects: the same for both codecs, and compiled once.
 class RayLeaves {
  public:
   RayLeaves(const BoundTree& tree, RayQuery& query, const RayFilter& filter)
@@ -189,7 +189,7 @@ class RayWalk {
   }
 
  private:
-  // Bit i: the ray meets child i before the bound, where it enters[i]. The planes of a box are
+  // Bit i: the ray intersects child i before the bound, where it enters[i]. The planes of a box are
   // widened by the margins; the steps between its planes are those of the box itself.
   HWY_INLINE std::uint32_t intersect(const NodeView<Node>& node, const RayChildren& parent,
                                      std::uint32_t child, RayChildren& out, float* enters) const {

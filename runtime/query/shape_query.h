@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The shapes that overlap queries are about: a monotone test of boxes and the exact test of
+// The shapes of overlap queries: a monotone test of boxes and the exact test of
 // triangles, both in tree space; and what receives the faces.
 #pragma once
 

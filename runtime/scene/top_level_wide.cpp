@@ -35,7 +35,7 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, con
   return walk_top_level_scalar(top, ray, bound, visit);
 }
 #else
-// What is queried, against boxes: the query of NearestWalk below says what `meet` answers.
+// What is queried, against boxes: the query of NearestWalk below says what `intersect` answers.
 // `limit_of(bound)` is a float that no key is above unless it is above the bound.
 struct BoxRegion {
   BoxBounds bounds;

@@ -19,7 +19,7 @@ namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 /// What the walk needs of `Query`:
-/// query.meet(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and their
+/// query.intersect(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and their
 ///   keys, which are not negative.
 /// query.bound() -> float: keys above it cannot improve the answer.
 /// query.expanding(const WideLinks&, std::uint32_t passing): a node was expanded, whose children

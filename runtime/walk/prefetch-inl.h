@@ -31,7 +31,7 @@ class Prefetch {
   }
 
   /// Children of a node that are nodes or leaves: bit i is child i. Precondition: the node is
-  /// sound.
+  /// valid.
   HWY_INLINE void nodes(const WideLinks& links, std::uint32_t children) const {
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));

@@ -71,7 +71,7 @@ template <NodeDecoder C>
 inline constexpr std::size_t kStackSize = C::kDepthLimit*(C::Children::kWidth - 1) + 1;
 
 /// How a walk for a visitor ended: `query` holds the error of a leaf, and whether its visitor
-/// stopped it to stop.
+/// stopped the walk.
 template <class Query>
 [[nodiscard]] Result<Visit> outcome_of(Errc walked, const Query& query) {
   if (walked != Errc::kOk) return walked;

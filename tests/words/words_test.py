@@ -54,7 +54,7 @@ def uses(text):
 def main():
     root = pathlib.Path(sys.argv[1])
     planted = "// The tree is asked a question beyond doubt; its reach, a verdict: near_enough.\n"
-    assert len({word for _, word, _ in uses(planted)}) >= 5, "the check has lost its teeth"
+    assert len({word for _, word, _ in uses(planted)}) >= 5, "the check finds nothing"
     count = 0
     for path in sorted(root.rglob("*")):
         name = path.relative_to(root).as_posix()

@@ -185,7 +185,7 @@ struct ScenePair {
 using ScenePairVisitor = FunctionRef<bool(const ScenePair&)>;
 
 /// Visits every contact of a moving instance with any other one, each pair of faces once; `first`
-/// is the moving instance, of two the one with the smaller number. Pairs whose layers do not meet,
+/// is the moving instance, of two the one with the smaller number. Pairs whose layers do not collide,
 /// and pairs of static instances, are not looked at. Each pair of instances is answered as by
 /// overlap_pairs of the two trees, the one whose pose magnifies errors less being the first there.
 Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor,

@@ -155,7 +155,7 @@ void check_within(const Setting& s, const Cooked& cooked, double distance, Tally
       }
       break;
     case Overlap::kDisjoint:
-      if (!s.truth.empty()) tally.wrong("within: free though a face touches", describe_it);
+      if (!s.truth.empty()) tally.wrong("within: disjoint though a face touches", describe_it);
       break;
     case Overlap::kUndecided:
       if (s.truth.empty() && !is_some_face_nearer(s, distance)) {

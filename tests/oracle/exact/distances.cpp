@@ -173,7 +173,7 @@ void check_within(const Setting& s, const Cooked& a, const Cooked& b, double lim
     complain("within: a hit that is none");
   }
   if (answer->overlap == Overlap::kDisjoint && s.touches)
-    complain("within: free though faces touch");
+    complain("within: disjoint though faces touch");
   if (answer->overlap == Overlap::kUndecided && is_at_most(Dyadic(limit), s.square)) {
     complain("within: undecided though all is farther");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Poses expanded for glTF, and which of them mirror.
+// Poses decomposed for glTF, and which of them mirror.
 #include "cooker/export/placed_shape.h"
 
 #include <cmath>

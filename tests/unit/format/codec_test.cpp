@@ -35,7 +35,7 @@ TYPED_TEST(FixedNodes, BindOnlyToAsManyBytesAsTheirNumberTakes) {
 }
 
 // A header of three nodes, two of which are of other kinds than the root.
-PackedHeader sound_header(std::uint8_t cut_bits, std::uint32_t cut_count) {
+PackedHeader valid_header(std::uint8_t cut_bits, std::uint32_t cut_count) {
   PackedHeader header{};
   header.node_count = {1, 0, 1, 1};
   header.cut_count = cut_count;
@@ -59,11 +59,11 @@ void expect_size_matters(const PackedHeader& header) {
 }
 
 TEST(PackedCodecs, BindOnlyToAsManyBytesAsTheHeaderAsksFor) {
-  expect_size_matters<PackedCut::kF16>(sound_header(16, 0));
-  expect_size_matters<PackedCut::kF32>(sound_header(32, 0));
-  expect_size_matters<PackedCut::kF64>(sound_header(64, 0));
-  expect_size_matters<PackedCut::kTable>(sound_header(32, 0));
-  expect_size_matters<PackedCut::kTable>(sound_header(2, 3));
+  expect_size_matters<PackedCut::kF16>(valid_header(16, 0));
+  expect_size_matters<PackedCut::kF32>(valid_header(32, 0));
+  expect_size_matters<PackedCut::kF64>(valid_header(64, 0));
+  expect_size_matters<PackedCut::kTable>(valid_header(32, 0));
+  expect_size_matters<PackedCut::kTable>(valid_header(2, 3));
 }
 
 // Each width for itself, with all others in order.
@@ -74,7 +74,7 @@ TEST(PackedHeaders, FieldsOfNumbersHave1To32Bits) {
                                          {32, Errc::kOk},
                                          {33, Errc::kRecordInvalid},
                                          {255, Errc::kRecordInvalid}}) {
-      PackedHeader header = sound_header(32, 0);
+      PackedHeader header = valid_header(32, 0);
       header.*field = static_cast<std::uint8_t>(bits);
       EXPECT_EQ(check_packed_header(header, PackedCut::kF32, kThreeNodes).code(), expected) << bits;
     }
@@ -108,7 +108,7 @@ TEST(PackedHeaders, CutsHaveTheBitsOfTheirKind) {
                          {PackedCut::kTable, 32, 2, Errc::kOk},
                          {PackedCut::kTable, 33, 2, kInvalid},
                          {PackedCut::kTable, 255, 2, kInvalid}}) {
-    EXPECT_EQ(check_packed_header(sound_header(at.bits, at.count), at.cut, kThreeNodes).code(),
+    EXPECT_EQ(check_packed_header(valid_header(at.bits, at.count), at.cut, kThreeNodes).code(),
               at.expected)
         << static_cast<int>(at.cut) << ": " << int{at.bits} << " bits, table of " << at.count;
   }
@@ -118,25 +118,25 @@ TEST(PackedHeaders, CountsRootAndReserveAreChecked) {
   const auto check = [](const PackedHeader& header) {
     return check_packed_header(header, PackedCut::kF32, kThreeNodes);
   };
-  const PackedHeader sound = sound_header(32, 0);
-  EXPECT_TRUE(check(sound).ok());
+  const PackedHeader valid = valid_header(32, 0);
+  EXPECT_TRUE(check(valid).ok());
   for (std::size_t kind = 0; kind < kNodeKinds; ++kind) {
-    PackedHeader header = sound;
+    PackedHeader header = valid;
     ++header.node_count[kind];
     EXPECT_EQ(check(header).code(), Errc::kRecordInvalid) << "one more of kind " << kind;
-    header = sound;
+    header = valid;
     header.root_kind = static_cast<std::uint8_t>(kind);
-    EXPECT_EQ(check(header).ok(), sound.node_count[kind] != 0) << "root of kind " << kind;
+    EXPECT_EQ(check(header).ok(), valid.node_count[kind] != 0) << "root of kind " << kind;
   }
-  PackedHeader header = sound;
+  PackedHeader header = valid;
   header.root_kind = kNodeKinds;
   EXPECT_EQ(check(header).code(), Errc::kRecordInvalid);
   // Modulo 2^32 these are the three that the record states.
-  header = sound;
+  header = valid;
   header.node_count = {0xffffffffu, 0, 2, 2};
   EXPECT_EQ(check(header).code(), Errc::kRecordInvalid);
-  for (std::size_t i = 0; i < sound.reserved.size(); ++i) {
-    header = sound;
+  for (std::size_t i = 0; i < valid.reserved.size(); ++i) {
+    header = valid;
     header.reserved[i] = 1;
     EXPECT_EQ(check(header).code(), Errc::kRecordInvalid) << "word " << i;
   }

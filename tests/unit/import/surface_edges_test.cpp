@@ -50,6 +50,27 @@ SurfaceEdges count(const SourceMesh& mesh) {
   return count_surface_edges(arrays_of(mesh));
 }
 
+// Importers weld; generated meshes are as they were made.
+SourceMesh welded(const SourceMesh& mesh) {
+  SourceMesh out;
+  out.name = mesh.name;
+  std::map<Point, std::uint32_t> numbers;
+  for (Face face : mesh.faces) {
+    for (std::uint32_t& corner : face.corner) {
+      if (corner == kNoCorner) continue;
+      const Eigen::Vector3d p = mesh.positions[corner];
+      const auto [place, is_new] =
+          numbers.try_emplace({p[0], p[1], p[2]}, static_cast<std::uint32_t>(numbers.size()));
+      for (Eigen::Index k = 0; is_new && k < 3; ++k) {
+        out.positions.f32.push_back(static_cast<float>(p[k]));
+      }
+      corner = place->second;
+    }
+    out.faces.push_back(face);
+  }
+  return out;
+}
+
 SourceMesh tetrahedron() {
   SourceMesh mesh;
   mesh.positions.f32 = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
@@ -108,10 +129,11 @@ TEST(SurfaceEdges, OfNothingThereAreNone) {
 }
 
 TEST(SurfaceEdges, EqualACountByPositions) {
-  for (const SourceMesh& mesh : test::all_kinds()) {
+  for (const SourceMesh& generated : test::all_kinds()) {
+    const SourceMesh mesh = welded(generated);
     EXPECT_EQ(count(mesh), counted_by_map(mesh)) << mesh.name;
   }
-  EXPECT_TRUE(count(test::torus(12, 20)).is_closed());
+  EXPECT_TRUE(count(welded(test::torus(12, 20))).is_closed());
   // Few vertices and many faces: edges of every kind, in numbers.
   std::mt19937 random(7);
   for (std::uint32_t vertices = 3; vertices < 12; ++vertices) {

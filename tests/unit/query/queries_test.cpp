@@ -313,7 +313,7 @@ TEST_P(Queries, ScaledMeshesEqualBruteForce) {
   }
 }
 
-// A visitor that stops is not queried again.
+// A visitor that stops is not called again.
 TEST_P(Queries, VisitorsCanStop) {
   const test::CookedTree cooked = test::cook_tree(test::city(9, 2), GetParam());
   for (int limit = 1; limit < 4; ++limit) {

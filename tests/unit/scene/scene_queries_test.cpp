@@ -303,7 +303,7 @@ TEST(SceneLayers, AreFilteredAndAskedForTheirKindsAlone) {
                             return true;
                           })));
   EXPECT_EQ(box_layers, (std::set<std::uint32_t>{0, 2}));
-  // Layer 2 does not meet itself, and layer 1 answers rays alone.
+  // Layer 2 does not collide with itself, and layer 1 answers rays alone.
   std::set<std::pair<std::uint32_t, std::uint32_t>> met;
   static_cast<void>(require(contacts(scene, [&](const ScenePair& pair) {
     met.insert(std::minmax(require(scene.info(pair.first.instance)).layer,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Walks of a scene's top level, by vectors and scalar, against the boxes of all its instances.
+// Walks of a scene's top level, vectorised and scalar, against the boxes of all its instances.
 #include <algorithm>
 #include <cmath>
 #include <limits>
