@@ -1,10 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
+#include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
+#include <optional>
+#include <string>
 #include <sys/resource.h>
 
 #include <fmt/format.h>
@@ -13,6 +17,7 @@
 #include "cooker/cli/cook_report.h"
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/shell/cook_job.h"
 #include "format/grid.h"
@@ -38,6 +43,7 @@ struct Arguments {
   bool f64 = false;
   bool json = false;
   bool quiet = false;
+  std::string format;
   int jobs = tbb::task_arena::automatic;
 };
 
@@ -74,6 +80,13 @@ std::string share_fault(const std::string& text) {
   return number >= 0.01 && number <= 1 ? "" : text + " is not from 0.01 to 1";
 }
 
+// It becomes part of a file's name.
+std::string ending_fault(const std::string& text) {
+  const bool is_word =
+      std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
+  return !text.empty() && text.size() <= 16 && is_word ? "" : text + " is no ending like obj";
+}
+
 int run(Arguments& arguments) {
   CookOptions& options = arguments.job.options;
   if (arguments.codec == "blob-lzma") options.blob = BlobMethod::kLzma;
@@ -98,6 +111,38 @@ int run(Arguments& arguments) {
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
 
+  const auto from_standard =
+      std::find_if(arguments.job.inputs.begin(), arguments.job.inputs.end(), is_standard_stream);
+  const bool is_from_standard = from_standard != arguments.job.inputs.end();
+  const bool is_to_standard = is_standard_stream(arguments.job.output);
+  if (is_from_standard && arguments.format.empty()) {
+    return usage("- (standard input): --format says what it is, as in --format obj");
+  }
+  if (is_from_standard && std::find_if(from_standard + 1, arguments.job.inputs.end(),
+                                       is_standard_stream) != arguments.job.inputs.end()) {
+    return usage("- (standard input) can be read once");
+  }
+  if (!is_from_standard && !arguments.format.empty())
+    return usage("--format goes with the input -");
+  if ((is_from_standard || is_to_standard) && !arguments.job.depfile.empty()) {
+    return usage("--depfile lists files by their names: - has none");
+  }
+  if (is_to_standard && arguments.json)
+    return usage("--json and -o - cannot share standard output");
+  std::optional<StandardMesh> mesh;
+  if (is_from_standard) {
+    Result<StandardMesh> read = StandardMesh::read(arguments.format);
+    if (!read) return fail(read.error());
+    *from_standard = mesh.emplace(std::move(*read)).path();
+  }
+  const Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
+  if (!output) return fail(output.error());
+  arguments.job.output = output->path();
+  arguments.quiet |= is_to_standard;
+  const auto fail_to_cook = [&](const Error& error) {
+    return fail(mesh ? mesh->named(error) : error);
+  };
+
   if (Status status = check_job(arguments.job); !status) return usage(status.error().detail);
   const Clock::time_point start = Clock::now();
   Result<Summary> cooked = Errc::kInternal;
@@ -109,11 +154,12 @@ int run(Arguments& arguments) {
     });
   }
   if (!cooked && cooked.code() == Errc::kInvalidPose) {
-    return fail(
+    return fail_to_cook(
         {cooked.code(),
          cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
   }
-  if (!cooked) return fail(cooked.error());
+  if (!cooked) return fail_to_cook(cooked.error());
+  if (const Status sent = output->send(); !sent) return fail(sent.error());
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
     print(report_json(arguments, *cooked, seconds));
@@ -127,22 +173,27 @@ int run(Arguments& arguments) {
 
 void add_cook_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("cook", "Cook meshes into one .bxt file");
-  command.footer(
-      "Positions may be rounded: auto tries a grid of 24 bits over the largest extent beside every "
-      "bit of them, and says how far a vertex moved; --exact forbids it.\n" +
-      app.get_footer());
+  CLI::App& command = *app.add_subcommand(
+      "cook",
+      "Cook meshes into one .bxt file\n"
+      "Positions may be rounded: beside every bit of them auto tries a grid of 24 bits over the "
+      "largest extent, and says how far a vertex moved; --exact forbids it.");
   std::vector<std::string> codecs{"auto"};
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
   CLI::Option* inputs = command.add_option(
       "MESH", arguments->job.inputs,
-      "Mesh files, one tree each; one file with a node graph that places several is a scene");
+      "Mesh files, one tree each; one file with a node graph that places several is a scene; - is "
+      "standard input");
   inputs->type_name("MESH");
-  command.add_option("-o,--output", arguments->job.output, "The file to write")
+  command
+      .add_option("-o,--output", arguments->job.output, "The file to write; - is standard output")
       ->type_name("FILE")
       ->required();
+  command.add_option("--format", arguments->format, "Of the input -: the ending of its files, obj")
+      ->type_name("ENDING")
+      ->check(ending_fault);
   CLI::Option* profile =
       command
           .add_option("--profile", arguments->job.profile,
@@ -196,7 +247,7 @@ void add_cook_command(CLI::App& app, int& status) {
                                               "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
-  command.add_option("--jobs", arguments->jobs, "Threads; the bytes do not depend on it [all]")
+  command.add_option("-j,--jobs", arguments->jobs, "Threads; the bytes do not depend on it [all]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
   const auto rare = [](CLI::Option* option) { return option->group(kRareOptions); };

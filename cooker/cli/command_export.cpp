@@ -14,6 +14,7 @@
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/export/export.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
@@ -32,6 +33,8 @@ struct Arguments {
   std::filesystem::path mesh;
   std::string levels;
   std::string order;
+  std::string format;
+  bool quiet = false;
   bool triangles = false;
   bool boxes = false;
   bool leaves = false;
@@ -233,12 +236,22 @@ void print_report(const Arguments& arguments, const ExportReport& report) {
   }
 }
 
-int run(const Arguments& arguments) {
+int run(Arguments& arguments) {
   const std::optional<ExportOptions> options = options_of(arguments);
   if (!options) {
     return usage(
         fmt::format("--levels: expected levels as in 0-3,6, found \"{}\"", arguments.levels));
   }
+  if (!is_standard_stream(arguments.output) && !arguments.format.empty()) {
+    return usage("--format goes with the output -");
+  }
+  if (is_standard_stream(arguments.output) && arguments.json) {
+    return usage("--json and -o - cannot share standard output");
+  }
+  const Result<OutputFile> output =
+      OutputFile::make(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
+  if (!output) return fail(output.error());
+  arguments.output = output->path();
   std::vector<std::filesystem::path> inputs{arguments.file};
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
   if (Status status = check_outputs(std::span(&arguments.output, 1), inputs); !status) {
@@ -252,9 +265,10 @@ int run(const Arguments& arguments) {
   if (!trees) return fail(trees.error());
   const Result<ExportReport> exported = export_file(arguments, opened->file, *trees, *options);
   if (!exported) return fail(exported.error());
+  if (const Status sent = output->send(); !sent) return fail(sent.error());
   if (arguments.json) {
     print(report_json(arguments, *exported));
-  } else {
+  } else if (!arguments.quiet && !output->is_standard()) {
     print_report(arguments, *exported);
   }
   return 0;
@@ -266,13 +280,21 @@ void add_export_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("export", "Show triangles and boxes in a viewer: OBJ or glTF");
-  command.add_option("FILE", arguments->file, "The file to show")->type_name("FILE")->required();
-  command.add_option("-o,--output", arguments->output, "What to write: a name in .obj or .glb")
+  command.add_option("FILE", arguments->file, "The file to show; - is standard input")
       ->type_name("FILE")
       ->required();
   command
+      .add_option("-o,--output", arguments->output,
+                  "What to write: a name in .obj or .glb, or - for standard output")
+      ->type_name("FILE")
+      ->required();
+  command.add_option("--format", arguments->format, "Of the output - [glb]")
+      ->type_name("FORMAT")
+      ->check(CLI::IsMember({"glb", "obj"}));
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command
       .add_option("--tree", arguments->tree,
-                  "One tree alone, in its own coordinates: number or name")
+                  "One tree alone, in its own coordinates: name or number")
       ->type_name("TREE");
   command.add_flag("--trees", arguments->trees,
                    "Each tree once, in its own coordinates, not the scene that places them");

@@ -150,16 +150,15 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
     if (!scene) {
       return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
     }
-    return answer_all([&](const QueryRequest& request, TreeCache& others) {
-      return answer(scene->scene, request, others);
+    return answer_all([&](const QueryRequest& each, TreeCache& others) {
+      return answer(scene->scene, each, others);
     });
   }
   const Result<OpenedTree> tree =
-      bind_tree(std::move(opened->file), arguments.file,
-                arguments.tree.empty() ? "0" : arguments.tree, arguments.mesh);
+      bind_tree(std::move(opened->file), arguments.file, arguments.tree, arguments.mesh);
   if (!tree) return fail(tree.error());
-  return answer_all([&](const QueryRequest& request, TreeCache& others) {
-    return answer(tree->tree, request, others);
+  return answer_all([&](const QueryRequest& each, TreeCache& others) {
+    return answer(tree->tree, each, others);
   });
 }
 
@@ -202,7 +201,7 @@ class OptionFields {
             },
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
-    command_.add_option("--tree2", tree.tree, "Its tree, by number or name")
+    command_.add_option("--tree2", tree.tree, "Its tree, by name or number")
         ->type_name("TREE")
         ->group(kRareOptions);
     command_.add_option("--mesh2", tree.mesh, "Its source mesh, if it was cooked with --external")
@@ -255,15 +254,17 @@ void add_kind(CLI::App& query, const std::shared_ptr<Arguments>& arguments, int&
 void add_query_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command = *app.add_subcommand("query", "Query a .bxt file");
-  command.add_option("FILE", arguments->file, "The file to query")->type_name("FILE")->required();
+  command.add_option("FILE", arguments->file, "The file to query; - is standard input")
+      ->type_name("FILE")
+      ->required();
   command
       .add_option("--tree", arguments->tree,
-                  "Which tree, by number or name [the scene of the file, or else tree 0]")
+                  "Which tree, by name or number [the scene of the file, or else tree 0]")
       ->type_name("TREE");
   command
       .add_option("--move", arguments->moves,
-                  "Of a scene, as often as needed: INSTANCE=POSE, the instance by number or "
-                  "name, the pose as X,Y,Z or 12 numbers")
+                  "Of a scene, as often as needed: INSTANCE=POSE, the instance by name or "
+                  "number, the pose as X,Y,Z or 12 numbers")
       ->type_name("INSTANCE=POSE");
   command
       .add_option("--batch", arguments->batch,

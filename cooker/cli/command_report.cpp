@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
 // `boxtree report`: which encoding to use for a mesh; with --paper the tables of the paper.
+#include <algorithm>
 #include <array>
 #include <filesystem>
 #include <memory>
 #include <vector>
 
 #include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/peers.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/import/import.h"
 #include "cooker/report/paper_tables.h"
@@ -33,7 +36,15 @@ struct Arguments {
   bool paper = false;
   bool quick = false;
   bool no_times = false;
+  bool quiet = false;
+  int jobs = tbb::task_arena::automatic;
 };
+
+// Whether one of the outputs is standard output, which the summary must leave alone.
+bool has_standard_output(const Arguments& arguments) {
+  return is_standard_stream(arguments.output) || is_standard_stream(arguments.json_out) ||
+         is_standard_stream(arguments.csv) || is_standard_stream(arguments.approximate_csv);
+}
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {
   std::vector<std::string> names;
@@ -143,9 +154,13 @@ Json to_json(const PaperReport& report) {
   return {{"command", report.command}, {"meshes", meshes}, {"stairs", stairs}, {"rows", rows}};
 }
 
-// A path that was not given is empty: then nothing is written.
+// A path that was not given is empty: then nothing is written. "-" is standard output.
 Status write_text(const std::filesystem::path& path, const std::string& text) {
   if (path.empty()) return {};
+  if (is_standard_stream(path)) {
+    fmt::print("{}", text);
+    return {};
+  }
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
@@ -163,7 +178,7 @@ int write_report(const Arguments& arguments, const Page& page, const Json& figur
   }
   if (arguments.json) {
     print(figures);
-  } else {
+  } else if (!arguments.quiet && !has_standard_output(arguments)) {
     fmt::print("{}", to_text(summary));
   }
   return 0;
@@ -227,7 +242,7 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
   }
   const std::size_t parts = arguments.meshes.size() + (report.no_peers.empty() ? 1u : 0u);
   const auto part = [&](double done) { return done / static_cast<double>(parts); };
-  StepPrinter steps(true);
+  StepPrinter steps(!arguments.quiet);
   for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
     const auto before = static_cast<double>(i);
     steps("import " + arguments.meshes[i].filename().string(), part(before));
@@ -266,7 +281,14 @@ int run(const Arguments& arguments) {
   const std::array outputs{arguments.output, arguments.json_out, arguments.csv,
                            arguments.approximate_csv};
   if (Status status = check_outputs(outputs, inputs); !status) return usage(status.error().detail);
-  return arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
+  if (std::count_if(outputs.begin(), outputs.end(), is_standard_stream) + (arguments.json ? 1 : 0) >
+      1) {
+    return usage("standard output takes one of the page, --json, --json-out and CSV");
+  }
+  int status = 0;
+  tbb::task_arena arena(arguments.jobs);
+  arena.execute([&] { status = arguments.paper ? run_paper(arguments) : run_tradeoff(arguments); });
+  return status;
 }
 
 }  // namespace
@@ -278,7 +300,12 @@ void add_report_command(CLI::App& app, int& status) {
   command.add_option("MESH", arguments->meshes, "Mesh files")->type_name("MESH")->required();
   CLI::Option* paper =
       command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
-  command.add_option("-o,--output", arguments->output, "Write an HTML page")->type_name("FILE");
+  command.add_option("-o,--output", arguments->output, "Write an HTML page; - is standard output")
+      ->type_name("FILE");
+  command.add_option("-j,--jobs", arguments->jobs, "Threads that cook; times are of one [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024).description(""));
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_flag("--json", arguments->json, "Print all figures as one JSON document");
   command.add_option("--json-out", arguments->json_out, "Write the same to a file")
       ->type_name("FILE");

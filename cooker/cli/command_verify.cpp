@@ -8,6 +8,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <boxtree/file.h>
 
@@ -27,6 +28,7 @@ struct Arguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path mesh;
   bool quiet = false;
+  int jobs = tbb::task_arena::automatic;
   bool json = false;
 };
 
@@ -110,8 +112,10 @@ int run(const Arguments& arguments) {
   }
   int status = 0;
   std::vector<Json> documents;
+  tbb::task_arena arena(arguments.jobs);
   for (const std::filesystem::path& file : arguments.files) {
-    const Verification verification = verify_one(file, arguments.mesh);
+    Verification verification;
+    arena.execute([&] { verification = verify_one(file, arguments.mesh); });
     if (arguments.json) {
       documents.push_back(to_json(file, verification));
     } else {
@@ -129,9 +133,14 @@ void add_verify_command(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& command =
       *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
-  command.add_option("FILE", arguments->files, "Files to verify")->type_name("FILE")->required();
+  command.add_option("FILE", arguments->files, "Files to verify; - is standard input")
+      ->type_name("FILE")
+      ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print findings only");
+  command.add_option("-j,--jobs", arguments->jobs, "Threads [all]")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024).description(""));
   command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
       ->type_name("FILE")
       ->group(kRareOptions);

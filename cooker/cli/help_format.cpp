@@ -69,6 +69,18 @@ std::string name_of(const CLI::App& app) {
   return name_of(*parent) + positionals_of(*parent) + " " + app.get_name();
 }
 
+std::string first_line(const std::string& text) {
+  return text.substr(0, text.find('\n'));
+}
+
+// A line of `text` is a paragraph.
+std::string paragraphs(const std::string& text) {
+  std::string out;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) out += wrapped(line, 0, 0) + "\n";
+  return out;
+}
+
 }  // namespace
 
 std::string wrapped(const std::string& text, std::size_t at, std::size_t indent,
@@ -139,16 +151,15 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool is_positi
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
-  return row(command->get_name(), command->get_description());
+  return row(command->get_name(), first_line(command->get_description()));
+}
+
+std::string HelpFormatter::make_description(const CLI::App* app) const {
+  return paragraphs(app->get_description());
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  std::string footer;
-  std::istringstream paragraphs(app->get_footer());
-  for (std::string paragraph; std::getline(paragraphs, paragraph);) {
-    footer += wrapped(paragraph, 0, 0) + "\n";
-  }
-  return footer;
+  return paragraphs(app->get_footer());
 }
 
 }  // namespace boxtree::cooker

@@ -13,6 +13,7 @@ namespace boxtree::cooker {
 /// Group of options that `--help` leaves to `--help-all`.
 inline constexpr const char* kRareOptions = "Rarely needed";
 
+/// A command's description is a line for the list of commands, and paragraphs for its own help.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
@@ -22,6 +23,7 @@ class HelpFormatter : public CLI::Formatter {
                          std::vector<const CLI::Option*> options) const override;
   std::string make_option(const CLI::Option* option, bool is_positional) const override;
   std::string make_subcommand(const CLI::App* command) const override;
+  std::string make_description(const CLI::App* app) const override;
   std::string make_footer(const CLI::App* app) const override;
 
  private:

@@ -3,12 +3,36 @@
 #include "cooker/cli/open_file.h"
 
 #include <charconv>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include <boxtree/blob.h>
 
+#include "cooker/cli/standard_streams.h"
+#include "cooker/text/nearest_name.h"
+
 namespace boxtree::cooker {
+namespace {
+
+// The same as below, of memory.
+Result<OpenedFile> open_standard_input() {
+  const Result<Bytes> input = standard_input();
+  if (!input) return input.error();
+  Result<File> file = File::open(*input);
+  if (file) return OpenedFile{std::move(*file)};
+  if (file.code() != Errc::kFeatureUnsupported) {
+    return Error{file.code(), "standard input: " + file.error().detail};
+  }
+  Result<File> blob = open_blob(*input);
+  if (!blob) return Error{blob.code(), "standard input: " + blob.error().detail};
+  return OpenedFile{std::move(*blob), input->size()};
+}
+
+}  // namespace
 
 Result<OpenedFile> open_file(const std::filesystem::path& path) {
+  if (is_standard_stream(path)) return open_standard_input();
   Result<File> mapped = File::open(path);
   if (mapped) return OpenedFile{std::move(*mapped)};
   if (mapped.code() != Errc::kFeatureUnsupported) return mapped.error();
@@ -19,11 +43,17 @@ Result<OpenedFile> open_file(const std::filesystem::path& path) {
 }
 
 Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
+  if (which.empty()) return std::uint32_t{0};
+  Result<std::uint32_t> named = file.find_tree(which);
+  if (named) return named;
   std::uint32_t index = 0;
   const char* const end = which.data() + which.size();
   const auto [parsed, error] = std::from_chars(which.data(), end, index);
   if (error == std::errc() && parsed == end) return index;
-  return file.find_tree(which);
+  std::vector<std::string> names;
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) names.emplace_back(file.tree_name(i));
+  return Error{named.code(),
+               fmt::format("no tree is called \"{}\"{}", which, suggestion(which, names))};
 }
 
 }  // namespace boxtree::cooker

@@ -17,7 +17,7 @@ struct OpenedFile {
   std::uint64_t blob_bytes = 0;  // size of the compressed file; 0 for a mapped one
 };
 
-/// Errors as File::open and open_blob.
+/// "-" is standard input. Errors as File::open, open_blob and standard_input.
 Result<OpenedFile> open_file(const std::filesystem::path& path);
 
 /// How commands import meshes, which may come from anywhere: no file ends the command.
@@ -27,8 +27,8 @@ Result<OpenedFile> open_file(const std::filesystem::path& path);
   return options;
 }
 
-/// The number of a tree that is named by its number or its name. A number need not be in the file:
-/// binding finds that out.
+/// The first tree for an empty text, else the tree with that name or, if none is called so, that
+/// number. A number need not be in the file: binding finds that out. Error: kTreeIndex.
 Result<std::uint32_t> find_tree(const File& file, const std::string& which);
 
 }  // namespace boxtree::cooker

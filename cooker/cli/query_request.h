@@ -113,7 +113,7 @@ struct PointRequest {
 
 struct SecondTree {
   std::filesystem::path file;
-  std::string tree = "0";
+  std::string tree;            // by name or number; empty: the first
   std::filesystem::path mesh;  // its source, if its geometry is external
   Pose pose = Pose::Identity();
 };
@@ -194,7 +194,7 @@ struct OpenedTree {
   Tree tree;
 };
 
-/// Opens `path` and binds the tree with that number or name. `mesh` names the source of trees that
+/// Opens `path` and binds the tree with that name or number. `mesh` names the source of trees that
 /// were cooked with --external; it is imported and compared by content.
 Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
                              const std::filesystem::path& mesh);

@@ -139,12 +139,12 @@ Result<Move> parse_move(const Scene& scene, const std::string& text) {
                              text)};
   }
   const std::string name = text.substr(0, at);
+  const Result<std::uint32_t> found = scene.find_instance(name);
+  if (found) return Move{*found, *pose};
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
   if (error == std::errc() && end == name.data() + name.size()) return Move{number, *pose};
-  const Result<std::uint32_t> found = scene.find_instance(name);
-  if (!found) return found.error();
-  return Move{*found, *pose};
+  return found.error();
 }
 
 }  // namespace

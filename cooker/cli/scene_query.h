@@ -18,7 +18,7 @@ struct OpenedScene {
 };
 
 /// Opens the scene of a file and moves instances: each of `moves` is "INSTANCE=POSE", the instance
-/// by its number or name. Errors: those of Scene::bind; kInvalidQuery for a move that says nothing.
+/// by its name or number. Errors: those of Scene::bind; kInvalidQuery for a move that says nothing.
 Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
 
 /// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.

@@ -12,13 +12,6 @@
 namespace boxtree::cooker {
 namespace {
 
-// Nothing where more than a third of the letters would be others.
-std::string suggestion(std::string_view word, std::span<const std::string> names) {
-  const std::string nearest = nearest_name(word, names);
-  const bool is_near = edit_distance(word, nearest) <= std::max<std::size_t>(word.size() / 3, 1);
-  return is_near ? "; did you mean '" + nearest + "'?" : std::string();
-}
-
 // The command that was being parsed.
 const CLI::App& innermost(const CLI::App& app) {
   const CLI::App* at = &app;

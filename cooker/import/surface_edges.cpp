@@ -75,9 +75,9 @@ SurfaceEdges count_surface_edges(const MeshArrays& mesh) {
       const auto next =
           std::find_if(side, past, [&](std::uint64_t other) { return other >> 1 != *side >> 1; });
       const auto faces = next - side;
-      edges.open += faces == 1 ? 1 : 0;
-      edges.non_manifold += faces > 2 ? 1 : 0;
-      edges.inconsistent += faces == 2 && side[0] == side[1] ? 1 : 0;
+      edges.open += faces == 1 ? 1u : 0u;
+      edges.non_manifold += faces > 2 ? 1u : 0u;
+      edges.inconsistent += faces == 2 && side[0] == side[1] ? 1u : 0u;
       side = next;
     }
   }

@@ -34,4 +34,10 @@ std::string nearest_name(std::string_view name, std::span<const std::string> nam
   return nearest == names.end() ? std::string() : *nearest;
 }
 
+std::string suggestion(std::string_view name, std::span<const std::string> names) {
+  const std::string nearest = nearest_name(name, names);
+  const bool is_near = edit_distance(name, nearest) <= std::max<std::size_t>(name.size() / 3, 1);
+  return is_near && !nearest.empty() ? "; did you mean '" + nearest + "'?" : std::string();
+}
+
 }  // namespace boxtree::cooker

@@ -17,4 +17,8 @@ namespace boxtree::cooker {
 /// Of `names` the first with the least distance; empty if there are none.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
 
+/// "; did you mean 'query'?" with the nearest of `names`; empty where more than a third of the
+/// letters would be others.
+[[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
+
 }  // namespace boxtree::cooker
