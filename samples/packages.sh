@@ -31,5 +31,6 @@ install_missing() {
   echo "installing: ${missing[*]}" >&2
   "${as_root[@]}" apt-get update -qq >&2
   "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-    apt-get install -y -qq --no-install-recommends "${missing[@]}" >&2
+    apt-get install -y -q --no-install-recommends "${missing[@]}" |
+    awk '/^(Get:|Setting up )/ { if (++n % 25 == 0) { print "  " n " steps, now " $0; fflush() } }' >&2
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# From a fresh Debian 12 to answered queries: installs what is missing, builds, cooks real meshes
-# from Debian's own packages, and queries them.
+# From a fresh Debian 12 to answered queries: installs what is missing, builds (some three minutes on two
+# cores), cooks real meshes from Debian's own packages, queries them, and writes a report page.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 # shellcheck source=samples/packages.sh
@@ -9,13 +9,21 @@ cd "$(dirname "$0")/.."
 # shellcheck disable=SC2086 # lists of words
 install_missing $BUILD_PACKAGES $SAMPLE_PACKAGES
 
+say() { printf '\n== %s\n' "$*"; }
+
+say "build in build/quickstart"
 cmake -S . -B build/quickstart -G Ninja -DCMAKE_BUILD_TYPE=Release -DBOXTREE_BUILD_TESTS=OFF >/dev/null
-ninja -C build/quickstart boxtree_cli >/dev/null
+# Ninja counts in one line of a terminal; elsewhere every twentieth step is a line.
+if [ -t 1 ]; then
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli
+else
+  NINJA_STATUS='[%f/%t files, %e s] ' ninja -C build/quickstart boxtree_cli |
+    awk '/^\[/ { if (n++ % 20 == 0) { print; fflush() } next } { print }'
+fi
 boxtree=build/quickstart/boxtree
 out=build/quickstart/cooked
 mkdir -p "$out"
 
-say() { printf '\n== %s\n' "$*"; }
 run() { printf '$ boxtree %s\n' "$*"; "$boxtree" "$@"; }
 
 say "cook"
@@ -35,4 +43,9 @@ say "the closest point"
 run query "$out/cat.bxt" point --at 1,2,3
 say "two meshes against each other"
 run query "$out/bunny.bxt" pair "$out/horse.bxt" --pose 0.1,0,0 --first
-say "done: the cooked files are in $out; '$boxtree --help' shows the rest"
+say "which encoding to take, and what it costs"
+run report /usr/share/glmark2/models/bunny.obj -o "$out/bunny.html" --quick
+say "done"
+echo "the report page:  $(realpath "$out/bunny.html")"
+echo "the cooked files: $(realpath "$out")"
+echo "the program:      $(realpath "$boxtree"), as in $boxtree help cook"
