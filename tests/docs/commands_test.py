@@ -16,7 +16,7 @@ import tempfile
 
 from blocks import blocks_of
 
-BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|cmake -S \. -B build )")
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|\. samples/packages\.sh)")
 
 # What programs of the pages use of the application around them.
 AROUND = """
