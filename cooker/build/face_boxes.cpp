@@ -60,7 +60,8 @@ Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face
 
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   if (positions.size() == 0) return;
-  Bounds bounds = bounds_of(positions);
+  const Bounds in_object_space = bounds_of(positions);
+  Bounds bounds = in_object_space;
   if (positions.precision == Precision::kF64 && origin == Origin::kByPrecision) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
@@ -71,8 +72,9 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   }
   double size = (bounds.high / 2 - bounds.low / 2).maxCoeff();  // halves, so that nothing overflows
   int halved = 1;
-  if (size == 0) {  // a single point: its coordinates set the scale
-    size = std::max(bounds.low.cwiseAbs().maxCoeff(), bounds.high.cwiseAbs().maxCoeff());
+  if (size == 0) {  // a single point: its coordinates set the scale, wherever it was moved
+    size = std::max(in_object_space.low.cwiseAbs().maxCoeff(),
+                    in_object_space.high.cwiseAbs().maxCoeff());
     halved = 0;
   }
   if (size == 0) return;

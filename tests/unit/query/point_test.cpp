@@ -257,6 +257,29 @@ TEST_P(ApproximatePoints, UpperBoundHoldsWhereDoublesEnd) {
   EXPECT_GT(inexact, 10);
 }
 
+// A mesh that is one place, at a coordinate whose unit in the last place has no square. Found by
+// boxtree_exact, seed 61: the lower bound was 0.
+TEST_P(ApproximatePoints, LowerBoundIsTightBesideAMeshThatIsOnePlace) {
+  const Eigen::Vector3d place(0x1.8001c93ed7188p-785, 0x1.13f502fe7619ep-784,
+                              0x1.d8180c4b8e61cp-785);
+  const double step = std::ldexp(1.0, -785 - 52);
+  SourceMesh mesh;
+  mesh.positions.precision = cooker::Precision::kF64;
+  mesh.positions.f64 = {place[0], place[1], place[2]};
+  mesh.faces.push_back({{0, 0, 0, cooker::kNoCorner}});
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  if (BoundTree::of(cooked.tree).leaves().is_grid()) GTEST_SKIP() << "the place is rounded";
+  const Eigen::Vector3d beside = place + Eigen::Vector3d(step, 0, -step);
+  ASSERT_NE(beside, place);
+  const auto found = closest_point(cooked.tree, beside, PointOptions());
+  ASSERT_TRUE(found.ok());
+  const long double apart = std::sqrt(2.0L) * static_cast<long double>(step);
+  EXPECT_LE(found->lower, apart);
+  EXPECT_GE(found->upper, apart);
+  EXPECT_GE(found->lower, apart * (1 - 0x1p-44L));
+  EXPECT_LE(found->upper, apart * (1 + 0x1p-44L));
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, ApproximatePoints, testing::ValuesIn(test::all_encodings()),
                          test::encoding_name);
 
