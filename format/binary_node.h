@@ -27,7 +27,7 @@ inline constexpr std::size_t kNodeKinds = 4;
 
 /// A child's box: the parent's with one plane moved inward. The left child's high plane goes down
 /// by the cut, the right child's low plane goes up by it; one difference or sum in S, rounded to
-/// nearest. Encoders choose cuts by this very arithmetic.
+/// nearest. Encoders choose cuts with the same function.
 template <class S>
 [[nodiscard]] constexpr Box<S> child_box(const Box<S>& box, std::size_t axis, std::size_t side,
                                          S cut) noexcept {

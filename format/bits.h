@@ -11,7 +11,7 @@
 
 namespace boxtree {
 
-/// Bytes that a reader of bits may touch beyond the last one that holds a field.
+/// Bytes after the last field that read_bits may load.
 inline constexpr std::size_t kBitPadding = 8;
 
 /// The `width` low bits of a word, set. Precondition: width <= 64.
@@ -19,13 +19,13 @@ inline constexpr std::size_t kBitPadding = 8;
   return width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
 }
 
-/// Bits that a field for numbers up to `largest` takes; for writers.
+/// Width in bits of a field for numbers up to `largest`; for writers.
 [[nodiscard]] constexpr std::uint8_t field_width(std::uint64_t largest) noexcept {
   return static_cast<std::uint8_t>(largest == 0 ? 1 : std::bit_width(largest));
 }
 
-/// Bits that a field for numbers below `count` takes: none when there is but one, or none at all.
-/// Odd and never zero inside, so that no branch is needed. Precondition: count < 2^63.
+/// Width in bits of a field for numbers below `count`; 0 for a count of 0 or 1. `odd` is never
+/// zero, so that no branch is needed. Precondition: count < 2^63.
 [[nodiscard]] constexpr std::uint32_t width_below(std::uint64_t count) noexcept {
   const std::uint64_t odd = (2 * count - (count != 0 ? 1u : 0u)) | 1u;
   return static_cast<std::uint32_t>(std::bit_width(odd)) - 1;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading fixed-width values out of mapped bytes, and the one range test that all offsets go
-// through.
+// Reads fixed-width values from mapped bytes, and the one range test that all offsets pass.
 #pragma once
 
 #include <bit>
@@ -16,7 +15,7 @@ namespace boxtree {
 // Records are mapped, not parsed: the bytes of the file are the values of this machine.
 static_assert(std::endian::native == std::endian::little, "boxtree reads .bxt files in place");
 
-/// Whether [offset, offset + length) lies in [0, size). Subtracts, so that nothing can wrap.
+/// Whether [offset, offset + length) lies in [0, size). Subtracts, so that nothing overflows.
 [[nodiscard]] constexpr bool in_range(std::uint64_t offset, std::uint64_t length,
                                       std::uint64_t size) noexcept {
   return length <= size && offset <= size - length;

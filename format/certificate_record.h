@@ -15,7 +15,7 @@ struct CertificateRecord {
   std::uint32_t depth;         // equals TreeRecord::depth
   std::uint32_t node_count;    // nodes reached from the root
   std::uint32_t leaf_count;    // leaves reached
-  std::uint32_t face_count;    // faces reached, each exactly once; duplicates by their originals
+  std::uint32_t face_count;    // faces reached, each exactly once; duplicates via originals
   std::uint32_t shrink_count;  // nodes with one child
   std::uint32_t degenerate_count;  // triangles without area, kept
   std::array<std::uint64_t, 4> reserved;

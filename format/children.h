@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answer to the one query every codec answers: given a node and its decoded box, what are
-// the children and their decoded boxes?
+// What every codec decodes: the children of a node and their boxes, given the node and its own box.
 #pragma once
 
 #include <array>
@@ -11,8 +10,8 @@
 
 namespace boxtree {
 
-/// Names a subtree or a leaf inside one tree. For a leaf: its first face and how many faces. For a
-/// subtree the two numbers belong to the codec; they are only ever handed back to it.
+/// Refers to a subtree or a leaf of one tree. For a leaf: its first face and its number of faces.
+/// For a subtree only the codec interprets the two numbers.
 struct NodeRef {
   std::uint32_t first;
   std::uint32_t second;
@@ -20,8 +19,9 @@ struct NodeRef {
   friend bool operator==(const NodeRef&, const NodeRef&) = default;
 };
 
-/// What was found of the bytes of a node that was decoded. It says nothing of the walk that met the
-/// node: those go on through WalkBound::count (runtime/walk/work.h), which needs it.
+/// Whether the bytes of a decoded node are valid. This says nothing about the walk that visits the
+/// node: a walk continues only through WalkBound::count (runtime/walk/work.h), which takes the
+/// state.
 enum class [[nodiscard]] NodeState : bool{kCorrupt, kValid};
 
 [[nodiscard]] constexpr NodeState valid_if(bool is_valid) noexcept {
@@ -31,7 +31,7 @@ enum class [[nodiscard]] NodeState : bool{kCorrupt, kValid};
 /// What the root of a tree is. Numbers are pinned.
 enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
 
-/// As many nodes and faces as a tree states, which bound what its bytes may name.
+/// Numbers of nodes and faces that a tree states; references in its bytes must be below them.
 struct TreeCounts {
   std::uint32_t node_count = 0;
   std::uint32_t faces_in_leaves = 0;

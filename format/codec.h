@@ -41,12 +41,12 @@ inline constexpr std::array kCodecs = {
     CodecInfo{CodecId::kWide8, "wide8"},          CodecInfo{CodecId::kWide4, "wide4"},
 };
 
-/// Whether a codec has leaves of several faces and an order of faces of its own.
+/// Whether a codec has leaves of several faces and its own order of faces.
 [[nodiscard]] constexpr bool is_wide(CodecId id) noexcept {
   return id == CodecId::kWide8 || id == CodecId::kWide4;
 }
 
-/// Whether nodes are bit fields, whose widths each tree has for itself.
+/// Whether nodes are bit fields, whose widths differ from tree to tree.
 [[nodiscard]] constexpr bool is_packed(CodecId id) noexcept {
   return id == CodecId::kPackedF32 || id == CodecId::kPackedF16 || id == CodecId::kPackedF64 ||
          id == CodecId::kDedup;

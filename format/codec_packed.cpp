@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The check behind every packed tree: after it, sizes and places follow from the header.
+// Checks the header of a packed tree; sizes and offsets then follow from it.
 #include "format/codec_packed.h"
 
 #include <algorithm>

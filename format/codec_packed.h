@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Codecs packed-f32, packed-f16, packed-f64 and dedup: the paper's compressed BoxTree (chapter 3,
-// tables 3.2 and 3.3). Nodes are bit fields whose widths the file states; nodes of one kind stand
-// in one array, and a child's kind stands in its parent.
+// tables 3.2 and 3.3). Nodes are bit fields whose widths the file states. Each kind of node has its
+// own array; a node stores the kinds of its children.
 #pragma once
 
 #include <array>
@@ -22,26 +22,25 @@ enum class PackedCut : std::uint8_t {
   kF16,
   kF32,
   kF64,
-  kTable,  // a number in the table of unique f32 cuts; or f32 in the node, where that is smaller
+  kTable,  // index into the table of unique f32 cuts, or an f32 in the node if that is smaller
 };
 
-/// First bytes of the nodes section. The table of cuts (cut_count f32) follows at once; then, each
-/// from the next multiple of 8 bytes, the arrays of the four kinds in the order of NodeKind; then
-/// kBitPadding zero bytes.
+/// First bytes of the nodes section. After it come the table of cuts (cut_count f32); the arrays of
+/// the four kinds in the order of NodeKind, each aligned to 8 bytes; and kBitPadding zero bytes.
 struct PackedHeader {
   std::array<std::uint32_t, kNodeKinds> node_count;  // of each kind
-  std::uint32_t cut_count;                           // 0: cuts stand in the nodes
+  std::uint32_t cut_count;                           // 0: cuts are in the nodes
   std::uint8_t node_bits;                            // width of a node's number: 1..32
   std::uint8_t face_bits;                            // width of a face's number: 1..32
-  std::uint8_t cut_bits;                             // width of a cut, or of its number
+  std::uint8_t cut_bits;                             // width of a cut, or of its index
   std::uint8_t root_kind;                            // NodeKind of the root, number 0 of its array
   std::array<std::uint64_t, 5> reserved;             // zero
 };
 static_assert(sizeof(PackedHeader) == 64 && std::is_trivially_copyable_v<PackedHeader>);
 
-/// Where the fields of a node of one kind stand, in bits from its start: axis (2 bits), kind of
-/// each child that is a subtree (2 bits each), numbers of both children, both cuts. A missing child
-/// of a shrink node has all bits of its number set and kind 0.
+/// Offsets of the fields in a node of one kind, in bits: axis (2 bits), kind of each child that is
+/// a subtree (2 bits each), numbers of both children, both cuts. A missing child of a shrink node
+/// has all bits of its number set and kind 0.
 struct PackedLayout {
   std::array<std::uint8_t, 2> kind_at{};
   std::array<std::uint8_t, 2> number_at{};
@@ -69,7 +68,7 @@ struct PackedLayout {
   }
 };
 
-/// Where the arrays stand in a section, and how long it is, by the header alone.
+/// Offsets of the arrays in a section, and its length, computed from the header.
 struct PackedPlaces {
   std::array<std::uint64_t, kNodeKinds> array_at{};
   std::uint64_t section_bytes = 0;
@@ -86,8 +85,8 @@ struct PackedPlaces {
   }
 };
 
-/// Whether widths, counts and reserve of a header can be those of such a tree with that kind
-/// of cut; otherwise kRecordInvalid says what cannot.
+/// Checks the widths, counts and reserved bits of a header against the tree's counts and the kind
+/// of cut. Error: kRecordInvalid, which names what is wrong.
 Status check_packed_header(const PackedHeader& header, PackedCut cut, const TreeCounts& counts);
 
 /// Decodes nodes of one tree. A subtree's NodeRef is its number and its kind.
@@ -134,9 +133,8 @@ struct PackedCodec {
 
   [[nodiscard]] NodeRef root() const noexcept { return {0, root_kind}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
-  /// contradicts itself: no such axis, node or cut. Precondition: `ref` came from root() or
-  /// expand().
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the axis, a child
+  /// or a cut of the node does not exist. Precondition: `ref` came from root() or expand().
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<Scalar>& box,
                                  Children& out) const noexcept {
     const auto kind = static_cast<NodeKind>(ref.second);

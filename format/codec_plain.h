@@ -23,11 +23,11 @@ enum class PlainChild : std::uint32_t {
 
 inline constexpr std::uint32_t kPlainNoChild = 0xffffffffu;
 
-/// One node. `cutplane`: bits 0-1 the axis, bits 2-3 kind of the left child, bits 4-5 kind of the
-/// right child, the rest zero. cut[0] is taken off the box's high side to give the left child,
-/// cut[1] is added to its low side to give the right child; both in tree space, never negative.
-/// The root is node 0; every child has a larger index than its parent, a first child mostly right
-/// behind.
+/// One node. `cutplane`: bits 0-1 the axis, bits 2-3 the kind of the left child, bits 4-5 the kind
+/// of the right child, the rest zero. cut[0] is subtracted from the box's high side to give the
+/// left child, cut[1] is added to its low side to give the right child; both are in tree space and
+/// never negative. The root is node 0. Every child has a larger index than its parent; a first
+/// child mostly follows its parent directly.
 template <class Cut>
 struct PlainNode {
   std::uint32_t cutplane;
@@ -87,9 +87,9 @@ struct PlainCodec {
 
   [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
-  /// contradicts itself: a kind or axis that does not exist, or a child that is no node behind its
-  /// parent. Precondition: `ref` came from root() or expand().
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the axis or a
+  /// child's kind does not exist, or a child is not a node after its parent. Precondition: `ref`
+  /// came from root() or expand().
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
     const Node node = load<Node>(nodes, ref.first);
     const std::uint32_t axis = node.axis();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Codecs wide8 and wide4: eight children a node, their planes in 8 or 4 bits relative to the
-// decoded box of the node. Leaves hold eight faces in tree order, so that a leaf's number gives its
-// faces and no leaf is stored; children that are nodes, and those that are leaves, stand in a row
-// each.
+// Codecs wide8 and wide4: eight children per node, their planes in 8 or 4 bits relative to the
+// decoded box of the node. Leaves hold eight faces in tree order, so a leaf's number gives its
+// faces and no leaf is stored. The child nodes of a node have consecutive numbers, and so do its
+// leaves.
 #pragma once
 
 #include <algorithm>
@@ -20,9 +20,9 @@ namespace boxtree {
 
 inline constexpr std::size_t kWideChildren = 8;
 
-/// wide8: one cache line. Children 0 to child_count - 1 are there; child i is a node if bit i of
-/// inner_mask is set, else a leaf. Nodes have numbers from first_node on in the order of the
-/// children, leaves from first_leaf on; leaf n holds faces 8n to 8n + 7, or up to the last face.
+/// wide8: one cache line. Children 0 to child_count - 1 exist; child i is a node if bit i of
+/// inner_mask is set, else a leaf. In the order of the children, nodes are numbered from first_node
+/// and leaves from first_leaf; leaf n holds faces 8n to 8n + 7, or up to the last face.
 struct Wide8Node {
   static constexpr std::uint32_t kLargestCode = 255;
 
@@ -40,11 +40,11 @@ struct Wide8Node {
   [[nodiscard]] std::uint32_t high_code(std::size_t axis, std::size_t child) const noexcept {
     return high[axis][child];
   }
-  /// How far from the side of the box a plane is, in steps.
+  /// Distance of a plane from the side of the box, in steps.
   [[nodiscard]] static constexpr float steps(std::uint32_t code) noexcept {
     return static_cast<float>(code);
   }
-  /// A code of at least so many steps. For writers.
+  /// A code of at least this many steps. For writers.
   [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
     return static_cast<std::uint32_t>(steps) + 1;
   }
@@ -52,13 +52,13 @@ struct Wide8Node {
 };
 static_assert(sizeof(Wide8Node) == 64 && std::is_trivially_copyable_v<Wide8Node>);
 
-/// wide4: the same in half a cache line. Steps grow from code to code, because planes crowd near
-/// the sides of the box that they lie in, and end at 0.85 of its extent, because few planes lie
-/// beyond: of all c * (c + a) / n these numbers gave the smallest boxes on scanned, CAD and
-/// generated meshes.
+/// wide4: the same in half a cache line. Steps grow from code to code, because most planes are near
+/// the side of the box that they are counted from, and end at 0.85 of its extent, because few
+/// planes lie beyond. Of all c * (c + a) / n these constants gave the smallest boxes on scanned,
+/// CAD and generated meshes.
 struct Wide4Node {
   static constexpr std::uint32_t kLargestCode = 15;
-  static constexpr std::uint32_t kFirstSteps = 24;  // by how much steps do not start at zero
+  static constexpr std::uint32_t kFirstSteps = 24;  // `a` above
 
   std::array<std::uint32_t, 3> low;   // [axis], child i in bits 4i to 4i + 3
   std::array<std::uint32_t, 3> high;  // likewise
@@ -74,7 +74,7 @@ struct Wide4Node {
   [[nodiscard]] static constexpr float steps(std::uint32_t code) noexcept {
     return static_cast<float>(code * (code + kFirstSteps));
   }
-  /// A code of at least so many steps. For writers.
+  /// A code of at least this many steps. For writers.
   [[nodiscard]] static std::uint32_t code_above(float steps) noexcept {
     static_assert(kFirstSteps % 2 == 0);
     constexpr std::uint32_t kHalfSteps = kFirstSteps / 2;
@@ -85,7 +85,7 @@ struct Wide4Node {
 };
 static_assert(sizeof(Wide4Node) == 32 && std::is_trivially_copyable_v<Wide4Node>);
 
-/// What a node says of its children, whatever its layout.
+/// The links of a node to its children, in any layout.
 struct WideLinks {
   std::uint32_t first_node;
   std::uint32_t first_leaf;
@@ -93,14 +93,14 @@ struct WideLinks {
   std::uint32_t child_count;
 };
 
-/// Numbers that the layout of wide4 can hold.
+/// The most nodes and leaves that the layout of wide4 can number.
 inline constexpr std::uint32_t kMaxWide4Nodes = 1u << 26;
 inline constexpr std::uint32_t kMaxWide4Leaves = 1u << 27;
 
 [[nodiscard]] inline WideLinks links_of(const Wide8Node& node) noexcept {
   return {node.first_node, node.first_leaf, node.inner_mask, node.child_count};
 }
-/// Of Wide4Node::links.
+/// Decodes Wide4Node::links.
 [[nodiscard]] inline WideLinks links_of_word(std::uint64_t links) noexcept {
   return {static_cast<std::uint32_t>(links) & (kMaxWide4Nodes - 1),
           static_cast<std::uint32_t>(links >> 26) & (kMaxWide4Leaves - 1),
@@ -118,7 +118,7 @@ template <class Node>
 }
 
 /// A plane counted from the low side, and one counted from the high side: one product and one sum,
-/// each rounded to nearest. Encoders choose codes by this very arithmetic.
+/// each rounded to nearest. Encoders choose codes with the same functions.
 template <class Node>
 [[nodiscard]] constexpr float wide_low_plane(float low, float step, std::uint32_t code) noexcept {
   return low + Node::steps(code) * step;
@@ -139,7 +139,7 @@ struct WideCodec {
 
   const std::byte* nodes = nullptr;
   std::uint32_t node_count = 0;
-  std::uint32_t face_count = 0;  // of those in leaves
+  std::uint32_t face_count = 0;  // faces in leaves
 
   /// Reads the nodes of a tree out of their section. Error: kSectionSize.
   static Result<WideCodec> bind(const TreeCounts& counts, Bytes section) {
@@ -150,9 +150,9 @@ struct WideCodec {
 
   [[nodiscard]] static NodeRef root() noexcept { return {0, 0}; }
 
-  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node
-  /// contradicts itself: no children, or a child that is no node behind its parent or has no face.
-  /// Precondition: `ref` came from root() or expand().
+  /// The children of the subtree `ref`, whose decoded box is `box`. kCorrupt when the node has no
+  /// children, or a child is not a node after its parent or a leaf with faces. Precondition: `ref`
+  /// came from root() or expand().
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<float>& box, Children& out) const noexcept {
     const Node node = load<Node>(nodes, ref.first);
     const WideLinks links = links_of(node);

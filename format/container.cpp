@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Container checks. Every offset and size of a file passes through here before anything reads by
-// it.
+// Container checks. Every offset and size of a file is checked here before it is used.
 #include "format/container.h"
 
 #include <algorithm>
@@ -53,7 +52,7 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
   return {};
 }
 
-// `free_from` is the end of what precedes the section; it moves to the section's end.
+// `free_from`: the end of what precedes the section; set to the end of the section.
 Status check_section(std::size_t index, const SectionEntry& entry, std::uint64_t file_size,
                      std::uint64_t& free_from) {
   if (!is_known(entry.kind) && (entry.flags & kSectionRequired) != 0) {
@@ -93,7 +92,7 @@ Status index_sections(Container& container) {
   std::vector<std::uint32_t>& order = container.by_kind_and_owner;
   order.resize(sections.size());
   std::iota(order.begin(), order.end(), 0u);
-  // A heap sort: keys that are equal are refused below, and it takes less code than std::sort.
+  // A heap sort, because it takes less code than std::sort. Equal keys are refused below.
   const auto before = [&](std::uint32_t a, std::uint32_t b) {
     return key_of(sections[a]) < key_of(sections[b]);
   };

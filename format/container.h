@@ -25,7 +25,7 @@ inline constexpr std::array<std::uint8_t, 8> kMagic = {0x89, 'B', 'X', 'T', '\r'
 inline constexpr std::uint16_t kVersionMajor = 1;
 inline constexpr std::uint16_t kVersionMinor = 0;
 
-/// First bytes of the file. The section table follows at once.
+/// First bytes of the file, followed by the section table.
 struct FileHeader {
   std::array<std::uint8_t, 8> magic;
   std::uint16_t version_major;  // a reader refuses a larger one
@@ -45,7 +45,7 @@ static_assert(offsetof(FileHeader, checksum) == 56);
 
 /// What a section holds. Numbers are pinned.
 enum class SectionKind : std::uint32_t {
-  kTrees = 1,        // TreeRecord[], one a tree; owner kNoOwner
+  kTrees = 1,        // TreeRecord[], one per tree; owner kNoOwner
   kNodes = 2,        // the codec's nodes
   kVertices = 3,     // geometry exact: positions; grid: the bytes of clusters
   kCorners = 4,      // geometry exact: vertex numbers of each face; grid: ClusterRecord[]
@@ -58,7 +58,7 @@ enum class SectionKind : std::uint32_t {
   kScene = 10,          // SceneRecord
   kSceneNodes = 11,     // Wide8Node[] over the static instances
   kInstances = 12,      // InstanceRecord[]
-  kPoses = 13,          // f32[12] or f64[12] an instance
+  kPoses = 13,          // f32[12] or f64[12] per instance
   kLayers = 14,         // LayerRecord[]
   kMaterials = 15,      // MaterialRecord[]
   kMaterialRuns = 16,   // owner: a tree; MaterialRun[]
@@ -98,23 +98,23 @@ struct Container {
   [[nodiscard]] const SectionEntry* find(SectionKind kind, std::uint32_t owner) const noexcept;
 };
 
-/// Computes XXH3-64; handed in because format/ links nothing.
+/// Computes XXH3-64. A parameter, because format/ links no library.
 using ChecksumFunction = std::uint64_t (*)(Bytes head, Bytes tail);
 
-/// The header of a file with these sections, the last of which ends it; `features` are its
-/// incompatible ones. For writers.
+/// The header of a file with these sections, which ends after the last one. `features`: its
+/// incompatible features. For writers.
 [[nodiscard]] FileHeader make_header(std::span<const SectionEntry> sections, std::uint64_t features,
                                      ChecksumFunction checksum) noexcept;
 
-/// Reads header and section table and checks all that they claim: magic, version, features, size,
-/// checksum, and that sections are known or optional, aligned, ascending, apart and inside.
-/// Touches no section: O(sections). Safe on any bytes; the first violation is returned.
-/// `known_features`: bits of incompatible_features that the caller can read; a file that is mapped
-/// has none.
+/// Reads and checks the header and section table: magic, version, features, size, checksum, and
+/// that sections are known or optional, aligned, ascending, disjoint and inside the file. Reads no
+/// section: O(sections). Safe on any bytes; returns the first violation. `known_features`: bits of
+/// incompatible_features that the caller can read; none for a file that is mapped.
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
                                   std::uint64_t known_features = 0);
 
-/// Whether the bytes between sections, and after the last one, are all zero; else the first place.
+/// Checks that the bytes between sections, and after the last one, are zero; the error names the
+/// first that is not.
 Status check_padding(Bytes file, const Container& container);
 
 }  // namespace boxtree

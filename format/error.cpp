@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The error table: one row a code, so that names, meanings and exit statuses cannot drift apart.
+// The error table: one row per code, with its name, meaning and exit status.
 #include <algorithm>
 #include <array>
 
@@ -8,8 +8,8 @@
 namespace boxtree {
 namespace {
 
-// Exit statuses of the command line (docs/GUIDE.md): 2 input/output, 3 bad input, 4 internal,
-// 5 unsupported; 1 is a query that makes no sense.
+// Exit statuses of the command line (docs/GUIDE.md): 1 invalid query, 2 input/output, 3 bad input,
+// 4 internal, 5 unsupported.
 constexpr std::array kTable = {
     ErrcInfo{Errc::kOk, "ok", "no error", 0},
     ErrcInfo{Errc::kBadMagic, "bad_magic", "not a .bxt file", 3},

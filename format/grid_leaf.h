@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Which vertices the faces of one leaf of the grid store have: the half of its decoding that goes
-// bit by bit (encoder: cooker/encode/grid_geometry.cpp; the format: docs/FORMAT.md 8.1). Inlined by
-// force, because walks compile it for instruction sets of their own.
+// Decodes which vertices the faces of one leaf of the grid store have: the part of its decoding
+// that goes bit by bit (encoder: cooker/encode/grid_geometry.cpp; format: docs/FORMAT.md 8.1).
+// Always inlined, because walks compile it once per instruction set.
 #pragma once
 
 #include <algorithm>
@@ -17,12 +17,12 @@
 
 namespace boxtree {
 
-/// The faces of a leaf, by places in a list of the vertices that it names.
+/// The faces of a leaf. Their corners are indices into the list of vertices that the leaf names.
 struct GridLeafFaces {
   std::uint32_t face_count = 0;
   std::uint32_t vertex_count = 0;
-  std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;  // places, or kNoCorner
-  std::array<std::uint16_t, kMaxLeafVertices + 1> vertex;  // of the cluster; the last is no one's
+  std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;  // indices, or kNoCorner
+  std::array<std::uint16_t, kMaxLeafVertices + 1> vertex;      // of the cluster; the last is unused
 };
 
 /// Where the offsets of a cluster's vertices lie.
@@ -41,14 +41,15 @@ struct GridLeafBits {
 
 namespace grid_detail {
 
-// Why no read leaves the section: where leaves start is told in at most 34 bytes; a leaf starts
-// inside the bytes of its cluster, which end at least kClusterPadding before the section does, and
-// has at most 32 references of 12 bits, 8 steps of 5 and one number of 10: 434 bits.
+// Why no read leaves the section: the fields for the starts of leaves take at most 34 bytes; a leaf
+// starts inside the bytes of its cluster, which end at least kClusterPadding before the section
+// does; and a leaf has at most 32 references of 12 bits, 8 steps of 5 and one number of 10: 434
+// bits.
 static_assert(kClusterPadding >= 434 / 8 + 1 + 8);
 
-// Reads the fields of a leaf one after the other. What a window holds after a refill, at least 57
-// bits, is enough for the first face and the number before it (10 + 1 + 4 x 12), one face of four
-// corners (1 + 4 + 4 x 12), or three faces that continue a strip (4 + 12 each).
+// Reads the fields of a leaf in order. After a refill a window holds at least 57 bits: enough for
+// the first face and the number before it (10 + 1 + 4 x 12), one face of four corners (1 + 4 + 4 x
+// 12), or three faces that continue a strip (4 + 12 each).
 class LeafBits {
  public:
   LeafBits(const std::byte* bytes, std::uint64_t position) : bytes_(bytes), position_(position) {}
@@ -74,8 +75,8 @@ class LeafBits {
   std::uint64_t window_ = 0;
 };
 
-// `one` where `bit` is 1, `other` where it is 0. Not an operator ?:, which compilers make a branch
-// of, although nobody can guess these bits.
+// `one` where `bit` is 1, `other` where it is 0. Compilers would turn the operator ?: into a
+// branch, and these bits are unpredictable.
 BOXTREE_ALWAYS_INLINE std::uint32_t select(std::uint32_t bit, std::uint32_t one,
                                            std::uint32_t other) {
   return other ^ ((one ^ other) & (0u - bit));
@@ -88,16 +89,16 @@ class LeafVertices {
                                      GridLeafFaces& out)
       : out_(out), next_(first_new), vertex_count_(vertex_count) {}
 
-  // A reference: 1 for the vertex of the cluster that follows the last one named so; 01 and the
-  // number of a vertex of the cluster before that one; 00 and the place of a vertex that this leaf
-  // has named before. Which of them comes is anybody's guess, so nothing here is a branch. On any
-  // bytes a reference has at most 12 bits: numbers are below the 512 that a cluster may have and 32
-  // more that a leaf may name.
+  // A reference: 1 for the next vertex of the cluster, after the last one named this way; 01 and
+  // the number of an earlier vertex of the cluster; 00 and the place of a vertex that this leaf has
+  // named before. The kind is unpredictable, so nothing here is a branch. On any bytes a reference
+  // has at most 12 bits: numbers are below 512, the vertices that a cluster may have, plus 32,
+  // those that a leaf may name.
   [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t take(LeafBits& bits) {
     const auto window = static_cast<std::uint32_t>(bits.window());
     const std::uint32_t is_next = window & 1u;
     const std::uint32_t is_new = (window | (window >> 1)) & 1u;
-    // Both widths are known before the reference is: what follows waits for nothing but its kind.
+    // Both widths are computed before the kind is known, so that only a selection depends on it.
     const std::uint32_t width =
         select(is_new, width_below(next_), width_below(count_)) & (is_next - 1);
     const std::uint32_t field = (window >> 2) & ((1u << width) - 1);
@@ -107,8 +108,8 @@ class LeafVertices {
     out_.vertex[count_] = static_cast<std::uint16_t>(vertex);
     count_ += is_new;
     next_ += is_next;
-    // Both differences are negative, or the reference is none. (The place of a vertex that was
-    // named before is less than the number of vertices in any case.)
+    // Both differences are negative for a valid reference. (The place of a vertex that was named
+    // before is always less than the number of vertices.)
     negative_ &= (vertex - vertex_count_) & (place - count_);
     return place;
   }
@@ -121,10 +122,11 @@ class LeafVertices {
   std::uint32_t count_ = 0;
   std::uint32_t next_;
   std::uint32_t vertex_count_;
-  std::uint32_t negative_ = 0xffffffffu;  // its highest bit
+  std::uint32_t negative_ = 0xffffffffu;  // only the highest bit counts
 };
 
-// Finds leaf `leaf` and the offsets of its cluster; the bit where the leaf starts, or false.
+// Finds where leaf `leaf` starts, in bits, and the offsets of its cluster. False if they are
+// corrupt.
 BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t leaf,
                                           std::uint32_t& vertex_count, GridOffsets& offsets,
                                           std::uint64_t& leaf_start) {
@@ -135,7 +137,7 @@ BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t le
   const std::uint32_t faces_left = grid.face_count - leaf / kClusterLeaves * kClusterFaces;
   const auto leaves = static_cast<std::uint32_t>(leaves_of(std::min(faces_left, kClusterFaces)));
   const std::uint64_t first_leaf = ((leaves + 1) * cluster.leaf_bits + 7) / 8;
-  // Bytes after the start of the cluster, of a leaf and of what follows the last one.
+  // Offsets in the cluster, in bytes: of the leaf, and of what follows the last leaf.
   std::uint64_t at[2];
   const std::uint64_t number[2] = {leaf % kClusterLeaves, leaves};
   for (std::size_t i = 0; i < 2; ++i) {
@@ -160,12 +162,12 @@ BOXTREE_ALWAYS_INLINE bool find_grid_leaf(const GridView& grid, std::uint32_t le
   return true;
 }
 
-// The corners of a face, a byte each from the lowest on.
+// The corners of a face in one word, a byte each, the first one lowest.
 inline constexpr std::uint32_t kCornerBits = 8;
 inline constexpr std::uint32_t kTriangleBits = 3 * kCornerBits;
 
-// By how many bits a step turns: the corners of the face before, so that the shared edge comes
-// first, and those of this face into their places.
+// Rotations of a strip step, in bits: of the previous face's corners, so that the shared edge comes
+// first, and of this face's corners into their order.
 struct StripTurn {
   std::uint8_t before;
   std::uint8_t after;
@@ -182,13 +184,13 @@ inline constexpr auto kStripTurns = [] {
   return turns;
 }();
 
-// Turns three corners down by a whole number of them.
+// Rotates three corners down by `bits`, a multiple of kCornerBits.
 BOXTREE_ALWAYS_INLINE std::uint32_t turned(std::uint32_t corners, std::uint32_t bits) {
   const std::uint64_t twice = corners | (std::uint64_t{corners} << kTriangleBits);
   return static_cast<std::uint32_t>(twice >> bits) & ((1u << kTriangleBits) - 1);
 }
 
-// Three references.
+// Reads three references.
 BOXTREE_ALWAYS_INLINE std::uint32_t take_triangle(LeafBits& bits, LeafVertices& vertices) {
   std::uint32_t corners = vertices.take(bits);
   corners |= vertices.take(bits) << kCornerBits;
@@ -196,7 +198,7 @@ BOXTREE_ALWAYS_INLINE std::uint32_t take_triangle(LeafBits& bits, LeafVertices& 
   return corners;
 }
 
-// The triangle after `previous`, or the first of a quad; false for a code that is none.
+// The triangle after the previous one, or the first of a quad; false for an invalid code.
 BOXTREE_ALWAYS_INLINE bool take_next(LeafBits& bits, LeafVertices& vertices, bool may_be_quad,
                                      std::uint32_t& corners) {
   const std::uint32_t step = bits.take(StripStep::kBits);
@@ -224,9 +226,9 @@ BOXTREE_ALWAYS_INLINE std::array<std::uint8_t, 4> with_fourth(std::uint32_t corn
 
 }  // namespace grid_detail
 
-/// Reads the faces of leaf `leaf` and where its cluster's offsets lie. Otherwise as
-/// decode_grid_leaf; the vertices named are vertices of the cluster. `may_be_quad`: whether a face
-/// of the store has four corners, a constant where it matters. `place` may be null.
+/// Reads the faces of leaf `leaf` and the place of its cluster's offsets; otherwise as
+/// decode_grid_leaf. All vertices named exist in the cluster. `may_be_quad`: whether faces of the
+/// store can have four corners; a constant where speed matters. `place` may be null.
 BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t leaf,
                                            bool may_be_quad, GridLeafFaces& out,
                                            GridOffsets& offsets,
@@ -244,7 +246,7 @@ BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t l
   bool is_quad = may_be_quad && bits.take(1) != 0;
   std::uint32_t corners = take_triangle(bits, vertices);
   out.corner[0] = with_fourth(corners, is_quad, bits, vertices);
-  const std::uint32_t refills = may_be_quad ? 0xff : 0b10010010;  // before which faces
+  const std::uint32_t refills = may_be_quad ? 0xff : 0b10010010;  // bit f: refill before face f
   for (std::uint32_t f = 1; f < out.face_count; ++f) {
     if (((refills >> f) & 1u) != 0) bits.refill();
     is_quad = may_be_quad && bits.take(1) != 0;

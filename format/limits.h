@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The bounds that every file keeps and every reader may rely on. They are part of the format:
-// stacks and loops are sized by them, so raising one is a new format version.
+// Limits that every file obeys and every reader may rely on. They are part of the format: stacks
+// and loops are sized by them, so raising one is a new format version.
 #pragma once
 
 #include <cstddef>
@@ -26,24 +26,25 @@ inline constexpr std::uint32_t kMaxNodes = 0xfffffffeu;
 /// Bound of |TreeRecord::scale_exponent|: 2^e and 2^-e are both normal doubles.
 inline constexpr std::int32_t kMaxScaleExponent = 1010;
 
-/// Whether -limit <= x <= limit; the magnitude of the least number is none. Precondition: 0 <=
-/// limit.
+/// Whether -limit <= x <= limit, without abs(), which overflows for the least number. Precondition:
+/// 0 <= limit.
 [[nodiscard]] constexpr bool is_within(std::int64_t x, std::int64_t limit) noexcept {
   return -limit <= x && x <= limit;
 }
 
-/// Bound of the root box's coordinates, in tree space: finite in the scalar of every codec. Honest
-/// ones are below 2^41 (the largest extent is 2^15, and f32 tells positions 2^-24 apart).
+/// Bound of the root box's coordinates, in tree space: finite in the scalar of every codec. Valid
+/// files stay below 2^41: the largest extent is 2^15, and f32 resolves 2^-24 of a position.
 inline constexpr double kMaxRootCoordinate = 0x1p100;
 
-/// The same for codecs with eight children a node, whose stacks hold seven entries a level: as many
-/// as the splits of the binary tree that such a tree is collapsed from, so that none is too deep.
+/// kMaxDepth of codecs with eight children per node, whose stacks hold seven entries per level. It
+/// equals the splits allowed in the binary tree that a wide tree is collapsed from, so none is too
+/// deep.
 inline constexpr std::uint32_t kMaxWideDepth = 64;
 
 /// Faces in a leaf of the wide codecs; only the last leaf of a tree may hold fewer.
 inline constexpr std::uint32_t kLeafFaces = 8;
 
-/// Leaves that so many faces take when all but the last are full.
+/// Number of leaves for `faces` faces when all but the last are full.
 [[nodiscard]] constexpr std::size_t leaves_of(std::size_t faces) noexcept {
   return (faces + kLeafFaces - 1) / kLeafFaces;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Puts numbers into the text of an error.
+// Inserts numbers into the text of an error.
 #include "format/message.h"
 
 #include <string>

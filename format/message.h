@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Texts of errors with numbers in them, in few bytes of code: sums of strings inline an allocation,
-// a copy and a clean-up for each sign, which was a tenth of what a small runtime links.
+// Error texts with numbers in little code: string concatenation inlines an allocation, a copy and a
+// clean-up for each operator, which was a tenth of what a small runtime links.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 
 namespace boxtree {
 
-/// An error whose detail is `place` and then `text`, in which each '#' stands for the next number.
-/// Precondition: as many numbers as signs.
+/// An error whose detail is `place` followed by `text`, each '#' replaced by the next number.
+/// Precondition: as many numbers as '#'.
 [[nodiscard]] Error error_with(Errc code, std::string_view place, std::string_view text,
                                std::initializer_list<std::uint64_t> numbers = {});
 

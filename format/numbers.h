@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a tree stores arrays of numbers: face ids, originals of copies, materials. All that is known
-// of their widths is here: which there are, what an array takes, how a number is read.
+// How a tree stores arrays of numbers (face ids, originals of copies, materials): the widths that
+// exist, the size of an array, reading a number.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +16,19 @@ namespace boxtree {
   return largest <= 0xffff ? 2 : 4;
 }
 
-/// Whether numbers may have the width that a record states.
+/// Whether `width` is a width that arrays can have.
 [[nodiscard]] constexpr bool is_number_width(std::uint8_t width) noexcept {
   return width == 1 || width == 2 || width == 4;
 }
 
-/// Bytes of an array of `count` numbers. Precondition: is_number_width(width), or width is 0: there
-/// is no array.
+/// Bytes of an array of `count` numbers. Precondition: is_number_width(width), or width is 0 for no
+/// array.
 [[nodiscard]] constexpr std::uint64_t number_array_bytes(std::uint32_t count,
                                                          std::uint8_t width) noexcept {
   return std::uint64_t{count} * width;
 }
 
-/// An array of numbers, wherever it lies: the one way to read them. May be of nothing.
+/// A view of an array of numbers, or of none.
 class NumberView {
  public:
   NumberView() noexcept = default;
@@ -38,7 +38,7 @@ class NumberView {
 
   explicit operator bool() const noexcept { return numbers_ != nullptr; }
 
-  /// Precondition: there is such a number.
+  /// Precondition: index is inside the array.
   [[nodiscard]] std::uint32_t operator[](std::size_t index) const noexcept {
     switch (width_) {
       case 1:

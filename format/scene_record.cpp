@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks of a scene's record: after them, counts and boxes may be used in arithmetic without care.
+// Checks a scene's record. Counts and boxes that pass cannot overflow later arithmetic.
 #include "format/scene_record.h"
 
 #include <cmath>

@@ -17,14 +17,15 @@
 
 namespace boxtree {
 
-/// Layers of one scene: instances of a layer answer the same queries and collide with the same layers.
+/// Layers of one scene: instances of a layer answer the same queries and collide with the same
+/// layers.
 inline constexpr std::uint32_t kMaxLayers = 32;
 
-/// Instances of one scene: as many as leaves that a wide codec can number.
+/// Instances of one scene: as many as the leaves that a wide codec can number.
 inline constexpr std::uint32_t kMaxInstances = kMaxFaces / kLeafFaces;
 
-/// The scene of a file: at most one. World coordinates meet the top-level tree in its own tree
-/// space, (world - origin) * 2^-scale_exponent, as in TreeRecord.
+/// The scene of a file; a file has at most one. The top-level tree has its own tree space, (world -
+/// origin) * 2^-scale_exponent, as in TreeRecord.
 struct SceneRecord {
   std::uint32_t instance_count;
   std::uint32_t static_count;  // instances 0 to static_count - 1 are the leaves of the top level
@@ -40,7 +41,7 @@ struct SceneRecord {
   std::array<double, 3> origin;     // world
   std::array<double, 3> root_low;   // tree space of the top level
   std::array<double, 3> root_high;  // likewise
-  double condition;                 // no pose of a static instance has a larger one
+  double condition;                 // upper bound for the poses of static instances
   std::array<std::uint64_t, 2> reserved1;
 };
 static_assert(sizeof(SceneRecord) == 128 && std::is_trivially_copyable_v<SceneRecord>);
@@ -54,7 +55,7 @@ inline constexpr std::size_t kNumbersOfPose = 12;
 inline constexpr std::uint8_t kInstanceMoves = 1;
 inline constexpr std::uint8_t kInstanceKnownFlags = 1;
 
-/// One placed tree. Its pose, three rows of four numbers, stands in section poses.
+/// One placed tree. Its pose, three rows of four numbers, is in section poses.
 struct InstanceRecord {
   std::uint32_t tree;
   std::uint32_t id;           // number in the source, depth first
@@ -66,7 +67,7 @@ struct InstanceRecord {
 static_assert(sizeof(InstanceRecord) == 16 && std::is_trivially_copyable_v<InstanceRecord>);
 static_assert(offsetof(InstanceRecord, layer) == 14);
 
-/// What the instances of one layer answer and collide with.
+/// Queries that the instances of one layer answer, and layers that they collide with.
 struct LayerRecord {
   std::uint32_t collides_with;  // bit n: contacts with layer n are requested; symmetric
   std::uint32_t query_kinds;    // QueryKinds that instances of the layer answer
@@ -90,7 +91,7 @@ struct MaterialRun {
 };
 static_assert(sizeof(MaterialRun) == 8 && std::is_trivially_copyable_v<MaterialRun>);
 
-/// Bytes of the number of a face's material: as many as the largest number takes.
+/// Bytes of each material number: as many as the largest one takes.
 [[nodiscard]] constexpr std::uint8_t material_number_bytes(std::uint32_t material_count) noexcept {
   if (material_count <= 1u << 8) return 1;
   return material_count <= 1u << 16 ? 2 : 4;
@@ -110,12 +111,12 @@ enum class Part : std::uint16_t {
 /// "face ids"; "unknown" for a number this reader does not know.
 [[nodiscard]] std::string_view part_name(Part part) noexcept;
 
-/// A part that is not there, and the line of the profile that said so.
+/// A part that was left out, and the line of the profile that states it.
 struct LeftOutRecord {
   Part part;
   std::uint16_t reserved0;
   std::uint32_t owner;        // the tree without it, or kNoOwner
-  std::uint32_t line;         // of the profile, from 1; 0 when an option said so
+  std::uint32_t line;         // of the profile, from 1; 0 when left out by an option
   std::uint32_t text_offset;  // into the names section: "scene.toml:12: face_ids = false"
   std::uint32_t text_bytes;
   std::uint32_t reserved1;
@@ -123,7 +124,7 @@ struct LeftOutRecord {
 static_assert(sizeof(LeftOutRecord) == 24 && std::is_trivially_copyable_v<LeftOutRecord>);
 
 /// Checks everything about a record that can be checked without its sections: counts within limits,
-/// consistent root kind, finite ordered root box, zero reserve.
+/// consistent root kind, finite ordered root box, reserved fields zero.
 Status check_scene_record(const SceneRecord& record);
 
 }  // namespace boxtree

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checks of one tree record: after them, counts and boxes may be used in arithmetic without care.
+// Checks one tree record. Counts and boxes that pass cannot overflow later arithmetic.
 #include "format/tree_record.h"
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 namespace boxtree {
 namespace {
 
-// Grid coordinates have at most 33 bits and tree space 16 for the extent: no honest step of one is
-// farther than that from a unit of the other.
+// Grid coordinates have at most 33 bits and the extent has 16 in tree space, so in valid files the
+// exponents of the two differ by less than this.
 constexpr int kMaxGridShift = 64;
 
 bool counts_fit(const TreeRecord& record) {
@@ -39,8 +39,8 @@ bool root_fits(const TreeRecord& record) {
   return false;
 }
 
-// Each leaf has its own faces: eight of them in wide trees, one in binary ones. What a record
-// claims beyond what its nodes can hold no walk could find, but it would make room for it.
+// Each leaf has its own faces: eight in wide trees, one in binary ones. No walk could find faces
+// beyond what the nodes can hold, but readers would allocate for them.
 bool leaves_fit(const TreeRecord& record) {
   const std::uint64_t faces_of_node = is_wide(record.codec) ? kWideChildren * kLeafFaces : 2;
   const std::uint64_t nodes = std::max(record.node_count, 1u);
@@ -57,8 +57,8 @@ bool frame_fits(const TreeRecord& record) {
   return is_within(record.scale_exponent, kMaxScaleExponent);
 }
 
-// Copies need an original, and leaves that name faces by their numbers in the source cannot have
-// them behind all others.
+// Copies need an original. They come after all other faces, which leaves that hold source face
+// numbers cannot express.
 bool duplicates_fit(const TreeRecord& record) {
   if (record.duplicate_count == 0) return record.duplicate_bytes == 0;
   return is_number_width(record.duplicate_bytes) && counts_of(record).faces_in_leaves > 0 &&
@@ -70,7 +70,7 @@ bool geometry_fits(const TreeRecord& record) {
   const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
   if (!width_known || (in_source_order && record.face_id_bytes != 0)) return false;
   if (record.geometry == GeometryId::kExternal) {
-    // Faces of the application are found by number, or through the ids of those in tree order.
+    // External faces are found by source number, or through the face ids of a tree's own order.
     const bool faces_are_named = in_source_order || record.face_id_bytes != 0;
     return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
   }
@@ -103,7 +103,7 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
     return error_with(Errc::kGeometryUnsupported, place, "geometry #",
                       {static_cast<std::uint64_t>(record.geometry)});
   }
-  // What they mean may change what the numbers below may be.
+  // Unknown flags may change the meaning of the fields below.
   if ((record.flags & ~kTreeKnownFlags) != 0) {
     return error_with(Errc::kFeatureUnsupported, place, "flags #; this reader knows those of #",
                       {record.flags, kTreeKnownFlags});

@@ -14,14 +14,14 @@
 
 namespace boxtree {
 
-/// TreeRecord::flags: leaves name faces by their number in the source, so that no face_ids section
-/// is needed to translate. Otherwise faces are in tree order.
+/// TreeRecord::flags: leaves hold source face numbers, so that no face_ids section is needed.
+/// Otherwise faces are in tree order.
 inline constexpr std::uint32_t kTreeFacesInSourceOrder = 1u;
 /// TreeRecord::flags: positions are f64, otherwise f32.
 inline constexpr std::uint32_t kTreePositionsF64 = 2u;
 inline constexpr std::uint32_t kTreeKnownFlags = 3u;
 
-/// One tree of the file. Coordinates of three spaces occur:
+/// One tree of the file. Its coordinates are in two spaces:
 ///   object space  the coordinates of the source mesh, as the application knows them;
 ///   tree space    (object - origin) * 2^-scale_exponent, computed in double: where boxes live.
 /// The scale is a power of two and therefore exact; it brings the largest extent into
@@ -48,7 +48,7 @@ struct TreeRecord {
   std::array<double, 3> root_high;  // tree space
   std::uint64_t geometry_hash;      // XXH3-64 of the faces' corner positions; docs/FORMAT.md
   std::int32_t grid_exponent;       // geometry grid: its step is 2^grid_exponent; otherwise 0
-  std::uint32_t duplicate_count;    // faces that stand in no leaf, behind all others
+  std::uint32_t duplicate_count;    // faces in no leaf; they come after all others
   std::array<std::uint64_t, 7> reserved2;
 };
 static_assert(sizeof(TreeRecord) == 192 && std::is_trivially_copyable_v<TreeRecord>);
@@ -58,15 +58,15 @@ static_assert(offsetof(TreeRecord, grid_exponent) == 128);
 static_assert(offsetof(TreeRecord, duplicate_bytes) == 35);
 static_assert(offsetof(TreeRecord, duplicate_count) == 132);
 
-/// What codecs need of it. Faces that leaves hold are the first so many in tree order; the others
-/// are copies of these.
+/// The counts that codecs need. Faces in leaves come first in tree order; the others are copies of
+/// them.
 [[nodiscard]] constexpr TreeCounts counts_of(const TreeRecord& record) noexcept {
   return {record.node_count, record.face_count - record.duplicate_count};
 }
 
 /// Checks everything about a record that can be checked without its sections: known codec, geometry
-/// and flags, counts within limits, finite ordered root box, consistent root kind, zero reserve.
-/// `tree` is the record's number, for the message.
+/// and flags, counts within limits, finite ordered root box, consistent root kind, reserved fields
+/// zero. `tree` is the record's number, for the message.
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree);
 
 }  // namespace boxtree
