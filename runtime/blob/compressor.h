@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One pair of functions a method; the only callers of the compression libraries.
+// One pair of functions per compression method. Nothing else calls the compression libraries.
 #pragma once
 
 #include <cstdint>

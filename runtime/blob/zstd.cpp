@@ -18,7 +18,7 @@ struct FreeContext {
 
 }  // namespace
 
-// Decompression in one call needs no window of its own: the output is the window.
+// Decompressing in one call needs no separate window: the output is the window.
 Status decompress_zstd(Bytes stream, std::span<std::byte> out, std::uint64_t /*memory_limit*/) {
   const std::unique_ptr<ZSTD_DCtx, FreeContext> context(ZSTD_createDCtx());
   if (context == nullptr) return Error{Errc::kBlobLimit, "no memory for the zstd decoder"};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// XXH3-64, compiled in, once, so that the runtime needs no further library at link time.
+// XXH3-64, compiled in here alone, so that the runtime links no further library.
 #include "runtime/file/checksum.h"
 
 #include <new>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The checksum of bytes that come piece by piece.
+// The checksum of bytes that arrive in pieces.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// File to memory by POSIX mmap. A copy is an anonymous mapping too, so that release is one path.
+// Maps files by POSIX mmap. A copy is an anonymous mapping, too, so that both are released alike.
 #include "runtime/file/mapping.h"
 
 #include <cerrno>
@@ -17,7 +17,7 @@ namespace {
 class Descriptor {
  public:
   explicit Descriptor(const std::string& path)
-      // Not blocking, so that opening a pipe comes back and the pipe can be refused.
+      // Non-blocking, so that opening a pipe returns and the pipe can be refused.
       : value_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {}
   Descriptor(const Descriptor&) = delete;
   Descriptor& operator=(const Descriptor&) = delete;

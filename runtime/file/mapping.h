@@ -29,10 +29,10 @@ class Mapping {
   /// cooker does. Use copy() for files that others may modify.
   static Result<Mapping> map(const std::string& path);
 
-  /// Maps a file that is open already; `name` is for messages. The descriptor stays the caller's.
+  /// Maps a file that is open already; `name` is for messages. The caller keeps the descriptor.
   static Result<Mapping> map(int descriptor, const std::string& name);
 
-  /// Reads `path` into memory of its own: immune to later changes of the file.
+  /// Reads `path` into private memory, which later changes of the file do not affect.
   static Result<Mapping> copy(const std::string& path);
 
   [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
@@ -48,7 +48,7 @@ class Mapping {
 /// Memory that is filled once and then becomes a Mapping. Move-only.
 class WritableMapping {
  public:
-  /// Zeros. Error: kMapFailed when there is not so much memory.
+  /// Zeroed memory. Error: kMapFailed when there is not enough of it.
   static Result<WritableMapping> allocate(std::size_t size);
 
   [[nodiscard]] std::span<std::byte> bytes() noexcept { return {data_, mapping_.size_}; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Opening: everything that can be known of a file without reading what it holds.
+// Opens files: checks everything that can be checked without reading nodes and geometry.
 #include "runtime/file/open_file.h"
 
 #include <memory>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a File is inside: the mapping, the checked section table and the sections it leads to.
+// The inside of a File: its mapping, its checked section table and its sections.
 #pragma once
 
 #include <cstdint>
@@ -18,11 +18,11 @@ struct TreeRecord;
 /// A file whose header, section table and tree table have been checked.
 class OpenFile {
  public:
-  /// Checks what File::open does, over memory of the caller or memory that it takes over.
+  /// As File::open, on the caller's memory or on memory that the file takes over.
   static Result<File> open(Bytes memory, const OpenOptions& options);
   static Result<File> open(Mapping owned, const OpenOptions& options);
 
-  /// What is inside of a File.
+  /// The inside of a File.
   [[nodiscard]] static const OpenFile& of(const File& file) noexcept { return *file.open_; }
 
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A section of a file, held to the size that a record says it has.
+// Checks the size of a section against what a record states.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,9 @@ namespace boxtree {
 /// "section " and its name, for messages.
 [[nodiscard]] std::string section_text(SectionKind kind);
 
-/// The bytes of `section`, which must be `count * element` of them; `place` begins the message of
-/// an error. Precondition: the product does not overflow, as that of no two numbers of records
-/// does. Errors: kSectionMissing where there must be bytes and are none, kSectionSize.
+/// The bytes of `section`, if there are `count * element` of them. `place` begins error messages.
+/// Precondition: the product does not overflow; that of two record fields never does. Errors:
+/// kSectionMissing when bytes are required and there are none; kSectionSize.
 [[nodiscard]] Result<const std::byte*> sized_section(Bytes section, SectionKind kind,
                                                      std::string_view place, std::uint64_t count,
                                                      std::uint64_t element);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a tree to the type of its codec, all of them: for tools that listen to walks. Queries go by
+// Dispatches on the codec of a tree, any of them: for tools that observe walks. Queries use
 // walk_tree.h.
 #pragma once
 
@@ -12,8 +12,8 @@
 
 namespace boxtree {
 
-/// Calls `visitor` with the codec of the nodes of `tree`; with one that has no nodes when there are
-/// none to be expanded.
+/// Calls `visitor` with the codec of the nodes of `tree`; with a codec that has no nodes if the
+/// tree has none.
 template <class Visitor>
 auto with_codec(const BoundTree& tree, const Visitor& visitor) {
   const BoundCodec& nodes = tree.nodes();

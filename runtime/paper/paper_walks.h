@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The walks of one codec of the paper: those of every codec, compiled for it.
+// The walks of one codec of the paper: the generic walks, compiled for it.
 #pragma once
 
 #include <boxtree/configuration.h>
@@ -59,7 +59,7 @@ inline constexpr CodecWalks kWalksAs = {
 #endif
 };
 
-// One source a family of codecs, which are compiled side by side.
+// One source file per family of codecs, so that they compile in parallel.
 extern const CodecFunctions kPlainF32Functions;
 extern const CodecFunctions kPlainF16Functions;
 extern const CodecFunctions kPackedF32Functions;

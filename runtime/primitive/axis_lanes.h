@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers of the three axes, side by side so that arithmetic on them is done by vectors.
+// One number per axis, laid out so that arithmetic on them is vectorised.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace boxtree {
 
-/// One number an axis, and a copy of the last: loops over four of them become two vectors of SSE2
-/// or NEON, or one of AVX, where loops over three stay scalar.
+/// One number per axis and a copy of the last. Loops over four of them become two vectors of SSE2
+/// or NEON, or one of AVX; loops over three stay scalar.
 struct alignas(16) AxisLanes {
   static constexpr std::size_t kCount = 4;
 
@@ -33,7 +33,7 @@ struct alignas(16) AxisLanes {
   std::array<double, kCount> lane;
 };
 
-/// A box likewise.
+/// A box, laid out alike.
 struct BoxLanes {
   BoxLanes() noexcept = default;  // unspecified numbers
   template <class S>

@@ -3,14 +3,15 @@
 // best of the edges.
 //
 // The foot is found by orthogonalisation, not from areas: it is a + s e + t f with e = b - a and f
-// = (c - a) - k e orthogonal to e. Let u = 2^-53, G and F the lengths of c - a and f, W that of the
-// way from a to the point, h the point's height over the plane. Along e the foot is off by a few
-// units u (W + G). Across, it is off because the direction of f is, by a few u G / F: by a few
-// u (G + h G / F), but never by more than F, as t is in [0, 1]. What a move m inside the plane adds
-// to the distance is at most m^2 / (2 h) <= m F / (2 h), or m itself: a few u G either way, however
-// thin the triangle is. For the same reason it does not matter on which side of an edge a foot is
-// taken to be that lies within such a move of it, as all edges are looked at then. So the distance
-// is within a few units in the last place of the coordinates for every shape, needles and collinear
+// = (c - a) - k e orthogonal to e. Let u = 2^-53, G and F the lengths of c - a and f, W the
+// distance from a to the point, h the point's height over the plane. Along e the foot is off by a
+// few units u (W + G). Across e it is off because the direction of f is, by a few u G / F: by a few
+// u (G + h G / F), but never by more than F, as t is in [0, 1]. A move m inside the plane adds at
+// most m^2 / (2 h) <= m F / (2 h) to the distance, or m itself: a few u G either way, however thin
+// the triangle is. For the same reason a foot within such a move of an edge may count as on either
+// side of it, as all edges are then tried. So the distance is within a few units in the last place
+// of the coordinates for every shape, needles and collinear corners included; the largest error
+// seen against exact arithmetic is 8 u.
 // corners included; the largest error seen against exact arithmetic is 8 u.
 #include "runtime/primitive/closest_point.h"
 
@@ -25,18 +26,18 @@
 namespace boxtree {
 namespace {
 
-// Squares below this could lose bits to underflow that matter: 2^-122 of the smallest normal
-// number.
+// Squares below this could lose significant bits to underflow: the smallest normal number is 2^-122
+// of it.
 constexpr double kShortestSquare = 0x1p-900;
 
 double largest(const Eigen::Vector3d& v) {
   return std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
 }
 
-// A point of a segment; an end is returned as it is, not as a rounded combination.
+// A point of a segment. An end is returned as it is, not as a rounded combination.
 Eigen::Vector3d on_segment(const Eigen::Vector3d& from, const Eigen::Vector3d& edge,
                            const Eigen::Vector3d& to, double fraction) {
-  if (!(fraction > 0)) return from;  // also when it is no number: the ends coincide
+  if (!(fraction > 0)) return from;  // also for NaN: the ends coincide
   return fraction >= 1 ? to : from + fraction * edge;
 }
 
@@ -46,7 +47,7 @@ Eigen::Vector3d closest_on_segment(const Eigen::Vector3d& point, const Eigen::Ve
   return on_segment(from, edge, to, dot(point - from, edge) / squared_length(edge));
 }
 
-// The closest of the points tried.
+// The closest of the points tried so far.
 struct Nearest {
   void consider(const Eigen::Vector3d& candidate) noexcept {
     const double candidate_distance = squared_length(query - candidate);
@@ -60,8 +61,8 @@ struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-// Weights of shapes whose edges and height differ by factors below 2^5, seen from less than 2^20
-// edges away, are off by less than 2^40 u.
+// Triangles whose edges and height differ by factors below 2^5, seen from less than 2^20 edges
+// away, have weights that are off by less than 2^40 u.
 constexpr double kThin = 0x1p-10;
 constexpr double kFar = 0x1p40;
 constexpr double kWeightError = 0x1p-13;
@@ -80,16 +81,16 @@ Eigen::Vector3d closest_point(const Eigen::Vector3d& point, const Eigen::Vector3
   const double height_square = squared_length(height);
   const double weight_c = dot(away - away_along * base, height) / height_square;
   const double weight_b = away_along - weight_c * side_along;
-  // False when they are no numbers, as for collinear corners.
+  // False for NaN, as for collinear corners.
   if (has_foot && weight_b >= 0 && weight_c >= 0 && weight_b + weight_c <= 1) {
     return a + (weight_b * base + weight_c * side);
   }
 
   // If the foot is certainly outside some edge, the closest point lies on an edge that has the foot
-  // outside; edges that certainly have it inside drop out.
+  // outside. Edges that certainly have it inside are skipped.
   const double weight_a = (1 - weight_b) - weight_c;
   const double side_square = squared_length(side);
-  // No branch on each condition: they are hard to predict.
+  // No branch per condition: they are hard to predict.
   bool outside = has_foot;
   outside &= std::min(weight_a, std::min(weight_b, weight_c)) < -kWeightError;
   outside &= std::min(height_square, base_square) > kThin * std::max(side_square, base_square);
@@ -105,8 +106,9 @@ Eigen::Vector3d closest_point(const Eigen::Vector3d& point, const Eigen::Vector3
   return nearest.best;
 }
 
-// A triangle with a very short edge, in units of its size or, if that is larger, of the point's
-// distance: if the edge is short in these, too, the triangle is a segment to within rounding.
+// For a triangle with a very short edge: computes in units of its size or of the point's distance,
+// whichever is larger. If the edge is short in these units, too, the triangle is a segment to
+// within rounding.
 Eigen::Vector3d closest_point_by_size(const Eigen::Vector3d& point,
                                       const std::array<Eigen::Vector3d, 3>& corner) noexcept {
   const Eigen::Vector3d& a = corner[0];

@@ -8,8 +8,8 @@ namespace boxtree {
 
 /// The point of a triangle closest to `point`. For degenerate triangles the closest point of the
 /// segment or point that is left. Its distance exceeds the exact one by at most a few units in the
-/// last place of the largest coordinate involved, whatever the shape of the triangle; it is a point
-/// of the triangle to as much. Never NaN.
+/// last place of the largest coordinate involved, whatever the shape of the triangle, and it is off
+/// the triangle by no more than that. Never NaN.
 [[nodiscard]] Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& point,
                                                         const Triangle& triangle) noexcept;
 

@@ -22,9 +22,9 @@ struct Expansion {
   void append(double value) noexcept {
     if (value != 0) term[size++] = value;
   }
-  /// The last of a sum or product. Numbers keep within Capacity, as the first rounding error of
-  /// each is zero; but coordinates of corrupt files may overflow to terms that are none, and then
-  /// there can be one more.
+  /// Appends the last term of a sum or product. Finite terms fit into Capacity, as the first
+  /// rounding error of each is zero. Coordinates of corrupt files may overflow to infinities and
+  /// NaN, and then there can be one more.
   void append_last(double value) noexcept {
     append(value);
     size = std::min(size, Capacity);
@@ -39,7 +39,7 @@ struct Expansion {
   }
 };
 
-/// A rounded result and what the rounding took off: their sum is exact.
+/// A rounded result and its rounding error; their sum is exact.
 struct Rounded {
   double value;
   double error;

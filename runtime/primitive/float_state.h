@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The state of the floating-point unit that every query computes in, whatever its caller has set.
+// Sets the floating-point state in which every query computes, whatever its caller has set.
 #pragma once
 
 #if defined(__SSE2__)
@@ -10,9 +10,9 @@
 
 namespace boxtree {
 
-/// For as long as it lives: rounding to nearest, subnormal numbers kept, no traps. Exact predicates
-/// need the first two; games often run without the second (FTZ, DAZ). Reading the state costs some
-/// nanoseconds, and it is written only where it is another one. Visitors are called in it.
+/// While it lives: rounding to nearest, subnormal numbers kept, no traps. Exact predicates need the
+/// first two; games often run without the second (FTZ, DAZ). Reading the state costs some
+/// nanoseconds; it is written only if it differs. Visitors are called in this state.
 class DefaultFloatState {
  public:
 #if defined(__SSE2__)
@@ -29,7 +29,7 @@ class DefaultFloatState {
 
  private:
   static constexpr unsigned kDefault = 0x1f80;  // all exceptions masked, all else off
-  static constexpr unsigned kFlags = 0x3f;      // what happened so far
+  static constexpr unsigned kFlags = 0x3f;      // exceptions raised so far
 
   [[nodiscard]] bool is_default() const noexcept {
     return (before_ & ~kFlags) == kDefault;
@@ -55,7 +55,7 @@ class DefaultFloatState {
 
  private:
 #endif
-  // Operands are loaded after, results stored before what changes the state.
+  // No operand is loaded before, and no result stored after, a change of the state.
   static void fence() noexcept {
     asm volatile("" : : : "memory");
   }

@@ -14,8 +14,8 @@
 namespace boxtree {
 namespace {
 
-// The power of two that brings a number into [1, 2), where squares and roots bear it. Precondition:
-// x > 0, and below 2^1023; subnormal numbers come as near as a finite power brings them.
+// The power of two that scales a number into [1, 2), where squares and roots are safe; subnormal
+// numbers come as near as a finite power brings them. Precondition: x > 0, and below 2^1023.
 double power_to_one(double x) noexcept {
   return std::bit_cast<double>((2046 - (std::bit_cast<std::uint64_t>(x) >> 52)) << 52);
 }
@@ -29,11 +29,11 @@ Eigen::Vector3d normalised(const Eigen::Vector3d& x) noexcept {
 
 }  // namespace
 
-// With u = 2^-53: an edge is a sum of two doubles, exactly. In double alone a coordinate of the
-// cross product is off by less than 8 u of the product of the edges' largest coordinates, which is
-// next to nothing unless the corners are nearly in line. There it is computed once more: of the
-// products the two largest parts are exact, and what is left is below u^2 each time it is rounded,
-// 2^-102 of that product in all. Scaled so that no part of weight underflows.
+// Let u = 2^-53. An edge is exactly a sum of two doubles. In double alone a coordinate of the cross
+// product is off by less than 8 u of the product of the edges' largest coordinates, which matters
+// only if the corners are nearly collinear. Then it is computed again: the two largest parts of the
+// products are exact, and each rounding of the rest is below u^2, 2^-102 of that product in all.
+// Coordinates are scaled so that no significant part underflows.
 Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept {
   double largest = std::numeric_limits<double>::min();
   for (const Eigen::Vector3d& corner : triangle.corner) {
@@ -67,8 +67,8 @@ Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
   if (!(largest > 0)) return Eigen::Vector3d::Zero();
   const Eigen::Matrix3d scaled = power_to_one(largest) * linear;
   const Eigen::Vector3d x = scaled.col(0), y = scaled.col(1), z = scaled.col(2);
-  // The cross product of two images is the cofactor matrix times that of the originals, and a
-  // mirror turns it over.
+  // The cross product of two images is the cofactor matrix times that of the originals; a mirror
+  // reverses it.
   Eigen::Matrix3d cofactors;
   cofactors << cross(y, z), cross(z, x), cross(x, y);
   const double determinant = dot(x, cofactors.col(0));

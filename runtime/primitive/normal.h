@@ -8,15 +8,15 @@
 
 namespace boxtree {
 
-/// The direction from which the corners are seen counterclockwise, of length 1. Each coordinate is
-/// within 2^-47 of the true one, if the edges at the first corner are differences that double
-/// holds, as those of f32 meshes are, or the sine of their angle is above 2^-50. Zero for a
-/// triangle without area, but for rounding where double does not hold them. Precondition:
-/// coordinates of at most 2^200 (kMaxCoordinate).
+/// The unit vector to the side from which the corners are counterclockwise. Each coordinate is
+/// within 2^-47 of the exact one if the edges at the first corner are exact in double, as in f32
+/// meshes, or the sine of their angle is above 2^-50. Zero for a triangle without area, up to
+/// rounding if its edges are not exact in double. Precondition: coordinates of at most 2^200
+/// (kMaxCoordinate).
 [[nodiscard]] Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept;
 
 /// The unit normal of a surface after `linear`, the linear part of a pose, has been applied to it:
-/// on the side that the pose carries the old one to, mirrors included. Zero for zero.
+/// on the side to which the pose maps the old one, mirrors included. Zero for zero.
 [[nodiscard]] Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
                                             const Eigen::Vector3d& normal) noexcept;
 

@@ -14,7 +14,7 @@
 namespace boxtree {
 namespace {
 
-// The largest magnitude of some coordinates, and the least but for zero.
+// The largest magnitude of some coordinates, and the smallest that is not zero.
 struct Magnitudes {
   template <class Vector>
   void include(const Vector& v) noexcept {
@@ -26,9 +26,9 @@ struct Magnitudes {
     }
   }
 
-  // Whether errors of products of three, scaled by safe_scale, are doubles: scaled coordinates are
-  // then multiples of 2^-350, and their products of 2^-1050. Expansions have no room for what is no
-  // number; wide integers make a number of it.
+  // Whether the errors of products of three, scaled by safe_scale, are doubles: scaled coordinates
+  // are then multiples of 2^-350, and their products of 2^-1050. Expansions have no room for
+  // infinities and NaN; wide integers clamp them.
   [[nodiscard]] bool are_for_expansions() const noexcept {
     constexpr double kRatio = 0x1p-497;  // 2^-550 times the 53 bits of a double
     return are_finite && least >= kRatio * largest;
@@ -39,7 +39,7 @@ struct Magnitudes {
   bool are_finite = true;
 };
 
-// Signs where exponents are farther apart than that.
+// The sign when exponents are farther apart than that.
 int orient3d_wide(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eigen::Vector3d& c,
                   const Eigen::Vector3d& d) noexcept {
   std::array<std::array<WideDifference, 3>, 3> v;
@@ -70,8 +70,8 @@ Expansion<16> exact_minor(const Expansion<2>& x1, const Expansion<2>& y1, const 
   return x1 * y2 - x2 * y1;
 }
 
-// Coordinates of up to some 25 bits, as grids and most floats have, make differences, products and
-// minors that are exact doubles. Then three products are all there is to add up.
+// Coordinates of up to about 25 bits, as in grids and most floats, have differences, products and
+// minors that are exact in double. Only three products are then left to add.
 struct ExactMinor {
   ExactMinor(double x1, double y1, double x2, double y2) noexcept {
     const Rounded left = two_product(x1, y2);
@@ -96,7 +96,7 @@ int orient3d_exact(const Eigen::Vector3d& a, const Eigen::Vector3d& b, const Eig
   const auto difference = [scale, &d](const Eigen::Vector3d& v, Eigen::Index axis) {
     return exact_difference(scale * v[axis], scale * d[axis]);
   };
-  // Differences are mostly exact doubles; each expansion is then half as long, or shorter still.
+  // Most differences are exact in double; each expansion is then at most half as long.
   const Expansion<2> ax = difference(a, 0), ay = difference(a, 1), az = difference(a, 2);
   const Expansion<2> bx = difference(b, 0), by = difference(b, 1), bz = difference(b, 2);
   const Expansion<2> cx = difference(c, 0), cy = difference(c, 1), cz = difference(c, 2);

@@ -22,7 +22,7 @@ namespace boxtree {
 // constant rounds once more: |error| <= g(8) (1 + g(8)) (1 + u) S' < (8 u + 256 u^2) S'.
 // orient2d: 2 differences, 1 product, 1 subtraction: 4 roundings, hence (4 u + 64 u^2).
 //
-// Underflow adds at most 2^-1075 a product, which the second product of orient3d multiplies by a
+// Underflow adds at most 2^-1075 per product, which the second product of orient3d multiplies by a
 // difference of at most 2^201: less than 2^-860 in all, for coordinates up to 2^200.
 inline constexpr double kOrient3dBound = (8 + 256 * kRoundoffF64) * kRoundoffF64;
 inline constexpr double kOrient2dBound = (4 + 64 * kRoundoffF64) * kRoundoffF64;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lower bounds of distances that are true however their direction was found.
+// Lower bounds of distances that hold however their direction was found.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@
 
 namespace boxtree {
 
-// Two convex sets are at least as far apart as their projections on any direction v, over |v|, and
-// no error in v makes that untrue. Let u = 2^-53, |x|_1 the sum of magnitudes, R the largest
+// Two convex sets are at least as far apart as their projections on any direction v, divided by
+// |v|, whatever the error in v. Let u = 2^-53, |x|_1 the sum of magnitudes, R the largest
 // coordinate. A computed projection v . x is off by at most 3 u |v|_1 R (1 + O(u)); the difference
 // of two of them, rounded, by at most 8 u |v|_1 R (1 + O(u)) in all. The square root, the quotient
 // and |v|^2 round by less than a factor 1 - 4 u together.
@@ -49,8 +49,8 @@ template <std::size_t N, std::size_t M>
   return std::max(0.0, gap / length * kSeparationQuotient - kSeparationUnderflow);
 }
 
-/// What is left of a vector when its components along one or two others are taken off. Twice: what
-/// rounding leaves the first time, relative to the vector, is gone after the second.
+/// A vector less its components along one or two others. Subtracted twice: the second time removes
+/// what rounding leaves of them the first time.
 [[nodiscard]] inline Eigen::Vector3d orthogonal_to(const Eigen::Vector3d& vector,
                                                    const Eigen::Vector3d& a,
                                                    const Eigen::Vector3d& b) noexcept {
@@ -75,9 +75,9 @@ template <std::size_t N>
   }
 }
 
-/// The best of the bounds of separation_along for directions near `direction` that stand on a face,
-/// on an edge, or on an edge of each set. From the edges, which are known better than the way from
-/// a point inside to a corner: it is what needles need.
+/// The best bound of separation_along for directions near `direction` that are orthogonal to a
+/// face, to an edge, or to an edge of each set. They are computed from the edges, which are more
+/// accurate than vectors from an inner point to a corner; needles need this.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_on_features(const Eigen::Vector3d& direction,
                                             const std::array<Eigen::Vector3d, N>& first,
@@ -104,12 +104,11 @@ template <std::size_t N, std::size_t M>
   return lower;
 }
 
-/// A lower bound of the distance between the hulls of two sets of points, given a point of each
-/// that are nearly the closest. The line between them is the direction; but if they are close to
-/// each other, rounding tilts it, and a corner at the end of a long arm reaches across. The
-/// direction is then made orthogonal to that arm, and if need be to a second one: the edges or the
-/// face that it is to stand on; and at last to each edge and face of sets that are triangles. A
-/// bound of `enough` is not improved.
+/// A lower bound of the distance between the hulls of two sets of points, given a nearly closest
+/// point of each. The direction is the line between these points. If they are close to each other,
+/// rounding tilts that line, and the projection of a distant corner crosses the gap. The direction
+/// is then made orthogonal to the vector to that corner, and if need be to a second one, and at
+/// last to each edge and face of sets that are triangles. A bound of `enough` is not improved.
 template <std::size_t N, std::size_t M>
 [[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
                                      const Eigen::Vector3d& on_second,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What leaf predicates need to know of a triangle.
+// Properties of a triangle that leaf predicates use.
 #pragma once
 
 #include <Eigen/Geometry>

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Separating axes of a triangle and a box (Akenine-Moller, "Fast 3D Triangle-Box Overlap Testing",
-// 2001): rounded ones decide nearly all, exact signs the rest.
+// 2001): rounded axes decide nearly all cases, exact signs the rest.
 //
-// Why rounding rejects no contact. An axis is a vector of doubles and proves a separation whatever
-// it is, so the error in computing an edge or a normal can only make an axis less sharp. What must
-// be bounded is the error of projecting on it. Let u = 2^-53, let c be the computed center (any
-// point will do), x a corner, v = fl(x - c), a the axis.
-//   - fl(a . v) passes through 1 difference, 1 product and 2 sums: it differs from a . (x - c) by
-//   at
-//     most 4 u (1 + O(u)) sum |a_k| |v_k| < 5 u sum |a_k| |v_k|.
+// Why rounding rejects no contact. Any vector of doubles is a valid axis: an error in an edge or a
+// normal only makes it separate less well. What must be bounded is the error of projecting on it.
+// Let u = 2^-53, let c be the computed center (any point will do), x a corner, v = fl(x - c), a the
+// axis.
+//   - fl(a . v) passes through 1 difference, 1 product and 2 sums: it differs from a . (x - c)
+//     by at most 4 u (1 + O(u)) sum |a_k| |v_k| < 5 u sum |a_k| |v_k|.
 //   - [low, high] lies in c +- h (1 + 2 u), h = max(fl(high - c), fl(c - low)).
 //   - The radius is summed from |a_k| H_k, H_k = fl(fl(g h_k) + fl(8 u max |v_k|)): 2 roundings in
 //     H_k and 3 in the sum, each by a factor of at least 1 - u.
@@ -17,16 +16,16 @@
 // the products; a last addition covers them.
 //
 // Why rounding invents no contact. Let a* be the exact axis, M = max_k (h_k + max |v_k|), d the
-// largest difference between the two sides of the box from c, which lie within h_k - d of it at
-// least. The edges of corners given are within u of a*, a component. Then
+// largest difference between the distances from c to two opposite sides of the box, which are at
+// least h_k - d. The edges of the given corners are within u of a*, per component. Then
 //   - a* . (x - c) differs from fl(a . v) by at most 7 u |a|_1 M,
 //   - the radius computed exceeds that of the box along a* by at most |a|_1 (34 u M + (1 + u) d)
 //     and kUnderflow,
-// 64 u M + 2 d for each unit of |a|_1 exceeds both. Let L be the longest component of two edges: a
-// component of their product is at most 2 L L, and off by at most 10 u L L; what that adds to both
-// is at most 60 u L L M: 8 L L for |a|_1 is more than all of it, if L is no less than 2^-300, so
-// that nothing underflows. Up to M = 2^300 nothing overflows. What overlaps along all axes of the
-// theorem meets; a degenerate triangle has fewer of them.
+// 64 u M + 2 d per unit of |a|_1 exceeds both. Let L be the longest component of two edges: a
+// component of their product is at most 2 L L, and off by at most 10 u L L, which adds at most 60 u
+// L L M to both: 8 L L for |a|_1 exceeds all of it if L is at least 2^-300, so that nothing
+// underflows. Up to M = 2^300 nothing overflows. A triangle and a box that overlap along all axes
+// of the theorem intersect; a degenerate triangle has fewer axes.
 #include "runtime/primitive/triangle_box.h"
 
 #include <algorithm>
@@ -45,7 +44,7 @@ namespace {
 constexpr double kGrow = 1 + 8 * kRoundoffF64;
 constexpr double kProjectionError = 8 * kRoundoffF64;
 constexpr double kUnderflow = 0x1p-1068;
-constexpr double kTwoSums = 4 * kUnderflow;  // what is lost in the radius and in a projection
+constexpr double kTwoSums = 4 * kUnderflow;  // lost in the radius and in a projection
 constexpr double kOverlapError = 64 * kRoundoffF64;
 constexpr double kLargestSure = 0x1p300;
 constexpr double kShortestSure = 0x1p-300;
@@ -60,7 +59,7 @@ bool bounds_apart(const Triangle& t, const Eigen::Vector3d& low, const Eigen::Ve
   return apart;
 }
 
-// The triangle seen from the center of the box, and the half extents H_k of the derivation above.
+// The triangle relative to the center of the box, and the half extents H_k of the derivation above.
 class RoundedAxes {
  public:
   RoundedAxes(const Triangle& triangle, const Eigen::Vector3d& low,
@@ -84,9 +83,9 @@ class RoundedAxes {
     is_sure_ = size <= kLargestSure;
   }
 
-  // Whether an axis proves that they are apart.
+  // Whether some axis proves that they are disjoint.
   [[nodiscard]] bool separate() noexcept {
-    // Edges of the corners given, not of the centered ones: one rounding less.
+    // Edges of the given corners, not of the centered ones: one rounding less.
     const Eigen::Vector3d e0 = given_[1] - given_[0];
     const Eigen::Vector3d e1 = given_[2] - given_[1];
     if (normal_separates(e0, e1)) return true;
@@ -94,8 +93,8 @@ class RoundedAxes {
     return edge_separates(e0) || edge_separates(e1) || edge_separates(e2);
   }
 
-  // Whether all axes that separate() found nothing on prove, rounding included, that the two
-  // overlap along them.
+  // Whether the two provably overlap, rounding included, along all axes on which separate() found
+  // no gap.
   [[nodiscard]] bool are_sure() const noexcept { return is_sure_; }
 
  private:
@@ -149,11 +148,11 @@ class RoundedAxes {
   bool is_sure_;
 };
 
-// The same axes by exact signs. What is apart and not along an axis of the box is apart along the
-// triangle's normal, or along the product of one of its edges with an axis of the box, on the
-// outer side of that edge: other directions are no facets of the Minkowski difference. Seen along
-// the axis of the box, the edge is a line, and the whole box lies beyond it, off the third corner;
-// on either side, if that corner is on the line, too.
+// The same axes by exact signs. A disjoint pair that no axis of the box separates is separated
+// along the triangle's normal, or along the product of one of its edges with an axis of the box, on
+// the outer side of that edge: other directions are no facets of the Minkowski difference.
+// Projected along the axis of the box, the edge is a line, and the whole box lies on the other side
+// of it than the third corner; on either side, if that corner is on the line, too.
 class ExactAxes {
  public:
   ExactAxes(const Triangle& triangle, const Eigen::Vector3d& low,
@@ -176,12 +175,12 @@ class ExactAxes {
   }
 
  private:
-  // A point seen along an axis.
+  // A point projected along an axis.
   static Eigen::Vector2d seen(const Eigen::Vector3d& v, Eigen::Index axis) noexcept {
     return {v[(axis + 1) % 3], v[(axis + 2) % 3]};
   }
 
-  // On which side of the line of an edge the box lies as a whole; 0 if it meets the line.
+  // The side of an edge's line on which the whole box lies; 0 if it intersects the line.
   [[nodiscard]] static int side_of_box(const Eigen::Vector2d& from, const Eigen::Vector2d& to,
                                        const Eigen::Vector2d& low,
                                        const Eigen::Vector2d& high) noexcept {
@@ -215,7 +214,7 @@ class ExactAxes {
   const std::array<Eigen::Vector3d, 3>& corner_;
   const Eigen::Vector3d& low_;
   const Eigen::Vector3d& high_;
-  std::array<int, 3> winding_;  // seen along each axis
+  std::array<int, 3> winding_;  // projected along each axis
 };
 
 bool has_corner_inside(const Triangle& t, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Closest points of two triangles by their features: two edges, or a corner and a face. Two points
-// are closest if the planes through them, across the line between them, have the triangles on
-// either side (Larsen, Gottschalk, Lin, Manocha, "Fast Proximity Queries with Swept Sphere
+// are closest if the planes through them, orthogonal to the line between them, have the triangles
+// on either side (Larsen, Gottschalk, Lin, Manocha, "Fast Proximity Queries with Swept Sphere
 // Volumes", 1999): that ends the search early. No bound relies on it: the lower one is computed
-// anew from directions that the search suggests.
+// separately, from directions that the search suggests.
 #include "runtime/primitive/triangle_distance.h"
 
 #include <algorithm>
@@ -20,23 +20,24 @@
 namespace boxtree {
 namespace {
 
-// By how much two computed points can be farther from each other than their triangles are closer.
-// Let u = 2^-53, R the largest coordinate. A point a + s e of an edge, s exact by definition, is
-// off by at most 5 R u a component: 2 of the edge, 2 of the product, 1 of the sum. A point of a
-// face by 7 R u, and by 8 R u more where its weights exceed 1 by 4 u. At worst an edge pierces a
-// face: 20 R u a component, below 36 R u in length.
+// By how much two computed points can be closer to each other than their triangles. Let u = 2^-53,
+// R the largest coordinate. A point a + s e of an edge, s exact by definition, is off by at most 5
+// R u per component: 2 of the edge, 2 of the product, 1 of the sum. A point of a face is off by 7 R
+// u, and by 8 R u more where its weights exceed 1 by 4 u. At worst an edge pierces a face: 20 R u
+// per component, below 36 R u in length.
 constexpr double kPointError = 36 * kRoundoffF64;
 // Difference of the points, squares, sum and root: below a factor 1 + 4 u.
 constexpr double kUpperQuotient = 1 + 4 * kRoundoffF64;
-// The line between two computed points is off by at most 10 R u a component, an arm of the triangle
-// at most 2 R long on each axis: 60 R R u, and as little again for the rounding of their product.
+// The line between two computed points is off by at most 10 R u per component, and a vector to a
+// corner of the triangle is at most 2 R long on each axis: 60 R R u. The rest covers the rounding
+// of their product.
 constexpr double kPlaneError = 80 * kRoundoffF64;
-// Squares of less than 2^-537 are lost.
+// Squares of numbers below 2^-537 underflow.
 constexpr double kUpperUnderflow = 0x1p-500;
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-// Where on a segment; an end is returned as it is.
+// A point of a segment; an end is returned as it is.
 Eigen::Vector3d along(const Eigen::Vector3d& from, const Eigen::Vector3d& edge,
                       const Eigen::Vector3d& to, double s) {
   if (s <= 0) return from;
@@ -55,7 +56,7 @@ struct Search {
     doubt = kPlaneError * max_abs * max_abs;
   }
 
-  // Whether it is the best so far.
+  // Returns whether the pair is the closest so far.
   bool consider(const Eigen::Vector3d& on_p, const Eigen::Vector3d& on_q) noexcept {
     const Eigen::Vector3d v = on_q - on_p;
     const double candidate = dot(v, v);
@@ -67,12 +68,12 @@ struct Search {
     return true;
   }
 
-  // Closest points of edge i of p and edge j of q. Whether the planes through them leave no doubt
+  // Closest points of edge i of p and edge j of q. Returns whether the planes through them prove
   // that they are the closest of the triangles.
   //
-  // The parameter of the common perpendicular comes from cross products, not from the usual
-  // a c - b b: its error is then u / sin(angle) and not u / sin^2, which moves the point along a
-  // valley whose slope is the sine; what is lost in distance stays at rounding.
+  // The parameter of the common perpendicular comes from cross products, not from the usual a c - b
+  // b: its error is then u / sin(angle) and not u / sin^2. It moves the point in a direction in
+  // which the distance changes with the sine only, so the distance is off by rounding alone.
   bool try_edges(std::size_t i, std::size_t j) noexcept {
     const Eigen::Vector3d& a = p[i];
     const Eigen::Vector3d& b = q[j];
@@ -104,8 +105,8 @@ struct Search {
     return false;
   }
 
-  // The lowest corner over the face, if all are on one side of it. If it lies beyond the face's
-  // edges, so does the closest point: on an edge, where it has been found.
+  // The corner nearest to the face, if all are on one side of it. If its foot lies beyond the
+  // face's edges, the closest point is on an edge and has been found.
   void try_face(const Corners& face, const Corners& face_edge, const Corners& corner,
                 bool face_is_p) noexcept {
     const Eigen::Vector3d n = cross(face_edge[0], face_edge[1]);
@@ -126,8 +127,8 @@ struct Search {
     }
   }
 
-  // Two triangles that touch, or nearly so: corners in the other one, edges through it. Whether
-  // any of them is nearer than what was found before.
+  // For triangles that touch or nearly do: corners on the other triangle, edges through it. Returns
+  // whether any of them is closer than what was found before.
   bool try_contacts() noexcept {
     const double before = squared;
     for (const Eigen::Vector3d& c : q) consider(closest_point_on_triangle(c, {p}), c);
@@ -180,7 +181,7 @@ TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcep
     return std::sqrt(search.squared) * kUpperQuotient +
            (kPointError * search.max_abs + kUpperUnderflow);
   };
-  // Where the bounds are that close, rounding is all that is between them.
+  // Bounds this close differ by rounding alone.
   const auto enough = [&] { return upper() - 2 * kPointError * search.max_abs; };
   const auto separation = [&] {
     return separation_near(search.first, search.second, search.p, search.q, search.max_abs,

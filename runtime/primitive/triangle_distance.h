@@ -6,7 +6,7 @@
 
 namespace boxtree {
 
-/// Bounds of the distance between two triangles, and the points that the upper one belongs to.
+/// Bounds of the distance between two triangles, and the points at the upper bound.
 struct TriangleDistance {
   double lower;
   double upper;
@@ -15,11 +15,11 @@ struct TriangleDistance {
 };
 
 /// lower <= distance <= upper always, rounding included: the lower bound is a gap between the two
-/// along a direction, the upper one the distance of two of their points. They are some 2^-46 of the
-/// largest coordinate apart, more where a triangle is so thin that its normal drowns in rounding:
-/// take triangles near the origin. `lower` is 0 where the two cannot be told apart that way;
-/// whether they touch is for triangles_intersect to say. Degenerate triangles are the segments or
-/// points that they are. Symmetric but for rounding.
+/// along a direction, the upper one the distance of two of their points. They differ by about 2^-46
+/// of the largest coordinate, or more where a triangle is so thin that rounding dominates its
+/// normal, so move the triangles near the origin first. `lower` is 0 where no gap is found;
+/// triangles_intersect decides whether they touch. Degenerate triangles are treated as segments or
+/// points. Symmetric except for rounding.
 [[nodiscard]] TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept;
 
 }  // namespace boxtree

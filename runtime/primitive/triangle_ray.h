@@ -13,10 +13,9 @@
 
 namespace boxtree {
 
-/// A ray prepared for tests against many triangles: the shear that turns the direction into an
-/// axis.
+/// A ray prepared for tests against many triangles: the shear that maps the direction to an axis.
 struct RayShear {
-  RayShear() noexcept = default;  // of no ray yet
+  RayShear() noexcept = default;  // unspecified
   /// Precondition: direction is finite and not zero.
   RayShear(const Eigen::Vector3d& ray_origin, const Eigen::Vector3d& direction) noexcept
       : origin(ray_origin) {
@@ -39,7 +38,7 @@ struct RayShear {
   double shear_x, shear_y, shear_z;  // direction x/z, y/z, 1/z
 
  private:
-  // All but shear_z. No branch on which component is the largest: each is as likely as the others.
+  // Sets all but shear_z. No branch on which component is the largest: all are equally likely.
   template <class Vector>
   void set_axes(const Vector& direction) noexcept {
     const double x = std::abs(direction[0]), y = std::abs(direction[1]), z = std::abs(direction[2]);
@@ -60,8 +59,8 @@ struct RayTriangleHit {
   double v;
 };
 
-/// A corner in the ray's own axes: the ray is the line x = y = 0. Depends on the corner and the ray
-/// alone, so triangles that share the corner see the same numbers.
+/// A corner in the axes of the ray, which is the line x = y = 0. Depends on the corner and the ray
+/// alone, so triangles that share the corner get the same numbers.
 struct ShearedCorner {
   double x, y, z;
 };
@@ -89,16 +88,17 @@ struct RayEdges {
 /// or corner, bit for bit, leave no gap between them. t is finite or +-infinity, u and v are in [0,
 /// 1].
 ///
-/// A triangle without area is edge-on but for the rounding of the shear, so a ray that goes through
-/// it to within that rounding may hit it. It must: where such triangles close a seam, between one
-/// long edge and the short ones beside it, they cover what rounding opens.
+/// A triangle without area is edge-on except for the rounding of the shear, so a ray that passes
+/// through it to within that rounding may hit it. That is required: where such triangles close a
+/// seam, between one long edge and the short ones beside it, they cover the gap that rounding
+/// opens.
 ///
 /// Why there is no gap. An area is fl(fl(x1 y2) - fl(x2 y1)). Rounding is monotone, so its sign is
 /// exact or it is zero; zeros are computed again in exact arithmetic. So all signs are exact for
-/// the sheared corners, which neighbours share: in the ray's plane they are a mesh without gaps,
-/// exactly. The zero edge belongs to both its triangles. Exact values are needed, not just exact
-/// signs: were all three areas of a triangle false zeros, it would count as edge-on and be the
-/// leak. A triangle that truly is edge-on adds nothing to the plane; its neighbours cover its line.
+/// the sheared corners, which neighbours share: projected along the ray they are a mesh without
+/// gaps, exactly. An edge of area zero belongs to both its triangles. Exact values are needed, not
+/// just exact signs: a triangle with three false zeros would count as edge-on and leave a gap. A
+/// triangle that truly is edge-on covers no area; its neighbours cover its line.
 [[nodiscard]] inline std::optional<RayTriangleHit> intersect_ray_triangle(
     const RayShear& ray, const Triangle& triangle) noexcept {
   const auto shear = [&ray](const Eigen::Vector3d& corner) -> ShearedCorner {

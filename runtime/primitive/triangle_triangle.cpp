@@ -99,15 +99,15 @@ constexpr std::array<Crossing, 27> kCrossings = [] {
   return table;
 }();
 
-// Two triangles that cross each other's planes, neither degenerate nor coplanar. Both meet the line
-// common to the planes in an interval; the triangles overlap if the intervals do.
+// Two triangles that cross each other's planes, neither degenerate nor coplanar. Each intersects
+// the line common to the planes in an interval; the triangles overlap if the intervals do.
 //
 // With each apex above the other plane (swapping two corners turns a plane over), direct the line
 // along normal(q) x normal(p). Then p's interval runs from its edge 0-1 to its edge 0-2 and q's
 // from its edge 0-2 to its edge 0-1. Write x and y for the points where edge 0-1 of p and edge 0-1
-// of q meet the line: the volume of the tetrahedron p0 p1 q0 q1 is a positive multiple of det(p0 -
-// p1, y - x, q0 - q1), whose sign tells whether x comes before y on the line. The same with edges
-// 0-2 tells the other two ends apart.
+// of q intersect the line: the volume of the tetrahedron p0 p1 q0 q1 is a positive multiple of
+// det(p0 - p1, y - x, q0 - q1), whose sign gives the order of x and y on the line. The same with
+// edges 0-2 gives the order of the other two ends.
 bool crossing_intervals_overlap(const Triangle& p, const Triangle& q, const Signs& p_sides,
                                 const Signs& q_sides) {
   const Crossing pc = kCrossings[crossing_index(p_sides[0], p_sides[1], p_sides[2])];
@@ -169,8 +169,8 @@ bool bounds_overlap(const FlatShape& a, const FlatShape& b) {
   return true;
 }
 
-// The Minkowski difference of the shapes has edges parallel to theirs, so if they are apart an edge
-// of one separates them; except collinear segments, which their bounds tell apart.
+// The Minkowski difference of the shapes has edges parallel to theirs, so if they are disjoint an
+// edge of one separates them. Collinear segments are the exception; their bounds decide.
 bool flat_shapes_overlap(const FlatShape& a, const FlatShape& b) {
   return bounds_overlap(a, b) && !edge_separates(a, b) && !edge_separates(b, a);
 }
@@ -235,8 +235,8 @@ bool segment_intersects_triangle(const Segment& s, const Triangle& t,
   return !(left && right);
 }
 
-// Coplanar segments meet if their projections do along an axis that is not in their plane. Looking
-// along all three needs no less and needs no choice.
+// Coplanar segments intersect if their projections do along an axis that is not in their plane.
+// Testing along all three is equivalent and needs no choice.
 bool segments_intersect(const Segment& s, const Segment& t) {
   if (orient3d(s.from, s.to, t.from, t.to) != 0) return false;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {

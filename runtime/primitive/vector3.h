@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Products and inverses in three dimensions, each operation in the order written: sums by Eigen's
-// own come in another order, or fused, with another instruction set, and distances, contacts and
-// what the cooker chooses would differ by it in their last bits.
+// Products and inverses in three dimensions, each operation in the order written. Eigen's own sums
+// are ordered or fused differently for each instruction set, which would change the last bits of
+// distances, contacts and the cooker's choices.
 #pragma once
 
 #include <algorithm>
@@ -14,8 +14,8 @@
 
 namespace boxtree {
 
-/// The largest of three magnitudes; NaN if one of them is. By bits, which ascend with the
-/// magnitude, NaN behind infinity.
+/// The largest of three magnitudes; NaN if one of them is. Compares bits, which ascend with the
+/// magnitude, NaN after infinity.
 [[nodiscard]] inline double largest_magnitude(double x, double y, double z) noexcept {
   constexpr std::uint64_t kMagnitude = ~std::uint64_t{0} >> 1;
   const auto bits = [](double v) { return std::bit_cast<std::uint64_t>(v) & kMagnitude; };
@@ -60,7 +60,7 @@ namespace boxtree {
   return out;
 }
 
-/// Cofactors over the determinant, which is returned, too. An entry is meaningless where a product
+/// Cofactors divided by the determinant, which is returned. An entry is meaningless where a product
 /// of three entries of the matrix overflows or underflows.
 [[nodiscard]] inline double invert_by_cofactors(const Eigen::Matrix3d& m,
                                                 Eigen::Matrix3d& inverse) noexcept {
@@ -80,8 +80,8 @@ namespace boxtree {
   return determinant;
 }
 
-/// The power of two by which the largest magnitude falls into [1, 2), or 2^1023, if less would be
-/// too little; 1 for zeros, and for what is not finite.
+/// The power of two that scales the largest magnitude into [1, 2), but at most 2^1023; 1 for zeros,
+/// and for what is not finite.
 template <class Vector>
 [[nodiscard]] double scale_to_one(const Vector& v) noexcept {
   const double largest = std::max(std::max(std::abs(v[0]), std::abs(v[1])), std::abs(v[2]));
@@ -90,8 +90,8 @@ template <class Vector>
   return std::ldexp(1.0, std::min(-std::ilogb(largest), kLargestExponent));
 }
 
-/// The inverse of a matrix whose rows and columns are brought to the size of 1 first: powers of
-/// two, so that the result is that of inverse_of() but for overflow and underflow on the way.
+/// The inverse of a matrix whose rows and columns are first scaled to the size of 1 by powers of
+/// two. The result is that of inverse_of() except where that overflows or underflows on the way.
 [[nodiscard]] inline Eigen::Matrix3d balanced_inverse_of(const Eigen::Matrix3d& m) noexcept {
   Eigen::Matrix3d balanced = m;
   Eigen::Vector3d row, column;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whole numbers of many words, for products of doubles whose exponents are too far apart for
-// expansions: there the error of a product underflows. Slow, and rarely needed.
+// Integers of many words, for products of doubles whose exponents are too far apart for expansions:
+// there the error of a product underflows. Slow, and rarely needed.
 #pragma once
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace boxtree {
 
 /// A multiple of some power of two, in two's complement, the least significant word first. Every
-/// operation here has a result that is large enough, so nothing is ever cut off.
+/// result here is wide enough, so nothing is ever cut off.
 template <std::size_t Words>
 struct WideInteger {
   std::array<std::uint32_t, Words> word{};
@@ -38,7 +38,7 @@ struct WideInteger {
     return result;
   }
 
-  /// Precondition: the sum has as many words; one bit below the sign of both is free.
+  /// Precondition: the sum fits; the bit below the sign is free in both.
   [[nodiscard]] friend WideInteger operator+(const WideInteger& a, const WideInteger& b) noexcept {
     WideInteger result;
     std::uint64_t carry = 0;
@@ -78,14 +78,14 @@ template <std::size_t M, std::size_t N>
 inline constexpr std::size_t kDifferenceWords = 40;
 using WideDifference = WideInteger<kDifferenceWords>;
 
-/// x in units of 2^-1074. Numbers beyond 2^200, which only corrupt bytes lead to, count as that.
+/// x in units of 2^-1074. Numbers beyond 2^200, which only corrupt bytes lead to, are clamped.
 [[nodiscard]] inline WideDifference wide_integer(double x) noexcept {
   constexpr int kLeastExponent = -1074;
   constexpr double kLargest = 0x1p200;
   if (!(std::abs(x) <= kLargest)) x = std::copysign(kLargest, x);
   int exponent = 0;
   const double mantissa = std::frexp(std::abs(x), &exponent);  // below 1
-  // Of a subnormal number fewer bits are left than of others.
+  // Subnormal numbers have fewer bits.
   const int bits = std::min(53, exponent - kLeastExponent);
   WideDifference result;
   if (bits <= 0) return result;  // zero

@@ -9,14 +9,13 @@
 
 namespace boxtree {
 
-/// No NaN, nothing negative.
+/// Whether no field is NaN or negative.
 [[nodiscard]] inline bool is_valid(const Approximation& approximation) noexcept {
   return approximation.relative_error >= 0 && approximation.absolute_error >= 0 &&
          approximation.max_distance >= 0;
 }
 
-/// What need not be looked at, given that some point is `upper` away: all that is known to be as
-/// far as this.
+/// The distance from which candidates can be skipped, given that some point is `upper` away.
 [[nodiscard]] inline double converged_beyond(const Approximation& approximation,
                                              double upper) noexcept {
   if (upper == std::numeric_limits<double>::infinity()) return upper;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes over the wide codecs.
+// Box queries over the wide codecs.
 #include "runtime/primitive/rounding.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/erased_codec.h"

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The search for the distance of two trees, over any pair of codecs. Behind
-// boxtree/distance.h.
+// The search for the distance of two trees, over any pair of codecs. Implements boxtree/distance.h.
 //
 // Every pair of nodes has a key, the squared lower bound of its boxes' distance, never above that
-// of anything inside. Pairs are expanded in the order of their keys, so a walk that may err more
-// expands the same pairs in the same order and stops sooner. The answer's lower bound is the
-// least of the keys of all pairs that were left alone and of the bounds of all triangles compared.
+// of anything inside. Pairs are expanded in the order of their keys, so a larger allowed error
+// expands the same pairs in the same order and stops sooner. The answer's lower bound is the least
+// of the keys of all skipped pairs and of the bounds of all triangles compared.
 #pragma once
 
 #include <array>
@@ -95,15 +94,15 @@ class DistanceWalk {
     bool first_leaf;
     bool second_leaf;
   };
-  // One side goes down at a time: a path is as long as both trees are deep, and a step leaves all
-  // but one child of a node pending.
+  // One side is expanded at a time: a path is as long as the depths of both trees together, and
+  // each step leaves all but one child of a node pending.
   static constexpr std::size_t kQueue = 2048;
   static constexpr std::size_t kStack =
       A::kDepthLimit * (A::Children::kWidth - 1) + B::kDepthLimit * (B::Children::kWidth - 1) + 1;
   static constexpr std::size_t kWidth = std::max(A::Children::kWidth, B::Children::kWidth);
 
-  // Until some triangles have been compared the walk goes straight down, to the nearest child of
-  // the pair expanded last; from then on the nearest pair of all is next.
+  // Until some triangles have been compared the walk is depth-first, to the nearest child of the
+  // pair expanded last; from then on the nearest pair of all is next.
   bool take(double& key, Entry& entry) noexcept {
     if (has_next_ && next_key_ < nearest_.enough()) {
       has_next_ = false;
@@ -119,8 +118,9 @@ class DistanceWalk {
       const Errc error = bound_.compare(entry.first, entry.second);
       return error != Errc::kOk ? error : nearest_.compare(entry.first, entry.second);
     }
-    // The larger box is expanded, a leaf never. A pair (a, b) is met once: only one of the pairs
-    // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
+    // The larger box is expanded, a leaf never. A pair (a, b) is visited once: only one of the
+    // pairs (parent of a, b) and (a, parent of b) arises, the one that their common parent pair
+    // chose.
     const Box<double> image = pose_.hull_in_first(entry.second_box);
     if (!entry.first_leaf && (entry.second_leaf || extent(entry.first_box) > extent(image))) {
       const Errc error =
@@ -169,7 +169,7 @@ class DistanceWalk {
   template <class Children, class Key, class Make>
   Errc intersect_children(const Children& children, Key key_of, Make make) noexcept {
     std::array<double, kWidth> key;
-    std::array<std::uint32_t, kWidth> order;  // children that count, nearest first
+    std::array<std::uint32_t, kWidth> order;  // children that can matter, nearest first
     std::size_t passed = 0;
     for (std::uint32_t i = 0; i < children.count; ++i) {
       const double k = key_of(children.box(i));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two leaves, triangle by triangle: one of the second leaf against eight of the first.
+// Compares two leaves: one triangle of the second leaf with eight of the first at a time.
 #if defined(BOXTREE_RUNTIME_QUERY_LEAF_PAIR_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_QUERY_LEAF_PAIR_INL_H
 #undef BOXTREE_RUNTIME_QUERY_LEAF_PAIR_INL_H
@@ -63,7 +63,7 @@ struct PreparedLeaf {
     return {{hn::Load(d, normal[0] + offset), hn::Load(d, normal[1] + offset),
              hn::Load(d, normal[2] + offset)}};
   }
-  /// One triangle's in all lanes.
+  /// A corner of one triangle, in all lanes.
   [[nodiscard]] HWY_INLINE Vector3 one_corner(std::size_t c, std::uint32_t triangle) const {
     const Floats d;
     return {{hn::Set(d, corner[c][0][triangle]), hn::Set(d, corner[c][1][triangle]),
@@ -100,8 +100,8 @@ HWY_INLINE hn::Mask<Floats> is_one_sided(const Vector3& normal, FloatVector leng
                 hn::Lt(hn::Max(h0, hn::Max(h1, h2)), hn::Neg(doubt)));
 }
 
-/// Compares leaves of two trees; keeps what it read of each side, as leaves are often met several
-/// times in a row.
+/// Compares leaves of two trees. Keeps the leaf read last on each side, as it is often needed
+/// several times in a row.
 class LeafPairs {
  public:
   LeafPairs(const BoundTree& first, const BoundTree& second, const RelativePose& pose,
@@ -169,7 +169,7 @@ class LeafPairs {
     return true;
   }
 
-  // Bit i: triangle i of the second leaf may reach into the box of the first.
+  // Bit i: triangle i of the second leaf may overlap the box of the first.
   HWY_INLINE std::uint32_t reach_into(const Box<float>& box, std::size_t group) const {
     const Floats d;
     const FloatMap& map = filter_.to_first;
@@ -212,7 +212,7 @@ class LeafPairs {
   }
 
   // Bit i: triangle i of a part of the first leaf may touch triangle j of the second: neither
-  // bounds nor a plane keep them apart.
+  // bounds nor a plane separate them.
   HWY_INLINE std::uint32_t may_touch(std::uint32_t j, std::size_t offset) const {
     const Floats d;
     const PreparedLeaf& a = prepared_first_;

@@ -13,7 +13,7 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
   if (const Errc error = leaves_.read(leaves.first, leaves.second); error != Errc::kOk) {
     return error;
   }
-  // Only what reaches into the other leaf's box can touch anything in it.
+  // Only triangles that overlap the other leaf's box can touch anything in it.
   std::array<std::uint32_t, kMaxLeafTriangles> near;  // triangles of the second leaf
   std::size_t near_count = 0;
   for (std::uint32_t j = 0; j < leaves_.second.count; ++j) {
@@ -21,9 +21,9 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
   }
   if (near_count == 0) return Errc::kOk;
   const Box<double> second_image = pose_.hull_in_first(leaves.second_box);
-  // A face is reported once: what its second half finds is compared with what the first half did.
+  // A pair of faces is reported once: not again for the second half of a quad.
   std::uint32_t last_face = kNoFaceId;
-  std::uint64_t found = 0;  // bit j: triangle j of the second leaf touches the face at hand
+  std::uint64_t found = 0;  // bit j: triangle j of the second leaf touches the current face
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     if (leaves_.first.face[i] != last_face) found = 0;
     last_face = leaves_.first.face[i];
@@ -46,7 +46,7 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
 }
 
 // Whether triangle j of the second leaf, or the other half of its face, was found already. Halves
-// stand side by side.
+// are adjacent.
 bool LeafPairTest::was_found(std::uint64_t found, std::uint32_t j) const noexcept {
   const auto is_same = [&](std::uint32_t other) {
     return leaves_.second.face[other] == leaves_.second.face[j] && ((found >> other) & 1u) != 0;

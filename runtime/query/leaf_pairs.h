@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles of two leaves: what pair walks of all codecs do alike, compiled once.
+// Compares the triangles of two leaves: what pair walks of all codecs share, compiled once.
 #pragma once
 
 #include <cstdint>
@@ -23,8 +23,8 @@ struct LeafPair {
   NodeRef second;
 };
 
-/// Called with each triangle of the first leaf and of the second, brought into the first one's
-/// space, that do not touch: whether the walk is to end.
+/// Called with each triangle of the first leaf and of the second, moved into the first one's space,
+/// that do not touch. Returns whether to end the walk.
 using TriangleWatch = FunctionRef<bool(const Triangle& first, const Triangle& moved)>;
 
 /// Reports the faces of two leaves that touch. Everything passed by reference must outlive it.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The triangles of a leaf of each tree, those of the second brought into the first one's space.
+// Reads a leaf of each tree and moves the triangles of the second into the first one's space.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace boxtree {
 
-/// Leaves are often met several times in a row; what was read of the last ones stays. Everything
+/// The same leaf is often needed several times in a row, so the last ones read are kept. Everything
 /// passed by reference must outlive it.
 class LeafReading {
  public:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles of two leaves, compared where their bounds do not tell that they are too far.
+// Compares the triangles of two leaves, except where bounds show that they are too far apart.
 #include "runtime/query/nearest_triangles.h"
 
 #include <cmath>
@@ -13,19 +13,19 @@
 namespace boxtree {
 namespace {
 
-// What rounding leaves between the bounds of two triangles is some 2^-46 of their largest
-// coordinate (triangle_distance.h) and as little for bringing them into the world. What can improve
-// the answer by no more than this need not be looked at: the bounds stay within the 2^-44 that is
-// promised.
+// Rounding leaves about 2^-46 of the largest coordinate between the bounds of two triangles
+// (triangle_distance.h), and as little for moving them to the world. Pairs that can improve the
+// answer by no more than this are skipped: the bounds stay within the promised 2^-44.
 constexpr double kRounding = 0x1p-45;
 
-// It is looked at nevertheless until so many triangles have been compared in vain, more than what
-// meets in two vertices: then faces lie in parallel planes or on each other, and all are as near.
+// Such pairs are compared nevertheless until this many comparisons have brought no improvement,
+// more than the pairs of faces at two vertices. Then faces lie in parallel planes or on each other,
+// and all are equally near.
 constexpr std::uint64_t kPatience = 1024;
 
-// The direction that tells two triangles apart best: between two points of them, or along a normal.
-// Where a face lies along the other triangle all three are the same but for rounding, which tilts
-// the line between two points the more the nearer they are.
+// The direction that separates two triangles best: between two points of them, or along a normal.
+// Where a face lies along the other triangle all three are the same except for rounding, which
+// tilts the line between two points the more the nearer they are.
 Eigen::Vector3d separating_direction(const Eigen::Vector3d& between, const Triangle& p,
                                      const Triangle& q, double size) noexcept {
   Eigen::Vector3d best = between;
@@ -44,7 +44,7 @@ Eigen::Vector3d separating_direction(const Eigen::Vector3d& between, const Trian
 
 }  // namespace
 
-// At least half of what was found, so that a contact, whose keys are 0, is always looked for.
+// At least half of the best distance, so that a contact, whose keys are 0, is never skipped.
 double NearestTriangles::best_to_improve(double rounding) const noexcept {
   if (in_vain_ < kPatience) return pair_.upper;
   return std::max(pair_.upper - rounding, pair_.upper / 2);
@@ -53,16 +53,16 @@ double NearestTriangles::best_to_improve(double rounding) const noexcept {
 void NearestTriangles::set_enough() noexcept {
   const double best = best_to_improve(rounding_);
   const double enough = std::min(converged_beyond(approximation_, pair_.upper), best);
-  // The neighbour above: what is exactly at the maximal distance counts.
+  // The next double above: pairs exactly at the maximal distance count.
   const double most = std::nextafter(approximation_.max_distance * approximation_.max_distance,
                                      std::numeric_limits<double>::infinity());
   enough_ = std::min(enough * enough, most);
   best_ = std::min(best * best, most);
 }
 
-// Those whose bounds are as far as the best are left alone. Not those that are nearly as near:
-// then what is found in a leaf would depend on the error allowed, and a walk that may err more
-// could miss what ends another one early.
+// Skips triangles whose bounds are as far as the best. The allowed error must not skip more here:
+// what is found in a leaf would depend on it, and a larger error could miss the pair that ends the
+// walk of a smaller one.
 Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
   if (const Errc error = leaves_.read(first, second); error != Errc::kOk) return error;
   const GapWeights& gaps = metric_.in_first();
@@ -92,7 +92,7 @@ Errc NearestTriangles::compare(NodeRef first, NodeRef second) noexcept {
   return Errc::kOk;
 }
 
-// Where the triangles of the leaves at hand end along the direction.
+// Sets where the triangles of the current leaves end along the direction.
 void NearestTriangles::set_ends() noexcept {
   for (std::uint32_t i = 0; i < leaves_.first.count; ++i) {
     first_end_[i] = direction_.end_of_first(leaves_.first.triangle(i));
@@ -104,8 +104,8 @@ void NearestTriangles::set_ends() noexcept {
   }
 }
 
-// Corners are taken as differences from one of them, so that rounding is that of the triangles'
-// size and distance and not of their place.
+// Corners are taken relative to one of them, so that rounding depends on the triangles' size and
+// distance and not on their position.
 void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangle& q,
                                std::uint32_t j) noexcept {
   const Eigen::Vector3d& origin = p.corner[0];
@@ -118,7 +118,7 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
     p_world.corner[c] = metric_.to_world(to_p);
     q_world.corner[c] = metric_.to_world(to_q);
   }
-  // Both triangles may lie off by the error of their corners.
+  // Both triangles may be displaced by the error of their corners.
   const double error = 2 * metric_.image_error() * max_abs;
   const double size = std::max(max_abs_of(p_world.corner), max_abs_of(q_world.corner));
   if (has_any() && is_apart(p_world, q_world, size, error)) return;
@@ -144,15 +144,15 @@ void NearestTriangles::compare(const Triangle& p, std::uint32_t i, const Triangl
 }
 
 // Whether two triangles are as far as the best along the line between the nearest points so far.
-// Of faces in parallel planes many are, and this costs far less than their distance does. Unlike
-// the ends of boxes and leaves these are seen from one of the corners, so that no more is lost to
-// rounding than the distance itself loses.
+// Many faces in parallel planes are, and this costs far less than their distance. Unlike the ends
+// of boxes and leaves, these projections are relative to one of the corners, so that they lose no
+// more to rounding than the distance itself.
 bool NearestTriangles::is_apart(const Triangle& p, const Triangle& q, double size,
                                 double error) noexcept {
   const double lower = separation_along(between_, p.corner, q.corner, size) - error;
   const double key = lower * lower;
   if (!(lower > 0)) return false;
-  // A comparison would leave as much of their own size open.
+  // A comparison could not narrow the bounds below this fraction of their size.
   if (key < best_ && lower < best_to_improve(kRounding * size)) return false;
   leave(key);
   return true;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The nearest triangles of two trees so far: what distance walks of all codecs do alike, compiled
+// The nearest triangles of two trees so far: what distance walks of all codecs share, compiled
 // once.
 #pragma once
 
@@ -30,8 +30,8 @@ struct NearestPair {
   Eigen::Vector3d second;
 };
 
-/// Compares the triangles of leaves and knows what need not be looked at any more. Everything
-/// passed by reference must outlive it.
+/// Compares the triangles of leaves and keeps the distance from which pairs can be skipped.
+/// Everything passed by reference must outlive it.
 class NearestTriangles {
  public:
   /// `approximation` is in the metric's units.
@@ -49,17 +49,17 @@ class NearestTriangles {
   /// The triangles of two leaves. Errors: those of corrupt leaves.
   [[nodiscard]] Errc compare(NodeRef first, NodeRef second) noexcept;
 
-  /// From now on boxes are compared along this vector of the world, too.
+  /// From now on boxes are also compared along this world vector.
   void face(const Eigen::Vector3d& along) noexcept { direction_ = metric_.direction(along, pose_); }
-  /// Between the nearest points so far; first, what face() was told.
+  /// Between the nearest points so far; at first the vector passed to face().
   [[nodiscard]] const Direction& direction() const noexcept { return direction_; }
 
-  /// Squared: what is as far as this need not be looked at; it is as good as the best, be it by
-  /// the error allowed or by what rounding leaves anyway, or too far.
+  /// The squared distance from which pairs can be skipped: they could improve the answer by no more
+  /// than the allowed error or rounding, or are beyond the maximal distance.
   [[nodiscard]] double enough() const noexcept { return enough_; }
-  /// Takes note of what is left alone, by the lower bound of its squared distance.
+  /// Records a skipped pair, by the lower bound of its squared distance.
   void leave(double key) noexcept { left_ = std::min(left_, key); }
-  /// The least key left alone.
+  /// The least key of the skipped pairs.
   [[nodiscard]] double left() const noexcept { return left_; }
 
   [[nodiscard]] bool has_any() const noexcept {
@@ -82,12 +82,12 @@ class NearestTriangles {
   const WorldMetric& metric_;
   const Approximation& approximation_;
   double enough_ = 0;
-  double best_ = 0;  // what enough_ would be were no error allowed
+  double best_ = 0;  // enough_ for an allowed error of 0
   double left_ = std::numeric_limits<double>::infinity();
   NearestPair pair_;
   double rounding_ = 0;                                // of the best distance
   std::uint64_t in_vain_ = 0;                          // triangles compared since it was found
-  Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // tells its triangles apart, in the world
+  Eigen::Vector3d between_ = Eigen::Vector3d::Zero();  // separates its triangles; world
   Direction direction_;
   LeafReading leaves_;
   std::array<double, kMaxLeafTriangles> first_end_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Walks that end where two things are known to be close enough: every box holds a part of its
-// surface, so two boxes whose farthest points are near hold parts that are nearer; and so do
-// triangles with corners that are near.
+// Walks that end when two objects are known to be close. Every box holds a part of its surface, so
+// two boxes whose farthest points are within a distance hold parts that are, too; likewise
+// triangles with corners that are.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -24,7 +24,7 @@ namespace {
 // Rounding of a sum of three squares and its root, upward.
 constexpr double kMore = 1 + 16 * kRoundoffF64;
 
-// What the pair walk is told, and what became of it.
+// The parameters of a watched pair walk, and why it ended.
 struct Watch {
   const RelativePose& pose;
   const WorldMetric& metric;
@@ -55,7 +55,7 @@ struct Watcher {
     return false;
   }
 
-  // By a corner of each: they have been found near, by their bounds.
+  // Compares one corner of each; their bounds are close already.
   [[nodiscard]] bool stops(const Triangle& first, const Triangle& second) const noexcept {
     const Eigen::Vector3d between = second.corner[0] - first.corner[0];
     const double error =
@@ -66,7 +66,7 @@ struct Watcher {
   }
 };
 
-// Whether nodes have at most two children; a tree without nodes may be taken for either.
+// Whether nodes have at most two children; a tree without nodes counts as either.
 bool is_binary(const BoundTree& tree) noexcept {
   return tree.codec_functions().width <= ErasedBinaryCodec::Children::kWidth;
 }
@@ -89,7 +89,7 @@ struct BoxSearch {
   BoxOverlap result;
   TriangleBatch batch;
 
-  // How far the farthest point of a node's box is from the box queried.
+  // Distance of the farthest point of a node's box from the query's box.
   template <class S>
   [[nodiscard]] double farthest(const Box<S>& node) const noexcept {
     double sum = 0;
@@ -102,7 +102,7 @@ struct BoxSearch {
     return std::sqrt(sum) * kMore + kLengthUnderflow;
   }
 
-  // Whether the search is over before this node or leaf is looked at.
+  // Whether the search is over before this node or leaf is visited.
   template <class S>
   [[nodiscard]] bool stops(const Box<S>& node) noexcept {
     if (farthest(node) < distance) {

@@ -8,8 +8,8 @@
 namespace boxtree {
 namespace {
 
-// Trees of different codecs, or of none. A function of its own, because its stack of boxes in
-// double is the largest of all walks.
+// Trees of different codecs, or of none. A separate function, because its stack of boxes in double
+// is the largest of all walks.
 [[gnu::noinline]] Result<Visit> walk_erased(const BoundTree& first, const BoundTree& second,
                                             const RelativePose& pose, PairVisitor visitor,
                                             PairBound& bound) {
@@ -36,7 +36,7 @@ Result<Visit> visit_pairs(const BoundTree& first, const Pose& first_pose, const 
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
   PairBound bound(first, second, &work);
-  // Not by their records: a tree without nodes has none of any codec.
+  // Compares bound codecs, not records: a tree without nodes has no codec.
   const CodecFunctions& codec = first.codec_functions();
   if (codec.id == second.codec_functions().id) {
     if (has_wide_nodes(first)) return walk_wide_nodes(first, second, *pose, visitor, bound);

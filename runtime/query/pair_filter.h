@@ -59,7 +59,7 @@ struct FloatMap {
 
 /// Two trees in relative pose. Triangles are compared in the first one's space, by heights that are
 /// products of three coordinates (float_range.h); the map to the second only moves boxes, with one
-/// product a term.
+/// product per term.
 struct PairFilter {
   PairFilter(const BoundTree& first, const BoundTree& second, const RelativePose& pose) noexcept
       : to_first(pose.to_first(), second.max_abs(), first.max_abs(), Eigen::Vector3d::Zero(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pair queries for callers that have seen to the floating-point state and share a limit.
+// Pair queries for callers that have set the floating-point state and share a limit.
 #pragma once
 
 #include <boxtree/contact.h>

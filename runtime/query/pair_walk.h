@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Simultaneous descent of two trees (Zachmann, "The BoxTree", 1995; paper section 1.1), over any
-// pair of codecs. Behind <boxtree/contact.h>; measurements use it directly, to listen.
+// pair of codecs. Implements <boxtree/contact.h>; measurements use it directly, with an observer.
 #pragma once
 
 #include <array>
@@ -15,18 +15,19 @@
 
 namespace boxtree {
 
-/// What a pair walk tells about itself; this one does not listen and costs nothing.
+/// Observes a pair walk; this one does nothing and costs nothing.
 struct NoPairObserver {
   /// A pair of nodes, not both leaves, is about to be expanded.
   void node_pair(NodeRef, bool /*first_is_leaf*/, NodeRef, bool /*second_is_leaf*/) noexcept {}
   /// The triangles of two leaves are about to be compared.
   void leaf_pair(NodeRef, NodeRef) noexcept {}
-  // If it has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)`, the walk
-  // calls them to see whether to end: before either of the above, and with each triangle of the
-  // first leaf and of the second, brought into the first one's space, that do not touch.
+  // If it has members `bool stops(first_box, second_box)` and `bool stops(triangle, moved)`, the
+  // walk calls them to see whether to end: the first before either of the above; the second with
+  // each triangle of the first leaf and of the second, moved into the first one's space, that do
+  // not touch.
 };
 
-/// The children of one side of a pair: those of a node, or a leaf standing for itself.
+/// The children of one side of a pair: those of a node, or the leaf itself.
 template <NodeDecoder C>
 struct PairSide {
   typename C::Children children;
@@ -84,9 +85,9 @@ class PairWalk {
     bool second_leaf;
   };
 
-  // Binary nodes: both sides go down at once, a path ends after as many steps as the deeper tree
-  // has levels, and each step leaves all but one of its child pairs pending. Wide nodes: one side
-  // goes down at a time, so that a step compares eight boxes with one and not with eight.
+  // Binary nodes: both sides are expanded at once, a path ends after as many steps as the deeper
+  // tree has levels, and each step leaves all but one of its child pairs pending. Wide nodes: one
+  // side is expanded at a time, so that a step compares eight boxes with one and not with eight.
   static constexpr std::size_t kPairs = A::Children::kWidth * B::Children::kWidth;
   static constexpr bool kBothSides = kPairs <= 4;
   static constexpr std::size_t kPairStack =
@@ -112,8 +113,8 @@ class PairWalk {
     }
   }
 
-  // The larger box is expanded, a leaf never. A pair (a, b) is met once: only one of the pairs
-  // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose.
+  // The larger box is expanded, a leaf never. A pair (a, b) is visited once: only one of the pairs
+  // (parent of a, b) and (a, parent of b) arises, the one that their common parent pair chose.
   void descend_one(const Entry& entry) {
     const Box<double> second_image = pose_.hull_in_first(entry.second_box);
     if (!entry.first_leaf &&
@@ -154,7 +155,7 @@ class PairWalk {
     return sum;
   }
 
-  // A pair whose boxes overlap: its triangles now, or its children later.
+  // Handles a pair whose boxes overlap: compares two leaves, pushes anything else.
   void intersect(const Entry& entry) {
     if (entry.first_leaf && entry.second_leaf) {
       test_leaves(entry);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Two trees of the wide codecs: one box against eight.
+// Pair queries over the wide codecs: one box against eight.
 #include "runtime/query/pair_filter.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/walk/erased_codec.h"
@@ -94,7 +94,7 @@ struct PairChildren {
   std::uint32_t side;  // 0: children of the first tree
   const PairPart* other;
   const Centered* other_image;  // in the children's space
-  // The child at hand, and its image in the other part's space; deeper levels refer to them.
+  // The current child, and its image in the other part's space; deeper levels refer to them.
   PairPart child;
   Centered child_image;
 };
@@ -111,8 +111,8 @@ class WidePairWalk {
         leaves_(first, second, pose, filter_, visitor),
         bound_(bound) {}
 
-  // The pairs of a path are in open_, each with its siblings; first the roots, the first one as if
-  // it were a child.
+  // The pairs of a path are in open_, each with its siblings. The roots come first, the first one
+  // as if it were a child.
   Result<Visit> run(const Box<float>& first_root, const Box<float>& second_root) {
     ChildBoxes second_boxes;
     PairChildren& roots = open_[0];
@@ -142,7 +142,7 @@ class WidePairWalk {
   static constexpr std::size_t kDepths = 2 * WideCodec<Node>::kDepthLimit + 1;
   using Position = typename TraversalStack<kDepths>::Child;
 
-  // Takes apart a pair whose boxes may overlap, not both of them leaves. False to end the walk.
+  // Expands a pair whose boxes may overlap, not both of them leaves. False to end the walk.
   HWY_INLINE bool intersect(const Position& at) {
     PairChildren& from = open_[at.depth];
     PairPart& child = from.child;
@@ -155,10 +155,10 @@ class WidePairWalk {
     return from.side == 0 ? choose<0>(from, at.depth + 1) : choose<1>(from, at.depth + 1);
   }
 
-  // The larger box is expanded, a leaf never. A pair is met once: only one of the pairs
-  // (parent of a, b) and (a, parent of b) arises, by what their common parent pair chose. Branches,
-  // not selections, although they are hard to predict: with those the node is only known, and read,
-  // after all of the above, which costs more.
+  // The larger box is expanded, a leaf never. A pair is visited once: only one of the pairs (parent
+  // of a, b) and (a, parent of b) arises, the one that their common parent pair chose. Branches,
+  // not selections, although they are hard to predict: with selections the node would be known, and
+  // read, only after all of the above, which costs more.
   template <std::uint32_t kSide>
   HWY_INLINE bool choose(const PairChildren& from, std::size_t depth) {
     const PairPart& first = kSide == 0 ? from.child : *from.other;
@@ -197,7 +197,7 @@ class WidePairWalk {
       stack_.push(near, key, depth);
       return true;
     }
-    // Pairs of leaves need not wait.
+    // Pairs of leaves are compared at once.
     stack_.push(near & to.links.inner_mask, key, depth);
     return for_each_bit(near & ~to.links.inner_mask, [&](std::uint32_t i) {
       const NodeRef child = leaf_of(first_face(to.links, i), codec);
@@ -209,8 +209,8 @@ class WidePairWalk {
     });
   }
 
-  // Bit i: box i overlaps the image of the other box, and its own image overlaps the other box. The
-  // keys are smaller the deeper the two reach into each other: a contact is found early there.
+  // Bit i: box i overlaps the image of the other box, and its own image overlaps the other box.
+  // Keys are smaller the deeper the two overlap, because a contact is found early there.
   static HWY_INLINE std::uint32_t overlap(const VectorBox& box, const FloatMap& map,
                                           const Centered& image, const Centered& other,
                                           float* key) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bounds of walks of two trees.
+// Bounds and reports of walks of two trees.
 #include "runtime/query/pair_work.h"
 
 namespace boxtree {
@@ -16,7 +16,7 @@ PairReport::PairReport(const BoundTree& first, const BoundTree& second,
       visitor_(visitor),
       pairs_left_(saturated_product(first.face_count(), second.face_count())) {}
 
-// An honest walk tells of each pair once; in corrupt files many faces may have the same copies.
+// In valid files each pair is reported once; in corrupt ones many faces may have the same copies.
 bool PairReport::tell_copies(std::uint32_t first, std::uint32_t second) {
   const FaceWithCopies a(first_, first), b(second_, second);
   const std::uint64_t pairs = saturated_product(a.count(), b.count());

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What walks of two trees may cost, and how they tell of the pairs that they find.
+// Bounds on the work of walks of two trees, and how such walks report the pairs that they find.
 //
-// Why a walk ends on any bytes after work that the sizes of the trees bound: an honest one compares
-// each node or leaf of one tree with each of the other at most once, and each face of one with each
-// of the other. It is the second that bounds the work on leaves: in corrupt files many leaves may
-// hold the same faces.
+// Why a walk ends on any bytes, after work that the sizes of the trees bound: in valid files each
+// node or leaf of one tree is compared with each of the other at most once, and so is each face.
+// The bound on faces limits the work on leaves, as many leaves of a corrupt file may hold the same
+// faces.
 #pragma once
 
 #include <algorithm>
@@ -21,19 +21,19 @@
 
 namespace boxtree {
 
-/// a * b, or the largest number where that is more.
+/// a * b, or the largest number if that overflows.
 [[nodiscard]] constexpr std::uint64_t saturated_product(std::uint64_t a, std::uint64_t b) noexcept {
   return a != 0 && b > ~std::uint64_t{0} / a ? ~std::uint64_t{0} : a * b;
 }
 
-/// As many leaves as a tree may have: what its faces fill, or its nodes have children for.
+/// The most leaves that a tree can have, by its faces and by the children of its nodes.
 [[nodiscard]] constexpr std::uint64_t most_leaves(CodecId codec,
                                                   const TreeCounts& counts) noexcept {
   if (is_wide(codec)) return leaves_of(counts.faces_in_leaves);
   return std::min<std::uint64_t>(counts.faces_in_leaves, std::uint64_t{counts.node_count} + 1);
 }
 
-/// Nodes and leaves of one tree, each with each of the other.
+/// The most pairs of a node or leaf of one tree with one of the other.
 [[nodiscard]] constexpr std::uint64_t most_pairs(CodecId first_codec, const TreeCounts& first,
                                                  CodecId second_codec,
                                                  const TreeCounts& second) noexcept {
@@ -61,13 +61,13 @@ class PairBound {
   std::uint64_t faces_left_;
 };
 
-/// Tells a visitor of the pairs of faces that touch.
+/// Reports the pairs of faces that touch to a visitor.
 class PairReport {
  public:
   PairReport(const BoundTree& first, const BoundTree& second, PairVisitor visitor) noexcept;
 
-  /// Tells of two faces, and of each copy of the one with each of the other. Whether to go on; see
-  /// stopped() and error().
+  /// Reports two faces, and each copy of the one with each of the other. Returns whether to go on;
+  /// see stopped() and error().
   [[nodiscard]] bool tell(std::uint32_t first, std::uint32_t second) {
     if (!first_.has_duplicates() && !second_.has_duplicates()) {
       stopped_ = !visitor_({face_ref(first_, first), face_ref(second_, second)});
@@ -76,7 +76,7 @@ class PairReport {
     return tell_copies(first, second);
   }
 
-  /// Whether the visitor stopped it.
+  /// Whether the visitor stopped the walk.
   [[nodiscard]] bool stopped() const noexcept { return stopped_; }
   [[nodiscard]] Errc error() const noexcept { return error_; }
 

@@ -19,8 +19,8 @@
 namespace boxtree {
 namespace {
 
-// Looks at the nodes in the order of their distance, as far as the budget goes. Like a pair walk it
-// goes straight down first, so that a small budget finds something.
+// Visits nodes in the order of their distance until the budget is spent. Like the distance walk it
+// is depth-first at the start, so that a small budget finds something.
 class BestFirst {
  public:
   BestFirst(const BoundTree& tree, PointQuery& query, std::uint64_t budget) noexcept
@@ -53,7 +53,7 @@ class BestFirst {
   }
 
   [[nodiscard]] bool is_spent() const noexcept { return is_spent_; }
-  /// The least key of what was not looked at.
+  /// The least key of what was not visited.
   [[nodiscard]] double left() const noexcept { return std::min(left_, frontier_.least_left()); }
 
  private:
@@ -64,12 +64,12 @@ class BestFirst {
     bool is_leaf;
   };
 
-  // Equal distances are looked at, so that ties end as in the exact query.
+  // Equal distances are visited, so that ties end as in the exact query.
   [[nodiscard]] double enough() const noexcept {
     return std::nextafter(query_.bound(), std::numeric_limits<double>::infinity());
   }
 
-  // Lets the children wait; but while nothing is found yet the nearest is next.
+  // Queues the children; but until something is found the nearest one is visited next.
   Errc intersect(const ErasedCodec::Children& children, bool& goes_on, double& key,
                  Entry& entry) noexcept {
     const auto child = [&](std::uint32_t i) {
@@ -106,7 +106,7 @@ class BestFirst {
   Frontier<Entry, kQueue, kStackSize<ErasedCodec>> frontier_;
 };
 
-// At least the length of a vector, be its square a double or not.
+// An upper bound of the length of a vector, even where its square underflows.
 double length_above(const Eigen::Vector3d& v) noexcept {
   constexpr double kMore = 1 + 4 * kRoundoffF64;
   constexpr int kExponent = 600;
@@ -158,7 +158,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   const double most = approximation.max_distance * approximation.max_distance;
   PointQuery query{tree, nodes, tree_point, most, {}, Errc::kOk, {}};
   query.approximation = &approximation;
-  double left = std::numeric_limits<double>::infinity();  // squared: of what was not looked at
+  double left = std::numeric_limits<double>::infinity();  // squared: of what was not visited
   Errc walked;
   if (options.node_budget == kUnlimitedNodes) {
     walked = walk_nearest(tree, query);
@@ -171,9 +171,9 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
 
-  // What was left out is beyond the bound, or was not looked at; keys are within a factor of
-  // 1 + 4 u of the square that they stand for, and so is a root. The point itself is off by the
-  // rounding of its way to tree space.
+  // What was skipped is beyond the bound, or was not visited; keys are within a factor of 1 + 4 u
+  // of the square that they stand for, and so is a root. The point itself is off by the rounding of
+  // its conversion to tree space.
   const int exponent = tree.scale_exponent();
   const double place =
       frame.origin.isZero(0) ? 0 : 2 * kRoundoffF64 * tree_point.cwiseAbs().maxCoeff();
@@ -183,7 +183,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   result.nodes_expanded = query.nodes_expanded;
   if (!query.found) return result;
   // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp),
-  // and the point itself by half the least double where its way to tree space underflows.
+  // and the point itself by half the least double where its conversion to tree space underflows.
   const double off = 26 * kRoundoffF64 * tree.largest_abs() + place;
   const double lost =
       frame.to_object(tree_point) == point ? 0 : std::numeric_limits<double>::denorm_min();

@@ -12,9 +12,9 @@
 namespace boxtree {
 
 /// `error` bounds, on every axis, how far a distance can be off: the point and a corner rounded to
-/// float, and their difference; with u = 2^-24 below 4u (|point| + max_abs). The point is spread to
-/// a small box of that size, so that differences are bounds; what squares and sums lose after that
-/// is in above().
+/// float, and their difference; with u = 2^-24 below 4u (|point| + max_abs). The point is widened
+/// to a box of that size, so that differences are bounds; above() and below() cover what squares
+/// and sums lose after that.
 struct PointFilter {
   /// `max_abs`: the largest absolute coordinate of the tree's boxes.
   PointFilter(double max_abs, const Eigen::Vector3d& point) noexcept {
@@ -29,7 +29,7 @@ struct PointFilter {
     }
   }
 
-  /// Whether single precision tells the parts of a tree apart from there: not from far away.
+  /// Whether single precision resolves the parts of a tree from the point: not from far away.
   [[nodiscard]] static bool is_near(double max_abs, const Eigen::Vector3d& point) noexcept {
     return point.cwiseAbs().maxCoeff() <= 64 * max_abs;
   }

@@ -30,7 +30,7 @@ struct PlacedPoint {
   AffineMap to_world;     // from tree space
   Eigen::Vector3d point;  // world
   double best;            // squared distance in the world; shrinks
-  double least_stretch;   // of the map, from below: how short a length of tree space becomes
+  double least_stretch;   // lower bound: at least how long a unit of tree space becomes
   double error;           // of distances in the world
 
   /// No point of tree space whose squared distance is larger can be as near as `best`.
@@ -50,12 +50,12 @@ struct PointQuery {
   std::optional<ClosestPoint> found;
   Errc error = Errc::kOk;
   TriangleBatch batch;
-  // For answers with bounds: what may be left out, in tree space, and a lower bound of the
-  // distances of all triangles tested.
+  // For answers with bounds: what may be skipped, in tree space, and a lower bound of the distances
+  // of all triangles tested.
   const Approximation* approximation = nullptr;
   double tested_lower = std::numeric_limits<double>::infinity();
   std::uint64_t nodes_expanded = 0;  // and leaves read
-  // For a placed tree: decides in the world, where `found` is then.
+  // For a placed tree: the exact test is done in the world, where `found` is then.
   PlacedPoint* placed = nullptr;
 
   [[nodiscard]] double bound() const noexcept { return best; }
@@ -111,14 +111,15 @@ struct PointQuery {
     found = ClosestPoint{closest, distance, face, half};
   }
 
-  // The square of what is not worth looking at; the very distance where no error is allowed.
+  // The squared distance from which triangles can be skipped; unchanged if no error is allowed.
   [[nodiscard]] double enough(double squared) const noexcept {
     if (approximation->relative_error == 0 && approximation->absolute_error == 0) return squared;
     const double least = converged_beyond(*approximation, std::sqrt(squared));
     return std::min(squared, least * least);
   }
 
-  // Seen from the point, so that rounding is that of the distance and the triangle's size.
+  // Computed relative to the point, so that rounding depends on the distance and the triangle's
+  // size.
   void note_lower(const Triangle& triangle, const Eigen::Vector3d& closest,
                   double squared) noexcept {
     std::array<Eigen::Vector3d, 3> corner;
@@ -136,7 +137,7 @@ struct PointQuery {
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, PointQuery& query);
 
-/// closest_point for callers that have made the query themselves: the first error met, if any.
+/// closest_point for callers that have made the query themselves. Returns the first error, if any.
 Errc find_nearest(const BoundTree& tree, PointQuery& query);
 
 }  // namespace boxtree

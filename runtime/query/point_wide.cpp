@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The closest point over the wide codecs.
+// Closest-point queries over the wide codecs.
 #include "runtime/primitive/rounding.h"
 #include "runtime/query/point_filter.h"
 #include "runtime/query/point_query.h"

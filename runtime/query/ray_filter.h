@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A ray in single precision: rejects boxes and triangles that the ray misses provably, so that
-// the exact tests in double see few. What it lets pass decides nothing.
+// A ray in single precision: rejects boxes and triangles that the ray provably misses, so that the
+// exact tests in double see few. Only those tests accept a hit.
 #pragma once
 
 #include <algorithm>
@@ -15,18 +15,18 @@
 namespace boxtree {
 
 /// A ray against boxes. It is re-based where it enters the root box, so that errors grow with the
-/// tree and not with the distance it comes from: a parameter s of the filter is a parameter start +
-/// s of the query. Boxes are widened by `error` on every side, which bounds, on every axis, how far
-/// a coordinate relative to the ray can be off.
+/// tree and not with the distance of the ray's origin: parameter s of the filter is parameter start
+/// + s of the query. Boxes are widened by `error` on every side, which bounds, on every axis, how
+/// far a coordinate relative to the ray can be off.
 struct RayBoxFilter {
-  /// `slab` of the same ray; its direction was scaled as RayQuery has it. `bound`: of the error.
+  /// `slab`: of the same ray; its direction is scaled as in RayQuery. `bound`: of the error.
   RayBoxFilter(const RaySlab& slab, const AxisLanes& query_origin, const AxisLanes& direction,
                double query_start, double bound) noexcept
       : start(query_start), error(float_above(bound)) {
-    // Not so large that a plane's parameter overflows, and large enough that a ray which is
-    // parallel to a slab and inside it, by `error` at least, leaves it beyond the root box.
+    // Not so large that a plane's parameter overflows, but large enough that a ray parallel to a
+    // slab, and inside it by at least `error`, leaves it beyond the root box.
     constexpr double kLargest = 0x1p60;
-    // One loop an operation, so that each becomes a vector.
+    // One loop per operation, so that each is vectorised.
     AxisLanes from, within;
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       from[k] = query_origin[k] + start * direction[k];
@@ -40,17 +40,17 @@ struct RayBoxFilter {
     }
   }
 
-  /// What a re-based ray, and planes at most `max_abs` away, lose in single precision: with u
-  /// = 2^-24 and M = 2 max_abs no extent and no distance of two points in the root box is larger,
-  /// and where the ray enters lies in it but for what the query's own tests give away. 16u M for
-  /// origin and direction (moved, rounded to float), for the distance of a plane or corner from the
-  /// origin, its product with a reciprocal that was rounded twice, and the sums after it. And 8u M
-  /// for each of `levels` whose planes are computed from those of their parents.
+  /// What a re-based ray, and planes at most `max_abs` away, lose in single precision. Let u =
+  /// 2^-24 and M = 2 max_abs: no extent and no distance of two points in the root box is larger,
+  /// and the ray enters inside that box up to given_away(). 16u M for origin and direction (moved,
+  /// rounded to float), for the distance of a plane or corner from the origin, its product with a
+  /// reciprocal that was rounded twice, and the sums after it. And 8u M for each of `levels` whose
+  /// planes are computed from those of their parents.
   [[nodiscard]] static double rounding(double max_abs, std::uint32_t levels = 0) noexcept {
     return (16 + 8 * levels) * (kRoundoffF32 * (2 * max_abs)) +
            double{std::numeric_limits<float>::min()};
   }
-  /// What the query's own tests give away, see RaySlab: eight times what its margin is.
+  /// By how much the query's own tests widen boxes, see RaySlab: eight times its margin.
   [[nodiscard]] static double given_away(double origin_max_abs, double max_abs) noexcept {
     return 128 * kRoundoffF64 * (origin_max_abs + max_abs);
   }
@@ -63,7 +63,7 @@ struct RayBoxFilter {
 
   double start;
   float error;
-  // One number an axis, and a copy of the last, as in AxisLanes.
+  // One number per axis, and a copy of the last, as in AxisLanes.
   using Lanes = std::array<float, AxisLanes::kCount>;
   alignas(16) Lanes inverse;
   alignas(16) Lanes margin;  // of a plane's parameter
@@ -72,13 +72,13 @@ struct RayBoxFilter {
   alignas(16) std::array<std::uint32_t, AxisLanes::kCount> near_high;
 };
 
-/// A ray against one tree: also against boxes whose planes are computed from those of their parents
-/// along the ray, as the reader does in space, each way with four roundings, three of the extent
-/// and one of the distance, 8u M a level; and against triangles.
+/// A ray against one tree: against triangles, and against boxes whose planes are computed along the
+/// ray from those of their parents, as decoding does in space. Each way has four roundings per
+/// level, three of the extent and one of the distance: 8u M.
 struct RayFilter : RayBoxFilter {
-  /// Whether single precision tells the parts of a tree apart for a ray from there: not from so far
-  /// away that double precision hardly does. Elsewhere `error` is below a thousandth of max_abs,
-  /// and no parameter overflows.
+  /// Whether single precision resolves the parts of a tree for this ray: not from so far away that
+  /// double precision hardly does. Elsewhere `error` is below a thousandth of max_abs, and no
+  /// parameter overflows.
   [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
     return query.origin_max_abs <= 0x1p30 * query.tree.largest_abs();
   }

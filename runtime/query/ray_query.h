@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A ray on its way through one tree: what every walk, whatever the codec, needs of it.
+// The state of a ray query in one tree, shared by the walks of all codecs.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace boxtree {
 
 /// The best hit so far: t in parameters of the query, the triangle in tree space.
 struct RayCandidate {
-  bool is_hit = false;  // the rest is meaningless without
+  bool is_hit = false;  // if false, the rest is unspecified
   double t = 0;
   FaceRef face;
   std::uint32_t half = 0;
@@ -67,7 +67,7 @@ struct RayInTree {
     return product;
   }
 
-  /// The box test that traverse_nearest puts to each child: where the ray enters it, or infinity.
+  /// The box test of traverse_nearest: where the ray enters a child's box, or infinity.
   template <class AnyBox>
   [[nodiscard]] double key(const AnyBox& box) const noexcept {
     return slab.key(box, t_min);
@@ -90,7 +90,7 @@ struct RayInTree {
   }
 };
 
-/// A query of traverse_nearest. `best`: where the answer is put, no hit yet.
+/// A query of traverse_nearest. `best` receives the answer; it holds no hit yet.
 struct RayQuery : RayInTree {
   RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
            bool stop_at_first, RayCandidate& best) noexcept
@@ -100,8 +100,8 @@ struct RayQuery : RayInTree {
         any(stop_at_first),
         hit(best) {}
 
-  /// Whether the ray intersects the root box, and only then is it made ready for what is inside.
-  /// Comes before any walk.
+  /// Whether the ray intersects the root box. If it does, prepares the tests of what is inside.
+  /// Call it before any walk.
   [[nodiscard]] bool enters_root() noexcept {
     enter = key(tree.root_lanes());
     if (!(enter <= t_max) || enter == std::numeric_limits<double>::infinity()) return false;
@@ -128,7 +128,8 @@ struct RayQuery : RayInTree {
     if (interval.enter > interval.leave) return;
     const std::optional<RayTriangleHit> found = intersect_ray_triangle(shear, triangle);
     if (!found) return;
-    // The hit lies in the triangle's bounds; holding t to them makes it agree with every key above.
+    // The hit lies in the triangle's bounds; clamping t to them makes it agree with every key
+    // above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
     const FaceRef face = face_ref(tree, face_index);
@@ -150,20 +151,20 @@ struct RayQuery : RayInTree {
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, RayQuery& query);
 
-/// A parameter of the query in those of the ray. Kept within the ray's own interval, as conversion
-/// may underflow: for a subnormal direction, say.
+/// Converts a parameter of the query to one of the ray. Clamped to the ray's own interval, as
+/// conversion may underflow, for example for a subnormal direction.
 [[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {
   return std::clamp(RayQuery::scaled(scaled, -exponent), ray.t_min, ray.t_max);
 }
 
 /// Whether a ray has a finite direction, whose largest component is `length`, and an ordered
-/// interval. Its origin is checked where it is in tree space.
+/// interval. Its origin is checked once it is in tree space.
 [[nodiscard]] inline bool is_valid(const Ray& ray, double length) noexcept {
   return length > 0 && length <= std::numeric_limits<double>::max() && ray.t_min >= 0 &&
          ray.t_min <= ray.t_max;  // false for NaN
 }
 
-/// The power of two that brings the largest component of a direction into [1/2, 1). Precondition:
+/// The power of two that scales the largest component of a direction into [1/2, 1). Precondition:
 /// it is finite and not zero.
 [[nodiscard]] inline int exponent_of(double length) noexcept {
   if (length >= std::numeric_limits<double>::min()) [[likely]] {  // a normal number
@@ -175,8 +176,8 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
   return exponent;
 }
 
-/// closest_hit or any_hit for callers that have seen to the floating-point state. `hit`: the
-/// answer, with the ray's own t.
+/// closest_hit or any_hit for callers that have set the floating-point state. `hit`: the answer,
+/// with t in the ray's own parameters.
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit);
 

@@ -31,12 +31,12 @@ struct SlabInterval {
 /// along the main axis, so its errors on one axis grow with the extent on another. `margin` = 8u
 /// (|origin| + largest |plane|), both over all axes, covers the sum. It moves each plane outward by
 /// moving the origin, which costs nothing per box and keeps the test monotone: subtraction and
-/// multiplication by a constant are. The largest plane counts as the next power of two: codecs
-/// round their root boxes differently, and a hit that is held to the bounds of its triangle must
+/// multiplication by a constant are. The largest plane is rounded up to a power of two: codecs
+/// round their root boxes differently, and a hit that is clamped to the bounds of its triangle must
 /// not depend on that.
 ///
-/// As no low plane is beyond the high one of its axis, the line meets that one first whose
-/// parameter is the smaller one: no sign needs to be looked at.
+/// No low plane is beyond the high one of its axis, so the line intersects first the plane with the
+/// smaller parameter: no sign is needed.
 class RaySlab {
  public:
   /// `origin_max_abs` and `max_abs`: largest absolute coordinate of the origin and of any box,
@@ -88,8 +88,8 @@ class RaySlab {
     return passes ? interval.enter : std::numeric_limits<double>::infinity();
   }
 
-  /// The least power of two that is not below x; some such for subnormal numbers. Precondition: x
-  /// is finite and not negative.
+  /// The least power of two that is not below x; for subnormal x it need not be the least.
+  /// Precondition: x is finite and not negative.
   [[nodiscard]] static double power_above(double x) noexcept {
     constexpr std::uint64_t kMantissa = (std::uint64_t{1} << 52) - 1;
     return std::bit_cast<double>((std::bit_cast<std::uint64_t>(x) + kMantissa) & ~kMantissa);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays through the wide codecs.
+// Ray queries over the wide codecs.
 #include "runtime/query/ray_filter.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/walk/erased_codec.h"
@@ -25,8 +25,8 @@ Errc walk_ray(const BoundTree& tree, RayQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 #else
-// The children of an open node as the ray sees them: the parameters of their planes. They follow
-// from those of their parent as its planes do, so no box is ever decoded.
+// The children of an open node along the ray: the parameters of their planes. They are computed
+// from those of their parent as planes are in space, so no box is ever decoded.
 struct RayChildren {
   HWY_ALIGN float near[3][kWideChildren];
   HWY_ALIGN float far[3][kWideChildren];
@@ -126,7 +126,7 @@ class RayWalk {
         leaves_(tree, query, filter) {}
 
   // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
-  // child. What waits belongs to nodes on the path to the one at hand, each at another depth.
+  // child. Pending children belong to nodes on the path to the current one, each at another depth.
   Errc run(const BoxLanes& root) {
     RayFilter::Lanes near, far;
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
@@ -168,7 +168,7 @@ class RayWalk {
       if (std::popcount(inner) > 2) {
         stack_.push(inner, enter, at.depth + 1);
       } else if (inner != 0) {
-        // One or two, as in most nodes: the nearer one is entered at once, the other one waits.
+        // One or two, as in most nodes: the nearer one is entered at once, the other one is pushed.
         auto nearer = static_cast<std::uint32_t>(std::countr_zero(inner));
         if (const std::uint32_t rest = inner & (inner - 1); rest != 0) {
           const auto other = static_cast<std::uint32_t>(std::countr_zero(rest));

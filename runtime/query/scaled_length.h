@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lengths times powers of two: exact but where a double ends, and there on the side requested.
+// Lengths times powers of two: exact except at the limits of double, and there a bound.
 #pragma once
 
 #include <cmath>
@@ -7,10 +7,10 @@
 
 namespace boxtree {
 
-/// Squares of lengths below this are subnormal: bounds are wider by so much.
+/// Squares of shorter lengths may underflow, so bounds are widened by this.
 inline constexpr double kLengthUnderflow = 0x1p-500;
 
-/// At most 2^exponent * length, at which it is infinite only if the length is.
+/// A lower bound of 2^exponent * length; infinite only if the length is.
 [[nodiscard]] inline double scaled_below(double length, int exponent) noexcept {
   const double result = std::ldexp(length, exponent);
   const bool is_infinite = length == std::numeric_limits<double>::infinity();
@@ -18,7 +18,7 @@ inline constexpr double kLengthUnderflow = 0x1p-500;
                                                                 : std::nextafter(result, 0.0);
 }
 
-/// At least 2^exponent * length.
+/// An upper bound of 2^exponent * length.
 [[nodiscard]] inline double scaled_above(double length, int exponent) noexcept {
   const double result = std::ldexp(length, exponent);
   return std::ldexp(result, -exponent) >= length

@@ -51,8 +51,8 @@ struct SphereQuery {
 
   Eigen::Vector3d center;  // tree space
   double squared_radius;
-  /// For a placed tree: decides in the world. The radius above then holds all that may touch, in
-  /// tree space; what lies within the one below touches without being queried.
+  /// For a placed tree: the exact test is done in the world. In tree space, all that may touch is
+  /// then within the radius above; what is within the radius below touches without a test.
   const PlacedSphere* placed = nullptr;
   double certain_squared_radius = squared_radius;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Spheres over the wide codecs.
+// Sphere queries over the wide codecs.
 #include "runtime/query/point_filter.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/erased_codec.h"

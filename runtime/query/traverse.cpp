@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Traversals by the application: one walk for all codecs.
+// The application's own traversals: one walk for all codecs.
 #include <boxtree/traverse.h>
 
 #include "runtime/primitive/float_state.h"

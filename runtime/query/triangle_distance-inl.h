@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A lower bound of the distance from a point to triangles, tight but for rounding.
+// A lower bound of the distance from a point to triangles, tight except for rounding.
 #if defined(BOXTREE_RUNTIME_QUERY_TRIANGLE_DISTANCE_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_QUERY_TRIANGLE_DISTANCE_INL_H
 #undef BOXTREE_RUNTIME_QUERY_TRIANGLE_DISTANCE_INL_H
@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
-/// Squared distance from the end of `w` to the segment from the origin to `edge`, measured to a
-/// point of the segment: never too small but for rounding. An edge without length is its end.
+/// Squared distance from the end of `w` to a point of the segment from the origin to `edge`: never
+/// too small except for rounding. An edge without length counts as a point.
 HWY_INLINE FloatVector squared_to_segment(const Vector3& w, const Vector3& edge) {
   const Floats d;
   const FloatVector length =
@@ -31,10 +31,10 @@ HWY_INLINE FloatVector squared_to_segment(const Vector3& w, const Vector3& edge)
 
 /// No point of triangle i of a part is nearer than lane i.
 ///
-/// Where the point surely projects outside a triangle, the closest of its edges is meant, otherwise
-/// the plane, if that is nearer. Let u = 2^-24, e = error of the point, c = error of the corners, L
-/// and W the largest components of edges and of the vectors w to the point, n = e1 x e2. Rounding
-/// differences, products and sums, each bound doubled or more:
+/// Where the point certainly projects outside a triangle, the lane is the distance to its closest
+/// edge, otherwise the distance to its plane, if that is less. Let u = 2^-24, e = error of the
+/// point, c = error of the corners, L and W the largest components of edges and of the vectors w to
+/// the point, n = e1 x e2. Rounding differences, products and sums, each bound doubled or more:
 ///   - an edge is off by 2 (c + u L), a component of n by 16 (c + u L) L; w is off by e + c + u W;
 ///   - an area n . (edge x w), at most 12 L^3 W, by D = 256 (c + u L) L^2 W + 32 L^3 (e + c + u W);
 ///   - a distance to an edge by 8 (e + c) + 32 u W: the foot may be off along the edge, which makes

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The bounds behind WorldMetric, each with the error of computing it.
+// The bounds of WorldMetric, each with the error of computing it.
 //
 // Let u = 2^-53 and gamma_n = n u / (1 - n u) (Higham, "Accuracy and Stability", lemma 3.1). A sum
 // of three products is off by gamma_3 of the sum of their magnitudes.
@@ -19,7 +19,7 @@ namespace {
 // Covers the roundings of computing a bound itself: fewer than 16 of them in each.
 constexpr double kMore = 1 + 32 * kRoundoffF64;
 constexpr double kLess = 1 - 32 * kRoundoffF64;
-// Above this, what was measured of an inverse says that it is none.
+// A computed inverse with a larger residual is unusable.
 constexpr double kTooSingular = 0.25;
 
 // An upper bound of the largest singular value of a matrix whose rows have length 1. With B = N
@@ -48,8 +48,8 @@ struct UnitRows {
   Eigen::Vector3d length;
 };
 
-// Largest, over the axes, of what A - Y G makes of coordinates z with |z_j| <= bound_j |v|, in
-// units of |Y_k| |v|. The residual is measured with gamma_4 of the magnitudes that enter it.
+// The largest component, over the axes, of (A - Y G) z for coordinates z with |z_j| <= bound_j |v|,
+// in units of |Y_k| |v|. The residual is measured with gamma_4 of the magnitudes that enter it.
 double relative_residual(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y,
                          const Eigen::Vector3d& y_length, const Eigen::Matrix3d& g,
                          const Eigen::Vector3d& bound) noexcept {
@@ -71,7 +71,7 @@ GapWeights weights_of(const Eigen::Matrix3d& a, const Eigen::Matrix3d& y, const 
   GapWeights result;
   const UnitRows unit(y);
   const double residual = relative_residual(a, y, unit.length, g, bound);
-  if (!(residual < kTooSingular)) return result;  // weights of zero: no gap says anything
+  if (!(residual < kTooSingular)) return result;  // weights of zero: gaps give no bound
   for (std::size_t k = 0; k < 3; ++k) {
     result.weight[k] = kLess / (unit.length[static_cast<Eigen::Index>(k)] * (1 + residual));
     if (!std::isfinite(result.weight[k])) return GapWeights();
@@ -95,7 +95,7 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   for (Eigen::Index i = 0; i < 3; ++i) {
     for (Eigen::Index j = 0; j < 3; ++j) {
       metric.linear_(i, j) = std::ldexp(linear(i, j), -pose_exponent);
-      // Entries so much smaller than the largest that they cannot be held beside it.
+      // Some entries are too small to be represented in the units of the largest.
       if (std::ldexp(metric.linear_(i, j), pose_exponent) != linear(i, j)) return std::nullopt;
     }
   }
@@ -143,14 +143,14 @@ std::optional<WorldMetric> WorldMetric::make(const BoundTree& first, const Pose&
   return metric;
 }
 
-// Any vector n of the first space will do: n . z = n . (Y v + (I - Y G) z) is at most |Y^T n| |v|
-// plus what the residual r makes of it, r times the sum of |n_k| |z_k| / |v|. With n near G^T v
-// that is the length of v along v.
+// Any vector n of the first space is valid: n . z = n . (Y v + (I - Y G) z) is at most |Y^T n| |v|
+// plus the part of the residual r, r times the sum of |n_k| |z_k| / |v|. With n near G^T v that is
+// the length of v along v.
 //
 // n . (y - x) for x in a box of the first tree and y = fl(L w + t), w in a box of the second, is
 // computed as (n . t + (L^T n) . w) - n . x. Magnitudes are at most |n| . place, and no term passes
 // through more than 4 roundings in y, 4 in L^T n, 4 in its product with w and 3 in the differences;
-// boxes may reach beyond the root's by a rounding of their own.
+// boxes may extend beyond the root's by one rounding.
 Direction WorldMetric::direction(const Eigen::Vector3d& along,
                                  const RelativePose& pose) const noexcept {
   Direction result;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Distances in the world of what is compared in the spaces of two trees.
+// World distances of objects that are compared in the spaces of two trees.
 //
-// A pair query brings the second tree's triangles into the first one's tree space and compares them
+// A pair query moves the second tree's triangles into the first one's tree space and compares them
 // there. The world is the image of that space under a linear map G (the first pose and the scale of
 // the tree): points x and y of it are |G (x - y)| apart in the world. G may scale, mirror and
 // shear.
@@ -12,8 +12,8 @@
 // by at least g_k / |Y_k| in the world. Gaps on several axes together: let D = diag(|Y_k|). Then
 // |D^-1 A z| = |D^-1 Y v| <= |D^-1 Y| |v|, so |v| >= |D^-1 g| / |D^-1 Y|, whose denominator is 1
 // where the axes stay orthogonal in the world (rotation, mirror, scale along them) and at most
-// sqrt(3) where shear lays them on each other. The larger of the two bounds counts.
-// Y is computed with rounding; what is left of A - Y G is measured and added (world_metric.cpp).
+// sqrt(3) where shear brings them together. The larger of the two bounds counts.
+// Y is computed with rounding; the residual A - Y G is measured and added (world_metric.cpp).
 #pragma once
 
 #include <algorithm>
@@ -32,11 +32,11 @@ namespace boxtree {
 /// Lower bounds of distances from gaps between boxes in one space.
 struct GapWeights {
   std::array<double, 3> weight{};  // world length of a unit gap on each axis, at least
-  double combined = 0;             // of squares: what is left of three gaps together
+  double combined = 0;             // of squares: lower bound of three gaps together
   std::array<double, 3> margin{};  // by how much a gap may be too large
 
-  /// A lower bound of the squared distance of what two boxes hold. Never NaN: boxes without sense
-  /// are not apart.
+  /// A lower bound of the squared distance between the contents of two boxes. Never NaN: invalid
+  /// boxes have distance 0.
   template <class S, class T>
   [[nodiscard]] double squared_distance(const Box<S>& a, const Box<T>& b) const noexcept {
     double sum = 0;
@@ -52,15 +52,15 @@ struct GapWeights {
   }
 };
 
-/// A direction of the world along which boxes of both trees are compared. That the second tree's
-/// boxes are turned costs nothing here, unlike on the axes: along the line between two points that
-/// are close to each other, whatever is near them shows its true distance.
+/// A world direction along which boxes of both trees are compared. Unlike a comparison on the axes,
+/// it loses nothing because the second tree's boxes are rotated: along the line between two points
+/// that are close to each other, what is near them has its true distance.
 class Direction {
  public:
-  /// Boxes are not apart along no direction.
+  /// No direction: no boxes are apart along it.
   Direction() = default;
 
-  /// The far end of a box of the first tree along the direction, seen from the second...
+  /// The end of a box of the first tree, on the side of the second.
   template <class S>
   [[nodiscard]] double end_of_first(const Box<S>& box) const noexcept {
     return (end(box, first_, 0) + end(box, first_, 1)) + end(box, first_, 2);
@@ -69,17 +69,17 @@ class Direction {
     return std::max({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
                      dot(first_, triangle.corner[2])});
   }
-  /// ... the near end of a box of the second tree, in its own space...
+  /// The end of a box of the second tree, given in its own space, on the side of the first.
   template <class S>
   [[nodiscard]] double end_of_second(const Box<S>& box) const noexcept {
     return offset_ - ((end(box, second_, 0) + end(box, second_, 1)) + end(box, second_, 2));
   }
-  /// ... and of a triangle that has been brought into the first one's.
+  /// The same end of a triangle that has been moved into the first tree's space.
   [[nodiscard]] double end_of_moved(const Triangle& triangle) const noexcept {
     return std::min({dot(first_, triangle.corner[0]), dot(first_, triangle.corner[1]),
                      dot(first_, triangle.corner[2])});
   }
-  /// A lower bound of the squared distance of what lies behind two ends.
+  /// A lower bound of the squared distance between the objects with these ends.
   [[nodiscard]] double squared_distance(double first_end, double second_end) const noexcept {
     const double gap = std::max(0.0, ((second_end - first_end) - error_) * scale_);
     return gap * gap;
@@ -108,14 +108,14 @@ class Direction {
 /// The world in which two trees are placed, in units of a power of two in which G is of size 1.
 class WorldMetric {
  public:
-  /// Nothing where the powers of two of a pose are too far apart for any unit.
+  /// Nothing where the magnitudes in a pose are too far apart for any unit.
   static std::optional<WorldMetric> make(const BoundTree& first, const Pose& first_pose,
                                          const BoundTree& second,
                                          const RelativePose& pose) noexcept;
 
-  /// Squared distances, from below, of boxes in the first tree's space...
+  /// Lower bounds of squared distances of boxes in the first tree's space.
   [[nodiscard]] const GapWeights& in_first() const noexcept { return in_first_; }
-  /// ... and in the second's, of RelativePose::to_second().hull() and boxes of the second tree.
+  /// The same in the second tree's space: of RelativePose::to_second().hull() and its own boxes.
   [[nodiscard]] const GapWeights& in_second() const noexcept { return in_second_; }
 
   /// The direction of a vector in the world. `pose` is that of make().
@@ -146,10 +146,10 @@ class WorldMetric {
   /// the largest magnitude in the computed difference.
   [[nodiscard]] double image_error() const noexcept { return image_error_; }
 
-  /// A length in these units in the world's, rounded down or up.
+  /// Converts a length in these units to the world's, rounded down or up.
   [[nodiscard]] double length_below(double length) const noexcept;
   [[nodiscard]] double length_above(double length) const noexcept;
-  /// A length of the world in these units, rounded down or up.
+  /// Converts a length of the world to these units, rounded down or up.
   [[nodiscard]] double from_world_below(double length) const noexcept;
   [[nodiscard]] double from_world_above(double length) const noexcept;
   [[nodiscard]] int exponent() const noexcept { return exponent_; }
@@ -160,10 +160,10 @@ class WorldMetric {
   double image_error_ = 0;
   GapWeights in_first_;
   GapWeights in_second_;
-  Eigen::Matrix3d inverse_;     // of G, nearly
-  Eigen::Vector3d coordinate_;  // |z_k| is at most so much of |G z|; infinite if nothing is known
-  double residual_ = 0;         // what is wrong with the inverse, in units of its rows
-  Eigen::Vector3d place_;       // largest magnitudes in the first space, of both trees together
+  Eigen::Matrix3d inverse_;         // of G, nearly
+  Eigen::Vector3d coordinate_;      // |z_k| / |G z| is at most this; infinite if nothing is known
+  double residual_ = 0;             // of the inverse, in units of its rows
+  Eigen::Vector3d place_;           // largest magnitudes in the first space, of both trees together
   std::array<double, 3> column_{};  // lengths of the columns of G
   double stretch_ = 0;              // of G with columns of length 1, at least
 };

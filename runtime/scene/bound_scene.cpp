@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a scene says of its instances, and moving them.
+// Information about the instances of a scene, and moving them.
 #include "runtime/scene/bound_scene.h"
 
 #include <algorithm>
@@ -97,7 +97,8 @@ std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
     if (face.index >= trees_[tree].face_count()) return kNoMaterial;
     return materials.faces[face.index];
   }
-  // One run is of all faces, whatever their ids; else the last one that starts at or before it.
+  // A single run covers all faces, whatever their ids; else finds the last one that starts at or
+  // before it.
   std::uint32_t first = 0;
   std::uint32_t count = materials.run_count;
   if (count == 0) return kNoMaterial;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a Scene is inside: the records of placed trees under one top-level tree, over mapped bytes,
+// The inside of a Scene: the records of placed trees under one top-level tree, over mapped bytes,
 // and the poses of those that move.
 #pragma once
 
@@ -29,7 +29,7 @@ class BoundScene {
  public:
   static Result<Scene> bind(const File& file, const SceneOptions& options);
 
-  /// What is inside of a Scene.
+  /// The inside of a Scene.
   [[nodiscard]] static const BoundScene& of(const Scene& scene) noexcept { return *scene.bound_; }
 
   BoundScene(BoundScene&&) noexcept = default;
@@ -66,14 +66,14 @@ class BoundScene {
     /// Nothing when they are beyond kMaxCoordinate.
     [[nodiscard]] std::optional<PlacementBounds> bounds() const noexcept;
   };
-  /// What the file says of an instance. Nothing where its tree or layer is not there.
+  /// The record of an instance. Nothing if its tree or layer does not exist.
   [[nodiscard]] std::optional<InstanceRecord> record_of(std::uint32_t number) const noexcept;
-  /// An instance where the file has it. Nothing where its bytes are corrupt. Precondition of the
+  /// An instance in the pose of the file. Nothing if its bytes are corrupt. Precondition of the
   /// second: `record` is record_of(number).
   [[nodiscard]] std::optional<Placed> place(std::uint32_t number) const noexcept;
   [[nodiscard]] std::optional<Placed> place(std::uint32_t number,
                                             const InstanceRecord& record) const noexcept;
-  /// ... and where it is now, if it moves.
+  /// The same in the current pose, if it moves.
   [[nodiscard]] std::optional<Placed> place_now(std::uint32_t number) const noexcept;
   [[nodiscard]] const SceneRecord& record() const noexcept { return top_.scene; }
   [[nodiscard]] const TopLevel& top_level() const noexcept { return top_; }
@@ -85,10 +85,10 @@ class BoundScene {
     PlacementBounds bounds;
   };
   [[nodiscard]] std::span<const Moving> moving() const noexcept { return moving_; }
-  /// Whether a leaf of the top level is an instance that moves after all.
+  /// Whether a leaf of the top level is an instance that was bound as moving.
   [[nodiscard]] bool is_detached(std::uint32_t number) const noexcept;
   [[nodiscard]] LayerRecord layer(std::uint32_t number) const noexcept;
-  /// At least PlacementBounds::condition of every instance.
+  /// An upper bound of PlacementBounds::condition of all instances.
   [[nodiscard]] double condition() const noexcept {
     return std::max(record().condition, conditions_.of_all());
   }
@@ -103,12 +103,12 @@ class BoundScene {
     return units * frame_.scale;
   }
   [[nodiscard]] double to_world(double length) const noexcept { return length * frame_.scale; }
-  /// A tree placed by a pose, in units of the scene. Nothing when it is not finite, cannot be
-  /// undone or leads beyond kMaxCoordinate.
+  /// A tree placed by a pose, in units of the scene. Nothing if the pose is not finite, is not
+  /// invertible or leads beyond kMaxCoordinate.
   [[nodiscard]] std::optional<Placement> place_in_units(const BoundTree& tree,
                                                         const Pose& pose) const noexcept;
-  /// A point or box of these units in the space of both trees. Rounded to nearest, which is
-  /// monotone: boxes that share a point still do.
+  /// A point or box in units of the scene, moved to the space of the top-level and the moving tree.
+  /// Rounded to nearest, which is monotone: boxes that share a point still do.
   [[nodiscard]] Eigen::Vector3d to_frame(const Eigen::Vector3d& units) const noexcept {
     return units - to_units(frame_.origin);
   }
@@ -131,7 +131,7 @@ class BoundScene {
   struct TreeMaterials {
     const std::byte* runs = nullptr;  // MaterialRun[], or
     std::uint32_t run_count = 0;
-    NumberView faces;  // a number of each face, or of nothing
+    NumberView faces;  // a number per face, or none
   };
 
   TopLevel top_;

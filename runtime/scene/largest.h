@@ -9,11 +9,11 @@
 
 namespace boxtree {
 
-/// A complete binary tree: entry 1 is the largest of all, entry n that of entries 2n and 2n + 1,
-/// the last half are the numbers, which are not negative.
+/// A complete binary tree: entry 1 is the largest of all, entry n that of entries 2n and 2n + 1.
+/// The last half are the numbers, which are not negative.
 class Largest {
  public:
-  /// Makes room for so many numbers, all zero. Allocates.
+  /// Makes room for `count` numbers, all zero. Allocates.
   void reset(std::size_t count) {
     largest_.assign(2 * std::bit_ceil(std::max<std::size_t>(count, 1)), 0.0);
   }

@@ -8,9 +8,9 @@
 namespace boxtree {
 namespace {
 
-// Sorts numbers of boxes so that each half of any range that is halved from the whole down is
-// apart from the other along the longer side of their centres. `size` is a power of two; the
-// numbers fill it from the front.
+// Sorts numbers of boxes in space: separates the two halves of the range along the longest side of
+// their centres, then each half alike. `size` is a power of two; the numbers fill it from the
+// front.
 void sort_in_space(std::span<std::uint32_t> numbers, std::uint32_t size,
                    std::span<const Box<double>> boxes) {
   if (size < 2 || numbers.size() < 2) return;

@@ -14,8 +14,8 @@
 namespace boxtree {
 
 /// A complete binary tree: node 1 is the root, nodes 2n and 2n + 1 are the children of node n,
-/// leaves are the last half. Holds boxes alone; a leaf is a place, and places are dealt out to
-/// instances so that neighbours in the tree are neighbours in space when it is built.
+/// leaves are the last half. Holds boxes only. A leaf is a place; build() assigns places to
+/// instances so that neighbours in the tree are neighbours in space.
 class MovingTree {
  public:
   struct Decoder {
@@ -37,7 +37,7 @@ class MovingTree {
     }
   };
 
-  /// Deals places out to instances with these boxes and builds the tree over them. Allocates.
+  /// Assigns places to instances with these boxes and builds the tree over them. Allocates.
   void build(std::span<const Box<double>> boxes);
   /// Gives the instance with number `moving` another box; O(log n), no allocation.
   void refit(std::uint32_t moving, const Box<double>& box) noexcept;
@@ -51,7 +51,7 @@ class MovingTree {
   [[nodiscard]] const Box<double>& box(std::uint32_t moving) const noexcept {
     return nodes_[leaves_ + place_[moving]];
   }
-  /// The number of the moving instance that a leaf is.
+  /// The number of a leaf's moving instance.
   [[nodiscard]] std::uint32_t moving(NodeRef leaf) const noexcept {
     return at_place_[leaf.first - leaves_];
   }

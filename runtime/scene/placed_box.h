@@ -12,8 +12,8 @@
 
 namespace boxtree {
 
-/// Passes the faces of one instance on: by one call through a pointer each, not two, of which a
-/// query has hundreds.
+/// Passes on the faces of one instance: by one indirect call per face, not two, as a query has
+/// hundreds of faces.
 struct FacesOfInstance {
   SceneFaceVisitor visitor;
   std::uint32_t instance;
@@ -21,8 +21,8 @@ struct FacesOfInstance {
   bool operator()(const FaceRef& face) const { return visitor({instance, face}); }
 };
 
-/// A box of the world against a tree that is placed there. Boxes of the tree are compared by the
-/// hulls of their images, which hold the images of what they hold exactly (AffineMap::hull).
+/// A world box against a placed tree. A box of the tree is compared by the hull of its image, which
+/// contains the images of its contents exactly (AffineMap::hull).
 struct PlacedBoxQuery {
   using Visitor = FacesOfInstance;
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Boxes of the world over placed trees of the wide codecs.
+// World boxes against placed trees of the wide codecs.
 #include <algorithm>
 #include <cmath>
 
@@ -27,10 +27,10 @@ Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
   return traverse_overlap(tree, ErasedCodec{&tree}, faces);
 }
 #else
-// The boxes and corners of a placed tree as hulls in the world, seen from the middle of the box
-// of the query, widened by what float loses: of the rows of the map, its products and sums,
-// and of triangles that were rounded; less than 16 roundings of the largest sum. World coordinates
-// themselves are rounded to double, where they are, not seen from the box: less than 8 roundings.
+// The boxes and corners of a placed tree as hulls in the world, relative to the middle of the
+// query's box, widened by what float loses: rounding of the rows of the map, of its products and
+// sums, and of triangles; less than 16 roundings of the largest sum. World coordinates themselves
+// are rounded to double before they are relative to the box: less than 8 roundings.
 class PlacedBoxFilter {
  public:
   PlacedBoxFilter(const BoundTree& tree, const PlacedBoxQuery& query) {

@@ -38,8 +38,8 @@ double condition_of(const Eigen::Matrix3d& m, const Eigen::Matrix3d& inverse) no
 
 }  // namespace
 
-// The scale is a power of two: no rounding. Where the frame has no origin of its own the sum is the
-// pose's translation, unrounded.
+// The scale is a power of two: no rounding. For a frame with origin 0 the sum is the pose's
+// translation, unrounded.
 AffineMap Placement::map_to_world(const Frame& frame, const Pose& pose) noexcept {
   return {pose.linear() * frame.scale, product(pose.linear(), frame.origin) + pose.translation()};
 }
@@ -102,8 +102,8 @@ Eigen::Vector3d Placement::to_tree(const Eigen::Vector3d& world) const noexcept 
   return (product(inverse_, world - translation_) - frame_origin_) * frame_inverse_scale_;
 }
 
-// What the inverse lacks is measured by going there and back. To that come the roundings of the
-// measurement, of a triangle's way to the world and of its distance, which are bounded by 26 of the
+// The error of the inverse is measured by mapping there and back. Added are the roundings of the
+// measurement, of a triangle's map to the world and of its distance, which are bounded by 26 of the
 // largest coordinate (see triangle_distance.cpp).
 double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vector3d& world,
                                  const Box<double>& root) const noexcept {
@@ -114,20 +114,20 @@ double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vecto
   return std::sqrt(squared_length(back)) + 128 * kRoundoffF64 * largest + kLengthUnderflow;
 }
 
-// The squares of both are eigenvalues of L^T L, which Gershgorin's circles hold. Where axes are far
-// from orthogonal the circles reach zero: then 1 / |L^-1|, the Frobenius norm, is a lower bound,
-// once what the computed inverse lacks is made up for: |L^-1| <= |X| / (1 - |I - L X|).
+// The squares of both are eigenvalues of L^T L, which lie in Gershgorin's circles. Where axes are
+// far from orthogonal the circles contain zero. Then 1 / |L^-1|, in the Frobenius norm, is a lower
+// bound, corrected for the error of the computed inverse X: |L^-1| <= |X| / (1 - |I - L X|).
 Stretch stretch_of(const Eigen::Matrix3d& linear) noexcept {
   const Eigen::Vector3d x = linear.col(0), y = linear.col(1), z = linear.col(2);
   const double xx = squared_length(x), yy = squared_length(y), zz = squared_length(z);
   const double xy = std::abs(dot(x, y)), yz = std::abs(dot(y, z)), zx = std::abs(dot(z, x));
-  // Entries of the product are off by 3u of what they sum up, which no diagonal sum is less than.
+  // Entries of the product are off by 3u of the magnitudes summed, which the diagonal's sum bounds.
   const double off = 16 * kRoundoffF64 * ((xx + yy) + zz);
   const double smallest = std::min({xx - (xy + zx), yy - (xy + yz), zz - (zx + yz)}) - off;
   const double largest = std::max({xx + (xy + zx), yy + (xy + yz), zz + (zx + yz)}) + off;
   Stretch stretch{std::sqrt(std::max(0.0, smallest)) * (1 - 4 * kRoundoffF64),
                   std::sqrt(largest) * (1 + 4 * kRoundoffF64)};
-  // Within sqrt(3) of the shortest axis, and so of the best there is: the norm promises no more.
+  // Within sqrt(3) of the shortest axis, and so of the best bound: the norm guarantees no more.
   if (3 * smallest >= std::min({xx, yy, zz})) return stretch;
   const Eigen::Matrix3d inverse = inverse_of(linear);
   double norm = 0, lacking = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where an instance lies: the map from its tree's space to the world, and bounds of what rounding
-// and the shape of that map can do.
+// The placement of an instance: the map from its tree's space to the world, and bounds of its
+// rounding errors and of its distortion.
 #pragma once
 
 #include <cstdint>
@@ -18,26 +18,25 @@
 
 namespace boxtree {
 
-/// Bounds of what a placed tree covers and of what rounding does to it.
+/// Bounds of a placed tree's extent and of its rounding errors.
 struct PlacementBounds {
-  /// A box of the world that holds the tree, whatever rounding makes of its triangles; widened by
-  /// error().
+  /// A world box that holds the tree, including the rounding of its triangles; widened by error().
   Box<double> world;
-  /// By how much going back from the world magnifies errors at most: 1 for an axis-parallel map, up
-  /// to 3 for a rotation, more for a map that shears or stretches unevenly.
+  /// Upper bound of how much the map back from the world magnifies errors: 1 for an axis-parallel
+  /// map, up to 3 for a rotation, more for a map that shears or stretches unevenly.
   double condition;
   double magnitude;  // no term of a world coordinate's sum is larger
 
-  /// How far on any axis what is compared with the tree can be off by rounding, in the world: on
-  /// its way here, or back to where the tree compares it.
+  /// Upper bound, on any axis and in the world, of the rounding of what is compared with the tree:
+  /// on the way to the world, or back to where the tree compares it.
   [[nodiscard]] double error() const noexcept;
 };
 
 /// A tree and its pose. The world coordinates of a triangle are to_world().apply() of each corner
 /// as the tree decodes it: what brute force over all instances compares, and what box, sphere and
-/// point queries of a scene compare in the end. Only what every query needs is kept: queries make
-/// one for each instance that they meet. Computed in one fixed order of operations that IEEE 754
-/// defines, because a cooked file rests on it.
+/// point queries of a scene compare in the end. Keeps only what every query needs, as queries make
+/// one for each instance that they visit. Computed in one fixed order of operations that IEEE 754
+/// defines, because the bytes of cooked files depend on it.
 class Placement {
  public:
   /// Nothing when the pose is not finite or not invertible.
@@ -48,9 +47,9 @@ class Placement {
   }
 
   [[nodiscard]] const AffineMap& to_world() const noexcept { return to_world_; }
-  /// That map alone, whatever its numbers.
+  /// The map to the world alone, without checks.
   [[nodiscard]] static AffineMap map_to_world(const Frame& frame, const Pose& pose) noexcept;
-  /// The ray in object space; parameters stay.
+  /// The ray in object space; its parameters are unchanged.
   [[nodiscard]] Ray to_object(const Ray& world) const noexcept;
   /// A point of the world in tree space.
   [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& world) const noexcept;
@@ -60,8 +59,8 @@ class Placement {
   /// For a tree with this root box. Nothing when they are not finite or beyond kMaxCoordinate.
   /// Precondition: the tree is not empty.
   [[nodiscard]] std::optional<PlacementBounds> bounds(const Box<double>& root) const noexcept;
-  /// How far, in the world, `tree` = to_tree(world) may be from there; no distance to a triangle of
-  /// the tree is off by more. `root`: the box of the tree.
+  /// How far, in the world, `tree` = to_tree(world) may be from `world`; no distance to a triangle
+  /// of the tree is off by more. `root`: the box of the tree.
   [[nodiscard]] double distance_error(const Eigen::Vector3d& tree, const Eigen::Vector3d& world,
                                       const Box<double>& root) const noexcept;
 

@@ -125,8 +125,8 @@ Status BoundScene::check_parts(const SceneOptions& options) const {
   return {};
 }
 
-// The record that says why, if the file has one: of the tree, else of the whole scene, else of any
-// tree.
+// The error for a part that was left out, with the reason if the file records one: for the tree,
+// else for the whole scene, else for any tree.
 Error BoundScene::left_out(Part part, std::uint32_t owner, const std::string& what) const {
   const std::size_t count = left_out_.size() / sizeof(LeftOutRecord);
   std::string_view reason;

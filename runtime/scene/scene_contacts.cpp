@@ -9,10 +9,10 @@
 namespace boxtree {
 namespace {
 
-// One body tested against all instances that its box overlaps. Boxes are widened by what rounding
-// can do between there and the space in which two trees are compared (PlacementBounds::error), each
-// by the share of its own tree; the first tree of a comparison is the one whose pose magnifies
-// errors less, so both shares suffice.
+// One body tested against all instances that its box overlaps. Boxes are widened by the rounding
+// between the world and the space in which two trees are compared (PlacementBounds::error), each by
+// its own tree's share. The first tree of a comparison is the one whose pose magnifies errors less,
+// so both shares suffice.
 struct BodyInScene {
   Admission admission;
   const BoundTree& tree;
@@ -20,7 +20,7 @@ struct BodyInScene {
   double condition;  // of its placement
   Box<double> in_frame;
   std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
-  bool is_first;               // in what is reported
+  bool is_first;               // in reports
   ScenePairVisitor visitor;
   Errc error = Errc::kOk;
   bool stopped = false;

@@ -13,9 +13,9 @@ namespace boxtree {
 namespace {
 
 // In units of the scene, with a direction whose largest component is in [1/2, 1): its parameter is
-// t * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(); what is
-// left is the error of the ray's own origin on its way to object space and back, of which the
-// slab's margin gets its share by a larger max_abs.
+// t * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(). What
+// remains is the error of the ray's origin on its way to object space and back, which a larger
+// max_abs adds to the slab's margin.
 struct SceneRayQuery {
   SceneRayQuery(const BoundScene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
                 QueryWork& work, int direction_exponent) noexcept

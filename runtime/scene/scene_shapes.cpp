@@ -48,7 +48,7 @@ Result<Visit> query_scene(const BoundScene& scene, const Shape& shape, SceneFace
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 
-// Boxes are compared in the world itself: only signs count, and units could take the last bits of
+// Boxes are compared in the world itself: only signs count, and units could lose the last bits of
 // very small numbers.
 struct WorldBox {
   Box<double> world;
@@ -68,22 +68,22 @@ struct WorldBox {
   }
 };
 
-// The distance of an instance's box, in the scene's frame, is that of its content but for the
-// rounding of the point there and of distances, 64 roundings of the point's own magnitude; what the
-// instance contributes is in its box.
+// The distance of an instance's box, in the scene's frame, bounds that of its contents except for
+// the rounding of the point and of distances: 64 roundings of the point's magnitude. The rounding
+// of the instance is in its box.
 double scene_error(const BoundScene& scene, const Eigen::Vector3d& point) noexcept {
   const double magnitude =
       point.cwiseAbs().maxCoeff() + scene.to_units(scene.frame().origin).cwiseAbs().maxCoeff();
   return 64 * kRoundoffF64 * magnitude + kLengthUnderflow;
 }
 
-// A squared distance in the scene's frame that holds all within `distance`.
+// A squared distance in the scene's frame that covers everything within `distance`.
 double frame_bound(double distance, double error) noexcept {
   return (distance + error) * (distance + error) * (1 + 16 * kRoundoffF64);
 }
 
-// A point of the scene's units in the space of a tree, or 0 from so far away that its boxes say
-// nothing: then all its triangles are compared.
+// A point in the scene's units, moved to the space of a tree; 0 if it is so far away that boxes
+// give no bound, and then all triangles of the tree are compared.
 struct PointInTree {
   PointInTree(const Placement& placement, const Eigen::Vector3d& point) noexcept
       : at(placement.to_tree(point)), is_near(is_within_range(at)) {
@@ -133,7 +133,7 @@ struct PointInScene {
   Eigen::Vector3d point_in_frame;
   double scene_margin;
   double best;           // squared
-  double best_in_frame;  // squared: what is farther cannot be as near
+  double best_in_frame;  // squared: nothing farther can be as near
   std::optional<SceneClosestPoint> found;
   std::uint32_t found_id = 0;
   Errc error = Errc::kOk;
@@ -181,7 +181,7 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
   if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
-  // No instance reaches farther.
+  // No instance extends farther.
   const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     const Eigen::Vector3d a = low.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
     const Eigen::Vector3d b = high.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);

@@ -9,7 +9,7 @@
 
 namespace boxtree {
 
-/// Which instances a query is for, and what may be spent on them.
+/// Which instances a query admits, and its work limit.
 struct Admission {
   const BoundScene& scene;
   QueryKinds kind;
@@ -21,11 +21,11 @@ struct Admission {
   }
 };
 
-// What a query of a scene has, below:
+// Members of the queries of a scene, below:
 // query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
-// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level for what it is about.
+// query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level with the query's shape.
 // query.admission; and query.error, which is set when an instance is corrupt.
-// What the templates of walk/traversal.h need of boxes, in the scene's frame.
+// The box tests of the templates of walk/traversal.h, in the scene's frame.
 
 /// Counts an instance and visits it; whether to go on.
 template <class Query>
@@ -62,7 +62,7 @@ struct MovingInstances {
   }
 };
 
-/// Visits the static instances that the query may meet, each at most once whatever the bytes.
+/// Visits the static instances that the query may intersect, each at most once whatever the bytes.
 template <class Query>
 Errc walk_static(const BoundScene& scene, Query& query) {
   WalkBound visits(scene.instance_count());
@@ -78,7 +78,7 @@ Errc walk_static(const BoundScene& scene, Query& query) {
   });
 }
 
-/// Visits the instances whose boxes overlap; the query may stop it, and holds errors of instances.
+/// Visits the instances whose boxes overlap. The query may stop it, and keeps errors of instances.
 template <class Query>
 Errc visit_overlapping_instances(const BoundScene& scene, Query& query) {
   const Errc walked = walk_static(scene, query);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Which static instances of a scene may matter: walks of its top level, by vectors where there are
-// any.
+// Finds the static instances of a scene that a query may intersect: walks of its top level, by
+// vectors if the build has any.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,7 @@ Errc walk_top_level_scalar(const TopLevel& top, const Eigen::Vector3d& point, co
 Errc walk_top_level_scalar(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                            InstanceVisitor visit);
 
-/// The same by vectors, where there are any.
+/// The same by vectors, if the build has any.
 Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit);
 Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
                          InstanceVisitor visit);

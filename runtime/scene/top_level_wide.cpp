@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The top level of a scene by vectors: which instances a box, a point or a ray may meet.
+// The top level of a scene by vectors: which instances a box, a point or a ray may intersect.
 #include <algorithm>
 
 #include "runtime/query/point_filter.h"
@@ -35,12 +35,12 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double /*enter*/, con
   return walk_top_level_scalar(top, ray, bound, visit);
 }
 #else
-// What is queried, against boxes: the query of NearestWalk below says what `intersect` answers.
-// `limit_of(bound)` is a float that no key is above unless it is above the bound.
+// The shape of a query against boxes: NearestWalk documents what `intersect` returns.
+// `limit_of(bound)` is a float that only keys above the bound exceed.
 struct BoxRegion {
   BoxBounds bounds;
 
-  // All keys are alike: in no promised order.
+  // All keys are equal: the order is unspecified.
   [[nodiscard]] static float limit_of(double /*bound*/) { return 0; }
   HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, float /*limit*/,
                                      FloatVector& key) const {
@@ -171,8 +171,8 @@ Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, cons
 Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                          InstanceVisitor visit) {
   const double max_abs = max_abs_of(top);
-  // Where a map that is hard to undo makes the query give away more, its margin alone is what
-  // decides.
+  // An ill-conditioned map may widen the query by more than the tree's size; the filter is then
+  // useless.
   const double origin_max_abs = largest_magnitude(ray.origin);
   const bool is_near = origin_max_abs <= 0x1p30 * max_abs &&
                        RayBoxFilter::given_away(origin_max_abs, ray.max_abs) <= max_abs;

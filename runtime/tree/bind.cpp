@@ -15,8 +15,8 @@
 namespace boxtree {
 namespace {
 
-// Whether a caller's own arrays can be read: after this, numbers of faces and vertices are all that
-// has to be checked.
+// Whether the caller's arrays can be read; after this, only numbers of faces and vertices have to
+// be checked.
 bool are_readable(const MeshArrays& mesh) {
   const std::size_t position_bytes = 3 * (mesh.positions_f64 ? sizeof(double) : sizeof(float));
   const bool is_there = mesh.corners != nullptr && mesh.positions != nullptr;

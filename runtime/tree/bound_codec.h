@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The nodes of a tree in one codec or another, behind one type: what a bound tree holds. Which
-// codecs there are is known when a tree is bound and not when the runtime is compiled: the wide
-// ones are its own, those of the paper come from boxtree::paper.
+// The nodes of a tree in any codec, behind one type. Which codecs exist is known when a tree is
+// bound, not when the runtime is compiled: the wide ones are built in, those of the paper come from
+// boxtree::paper.
 #pragma once
 
 #include <concepts>
@@ -24,7 +24,7 @@ namespace boxtree {
 
 struct CodecWalks;
 
-/// Whether the wide codecs have walks of their own, by vectors; otherwise those of every codec.
+/// Whether the wide codecs have walks by vectors; otherwise they use the generic ones.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 
 /// What a walk needs: decodes one node after the other. Whatever the bytes, it reads nothing
@@ -37,7 +37,8 @@ concept NodeDecoder = requires(const D& decoder, NodeRef ref, const Box<typename
   noexcept->std::same_as<NodeState>;
 };
 
-/// What a tree needs of a codec besides. `bind` checks what can be checked without reading nodes.
+/// What a tree needs of a codec in addition. `bind` checks what can be checked without reading
+/// nodes.
 template <class C>
 concept Codec = NodeDecoder<C> &&
     requires(const C& codec, const TreeCounts& counts, Bytes section) {
@@ -69,10 +70,10 @@ class BoundCodec {
   alignas(kAlignment) std::byte storage_[kBytes] = {};
 };
 
-/// Children of a node of any codec. Boxes of f32 codecs come and go through double unchanged.
+/// Children of a node of any codec. Boxes of f32 codecs convert to double and back unchanged.
 using AnyChildren = ChildSet<kWideChildren, double>;
 
-/// What is required of a codec whose type the caller does not know.
+/// The functions of a codec whose type the caller does not know.
 struct CodecFunctions {
   CodecId id;
   std::uint32_t width;  // children that a node has at most
@@ -123,14 +124,13 @@ extern const CodecFunctions kNoCodec;
 
 using CodecSet = std::span<const CodecFunctions* const>;
 
-/// Lets trees of these codecs be bound from now on, in place of any that were added before: the
-/// last call counts. They and what they point to stay for good. Thread-safe.
+/// From now on trees of these codecs can be bound, in place of any added before. The set and all it
+/// points to must never be destroyed. Thread-safe.
 void add_codecs(const CodecSet& codecs) noexcept;
-void add_codecs(CodecSet&&) = delete;  // the set itself must stay
+void add_codecs(CodecSet&&) = delete;  // the set must never be destroyed
 
-/// Binds the nodes of a tree in a codec. Errors: those of the codec's bind; kCodecUnsupported, and
-/// what to do about it, when it was left out of this build or is in a library that the program does
-/// not use.
+/// Binds the nodes of a tree in a codec. Errors: those of the codec's bind; kCodecUnsupported, with
+/// the remedy, when it was left out of this build or is in a library that the program does not use.
 Status bind_codec(CodecId id, const TreeCounts& counts, Bytes nodes,
                   const CodecFunctions*& functions, BoundCodec& codec);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a Tree is inside: frame, codec and leaves over mapped bytes, for the queries and for those
-// who check and export trees. Of its record it keeps what they need.
+// The inside of a Tree: frame, codec and leaves over mapped bytes, for queries, checks and exports.
+// Keeps only what these need of the record.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ namespace boxtree {
 struct TreeParts;
 struct TreeRecord;
 
-/// Faces in a row, in a tree's own order: first to last - 1.
+/// Consecutive faces, in a tree's own order: first to last - 1.
 struct FaceRange {
   std::uint32_t first;
   std::uint32_t last;
@@ -49,7 +49,7 @@ class BoundTree {
   /// See Tree::bind. `index` only serves messages.
   static Result<Tree> bind(const TreeParts& parts, std::uint32_t index, const BindOptions& options);
 
-  /// What is inside of a Tree.
+  /// The inside of a Tree.
   [[nodiscard]] static const BoundTree& of(const Tree& tree) noexcept;
 
   [[nodiscard]] std::string_view name() const noexcept { return name_; }
@@ -57,10 +57,10 @@ class BoundTree {
   [[nodiscard]] GeometryId geometry() const noexcept { return geometry_; }
   [[nodiscard]] std::uint32_t face_count() const noexcept { return face_count_; }
   [[nodiscard]] std::uint32_t triangle_count() const noexcept { return triangle_count_; }
-  /// Nodes, and the faces that leaves hold: the first so many in this tree's order.
+  /// Numbers of nodes and of faces in leaves; these faces come first in this tree's order.
   [[nodiscard]] const TreeCounts& counts() const noexcept { return counts_; }
   [[nodiscard]] std::uint32_t node_count() const noexcept { return counts_.node_count; }
-  /// Faces in no leaf: copies, behind all others.
+  /// Faces in no leaf: copies, after all others.
   [[nodiscard]] std::uint32_t duplicate_count() const noexcept {
     return face_count_ - counts_.faces_in_leaves;
   }
@@ -80,7 +80,7 @@ class BoundTree {
   [[nodiscard]] bool has_nodes() const noexcept { return root_kind_ == RootKind::kSubtree; }
   /// The root box, as it is stored.
   [[nodiscard]] const Box<double>& root_f64() const noexcept { return root_f64_; }
-  /// The root box rounded outward to float, which changes nothing but where a tree of f64 is a
+  /// The root box rounded outward to float. This changes nothing except where a tree of f64 is a
   /// single leaf: cookers store values of the codec's scalar.
   [[nodiscard]] const Box<float>& root_f32() const noexcept { return root_f32_; }
   [[nodiscard]] const BoxLanes& root_lanes() const noexcept { return root_lanes_; }
@@ -112,18 +112,18 @@ class BoundTree {
     return is_in_source_order_ ? face : kNoFaceId;
   }
 
-  /// Whether some faces stand in no leaf because they are copies of others.
+  /// Whether some faces are in no leaf because they are copies of others.
   [[nodiscard]] bool has_duplicates() const noexcept { return bool{duplicates_}; }
   /// The copies of a face that is in a leaf: the same triangles, to the bit, and larger ids.
-  /// Visitors of the queries are told of them; traversals that read leaves themselves meet the
-  /// original alone. Corrupt bytes may state any copies, for several faces the same.
+  /// Queries report them to visitors; traversals that read leaves themselves get the original only.
+  /// Corrupt bytes may give any copies, and the same ones for several faces.
   [[nodiscard]] FaceRange duplicates_of(std::uint32_t face) const noexcept;
-  /// The face of which a face is a copy; itself, if it is none or copies are not known. What
-  /// corrupt bytes state may be any number. Precondition: face < face_count().
+  /// The original of a face; the face itself if it is no copy or copies are unknown. Corrupt bytes
+  /// may give any number. Precondition: face < face_count().
   [[nodiscard]] std::uint32_t original_of(std::uint32_t face) const noexcept;
 
-  /// The same tree, of whose faces visitors hear of originals alone: where copies say nothing new,
-  /// as in contacts that push bodies apart.
+  /// The same tree, whose visitors get originals only: for uses in which copies add nothing, such
+  /// as contacts that push bodies apart.
   [[nodiscard]] Tree without_duplicates() const noexcept {
     Tree tree(*this);
     inside(tree).duplicates_ = {};
@@ -135,11 +135,11 @@ class BoundTree {
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
 
   // What the query templates read.
-  /// Those of the codec of its nodes, or kNoCodec.
+  /// The functions of its nodes' codec, or kNoCodec.
   [[nodiscard]] const CodecFunctions& codec_functions() const noexcept { return *functions_; }
   [[nodiscard]] const BoundCodec& nodes() const noexcept { return nodes_; }
   [[nodiscard]] const LeafReader& leaves() const noexcept { return leaves_; }
-  /// The root's reference: all nodes in the terms of the codec, or the only leaf.
+  /// The reference to the root: in the terms of the codec, or the only leaf.
   [[nodiscard]] NodeRef root_ref() const noexcept;
 
  private:

@@ -24,7 +24,7 @@ constexpr std::array<const CodecFunctions*, BOXTREE_HAS_WIDE8 + BOXTREE_HAS_WIDE
 #endif
 };
 
-// Those of boxtree::paper, once it is used.
+// The codecs of boxtree::paper, once it is used.
 constinit std::atomic<const CodecSet*> added = nullptr;
 
 const CodecFunctions* find_in(CodecSet codecs, CodecId id) noexcept {

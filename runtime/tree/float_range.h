@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// For which trees filters in single precision may decide that something is apart.
+// For which trees filters in single precision may be used.
 //
 // The error bound of a filter holds as long as none of its intermediate results overflows and none
 // loses more to underflow than the bound allows for. The largest of them, with R the largest

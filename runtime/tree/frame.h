@@ -45,8 +45,8 @@ struct Frame {
   }
 };
 
-/// Tree-space coordinates beyond this would overflow in the predicates. Every honest box lies far
-/// inside: queries beyond are refused or clamped, stored vertices beyond are corrupt.
+/// Tree-space coordinates beyond this would overflow in the predicates. Boxes of valid files lie
+/// far inside: queries beyond are refused or clamped, stored vertices beyond are corrupt.
 inline constexpr double kMaxCoordinate = 0x1p200;
 
 [[nodiscard]] inline bool is_within_range(const Eigen::Vector3d& point) noexcept {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The answer to the one query every geometry store answers: the triangles of this leaf.
+// What every geometry store decodes: the triangles of a leaf.
 #pragma once
 
 #include <array>
@@ -47,7 +47,7 @@ struct TriangleBatch {
   }
 };
 
-/// What walks by vectors need of a store once a query, computed when a tree is bound.
+/// What walks by vectors read of a store once per query, computed when a tree is bound.
 struct FloatLeaves {
   float scale = 1;         // of stored coordinates, to tree space
   float rounding = 0;      // how far a coordinate is off once rounded to float
@@ -70,11 +70,11 @@ class LeafReader {
   /// whose order is not the tree's.
   void set_order(NumberView order) noexcept { order_ = order; }
 
-  /// Comes last: `max_abs` is the largest absolute coordinate in tree space.
+  /// Call it last. `max_abs`: the largest absolute coordinate in tree space.
   void prepare_floats(double max_abs) noexcept;
   [[nodiscard]] const FloatLeaves& floats() const noexcept { return floats_; }
 
-  /// The arrays; with a grid, counts alone.
+  /// The arrays; for a grid only their counts.
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
   [[nodiscard]] bool is_grid() const noexcept { return grid_.clusters != nullptr; }
   [[nodiscard]] const GridView& grid() const noexcept { return grid_; }
@@ -101,7 +101,7 @@ class LeafReader {
   Frame frame_;
   GridView grid_;
   double grid_step_ = 0;
-  NumberView order_;  // of nothing: the mesh is in the order of the tree
+  NumberView order_;  // none: the mesh is in the order of the tree
   FloatLeaves floats_;
 };
 

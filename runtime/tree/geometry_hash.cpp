@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Content of a mesh as one number.
+// Hashes the content of a mesh.
 #include <span>
 #include <string>
 

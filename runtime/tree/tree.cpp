@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The tree as applications see it: a BoundTree in storage of its own.
+// The tree as applications see it: a BoundTree in the storage of the Tree.
 #include <algorithm>
 #include <new>
 #include <string>
@@ -19,7 +19,7 @@ Tree& Tree::operator=(const Tree& other) noexcept {
   if (this != &other) new (storage_) BoundTree(BoundTree::of(other));
   return *this;
 }
-// Views alone: nothing to release, which operator= relies on, too.
+// Holds views only: nothing to release, which operator= relies on, too.
 Tree::~Tree() {
   static_assert(std::is_trivially_destructible_v<BoundTree>);
 }

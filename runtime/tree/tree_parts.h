@@ -11,7 +11,7 @@
 
 namespace boxtree {
 
-/// The parts of one tree, wherever they lie; a part that is not there is empty.
+/// The parts of one tree, in any memory; a missing part is empty.
 struct TreeParts {
   TreeRecord record;
   std::string_view name;
@@ -22,7 +22,7 @@ struct TreeParts {
   Bytes duplicates;
 };
 
-/// A tree of parts that are not in a file (yet). Errors: as Tree::bind.
+/// Binds a tree whose parts are not in a file (yet). Errors: as Tree::bind.
 [[nodiscard]] Result<Tree> bind_parts(const TreeParts& parts, const BindOptions& options = {});
 
 }  // namespace boxtree

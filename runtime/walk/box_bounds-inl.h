@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A box of the query, as vectors of float compare with it: what misses it and what is inside
-// it provably.
+// The box of a query in vectors of float: finds what provably misses it and what is provably
+// inside.
 #if defined(BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H
 #undef BOXTREE_RUNTIME_WALK_BOX_BOUNDS_INL_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Walks compiled for one codec. The wide codecs do without: they are walked by vectors; any other
-// may have these, and is walked by its functions, one indirect call a node, where it has none.
+// Walks compiled for one codec. The wide codecs have walks by vectors instead. Any other codec may
+// have these; without them it is walked by its functions, one indirect call per node.
 #pragma once
 
 #include <cstddef>
@@ -23,7 +23,7 @@ template <class Shape>
 struct FaceWalk;
 
 /// Null for queries that were left out. Precondition of each: the tree, or both, are of the codec.
-/// A query that wants such walks has a line here and one below; others need neither.
+/// A query that has such walks needs a line here and one below.
 struct CodecWalks {
   Errc (*ray)(const BoundTree& tree, RayQuery& query);
   Errc (*point)(const BoundTree& tree, PointQuery& query);
@@ -33,7 +33,7 @@ struct CodecWalks {
                          FunctionRef<bool(const FacePair&)> visitor, PairBound& bound);
 };
 
-/// Which of them answers a query, for those that have such walks.
+/// The walk that answers a type of query, for queries that have such walks.
 template <class Query>
 inline constexpr std::nullptr_t kWalkOf = nullptr;
 template <>

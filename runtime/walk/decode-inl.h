@@ -18,7 +18,7 @@ struct VectorBox {
   FloatVector high[3];
 };
 
-/// As many points; and triangles.
+/// As many points, or triangles.
 struct VectorPoint {
   FloatVector axis[3];
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A codec that stands for any other: for trees in different codecs, and for walks whose time goes
-// into something else than finding out the codec at each node.
+// A codec that wraps any other: for trees in different codecs, and for walks in which an indirect
+// call per node costs little.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@
 
 namespace boxtree {
 
-/// Any codec by its functions, one indirect call a node, so that the number of instantiations grows
-/// neither with the codecs nor with their square.
+/// Any codec through its functions, one indirect call per node, so that the number of
+/// instantiations grows neither with the codecs nor with their square.
 template <std::size_t Width>
 struct ErasedCodecOf {
   using Scalar = double;
@@ -20,7 +20,7 @@ struct ErasedCodecOf {
 
   const BoundTree* tree;
 
-  // kCorrupt, too, where a node has more children than there is room for.
+  // Also kCorrupt when a node has more children than there is room for.
   [[nodiscard]] NodeState expand(NodeRef ref, const Box<double>& box,
                                  Children& out) const noexcept {
     const CodecFunctions& functions = tree->codec_functions();
@@ -39,7 +39,7 @@ struct ErasedCodecOf {
   }
 };
 using ErasedCodec = ErasedCodecOf<kWideChildren>;
-/// For trees of binary codecs. Pair walks take both of their nodes apart at once.
+/// For trees of binary codecs. Pair walks expand both of their nodes at once.
 using ErasedBinaryCodec = ErasedCodecOf<2>;
 
 }  // namespace boxtree

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How answers name faces, and the copies of a face: leaves hold the first of several alike, and
-// visitors are told of all of them.
+// How answers name faces, and the copies of a face: leaves hold the first of several identical
+// ones, and visitors get all of them.
 #pragma once
 
 #include <cstdint>
@@ -11,12 +11,12 @@
 
 namespace boxtree {
 
-/// How an answer names face `index` of the tree's order. Precondition: it is there.
+/// How an answer names face `index` of the tree's order. Precondition: the face exists.
 [[nodiscard]] inline FaceRef face_ref(const BoundTree& tree, std::uint32_t index) noexcept {
   return {tree.face_id(index), index};
 }
 
-/// A face that a leaf holds, and then all that are copies of it.
+/// A face that a leaf holds, followed by its copies.
 class FaceWithCopies {
  public:
   FaceWithCopies(const BoundTree& tree, std::uint32_t face) noexcept

@@ -10,7 +10,7 @@ namespace boxtree {
 
 /// The query of traverse_overlap for a shape.
 /// shape.overlaps(const Box<S>&) -> bool: monotone, as traverse_overlap requires.
-/// Shape::Visitor: what is called with each face, FaceVisitor or another one; whether to go on.
+/// Shape::Visitor: called with each face, FaceVisitor or another type; returns whether to go on.
 /// shape.touches(const Triangle&) -> bool: the exact test, in tree space.
 template <class Shape>
 struct FaceWalk {
@@ -20,7 +20,7 @@ struct FaceWalk {
   WalkBound& nodes;
   Errc error = Errc::kOk;
   bool stopped = false;
-  // An honest walk tells of each copy once; in corrupt files many faces may have the same ones.
+  // In valid files each copy is reported once; in corrupt ones many faces may have the same copies.
   std::uint32_t copies_left = tree.duplicate_count();
   TriangleBatch batch;
 
@@ -43,7 +43,7 @@ struct FaceWalk {
     return true;
   }
 
-  /// Tells the visitor of a face and of its copies. Whether to go on.
+  /// Reports a face and its copies to the visitor. Returns whether to go on.
   [[nodiscard]] [[gnu::always_inline]] bool report(std::uint32_t face) {
     stopped = !visitor(face_ref(tree, face));
     return !stopped && (!tree.has_duplicates() || report_copies(face));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a best-first walk has still to look at, in memory of fixed size.
+// The pending entries of a best-first walk, in memory of fixed size.
 #pragma once
 
 #include <algorithm>
@@ -10,15 +10,15 @@
 
 namespace boxtree {
 
-/// Pending entries, the one with the least key first; of equal keys the one that came last, so that
-/// a walk among boxes that all overlap goes down and not along. When the queue is full, what comes
-/// waits on a stack and is taken from there until that is empty: the walk is depth-first for a
-/// while, and no entry is lost. `Stack` must hold what a depth-first walk has pending.
+/// Pending entries, the one with the least key first; of equal keys the one pushed last, so that a
+/// walk among boxes that all overlap goes down and not sideways. When the queue is full, new
+/// entries go to a stack, and pop() empties that first: the walk is depth-first for a while, and no
+/// entry is lost. `Stack` must hold the pending entries of a depth-first walk.
 template <class Entry, std::size_t Queue, std::size_t Stack>
 class Frontier {
  public:
   /// Adds an entry with a key; entries with keys of `enough` and above will never be taken. False
-  /// when not even the stack has room: then the tree is deeper than any honest one.
+  /// when not even the stack has room: then the tree is deeper than any valid one.
   [[nodiscard]] bool push(double key, double enough, const Entry& entry) noexcept {
     if (queued_ == Queue && enough < swept_) sweep(enough);
     if (stacked_ > 0 || queued_ == Queue) {
@@ -102,7 +102,7 @@ class Frontier {
   }
 
   std::size_t queued_ = 0;
-  std::size_t places_ = 0;  // of which a handle knows
+  std::size_t places_ = 0;  // that handles refer to
   std::size_t stacked_ = 0;
   std::uint32_t pushed_ = 0;
   double swept_ = std::numeric_limits<double>::infinity();

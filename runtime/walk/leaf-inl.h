@@ -15,7 +15,7 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
-#if HWY_TARGET != HWY_SCALAR  // where there are no vectors, the walks of every codec are taken
+#if HWY_TARGET != HWY_SCALAR  // without vectors the generic walks are used
 
 /// Reads leaves of one tree, one at a time. Coordinates are the exact ones or those rounded to
 /// nearest, see corner_error(). Exact triangles come from with_triangle().
@@ -34,8 +34,8 @@ class LeafFloats {
     return is_direct_ || convert();
   }
 
-  /// Bounds how far the coordinates of a leaf are off: nothing when they were gathered, but for
-  /// what underflows; half an ulp of the largest otherwise.
+  /// Bounds how far the coordinates of a leaf are off: by underflow alone when they were gathered,
+  /// by half an ulp of the largest otherwise.
   [[nodiscard]] float corner_error() const {
     const bool is_exact = is_direct_ && !reader_.is_grid();
     return is_exact ? std::numeric_limits<float>::min() : floats_.rounding;
@@ -157,8 +157,8 @@ class LeafFloats {
     }
   }
 
-  // Three corners a face, in floats, in the tree's order, and scaled without rounding: the common
-  // case. Four floats are read at once, so a leaf with the last vertex goes the other way.
+  // The common case: three corners per face, in floats, in the tree's order, and scaled without
+  // rounding. Four floats are read at once, so a leaf with the last vertex takes the other path.
   template <class Corner>
   HWY_INLINE bool gather_mesh() {
     const hn::Repartition<std::uint32_t, Floats> words;
@@ -256,7 +256,7 @@ class LeafFloats {
   HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
   TriangleBatch batch_;
   GridLeafFaces grid_faces_;
-  HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and nothing
+  HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and padding
 };
 
 #endif

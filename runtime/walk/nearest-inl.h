@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One walk from near to far over nodes of a wide codec, in which leaves wait among the nodes: for
+// A walk from near to far over nodes of a wide codec, which queues leaves among the nodes: for
 // queries whose leaves cost as much as a node or more.
 #if defined(BOXTREE_RUNTIME_WALK_NEAREST_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_NEAREST_INL_H
@@ -19,11 +19,11 @@ namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
 /// What the walk needs of `Query`:
-/// query.intersect(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and their
-///   keys, which are not negative.
+/// query.intersect(const VectorBox&, FloatVector& key) -> bits of the boxes that can matter, and
+///   their keys, which are not negative.
 /// query.bound() -> float: keys above it cannot improve the answer.
-/// query.expanding(const WideLinks&, std::uint32_t passing): a node was expanded, whose children
-///   `passing` will wait.
+/// query.expanding(const WideLinks&, std::uint32_t passing): a node was expanded; its children
+///   `passing` were pushed.
 /// query.nodes() -> WalkBound&: of as many nodes as the codec has.
 /// query.leaf(number) -> bool: whether to go on; the query keeps its own error.
 template <class Node, class Query>
@@ -68,7 +68,7 @@ class NearestWalk {
     WideLinks links;
   };
 
-  // Lets those of a node's children wait that can matter; bit i is child i.
+  // Pushes those of a node's children that can matter; bit i is child i.
   HWY_INLINE std::uint32_t intersect(const NodeView<Node>& node, const Box<float>& box,
                                      ChildBoxes& children, std::size_t depth, std::uint32_t all) {
     HWY_ALIGN float keys[kWideChildren];

@@ -34,7 +34,7 @@ HWY_INLINE std::uint32_t bits_of(hn::Mask<Floats> mask) {
   return bits[0];
 }
 
-/// A node where it lies, in memory of any alignment: fields are read one by one.
+/// A node in place, in memory of any alignment: fields are read one by one.
 template <class Node>
 class NodeView {
  public:
@@ -87,21 +87,21 @@ class NodeView {
 HWY_INLINE std::uint32_t rank(std::uint32_t mask, std::uint32_t i) {
   return static_cast<std::uint32_t>(std::popcount(mask & ((1u << i) - 1)));
 }
-/// Number of the node that child i is. Precondition: it is one.
+/// Number of the node that is child i. Precondition: that child is a node.
 HWY_INLINE std::uint32_t node_number(const WideLinks& links, std::uint32_t i) {
   return links.first_node + rank(links.inner_mask, i);
 }
-/// Number of the leaf that child i is. Precondition: it is one.
+/// Number of the leaf that is child i. Precondition: that child is a leaf.
 HWY_INLINE std::uint32_t leaf_number(const WideLinks& links, std::uint32_t i) {
   return links.first_leaf + rank(~links.inner_mask, i);
 }
-/// Its first face.
+/// First face of the leaf that is child i.
 HWY_INLINE std::uint32_t first_face(const WideLinks& links, std::uint32_t i) {
   return leaf_number(links, i) * kLeafFaces;
 }
 
-/// The checks of WideCodec::expand, once for all children of a kind: they stand in a row. Counts
-/// have fewer than 32 bits, so that no sum overflows.
+/// The checks of WideCodec::expand, once for all children of a kind, whose numbers are consecutive.
+/// Counts have fewer than 32 bits, so that no sum overflows.
 template <class Node>
 HWY_INLINE NodeState check_links(const WideCodec<Node>& codec, std::uint32_t number,
                                  const WideLinks& links) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The faces that touch a shape, over the wide codecs. What is inside the shape as a whole is
-// reported without another test: neither its boxes nor its triangles are read.
+// The faces that touch a shape, over the wide codecs. Nodes and leaves entirely inside the shape
+// are reported without another test: neither their boxes nor their triangles are read.
 #if defined(BOXTREE_RUNTIME_WALK_OVERLAP_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
 #undef BOXTREE_RUNTIME_WALK_OVERLAP_INL_H
@@ -17,17 +17,17 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
-/// What a shape's filter says of boxes, decoded or bounds of triangles: bit i of `touched` is clear
-/// only when box i misses the shape provably, bit i of `inside` is set only when it lies in the
-/// shape provably.
+/// What a shape's filter finds about boxes, decoded or bounds of triangles: bit i of `touched` is
+/// clear only when box i provably misses the shape, bit i of `inside` is set only when it provably
+/// lies in the shape.
 struct Classification {
   std::uint32_t touched;
   std::uint32_t inside;
 };
 
-/// The classification of a shape on triangles, by their bounds and corners; `inside`: they touch it
-/// provably. shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), a bit
-/// set only for a point that lies in the shape provably.
+/// Classifies triangles by their bounds and corners; `inside`: they provably touch the shape. Uses
+/// shape.classify(const VectorBox&) and shape.contained(const VectorPoint&), whose bits are set
+/// only for points that provably lie in the shape.
 template <class Shape>
 HWY_INLINE Classification classify_corners(const Shape& shape, const VectorTriangle& triangle) {
   Classification classification = shape.classify(bounds_of(triangle));
@@ -36,15 +36,15 @@ HWY_INLINE Classification classify_corners(const Shape& shape, const VectorTrian
   return classification;
 }
 
-/// The leaves that a shape meets: the same for both codecs, and compiled once. Each returns whether
-/// to go on.
+/// The leaves that a shape overlaps: the same for both codecs, and compiled once. Each function
+/// returns whether to go on.
 template <class Shape, class Filter>
 class OverlapLeaves {
  public:
   OverlapLeaves(const BoundTree& tree, FaceWalk<Shape>& walk, const Filter& filter)
       : walk_(walk), filter_(filter), leaf_(tree) {}
 
-  /// Faces `first` to first + count - 1, unread.
+  /// Reports faces `first` to first + count - 1 without reading them.
   bool report(std::uint32_t first, std::uint32_t count) {
     for (std::uint32_t face = first; face < first + count; ++face) {
       if (!walk_.report(face)) return false;
@@ -52,13 +52,13 @@ class OverlapLeaves {
     return true;
   }
 
-  /// Those that touch the shape.
+  /// Reports the faces that touch the shape.
   HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
     if (!leaf_.load(first, count)) {
       walk_.error = leaf_.error();
       return false;
     }
-    std::uint32_t reported = kNoFaceId;  // halves of a quad stand side by side
+    std::uint32_t reported = kNoFaceId;  // halves of a quad are adjacent
     for (std::size_t group = 0; group < leaf_.groups(); ++group) {
       std::uint32_t touched = 0, certain = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
@@ -143,7 +143,7 @@ class OverlapWalk {
   }
 
  private:
-  // The children of an open node; those that wait are nodes.
+  // The children of an open node; the pending ones are nodes.
   struct Children {
     ChildBoxes boxes;  // unspecified when the node is inside the shape
     WideLinks links;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Requests what a walk will read soon, all of it at once: in a large tree each node and leaf is a
-// cache miss, and those of one node's children need not wait for each other.
+// Prefetches what a walk will read soon, all of it at once: in a large tree each node and leaf is a
+// cache miss, and those of one node's children can be in flight together.
 #if defined(BOXTREE_RUNTIME_WALK_PREFETCH_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_PREFETCH_INL_H
 #undef BOXTREE_RUNTIME_WALK_PREFETCH_INL_H

@@ -2,10 +2,10 @@
 // The instruction sets that the walks of the wide codecs are compiled for, one of which is chosen
 // when the program runs. Included before any header of Highway, in each file with such a walk.
 //
-// On x86-64: SSE4 and AVX2, unless BOXTREE_INSTRUCTION_SETS of CMake says otherwise, which may add
+// On x86-64: SSE4 and AVX2, unless the CMake option BOXTREE_INSTRUCTION_SETS is set, which may add
 // AVX-512, too. Eight children are two SSE or one AVX register wide; AVX-512 gives masks and 32
-// registers. What lies between two of these gains nothing. On a machine that has none of them the
-// walks of every codec are taken. Scalable vectors (SVE, RVV) have no fixed size: arm64 uses NEON.
+// registers. Instruction sets between these gain nothing. A machine that has none of them uses the
+// generic walks. Scalable vectors (SVE, RVV) have no fixed size: arm64 uses NEON.
 #pragma once
 
 #include <boxtree/configuration.h>

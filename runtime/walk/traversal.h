@@ -79,7 +79,7 @@ template <class Query>
   return query.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
-/// Visits every leaf whose box passes, in no promised order. `tree`: a BoundTree or its like.
+/// Visits every leaf whose box passes, in no promised order. `tree`: a BoundTree or a type like it.
 /// query.overlaps(const Box<S>&) -> bool: the monotone box test.
 /// query.leaf(NodeRef) -> bool: whether to go on; the query keeps its own state and error.
 /// query.nodes: a WalkBound, of as many nodes as the tree's record states.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stack of a walk from near to far: children that wait for their turn, as one word each.
+// The stack of a walk from near to far: pending children, one word each.
 #if defined(BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H
 #undef BOXTREE_RUNTIME_WALK_TRAVERSAL_STACK_INL_H
@@ -16,8 +16,8 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 
 /// Children of the nodes on one path, all of one depth together. A word is the bits of the child's
-/// key, a float that is not negative, so that words compare as keys do; the lowest bits name the
-/// child instead. Room for the children of `kDepths` nodes.
+/// key, a float that is not negative, with the child's number in the lowest bits. Words compare as
+/// keys do. Room for the children of `kDepths` nodes.
 template <std::size_t kDepths>
 class TraversalStack {
  public:
@@ -26,8 +26,8 @@ class TraversalStack {
     std::uint32_t number;  // 0 to 7, in its node
   };
 
-  /// Adds those of eight children that `children` names, the nearest on top. Precondition: those of
-  /// `depth` and below have left.
+  /// Pushes those of eight children whose bits are set in `children`, the nearest on top.
+  /// Precondition: no children of `depth` or deeper are left.
   HWY_INLINE void push(std::uint32_t children, const float* key, std::size_t depth) {
     const Floats d;
     const hn::Rebind<std::int32_t, Floats> words;
@@ -40,8 +40,8 @@ class TraversalStack {
       hn::Store(part[p], words, word + p * kLanes);
     }
     const auto count = static_cast<std::size_t>(std::popcount(children));
-    // Each finds its place by itself: how many are nearer. No two words are equal, and no branch
-    // depends on their order.
+    // Each finds its place by itself, by counting the nearer ones. No two words are equal, and no
+    // branch depends on their order.
     for (std::uint32_t rest = children; rest != 0; rest &= rest - 1) {
       const std::int32_t at = word[std::countr_zero(rest)];
       std::uint32_t nearer = 0;
@@ -63,8 +63,8 @@ class TraversalStack {
     depth_[size_++] = static_cast<std::uint8_t>(depth);
   }
 
-  /// Takes the next child whose key is not above `bound`; keys are compared less their lowest bits,
-  /// which makes them smaller at most. False when there is none.
+  /// Takes the next child whose key is not above `bound`; keys are compared without their lowest
+  /// bits, which at most makes them smaller. False when there is none.
   HWY_INLINE bool pop(float bound, Child& child) {
     std::int32_t word = 0;
     do {

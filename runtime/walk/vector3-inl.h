@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Points and vectors in space, one a lane.
+// Points and vectors in space, one per lane.
 #if defined(BOXTREE_RUNTIME_WALK_VECTOR3_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_VECTOR3_INL_H
 #undef BOXTREE_RUNTIME_WALK_VECTOR3_INL_H

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How a query walks a tree: the wide codecs by walks of their own, eight children at a time, where
-// there are vectors; the others by the templates of traversal.h. All give the same answers.
+// How a query walks a tree: by vectors, eight children at a time, for the wide codecs if the build
+// has vectors; by the templates of traversal.h otherwise. All give the same answers.
 #pragma once
 
 #include "format/codec_wide.h"
@@ -27,8 +27,8 @@ static_assert(kCodecs.size() == 8, "each is named in one of these two");
   return kHasWideCodecs && is_wide(tree.codec_functions().id);
 }
 
-/// Calls `visitor` with the codec of a tree that has wide nodes. Where there are no other codecs
-/// the tree may be without nodes, too: one of these does for it.
+/// Calls `visitor` with the codec of a tree that has wide nodes. In builds without other codecs the
+/// tree may also have no nodes; it then gets one of the wide codecs.
 template <class Answer, class Visitor>
 Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
                        [[maybe_unused]] const Visitor& visitor) {
@@ -50,10 +50,10 @@ Answer with_wide_codec([[maybe_unused]] const BoundTree& tree,
   return Errc::kInternal;
 }
 
-// Queries that the wide codecs walk by vectors have a function of their own, in query/*_wide.cpp:
+// Queries that the wide codecs walk by vectors have a function in query/*_wide.cpp:
 //   Errc walk_wide(const BoundTree& tree, QUERY& query);   Precondition: the tree has wide nodes.
 
-/// The walk of a query over a tree of any codec. `plain`: walks by one codec, of traversal.h.
+/// The walk of a query over a tree of any codec. `plain`: the walk of traversal.h for one codec.
 template <class Query, class Plain>
 Errc walk_tree(const BoundTree& tree, Query& query, const Plain& plain) {
   if constexpr (kHasWideCodecs && kWalksByVectors) {

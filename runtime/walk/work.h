@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What a query may cost. Each walk ends on any bytes, because an honest walk expands each node
-// at most once: one that would go on has come to a node twice, and the file is corrupt. A caller
-// may allow less than that. Whatever the order and the purpose of a walk, it goes on through
-// WalkBound::count, or SharedWalkBound's: it is what a NodeState is good for. Circles cannot
-// be told otherwise in packed nodes; in plain and wide ones children have larger indices than their
-// parents.
+// Limits on the work of a query. Each walk ends on any bytes, because in a valid file it expands
+// each node at most once: a walk that would expand more has visited a node twice, and the file is
+// corrupt. A caller may allow less than that. Every walk, whatever its order and purpose, continues
+// through WalkBound::count or SharedWalkBound::count, the only use of a NodeState. In packed nodes
+// cycles cannot be detected otherwise; in plain and wide ones children have larger indices than
+// their parents.
 #pragma once
 
 #include <algorithm>
@@ -19,7 +19,8 @@
 
 namespace boxtree {
 
-/// What is left of a query's limit; shared by the walks that it is made of, one after the other.
+/// What is left of a query's limit; shared by the walks that the query consists of, one after the
+/// other.
 struct QueryWork {
   explicit QueryWork(const QueryLimits& limits) noexcept : left(limits.nodes) {}
 
@@ -32,10 +33,11 @@ struct QueryWork {
   std::uint64_t left;
 };
 
-/// Counts the nodes of one walk. Made once a query, outside of the walks, of which there are many.
+/// Counts the nodes of one walk. Made once per query, outside of the walks, which are compiled many
+/// times.
 class WalkBound {
  public:
-  /// `most`: what an honest walk takes apart. `work` may be null: no limit.
+  /// `most`: the nodes that a walk of a valid file expands. `work` may be null: no limit.
   explicit WalkBound(std::uint64_t most, QueryWork* work = nullptr) noexcept
       : work_(work),
         most_(most),
@@ -48,8 +50,8 @@ class WalkBound {
   }
 
   /// Counts one more node, or pair, that was decoded. kWorkLimit when the caller's limit is spent;
-  /// else kNodeCorrupt if it is corrupt or no honest walk meets so many; else kOk, and the walk may
-  /// go on to its children.
+  /// else kNodeCorrupt if it is corrupt or if no walk of a valid file visits so many; else kOk, and
+  /// the walk may go on to its children.
   [[nodiscard]] Errc count(NodeState state) noexcept {
     if (left_ != 0 && state == NodeState::kValid) [[likely]] {
       --left_;
@@ -83,13 +85,13 @@ class SharedWalkBound {
   std::atomic<std::uint32_t> left_;
 };
 
-/// What a depth-first walk has still to look at, last come first. `kMost`: as many as an honest
-/// walk has pending.
+/// The pending entries of a depth-first walk, last in, first out. `kMost`: the most that are
+/// pending in a valid file.
 template <class Entry, std::size_t kMost>
 class WalkStack {
  public:
   [[nodiscard]] bool empty() const noexcept { return size_ == 0; }
-  /// kDepthExceeded when it is full: then the tree is deeper than any honest one; else kOk.
+  /// kDepthExceeded when it is full: then the tree is deeper than any valid one; else kOk.
   [[nodiscard]] Errc push(const Entry& entry) noexcept {
     if (size_ == kMost) return Errc::kDepthExceeded;
     entries_[size_++] = entry;
