@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The recursion around a split rule: preorder nodes with one face a leaf, guards on depth.
+// The recursion that applies a split rule: preorder nodes, one triangle per leaf, bounded depth.
 #include "cooker/build/build_tree.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// Below this many faces a subtree is built by one thread: a task costs about a microsecond, a
+// Subtrees with fewer faces than this are built by one thread: a task costs about a microsecond, a
 // subtree of this size some hundred.
 constexpr std::size_t kParallelFaces = 2048;
 
@@ -21,8 +21,8 @@ class Recursion {
   Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes, SplitRule rule)
       : faces_(faces), nodes_(nodes), rule_(rule) {}
 
-  // Builds faces [first, last) into the nodes from `node` on: n faces fill exactly 2n - 1 of them,
-  // so that subtrees know their places in advance and threads never meet.
+  // Builds faces [first, last) into the nodes from `node` on. n faces fill exactly 2n - 1 nodes, so
+  // the place of every subtree is known in advance and threads write to separate places.
   void build(std::size_t first, std::size_t last, std::size_t node, std::uint32_t depth_left) {
     const std::size_t count = last - first;
     const std::span<FaceBox> faces = faces_.subspan(first, count);
@@ -49,7 +49,7 @@ class Recursion {
   }
 
  private:
-  // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
+  // Even halving needs ceil(log2 n) levels. The rule is used only if more levels are left.
   Split choose_split(std::span<FaceBox> faces, const Box<float>& bounds,
                      std::uint32_t depth_left) const {
     if (halvings(faces.size()) < depth_left) {

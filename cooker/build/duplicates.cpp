@@ -14,7 +14,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// The bits of a face's corners, in a row.
+// The bits of a face's corners, one after another.
 class FaceBits {
  public:
   explicit FaceBits(const SourceMesh& mesh)
@@ -56,13 +56,13 @@ class FaceBits {
   std::size_t stride_;
 };
 
-// For each face the first one that is the same.
+// For each face, the first face with the same corners.
 std::vector<std::uint32_t> first_of_group(const SourceMesh& mesh) {
   constexpr std::uint32_t kFree = 0xffffffffu;
   const FaceBits bits(mesh);
   const std::size_t faces = mesh.faces.size();
   std::vector<std::uint32_t> first(faces);
-  // Half empty at least, so that searches end.
+  // At most half full, so that searches end.
   std::vector<std::uint32_t> slots(std::bit_ceil(2 * faces + 1), kFree);
   for (std::size_t face = 0; face < faces; ++face) {
     std::size_t slot = bits.hash(face) & (slots.size() - 1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Faces that are the same: a tree holds one of them, and a list says which others it stands for.
+// Identical faces: leaves hold one of them, and a list names its copies.
 #pragma once
 
 #include <cstddef>
@@ -12,23 +12,23 @@ namespace boxtree::cooker {
 
 /// Which faces are copies of which.
 struct Duplicates {
-  /// For each face the one that stands for it, itself or another; empty where no two are the same.
+  /// For each face, its original, itself or another face; empty if no two faces are identical.
   std::vector<std::uint32_t> original;
-  std::uint32_t count = 0;  // faces that another one stands for
+  std::uint32_t count = 0;  // faces whose original is another face
 
   [[nodiscard]] bool is_original(std::size_t face) const {
     return original.empty() || original[face] == face;
   }
 };
 
-/// Groups faces with the same corner positions, to the bit, in the same order: whatever is computed
-/// of one of them holds for the others. The one with the smallest face id stands for its group, and
-/// of equal ids the first, as ties between answers go to it.
+/// Groups faces with bitwise identical corner positions in the same order, so that a result
+/// computed for one holds for all. The original of a group is the face with the smallest face id,
+/// and among equal ids the first face: ties between answers go to it, too.
 [[nodiscard]] Duplicates find_duplicates(const SourceMesh& mesh);
 
-/// Appends the copies to `order`, which holds the originals as a tree orders them: those of the
-/// first one first, and of one by their ids. Returns for each copy the place of its original,
-/// ascending.
+/// Appends the copies to `order`, which holds the originals in the order of the tree. Copies are
+/// ordered by the place of their original, then by id. Returns for each copy the place of its
+/// original, ascending.
 [[nodiscard]] std::vector<std::uint32_t> append_duplicates(const SourceMesh& mesh,
                                                            const Duplicates& duplicates,
                                                            std::vector<std::uint32_t>& order);

@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// The largest extent comes to lie in [2^14, 2^15): f16 cuts then reach down to 2^-39 of it.
+// The largest extent is in [2^14, 2^15): f16 cuts then resolve 2^-39 of it.
 constexpr int kExtentExponent = 14;
 
 float round_down(double value) {
@@ -27,8 +27,8 @@ float round_up(double value) {
   return 0 - round_down(-value);
 }
 
-// Zeros are +0 here, whatever their sign was: which of -0 and +0 a minimum keeps depends on the
-// machine's instruction for it, and the bounds of all go into the file.
+// Zeros are +0 here, whatever their sign was: whether a minimum of -0 and +0 returns -0 depends on
+// the machine's instruction, and the bounds go into the file.
 struct Bounds {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity());
   Eigen::Vector3d high = Eigen::Vector3d::Constant(-std::numeric_limits<double>::infinity());
@@ -78,9 +78,9 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
     halved = 0;
   }
   if (size == 0) return;
-  // A coordinate that all f32 positions share, and that is far larger than what they differ by, is
-  // moved to zero: exactly, and tree space stays within what readers count with. Where positions
-  // differ, a coordinate is at most 2^24 times the difference.
+  // A coordinate that all f32 positions share, and that is far larger than their extent, is moved
+  // to zero. This is exact and keeps tree space in the range of float that readers need. Where
+  // positions differ, a coordinate is at most 2^24 times the difference.
   if (positions.precision == Precision::kF32 && origin == Origin::kByPrecision && halved == 1) {
     for (std::size_t k = 0; k < 3; ++k) {
       const double low = bounds.low[static_cast<Eigen::Index>(k)];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The recursion of trees with full leaves: large sets by bins, small ones by a sweep. Sides are
-// chosen so that wide nodes, too, come out full.
+// Builder of trees with full leaves: large sets are divided by bins, small ones by a sweep. The
+// sizes of the sides are chosen so that wide nodes are full, too.
 #include <algorithm>
 
 #include <oneapi/tbb/parallel_invoke.h>
@@ -17,9 +17,9 @@ class Recursion {
  public:
   Recursion(std::span<FaceBox> faces, std::span<BuildNode> nodes) : faces_(faces), nodes_(nodes) {}
 
-  // A set on its way: faces [first, last) go into the nodes from `node` on, and are to become
-  // `roots` children of a wide node. n leaves fill exactly 2n - 1 nodes, so that subtrees know
-  // their places in advance and threads never meet.
+  // A set to build: faces [first, last) become the nodes from `node` on, and `roots` children of a
+  // wide node. n leaves fill exactly 2n - 1 nodes, so the place of every subtree is known in
+  // advance and threads write to separate places.
   struct Set {
     std::size_t first, last;
     std::size_t node;
@@ -46,8 +46,8 @@ class Recursion {
     Set left, right;
   };
 
-  // The same for a part of a small set, whose faces stand from `base` on. Within a leaf they follow
-  // their numbers.
+  // The same for a part of a small set whose faces start at `base`. Within a leaf, faces are
+  // ordered by number.
   void build_swept(UnitSweep& sweep, std::size_t base, const Set& set) {
     const std::size_t first = set.first - base, last = set.last - base;
     if (set.count() <= kLeafFaces) {
@@ -65,7 +65,7 @@ class Recursion {
     nodes_[set.node] = inner_node(nodes_, set.node, parts.right.node, split.axis);
   }
 
-  // Even halving needs ceil(log2 n) levels; once no more than that are left, nothing else fits.
+  // Even halving needs ceil(log2 n) levels. Other splits are possible only if more levels are left.
   static bool may_choose(const Set& set) {
     return halvings(leaves_of(set.count())) < set.depth_left;
   }
@@ -84,12 +84,12 @@ class Recursion {
     return split_at(faces, left_leaves * kLeafFaces, widest_axis(bounds));
   }
 
-  // The left side has a larger index than its parent, the right one behind all of the left.
+  // The left side is the next node; the right side follows all nodes of the left.
   static Sides sides(const Set& set, const Split& split) {
     const std::size_t left_leaves = split.left_count / kLeafFaces;
     const std::size_t middle = set.first + split.left_count;
     const std::size_t roots = children_of(set.roots);
-    // An even halving for want of depth may fill no nodes; any share of the roots serves then.
+    // Even halving at the depth limit may leave nodes partly full; then any share is allowed.
     const std::size_t left_roots = std::clamp<std::size_t>(
         roots_on_left(left_leaves, leaves_of(set.count()), roots), 1, roots - 1);
     const std::uint32_t depth_left = set.depth_left - 1;

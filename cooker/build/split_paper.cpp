@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The paper's split: sort by box minima on each axis, sweep, and take the division with the
-// smallest faces-times-volume (Zachmann's BoxTree builder; kept so that the paper's tables can be
-// redrawn).
+// The paper's split (Zachmann's BoxTree builder): sort by box minima on each axis, sweep, and take
+// the division with the smallest faces-times-volume. It is kept to reproduce the paper's tables.
 #include <vector>
 
 #include "cooker/build/splitter.h"
@@ -18,8 +17,7 @@ void sort_by_minimum(std::span<FaceBox> faces, std::size_t axis) {
 }  // namespace
 
 // cost = (nL lenL + nR lenR) * area of the two other sides. The paper skips axes shorter than an
-// absolute 1e-5; an axis without extent is the only one that cannot be split, so only it is
-// skipped.
+// absolute 1e-5. This code skips only axes without extent, which cannot be split.
 std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds) {
   const std::size_t n = faces.size();
   std::vector<double> right_length(n);

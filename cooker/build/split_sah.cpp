@@ -10,13 +10,13 @@
 namespace boxtree::cooker {
 namespace {
 
-// Trees with one face a leaf: 32 bins are within 1 % of a full sweep's cost on scanned and CAD
-// meshes; below the sweep limit sorting is cheaper than clearing bins.
+// For trees with one triangle per leaf: 32 bins are within 1 % of a full sweep's cost on scanned
+// and CAD meshes. Below the sweep limit, sorting is cheaper than clearing bins.
 constexpr std::size_t kFewBins = 32;
 constexpr std::size_t kSweepLimit = 24;
 
-// Trees with full leaves bin only what is too large for UnitSweep: there clearing many bins costs
-// nothing beside filling them, and queries visit 1 to 2 % fewer nodes for it.
+// For trees with full leaves: only sets too large for UnitSweep are binned. Clearing many bins
+// costs little compared with filling them, and queries visit 1 to 2 % fewer nodes.
 constexpr std::size_t kManyBins = 256;
 
 // Maps centres of one axis to bins; monotone, so that bins divide space.
@@ -78,14 +78,14 @@ SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
   return best;
 }
 
-// Where bins are best divided, if there is a difference between any.
+// The best division between bins, if the bins differ.
 template <std::size_t kBins>
 struct BinnedSplit {
   Binning<kBins> binning;
   std::size_t axis;
   std::size_t position;                   // first bin that goes right
   std::size_t left_count;                 // faces before it
-  double left_area, right_area;           // of what lies on either side
+  double left_area, right_area;           // of the faces on either side
   std::array<std::size_t, kBins> counts;  // of faces, along the axis
 };
 
@@ -165,8 +165,8 @@ std::optional<Split> split_sweep(std::span<FaceBox> faces) {
   return Split{best.position, static_cast<std::uint32_t>(best.axis)};
 }
 
-// The first `count` faces along the axis go left. Bins divide space, so that only the bin in which
-// the count ends needs to be looked at face by face.
+// The first `count` faces along the axis go left. Bins divide space, so only the bin in which the
+// count ends is examined face by face.
 template <std::size_t kBins>
 Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSplit<kBins>& bins) {
   std::size_t before = 0, bin = 0;
@@ -185,15 +185,15 @@ Split split_bins_at(std::span<FaceBox> faces, std::size_t count, const BinnedSpl
   return {count, static_cast<std::uint32_t>(bins.axis)};
 }
 
-// Of seven sides in a row each number of roots has one.
+// Among seven consecutive sizes of a side there is one for each number of roots.
 constexpr std::size_t kSearchSpan = (kWideChildren - 1) / 2;
 
-// What roots are worth to a side: with each doubling a level less lies below, so log2 of them.
+// The value of roots to a side: each doubling saves one level below, hence log2.
 constexpr std::array<double, kWideChildren> kLevelsOfRoots = {0, 0,         1,         1.5849625,
                                                               2, 2.3219281, 2.5849625, 2.8073549};
 
-// The leaves on the left near to the best boundary of bins whose share of the roots suits the areas
-// of the two sides best.
+// The number of leaves on the left, near the best boundary between bins, whose share of the roots
+// fits the areas of the two sides best.
 std::size_t full_side_near(const BinnedSplit<kManyBins>& best, std::size_t leaves,
                            std::size_t roots) {
   const std::size_t near = std::clamp<std::size_t>((best.left_count + kLeafFaces / 2) / kLeafFaces,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the two builders share: a split rule is a function from a set of faces to two smaller sets.
+// The interface of split rules: a rule divides a set of faces into two smaller sets.
 #pragma once
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace boxtree::cooker {
   return x * y + y * z + z * x;
 }
 
-/// Twice the centre of a box; the factor drops out of every comparison.
+/// Twice the centre of a box; comparisons do not need the factor.
 [[nodiscard]] inline double centre(const FaceBox& face, std::size_t axis) {
   return double{face.box.low[axis]} + face.box.high[axis];
 }
@@ -43,23 +43,23 @@ struct SplitCost {
   }
 };
 
-/// Where a set was divided: faces [0, left_count) go left. Both sides are not empty.
+/// The result of a division: faces [0, left_count) go left. Neither side is empty.
 struct Split {
   std::size_t left_count;
   std::uint32_t axis;
 };
 
-/// Reorders `faces` and divides them. The two resulting sets must depend on the set of faces alone,
-/// not on their order, so that the tree does not depend on how an earlier partition shuffled them.
-/// Nothing when the rule sees no difference between the faces.
+/// Reorders `faces` and divides them. The two resulting sets must depend only on the set of faces,
+/// not on their order, so that the tree does not depend on earlier partitions. Empty if the rule
+/// finds no difference between the faces.
 using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<float>& bounds);
 
 [[nodiscard]] std::optional<Split> split_sah(std::span<FaceBox> faces, const Box<float>& bounds);
 [[nodiscard]] std::optional<Split> split_paper(std::span<FaceBox> faces, const Box<float>& bounds);
 
-/// Divides a set that is to become `roots` children of a wide node so that leaves and nodes on the
-/// left come out full; the right side keeps the rest. For large sets: UnitSweep divides those that
-/// it takes. Precondition: more leaves than roots, two roots to eight.
+/// Divides a set that will become `roots` children of a wide node, so that the leaves and nodes on
+/// the left are full; the right side takes the rest. For large sets; UnitSweep divides small ones.
+/// Precondition: more leaves than roots, two to eight roots.
 [[nodiscard]] std::optional<Split> split_sah_full_leaves(std::span<FaceBox> faces,
                                                          std::size_t roots);
 
@@ -67,15 +67,15 @@ using SplitRule = std::optional<Split> (*)(std::span<FaceBox> faces, const Box<f
 [[nodiscard]] std::uint32_t widest_axis(const Box<float>& bounds);
 
 /// The first `count` faces by box centre along an axis, ties by face number, go left. Always
-/// succeeds, and with half of the faces bounds the depth.
+/// succeeds. With half of the faces, it bounds the depth.
 [[nodiscard]] Split split_at(std::span<FaceBox> faces, std::size_t count, std::uint32_t axis);
 
-/// Levels that an even halving takes down to single ones. Precondition: at least one.
+/// Levels of even halving until sets have one element. Precondition: at least one.
 [[nodiscard]] constexpr std::uint32_t halvings(std::size_t count) {
   return static_cast<std::uint32_t>(std::bit_width(count - 1));
 }
 
-/// The node `node` above its two finished children, of which the left one follows it.
+/// The node `node` above its two finished children; the left child is the next node.
 [[nodiscard]] inline BuildNode inner_node(std::span<const BuildNode> nodes, std::size_t node,
                                           std::size_t right, std::uint32_t axis) {
   const BuildNode& on_left = nodes[node + 1];

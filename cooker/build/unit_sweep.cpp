@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A sweep over leaves; stable division of the two orders that were not swept.
+// A sweep over leaves, and stable division of the orders along the two other axes.
 #include "cooker/build/unit_sweep.h"
 
 #include <algorithm>
@@ -56,7 +56,7 @@ Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t roo
         expand(box[leaf], faces_[sorted_[axis][i]].box);
       }
     }
-    // A query that comes to a side has its leaves to look at.
+    // A query that enters a side visits its leaves.
     std::array<double, kMaxFaces / kLeafFaces> right_cost;  // of leaves from this one on
     Box<float> right = empty_box<float>();
     for (std::size_t leaf = leaves; leaf-- > 1;) {
@@ -85,7 +85,7 @@ void UnitSweep::divide(std::size_t first, std::size_t last, const Split& split) 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis == split.axis) continue;
     std::size_t lefts = first, rights = 0;
-    // Both are written and one is kept: which way a face goes cannot be foretold.
+    // Both are written and one is kept: a branch here would be unpredictable.
     for (std::size_t i = first; i < last; ++i) {
       const std::uint16_t place = sorted_[axis][i];
       sorted_[axis][lefts] = place;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The last levels of a tree with full leaves: sets small enough to look at every division.
+// Divides sets that are small enough to try every division: the last levels of a tree with full
+// leaves.
 #pragma once
 
 #include <array>
@@ -13,8 +14,8 @@
 
 namespace boxtree::cooker {
 
-/// A small set of faces, sorted along each axis once; its parts stay sorted when it is divided, so
-/// that all levels below together cost little more than one. The whole set is [0, size).
+/// A small set of faces, sorted along each axis once. Its parts stay sorted when it is divided, so
+/// all levels below together cost little more than one. The whole set is [0, size).
 class UnitSweep {
  public:
   static constexpr std::size_t kMaxFaces = 4096;
@@ -24,20 +25,20 @@ class UnitSweep {
 
   [[nodiscard]] Box<float> bounds(std::size_t first, std::size_t last) const;
 
-  /// Where the part [first, last), which is to become `roots` children of a wide node, is best
-  /// divided by the surface-area heuristic, along any axis, into full leaves and nodes on the left.
-  /// Precondition: more faces than kLeafFaces, two roots to eight.
+  /// The best division of the part [first, last), which will become `roots` children of a wide
+  /// node: by the surface-area heuristic, along any axis, with full leaves and full nodes on the
+  /// left. Precondition: more faces than kLeafFaces, two to eight roots.
   [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t roots) const;
 
   /// Divides [first, last): the faces with the lowest centres along the axis go left.
   void divide(std::size_t first, std::size_t last, const Split& split);
 
-  /// Writes the faces of a part, by their numbers.
+  /// Writes the faces of a part, ordered by their numbers.
   void copy_to(std::size_t first, std::span<FaceBox> to) const;
 
  private:
   std::vector<FaceBox> faces_;
-  std::array<std::vector<std::uint16_t>, 3> sorted_;  // places in faces_
+  std::array<std::vector<std::uint16_t>, 3> sorted_;  // indices into faces_
 };
 
 }  // namespace boxtree::cooker
