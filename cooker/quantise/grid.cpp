@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Choice of a grid, and rounding to it: to nearest, halves up, on each axis for itself.
+// Choice of a grid, and rounding to it: to nearest, halves up, per axis.
 #include "cooker/quantise/grid.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// The scale of a tree on the grid brings 1 to 2^30 steps of extent to 2^14: it differs from the
+// The scale of a tree on the grid maps extents of 1 to 2^30 steps to 2^14, so it differs from the
 // step by at most 16 binary orders.
 constexpr int kMaxStepExponent = kMaxScaleExponent - 16;
 
@@ -24,16 +24,17 @@ double half_extent(const Eigen::AlignedBox3d& bounds) {
   return (bounds.max() / 2 - bounds.min() / 2).maxCoeff();
 }
 
-// A position in steps from the origin, not rounded. Halves where the difference overflows.
+// A position in steps from the origin, not rounded. Computed in halves where the difference
+// overflows.
 double in_steps(double position, double origin, int step_exponent) {
   const double difference = position - origin;
   if (std::isfinite(difference)) return std::ldexp(difference, -step_exponent);
   return std::ldexp(position / 2 - origin / 2, 1 - step_exponent);
 }
 
-// Goes into the file, so by operations whose results IEEE 754 says to the bit, in one order:
-// Eigen's norms add in an order that depends on alignment and instruction set. Scaled by a power of
-// two, so that no square overflows and none that matters underflows.
+// The result goes into the file, so it uses only operations that IEEE 754 defines to the bit, in a
+// fixed order. Eigen's norms add in an order that depends on alignment and instruction set. The
+// scaling by a power of two prevents overflow of squares and underflow of those that matter.
 double length_of(const std::array<double, 3>& vector) {
   double largest = 0;
   for (const double x : vector) largest = std::max(largest, std::abs(x));
@@ -71,8 +72,8 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   const int extent_exponent = half > 0 ? exponent_above(half) + 1 : 0;
   grid.step_exponent = extent_exponent - choice.bits;
   if (choice.tolerance) {
-    // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all. The
-    // quotient must not overflow, and steps above the limit are cut down to it in any case.
+    // A vertex moves at most half a step on each axis: sqrt(3)/2 < 0.8661 steps in all. kLargest
+    // keeps the quotient finite; steps above the limit are reduced to the limit in any case.
     constexpr double kLargest = 0x1p1000;
     static_assert(kMaxStepExponent < 1000);
     grid.step_exponent = std::ilogb(std::min(*choice.tolerance, kLargest) / 0.8661);
@@ -91,7 +92,7 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   }
   grid.step_exponent = std::clamp(grid.step_exponent, -kMaxStepExponent, kMaxStepExponent);
   for (Eigen::Index k = 0; k < 3; ++k) {
-    // Beyond 2^53 steps every double is a multiple of a step, or as good as one.
+    // Beyond 2^53 steps every double is a multiple of the step.
     const double steps = std::floor(std::ldexp(bounds.min()[k], -grid.step_exponent));
     grid.origin[k] = std::isfinite(steps) ? std::ldexp(steps, grid.step_exponent) : bounds.min()[k];
   }
@@ -138,7 +139,7 @@ QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
       } else {
         positions.f64[3 * i + k] = q;
       }
-      // As a reader computes it; half of it, so that nothing overflows.
+      // The position as a reader computes it, halved so that nothing overflows.
       const double decoded = std::ldexp(q, grid.step_exponent) + out.origin[k];
       moved[k] = decoded / 2 - source[axis] / 2;
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From positions to whole numbers: the grid that all trees of a file share, and a mesh brought onto
-// it before anything is built, so that boxes hold what a reader will decode.
+// Quantisation: the grid that all trees of a file share, and the mesh on that grid. Meshes are
+// quantised before trees are built, so boxes contain what a reader decodes.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@
 
 namespace boxtree::cooker {
 
-/// How fine a grid is to be: the last of these that is given.
+/// The resolution of a grid: the last member that is set counts.
 struct GridChoice {
   int bits = 24;                     // steps in the largest extent of the scene: 2^bits
   std::optional<double> tolerance;   // no vertex moves farther, in object space
@@ -33,13 +33,13 @@ struct Grid {
 /// Bounds of all positions; empty for a mesh without any.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh);
 
-/// A grid over `bounds` of all meshes that go into one file. Its origin is a multiple of its step
-/// where double can hold one. kMeshUnsupported when a tolerance or a step needs more than
+/// A grid over `bounds`, the bounds of all meshes in a file. Its origin is a multiple of its step
+/// if a double can represent one. Errors: kMeshUnsupported if a tolerance or a step needs more than
 /// kMaxGridBits, or a tolerance is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
 
-/// A mesh on the grid, in grid steps around a middle of its own: whole numbers, so that float holds
-/// them up to 25 bits of extent; as f64 above that.
+/// A mesh on the grid, in grid steps from the mesh's own centre. Coordinates are whole numbers: f32
+/// for extents up to 25 bits, f64 above.
 struct QuantisedMesh {
   SourceMesh mesh;
   std::array<double, 3> origin{};  // of its coordinates, object space
@@ -47,7 +47,7 @@ struct QuantisedMesh {
   double max_vertex_error = 0;  // largest distance of a vertex from its source, object space
 };
 
-/// Brings a mesh onto the grid; faces, ids and name stay. Precondition: a grid over bounds that
+/// Moves a mesh onto the grid; faces, ids and name are unchanged. Precondition: the grid's bounds
 /// contain the mesh.
 [[nodiscard]] QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid);
 
