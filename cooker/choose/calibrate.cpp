@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The same queries, counted and timed.
+// Counts and times the same queries, then fits the constants.
 #include "cooker/choose/calibrate.h"
 
 #include <algorithm>

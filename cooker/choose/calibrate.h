@@ -14,14 +14,14 @@ namespace boxtree::cooker {
 
 struct Calibration {
   std::vector<CodecCost> costs;
-  /// Largest ratio of modelled and measured time, or its inverse, over all meshes and kinds.
+  /// Largest ratio of modelled to measured time, or its inverse, over all meshes and kinds.
   double worst_ratio = 1;
 };
 
-/// Cooks each mesh with every codec and both geometry stores, runs on it the queries that
-/// candidates are compared by, and fits the steps to the times: processor time of one thread,
-/// medians of `runs`. At least three meshes of different sizes make sense. Errors: those of cooking
-/// and queries; kNoFaces when no mesh has any.
+/// Cooks each mesh with every codec and both geometry stores, runs the queries that candidates are
+/// compared by, and fits the steps to the times: processor time of one thread, medians of `runs`.
+/// Use at least three meshes of different sizes. Errors: those of cooking and queries; kNoFaces if
+/// no mesh has any.
 Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t runs,
                               const std::function<void(const std::string& step)>& progress = {});
 

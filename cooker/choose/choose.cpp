@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One number a candidate, the smallest wins. Sums, products and quotients alone: what a library's
-// logarithm or root says differs between machines.
+// Rates each candidate by one number; the smallest wins. Only sums, products and quotients are
+// used: a library's logarithm or root differs between machines.
 #include "cooker/choose/choose.h"
 
 #include <algorithm>
@@ -16,10 +16,10 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr std::array kStores = {GeometryId::kExternal, GeometryId::kExact, GeometryId::kGrid};
 
 struct Rated {
-  double bytes = 0;  // a triangle
+  double bytes = 0;  // per triangle
   double slowdown = 0;
   bool eligible = false;  // see may_be_chosen()
-  double score = kNone;   // infinite for what is not, or fails a budget
+  double score = kNone;   // infinite if not eligible or over a budget
 };
 
 double score_of(double bytes, double slowdown, Goal goal) {
@@ -51,7 +51,7 @@ std::vector<Rated> rate(const Contest& tree, const Wishes& wishes) {
   return rated;
 }
 
-// The best candidate with a geometry store; nothing when none may be chosen.
+// The best candidate with a geometry store; empty if none may be chosen.
 std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>& rated,
                                    GeometryId store) {
   std::optional<std::size_t> best;
@@ -62,7 +62,7 @@ std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>
   return best;
 }
 
-// Fewest bytes and least slowdown that a tree can have, each with its candidate.
+// The fewest bytes and the least slowdown possible for a tree, each with its candidate.
 std::string nearest_of(const Contest& tree, const std::vector<Rated>& rated) {
   std::optional<std::size_t> smallest, fastest;
   for (std::size_t i = 0; i < rated.size(); ++i) {
@@ -162,7 +162,7 @@ std::vector<double> slowdowns(std::span<const Candidate> candidates, QueryKinds 
     int counted = 0;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       if (((queries >> kind) & 1u) == 0) continue;
-      // Of an empty tree nothing costs anything.
+      // Queries on an empty tree have no cost.
       sum += fastest[kind] > 0 ? candidate.cost[kind] / fastest[kind] : 1;
       ++counted;
     }
@@ -198,7 +198,7 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
       const auto best = best_of(trees[t], rated[t], store);
       if (!best) break;
       of_store.push_back(*best);
-      // At least one, so that trees without faces have a say as well.
+      // At least one, so that trees without faces count, too.
       const double weight = std::max(1.0, static_cast<double>(trees[t].triangles));
       const double own = least_score(t);
       score += own > 0 ? weight * (rated[t][*best].score / own) : weight;
@@ -210,8 +210,8 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     }
   }
   if (chosen.empty()) {
-    // Of the tree for which nothing is possible; if there is none, of the first: no store suits
-    // all.
+    // Report the tree for which no candidate is possible. If every tree has one, no store suits all
+    // trees; then report the first tree.
     std::size_t worst = 0;
     for (std::size_t t = trees.size(); t-- > 0;) {
       const bool possible = std::any_of(rated[t].begin(), rated[t].end(),

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Nanoseconds of a query, a node and a leaf, for rays, boxes, points and pairs, as
+// Nanoseconds of a query, a node and a leaf, for rays, boxes, points and pairs, as printed by
 //     boxtree bench --calibrate MESH...
-// printed them for eleven models of 1000 to 70 000 triangles and the dragon of 871 414: AVX-512,
-// processor time of one thread, medians of 3 runs. Modelled and measured times differ by at most
-// 2.1 times there, between candidates of one mesh by far less.
+// for eleven models of 1000 to 70 000 triangles and the dragon of 871 414: AVX-512, processor time
+// of one thread, medians of 3 runs. Modelled and measured times differ there by at most a factor of
+// 2.1, and by far less between candidates of one mesh.
 #include <array>
 
 #include "cooker/choose/cost.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// JSON in both directions; every number is checked on its way in.
+// Reads and writes constants as JSON; every number that is read is checked.
 #include "cooker/choose/cost_file.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Constants of a machine as a file: what `boxtree bench --calibrate --json` prints and
-// `boxtree cook --costs` takes.
+// A machine's constants as a file: the output of `boxtree bench --calibrate --json` and the input
+// of `boxtree cook --costs`.
 #pragma once
 
 #include <filesystem>
@@ -16,12 +16,12 @@ namespace boxtree::cooker {
 
 [[nodiscard]] std::string costs_to_json(const Calibration& calibration);
 
-/// The constants in such a text. Error: kFileUnreadable, with what was expected where, unless every
-/// codec has exactly one row for each of exact and grid, and every kind of query has three steps,
-/// finite, not negative, and not all zero: what is missing would be taken for free.
+/// The constants in a JSON text. Every codec needs exactly one row for each of exact and grid, and
+/// every kind of query three steps that are finite, not negative and not all zero, because a
+/// missing step would count as free. Error: kFileUnreadable with the place and what was expected.
 Result<std::vector<CodecCost>> parse_costs(std::string_view text);
 
-/// The same from a file; errors name it.
+/// The same from a file; errors include its path.
 Result<std::vector<CodecCost>> read_costs(const std::filesystem::path& path);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Medians over whole workloads: single queries are shorter than a clock can tell.
+// Medians over whole workloads: single queries are shorter than the resolution of a clock.
 #include "cooker/choose/measure.h"
 
 #include <ctime>
@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// Seconds a query, and the first error that any gave.
+// Seconds per query, and the first error of any query.
 template <class Queries, class RunQuery>
 double per_query(const Queries& queries, std::size_t runs, Status& status, RunQuery run_query) {
   if (queries.empty()) return 0;

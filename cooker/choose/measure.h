@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Times of queries, always beside the counts of their answers.
+// Measures times of queries, together with counts of their answers.
 #pragma once
 
 #include <algorithm>
@@ -24,8 +24,8 @@ namespace boxtree::cooker {
   return *middle;
 }
 
-/// Processor time of this thread in seconds, kernel included: other work on the machine is not in
-/// it.
+/// Processor time of this thread in seconds, including the kernel, excluding other work on the
+/// machine.
 [[nodiscard]] double thread_seconds() noexcept;
 
 /// Processor time of one call in seconds.
@@ -45,19 +45,18 @@ template <class Body>
   return median(std::move(seconds));
 }
 
-/// Of one kind of queries. A query's time is the least of several runs: other work on the
-/// machine can only add to it.
+/// Times of one kind of queries. A query's time is the least of several runs, because other work on
+/// the machine can only add to it.
 struct KindTimes {
   double median_ns = 0;
   double p99_ns = 0;
   double mean_ns = 0;
 };
 
-/// What reading the clock twice takes: it is in every time of a single query.
+/// The time that two readings of the clock take; it is part of every time of a single query.
 [[nodiscard]] double clock_cost_ns();
 
-/// Times each query on its own. `run_query` returns an Errc; `status` gets the first that is not
-/// kOk.
+/// Times each query separately. `run_query` returns an Errc; `status` receives the first error.
 template <class Query, class RunQuery>
 [[nodiscard]] KindTimes time_each(const std::vector<Query>& queries, std::size_t runs,
                                   Status& status, RunQuery run_query) {
@@ -79,7 +78,7 @@ template <class Query, class RunQuery>
           std::accumulate(least.begin(), least.end(), 0.0) / static_cast<double>(least.size())};
 }
 
-/// Times of one query each, and what was answered in all of them.
+/// Mean times per query, and totals of the answers.
 struct QueryFigures {
   double ray_ns = 0;
   double box_ns = 0;
@@ -93,18 +92,18 @@ struct QueryFigures {
   std::uint64_t pair_pairs = 0;
 };
 
-/// Runs every kind of query on one tree, single-threaded; pairs are the tree against itself.
+/// Runs every kind of query on one tree in one thread; pair queries test the tree against itself.
 /// Errors: those of the queries.
 Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload, std::size_t runs);
 
-/// One ray across the middle: the first answer in all times to it.
+/// One ray across the middle: the query that ends every time to the first answer.
 Status first_query(const Tree& tree);
 
-/// From a closed file in the page cache to answers.
+/// Times from a closed file in the page cache to answers.
 struct OpenFigures {
   double open_us = 0;             // open and bind
   double first_answer_us = 0;     // open, bind and one ray
-  std::uint64_t page_faults = 0;  // of all of it: what the ray touched, not what the file holds
+  std::uint64_t page_faults = 0;  // of all of it: pages that the ray touched, not the whole file
 };
 Result<OpenFigures> measure_open(const std::filesystem::path& path, std::uint32_t tree,
                                  std::size_t runs);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Families of codecs, each over its own tree.
+// Tries codecs by families; each family has its own tree.
 #include "cooker/choose/search.h"
 
 #include <algorithm>
@@ -57,19 +57,19 @@ Status check_limits(const SourceMesh& mesh, const SearchOptions& options) {
   return {};
 }
 
-// A tree of nothing yet, with the frame that all builders choose.
+// A tree without nodes, with the frame that all builders choose.
 BuildTree unbuilt_tree(const SourceMesh& mesh, Origin origin) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   return tree;
 }
 
-// What is cooked: a mesh, or what became of it on a grid.
+// The mesh to cook, and its quantised copy if geometry is on a grid.
 struct Source {
   const SourceMesh& mesh;                        // as imported
   const std::optional<QuantisedMesh> quantised;  // or nothing
-  EncodedTree known;                             // what every tree of it says, but for its bytes
-  Duplicates duplicates;                         // of what is built
+  EncodedTree known;                             // shared by all its trees
+  Duplicates duplicates;                         // of the mesh that is built
 
   Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid);
 
@@ -91,12 +91,12 @@ Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
   duplicates = find_duplicates(built());
 }
 
-// The geometry of faces in `order`, duplicates behind them.
+// The geometry of the faces in `order`, followed by their duplicates.
 EncodedGeometry encode_geometry(const Source& source, const SearchOptions& options,
                                 std::vector<std::uint32_t> order, LeafOrder leaf_order) {
   const bool has_duplicates = source.duplicates.count > 0;
   if (source.quantised && has_duplicates && leaf_order == LeafOrder::kFree) {
-    // Where the clusters put the originals decides where their duplicates stand.
+    // The order of the originals decides the order of their duplicates, so clusters come first.
     static_cast<void>(encode_grid_geometry(*source.quantised, order, leaf_order, false));
     leaf_order = LeafOrder::kFixed;
   }
@@ -114,20 +114,20 @@ EncodedGeometry encode_geometry(const Source& source, const SearchOptions& optio
   return out;
 }
 
-// Codecs that share a build tree and its order of faces, so that only nodes differ. The build tree
-// itself is gone: memory, not time, is what candidates cost.
+// Codecs that share a build tree and its order of faces; only their nodes differ. The build tree is
+// freed: candidates cost memory rather than time.
 struct Family {
-  EncodedTree tree;  // all but the nodes
+  EncodedTree tree;  // all except the nodes
   std::function<EncodedNodes(CodecId)> nodes_of;
 };
 
-// Codecs with one face a leaf.
+// Codecs with one triangle per leaf.
 Family binary_family(const Source& source, const SearchOptions& options,
                      const std::vector<CodecId>& codecs) {
   const BuildTree build =
       build_tree(source.built(), options.builder, source.origin(), source.duplicates);
   Family family{source.known, {}};
-  // Duplicates stand behind all others, which is not the order of the source.
+  // Duplicates follow all other faces, which is not the order of the source.
   const bool in_source_order =
       options.geometry == GeometryId::kExternal && source.duplicates.count == 0;
   family.tree.faces_in_source_order = in_source_order;
@@ -155,13 +155,13 @@ Family binary_family(const Source& source, const SearchOptions& options,
   return family;
 }
 
-// Codecs with full leaves, whose layout orders the faces.
+// Codecs with full leaves; their layout orders the faces.
 Family wide_family(const Source& source, const SearchOptions& options) {
   Family family{source.known, {}};
   WideLayout layout =
       lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates));
   const bool external = options.geometry == GeometryId::kExternal;
-  // Leaves name the application's faces through face ids, which no tree without faces has.
+  // Leaves refer to the application's faces through face ids. A tree without faces has no ids.
   family.tree.faces_in_source_order = external && layout.face_order.empty();
   family.tree.geometry =
       encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
@@ -172,7 +172,7 @@ Family wide_family(const Source& source, const SearchOptions& options) {
   return family;
 }
 
-// Proves a candidate and counts what it takes.
+// Proves a candidate and counts its work.
 Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh, const Workload& queries,
                           std::span<const CodecCost> costs) {
   Candidate candidate{tree.nodes.codec,
@@ -216,7 +216,7 @@ class Search {
       return std::move(out_);
     }
     const bool for_memory = options_.wishes.goal == Goal::kMemory;
-    // What may win is tried first, so that the other can be left out.
+    // The store that may win is tried first, so that the other can be skipped.
     const std::array stores = for_memory ? std::array{GeometryId::kGrid, GeometryId::kExact}
                                          : std::array{GeometryId::kExact, GeometryId::kGrid};
     for (const GeometryId store : stores) {
@@ -262,7 +262,7 @@ class Search {
                              positions, least);
   }
 
-  // Those of exact geometry, however faces are ordered.
+  // Bytes of exact geometry, which do not depend on the order of faces.
   [[nodiscard]] std::uint64_t exact_geometry_bytes() const {
     std::vector<bool> used(mesh_.positions.size());
     std::uint64_t vertices = 0;
@@ -341,8 +341,8 @@ class Search {
     }
     std::uint32_t collapsed = 0;
     if (source.quantised) {
-      // In a frame of its own: that of the grid may be far too coarse to tell triangles from
-      // points.
+      // Uses a frame chosen for the source: the grid's frame may be far too coarse to distinguish
+      // triangles from points.
       const Frame frame = unbuilt_tree(mesh_, Origin::kByPrecision).frame();
       const std::uint32_t before = count_degenerate(mesh_, frame);
       collapsed = tree.degenerate_count - std::min(before, tree.degenerate_count);

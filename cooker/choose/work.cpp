@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The walks of the runtime, listened to. Any codec by the same walk: boxes of f32 codecs come and
-// go through double unchanged, so that it visits the nodes that a query visits.
+// Counts steps of the runtime's own walks. All codecs use the same walk in double: boxes of f32
+// codecs convert to double unchanged, so the walk visits the nodes that a query visits.
 #include "cooker/choose/work.h"
 
 #include <algorithm>
@@ -17,9 +17,8 @@
 namespace boxtree::cooker {
 namespace {
 
-// Where a query visits all of a mesh, as when its faces lie on top of each other, a few say as
-// much as hundreds: from so many steps of a kind on, nothing more is queried, and the query at
-// hand ends.
+// If each query visits a whole mesh, as when its faces coincide, a few queries suffice. At this
+// many steps of a kind, the current query ends and no other follows.
 constexpr std::uint64_t kMostSteps = 1'000'000;
 
 struct Counts {
@@ -29,7 +28,7 @@ struct Counts {
   [[nodiscard]] bool are_enough() const { return nodes + leaves >= kMostSteps; }
 };
 
-// Any codec, counting the nodes that are expanded.
+// Any codec, with a count of the nodes expanded.
 struct ListeningCodec : ErasedCodec {
   Counts* counts;
 
@@ -90,7 +89,7 @@ Errc run_query(const BoundTree& tree, const Eigen::Vector3d& point, Counts& coun
 
 Errc run_query(const BoundTree& tree, const Pose& pose, Counts& counts) {
   const auto relative = RelativePose::make(tree, Pose::Identity(), tree, pose);
-  // Where bounds reach as far as doubles, a copy beside them lies beyond: nothing to count.
+  // Bounds as large as doubles allow leave no room for a copy: nothing to count.
   if (!relative) return Errc::kOk;
   const auto go_on = [](const FacePair&) { return true; };
   const ListeningCodec codec{&tree, &counts};
@@ -107,7 +106,7 @@ Result<Work> mean_work(const Tree& tree, const std::vector<Query>& queries) {
   for (const Query& query : queries) {
     const Errc error = run_query(BoundTree::of(tree), query, counts);
     ++run_count;
-    if (counts.are_enough()) break;  // and so ended the query, whatever it says
+    if (counts.are_enough()) break;  // the limit ended the query, so its error does not count
     if (error != Errc::kOk) return error;
   }
   const auto each = static_cast<double>(std::max<std::size_t>(run_count, 1));
@@ -129,7 +128,7 @@ Workload choice_queries(const Eigen::AlignedBox3d& bounds) {
 Result<WorkOfKinds> count_work(const Tree& whole, const Workload& queries) {
   WorkOfKinds work{};
   if (whole.empty()) return work;
-  // Copies cost no step, and of n faces in one place there are n * n pairs.
+  // Copies cost no step, and n faces in one place form n * n pairs.
   const Tree tree = whole.without_duplicates();
   const auto enter = [&](QueryKind kind, const auto& of_kind) -> Status {
     const Result<Work> mean = mean_work(tree, of_kind);

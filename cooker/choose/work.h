@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What queries cost, by counting: the same on every machine.
+// Counts the work of queries; the counts are the same on every machine.
 #pragma once
 
 #include <array>
@@ -17,8 +17,8 @@ enum class QueryKind : std::uint8_t { kRay, kBox, kPoint, kPair };
 inline constexpr std::size_t kQueryKinds = 4;
 inline constexpr std::array<const char*, kQueryKinds> kQueryNames = {"ray", "box", "point", "pair"};
 
-/// Means over the queries of a kind. Of pairs: nodes expanded against a box of the other tree,
-/// and pairs of leaves compared.
+/// Mean numbers of steps over the queries of a kind. For pairs: nodes expanded against a box of the
+/// other tree, and pairs of leaves compared.
 struct Work {
   double nodes = 0;
   double leaves = 0;
@@ -26,12 +26,12 @@ struct Work {
 using WorkOfKinds = std::array<Work, kQueryKinds>;
 
 /// The fixed queries that candidates are compared by, for a mesh with these bounds. Pairs: all
-/// contacts of the tree and its copy, in poses in which their bounds just touch, so that no
-/// candidate is classified by how many contacts the mesh has with itself.
+/// contacts of the tree and its copy, in poses in which their bounds just touch, so that candidates
+/// are not rated by the number of contacts that the mesh has with itself.
 [[nodiscard]] Workload choice_queries(const Eigen::AlignedBox3d& bounds);
 
-/// Runs every kind of query on one tree and counts, up to a million nodes and leaves of a kind.
-/// Errors: those of the queries. A tree without faces has no work.
+/// Runs every kind of query on one tree and counts up to a million nodes and leaves of each kind. A
+/// tree without faces has no work. Errors: those of the queries.
 Result<WorkOfKinds> count_work(const Tree& tree, const Workload& queries);
 
 }  // namespace boxtree::cooker

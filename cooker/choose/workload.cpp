@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Seeded queries. What the cooker chooses depends on them, so no library may have a say in their
-// last bits: sines, norms and products are made here, by the four operations and square roots in
-// one order (docs/ARCHITECTURE.md, "Same bytes everywhere").
+// Seeded queries. The cooker's choice depends on them, so no result may depend on the last bits of
+// a library function: sines, norms and products are computed here by the four operations and square
+// roots in a fixed order (docs/ARCHITECTURE.md, "Same bytes everywhere").
 #include "cooker/choose/workload.h"
 
 #include <array>
@@ -37,7 +37,7 @@ std::array<double, 2> cosine_sine(double turns) {
   }
 }
 
-// In units in which no square overflows or underflows; powers of two change no other bit.
+// Scaled so that no square overflows or underflows; powers of two change no other bit.
 double length_of(const Eigen::Vector3d& vector) {
   const double scale = scale_to_one(vector);
   return std::sqrt(squared_length(vector * scale)) / scale;
@@ -84,7 +84,7 @@ class Random {
   std::uint64_t state_;
 };
 
-// How far along `direction` the centres of a box and its turned copy are when they just touch: the
+// The distance of the centres along `direction` at which a box and its rotated copy touch: the
 // least over all axes that can separate two boxes (Gottschalk, Lin, Manocha, "OBBTree", 1996).
 double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& direction) {

@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// How many queries of each kind.
+/// Number of queries of each kind.
 struct WorkloadSize {
   std::size_t rays = 200'000;
   std::size_t boxes = 20'000;
@@ -19,16 +19,16 @@ struct WorkloadSize {
 };
 
 struct Workload {
-  /// From the sphere of twice the bounding radius toward random points of the bounds.
+  /// From a sphere with twice the bounding radius toward random points of the bounds.
   std::vector<Ray> rays;
-  /// Cubes with an edge of 5 % of the diagonal, centred in the bounds.
+  /// Cubes with an edge of 5 % of the diagonal and centres in the bounds.
   std::vector<Eigen::AlignedBox3d> boxes;
-  /// In the bounds enlarged by 1.2.
+  /// In the bounds scaled by 1.2.
   std::vector<Eigen::Vector3d> points;
-  /// Of a copy of the mesh: random rotations, at 0.6, 0.8, 0.9 and 1.0 of the distance at which the
-  /// mesh's bounding box and that of the copy, turned with it, touch; in random directions.
+  /// Poses of a copy of the mesh with random rotations, in random directions, at 0.6, 0.8, 0.9 and
+  /// 1.0 of the distance at which the mesh's bounding box and the copy's rotated one touch.
   std::vector<Pose> poses;
-  /// Likewise at 1.05, 1.2, 1.5 and 2 of that distance: the two are apart.
+  /// The same at 1.05, 1.2, 1.5 and 2 of that distance: mesh and copy do not touch.
   std::vector<Pose> apart;
 };
 
@@ -37,8 +37,8 @@ struct Workload {
                                      std::uint64_t seed = 1);
 
 /// The tumble protocol (Zachmann, "Optimizing the Collision Detection Pipeline", 2003; P1): the
-/// mesh against its copy, both centred, distances of the centres along x as shares of the largest
-/// half extent, `steps` turns about z and x for each.
+/// mesh against its copy, both centred. `distance` of the centres is along x, in units of the
+/// largest half extent; the copy turns through `steps` angles about both z and x.
 [[nodiscard]] std::vector<Pose> tumble_poses(const Eigen::AlignedBox3d& bounds, double distance,
                                              std::size_t steps);
 
