@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What encoders produce: the bytes of sections, and what is known of them.
+// The output of encoders: the bytes of sections, and facts about them.
 #pragma once
 
 #include <cstddef>
@@ -15,18 +15,18 @@
 
 namespace boxtree::cooker {
 
-/// Nodes visited, expected over all queries of a kind that reach the root box, by the decoded
-/// boxes alone: the same on every machine.
+/// Expected number of nodes visited by the queries of a kind that reach the root box. It depends
+/// only on decoded boxes, so it is the same on every machine.
 ///   ray   a uniformly distributed line: sum of areas over the root's area
 ///   box   a box with an edge of 5 % of the root's diagonal: sum of volumes, each box grown by it
-///   pair  a body of half the root's size: likewise
+///   pair  a body of half the root's size: the same
 struct ExpectedVisits {
   double ray = 0;
   double box = 0;
   double pair = 0;
 };
 
-/// What is known of the nodes of one tree in one codec, beside their bytes.
+/// Facts about the nodes of one tree in one codec.
 struct NodeFacts {
   CodecId codec{};
   RootKind root = RootKind::kEmpty;
@@ -40,22 +40,22 @@ struct NodeFacts {
 
 struct EncodedNodes : NodeFacts {
   std::vector<std::byte> bytes;
-  // Of packed codecs: nodes of each NodeKind, and different cuts (dedup).
+  // Packed codecs: number of nodes of each NodeKind, and of different cuts (dedup).
   std::array<std::uint32_t, kNodeKinds> kind_count{};
   std::size_t unique_cuts = 0;
 };
 
-/// Number that a leaf stores for a face: its position in tree order, or in the source.
+/// The number that a leaf stores for a face: its index in tree order or in the source.
 enum class FaceOrder : std::uint8_t { kTree, kSource };
 
-/// How packed codecs find the widths of their fields (paper sections 3.2 and 4.2).
+/// How packed codecs choose the widths of their fields (paper sections 3.2 and 4.2).
 enum class FieldWidths : std::uint8_t {
   kExact,      // from the finished tree
-  kEstimated,  // from the number of faces alone, as a builder in one pass must
+  kEstimated,  // from the number of faces, as a builder in one pass must
 };
 
-/// Vertices, corners, ids and duplicates in the form of their sections. The first two are empty for
-/// geometry left external.
+/// Vertices, corners, ids and duplicates, as bytes of their sections. The first two are empty for
+/// external geometry.
 struct EncodedGeometry {
   GeometryId geometry = GeometryId::kExact;
   std::vector<std::byte> vertices;
@@ -72,26 +72,26 @@ struct EncodedGeometry {
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
 
-/// Source faces in the order of the leaves of a tree with one triangle per leaf, from left to
-/// right.
+/// Source faces in the order of the leaves, from left to right, of a tree with one triangle per
+/// leaf.
 [[nodiscard]] std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree);
 
-/// Faces in `order`, vertices in order of first use by them, positions bit for bit.
+/// Faces in `order`, vertices in order of first use, positions bit for bit.
 [[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
                                                     std::span<const std::uint32_t> order,
                                                     bool face_ids);
 
-/// Whether the faces of a leaf may change places: not when each is a leaf of its own.
+/// Whether the faces of a leaf may be reordered: kFixed for trees with one triangle per leaf.
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
 
-/// Faces in `order`, but for their places within groups of kLeafFaces, as clusters on a grid (see
-/// format/grid.h). On return `order` is that of the clusters.
+/// Faces in `order`, as clusters on a grid (see format/grid.h). Faces may be reordered within
+/// groups of kLeafFaces; on return, `order` is the order stored.
 [[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
                                                    std::vector<std::uint32_t>& order,
                                                    LeafOrder leaf_order, bool face_ids);
 
-/// Nothing but, unless `order` is empty, the face ids through which a reader finds the
-/// application's faces.
+/// No geometry; only the face ids through which a reader finds the application's faces, unless
+/// `order` is empty.
 [[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
                                                        std::span<const std::uint32_t> order);
 

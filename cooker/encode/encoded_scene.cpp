@@ -46,7 +46,7 @@ class SceneEncoder {
   }
 
  private:
-  // Leaves of the top level first, then what moves.
+  // Static instances in the order of the top level's leaves, then moving ones.
   Status order_instances() {
     std::vector<std::uint32_t> resting;
     std::vector<Box<double>> boxes, moving_boxes;
@@ -87,8 +87,8 @@ class SceneEncoder {
     std::uint32_t bytes;
   };
 
-  // Equal names share their bytes: rows of props, and lines of a profile. Longer names than `most`
-  // bytes are cut: names serve people.
+  // Equal names share their bytes, as in rows of props and lines of a profile. Names longer than
+  // `most` bytes are cut: names are only for display.
   Name add_name(const std::string& given,
                 std::size_t most = std::numeric_limits<std::uint32_t>::max()) {
     const std::string name = to_utf8(given, most);

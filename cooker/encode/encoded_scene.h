@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene ready to be proven and written: encoded trees, where they are placed, what is known of
-// their faces, and what was left out.
+// A scene ready to be proven and written: encoded trees, their placements, facts about their faces,
+// and the parts left out.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@
 
 namespace boxtree::cooker {
 
-/// One instance, in whatever order the source has it.
+/// One instance, in the order of the source.
 struct PlacedTree {
   std::uint32_t tree = 0;
   std::uint32_t id = 0;
@@ -32,8 +32,7 @@ struct SceneLayer {
   QueryKinds queries = kAllQueries;
 };
 
-/// Materials of one tree's faces: by runs of source faces, or for each face in tree order; one of
-/// the two, or neither.
+/// Materials of one tree's faces: by runs of source faces, or per face in tree order, or neither.
 struct TreeMaterials {
   std::vector<MaterialRun> runs;
   std::vector<std::uint32_t> faces;
@@ -51,11 +50,11 @@ struct SceneParts {
   std::vector<PlacedTree> instances;
   std::vector<SceneLayer> layers;
   std::vector<std::string> materials;
-  std::vector<TreeMaterials> tree_materials;  // one a tree, or none at all
+  std::vector<TreeMaterials> tree_materials;  // one per tree, or empty
   std::vector<LeftOutPart> left_out;
 };
 
-/// The sections of a scene. Names refer to the section that all names of a file share.
+/// The sections of a scene. Names are in the section that all names of a file share.
 struct EncodedScene {
   std::vector<std::byte> scene;  // SceneRecord
   std::vector<std::byte> nodes;
@@ -68,11 +67,11 @@ struct EncodedScene {
   std::vector<std::vector<std::byte>> face_materials;  // of each tree
 };
 
-/// Builds the top level and lays the sections out; names are appended to `names`. Instances are
-/// ordered as leaves of the top level, then the moving ones by id. Poses are f32 if that keeps
-/// every number of each. Deterministic. Errors: kInvalidPose, naming the instance; kMeshTooLarge
-/// for names of more than 4 GiB or more than kMaxInstances.
-/// Precondition: trees have faces; trees, layers and materials that are referred to are there.
+/// Builds the top level and lays out the sections; appends names to `names`. Instances are ordered
+/// as leaves of the top level, then the moving ones by id. Poses are stored as f32 if that changes
+/// no number. Deterministic. Errors: kInvalidPose with the instance; kMeshTooLarge for names of
+/// more than 4 GiB or more than kMaxInstances. Precondition: trees have faces; trees, layers and
+/// materials that are referred to exist.
 Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
                                   std::string& names);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records from encoded parts.
+// Makes records from encoded parts.
 #include "cooker/encode/encoded_tree.h"
 
 #include "format/certificate_record.h"

@@ -26,18 +26,18 @@ struct EncodedTree {
   std::uint32_t face_count = 0;
   std::uint32_t triangle_count = 0;
   std::uint32_t degenerate_count = 0;
-  std::uint64_t geometry_hash = 0;  // of the source mesh, by which a reader recognises it
+  std::uint64_t geometry_hash = 0;  // of the source mesh; a reader recognises the mesh by it
   bool faces_in_source_order = false;
   bool positions_f64 = false;
 };
 
-/// Its record; the name lies at `name_offset` of the names section.
+/// The tree's record; its name starts at `name_offset` in the names section.
 [[nodiscard]] TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset);
 
-/// What the encoder claims of it, for the proof to confirm.
+/// The encoder's claims about the tree, which the proof checks.
 [[nodiscard]] CertificateRecord certificate_of(const EncodedTree& tree);
 
-/// The tree as a reader binds it; it points into `tree`. Errors: as Tree::bind.
+/// The tree as a reader binds it. It points into `tree`. Errors: as Tree::bind.
 [[nodiscard]] Result<Tree> bind_encoded(const EncodedTree& tree, const BindOptions& options = {});
 
 }  // namespace boxtree::cooker

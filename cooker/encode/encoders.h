@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// From build trees to nodes. Conservative: every decoded box contains what is below it. Binary
-// codecs start from plain nodes: one walk of the build tree for each scalar of the cuts, packed in
-// as many ways as are wanted.
+// Encodes nodes from build trees. Conservative: every decoded box contains what is below it. Binary
+// codecs start from plain nodes: one walk of the build tree for each scalar type of cuts, then one
+// packing for each codec.
 #pragma once
 
 #include "cooker/encode/encoded.h"
@@ -12,7 +12,7 @@ namespace boxtree::cooker {
 /// The paper's threshold: an empty slab is cut off when it holds at least this share of the box.
 inline constexpr double kShrinkShare = 0.15;
 
-/// How plain nodes hold their cuts.
+/// The scalar type of cuts in plain nodes.
 enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 
 /// The plain nodes that a binary codec starts from.
@@ -22,13 +22,13 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 }
 
 /// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. `mesh` is
-/// the source of the tree and serves f64 alone: the build tree's own bounds are f32. Precondition:
-/// a tree with one triangle per leaf. `shrink_share` is above 0.
+/// the source of the tree, used only for f64: the build tree's own bounds are f32. `shrink_share`
+/// is above 0. Precondition: a tree with one triangle per leaf.
 [[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
                                         FaceOrder order, double shrink_share = kShrinkShare);
 
-/// The nodes of a binary codec from plain nodes with the cuts of plain_cut_of(codec). `widths`
-/// matters to packed codecs and dedup alone.
+/// The nodes of a binary codec, from plain nodes with cuts as in plain_cut_of(codec). `widths`
+/// affects only packed codecs and dedup.
 [[nodiscard]] EncodedNodes pack_nodes(const EncodedNodes& plain, CodecId codec, FieldWidths widths);
 
 /// Codecs wide8 and wide4.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What all geometry stores say of the source: its faces' numbers.
+// The numbers of source faces, which all geometry stores hold.
 #pragma once
 
 #include <span>

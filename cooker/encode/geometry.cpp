@@ -75,7 +75,7 @@ EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::span<const st
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;
-  // 16 bits hold 65 535 vertices: the last number marks a missing corner.
+  // 16 bits suffice for 65 535 vertices: the largest number marks a missing corner.
   out.corner_bytes = mesh.positions.size() <= 0xffff ? 2 : 4;
   out.corners.reserve(order.size() * out.corners_per_face * out.corner_bytes);
 

@@ -21,15 +21,15 @@ namespace {
 
 using Point = std::array<std::int32_t, 3>;  // grid coordinates
 
-// A face by the numbers of its cluster's vertices.
+// A face by the indices of its vertices in the cluster.
 struct ClusterFace {
   std::array<std::uint16_t, 4> corner;
   std::uint32_t source;
   bool is_quad;
 };
 
-// The vertices of one cluster, each once. Coordinates tell vertices apart, not source numbers:
-// what fell together on the grid, or was never welded, is stored once.
+// The vertices of one cluster without duplicates. Vertices are compared by coordinates, not by
+// source numbers, so vertices that are equal on the grid or were never welded are stored once.
 class ClusterVertices {
  public:
   ClusterVertices() { slots_.fill(kFree); }
@@ -48,7 +48,7 @@ class ClusterVertices {
 
  private:
   static constexpr std::size_t kMost = std::size_t{kClusterFaces} * 4;
-  static constexpr std::size_t kSlots = 2 * kMost;  // half empty at least, so that searches end
+  static constexpr std::size_t kSlots = 2 * kMost;  // at most half full, so that searches end
   static constexpr std::uint16_t kFree = 0xffff;
 
   static std::size_t hash(const Point& point) {
@@ -66,7 +66,7 @@ class ClusterVertices {
   std::uint16_t count_ = 0;
 };
 
-// The step of a strip from one face to another, and the corner that it brings.
+// A step of a strip from one face to the next, and the corner that it adds.
 struct Step {
   std::uint32_t code = StripStep::kApart;
   std::uint32_t brings = 0;
@@ -84,8 +84,8 @@ Step step_between(const ClusterFace& from, const ClusterFace& to) {
   return {};
 }
 
-// An order of the faces of a leaf in which many share an edge with the one before: from each face a
-// walk over shared edges, to the neighbour with the fewest others left; the best walk counts.
+// Orders the faces of a leaf so that many share an edge with the previous one: from each face,
+// walks over shared edges to the neighbour with the fewest others left, and keeps the best walk.
 void order_as_strip(std::span<ClusterFace> faces) {
   const std::size_t n = faces.size();
   std::array<std::uint32_t, kLeafFaces> next_to{};  // bit j: j can follow i
@@ -149,7 +149,7 @@ class ClusterEncoder {
   ClusterEncoder(std::vector<std::byte>& out, bool may_have_quads)
       : out_(out), may_have_quads_(may_have_quads) {}
 
-  // Appends the bytes of a cluster. Its record lacks their offset, which the caller knows.
+  // Appends the bytes of a cluster. The caller adds their offset to the record.
   ClusterRecord encode(std::span<const ClusterFace> faces, const ClusterVertices& vertices) {
     record_ = {};
     record_.vertex_count = vertices.count();
@@ -248,7 +248,7 @@ class ClusterEncoder {
   std::vector<std::size_t> starts_;    // of leaves, and the end of the last
   std::vector<std::uint16_t> number_;  // where a vertex is stored in the cluster
   std::vector<std::uint16_t> stored_;  // vertices in the order in which they are stored
-  std::vector<std::uint16_t> named_;   // vertices that the leaf has named so far
+  std::vector<std::uint16_t> named_;   // vertices that the leaf has used so far
 };
 
 // Clusters encoded by one task.

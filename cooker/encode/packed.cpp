@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// Ascending and each once. A cut is never negative, and -0 cannot arise from a difference.
+// Ascending, without duplicates. Cuts are never negative, and a difference never gives -0.
 std::vector<float> unique_cuts(const WalkedNodes<float>& nodes) {
   std::vector<float> cuts;
   cuts.reserve(2 * nodes.size());
@@ -25,7 +25,7 @@ std::vector<float> unique_cuts(const WalkedNodes<float>& nodes) {
   return cuts;
 }
 
-// The bits of a cut as a field; with a table, its number there.
+// The bits of a cut as a field; with a table, the cut's index in the table.
 std::uint64_t cut_field(std::uint16_t cut, const std::vector<float>& /*table*/) {
   return cut;
 }
@@ -38,7 +38,7 @@ std::uint64_t cut_field(float cut, const std::vector<float>& table) {
                                     table.begin());
 }
 
-// The section: header, table, and every node's fields at the place that its kind and number give.
+// The section: header, table, and each node's fields at the place given by its kind and number.
 template <class Cut>
 std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& header,
                             const std::vector<float>& table) {
@@ -61,7 +61,7 @@ std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& h
     write_bits(array, at, 2, node.axis());
     for (std::size_t side = 0; side < 2; ++side) {
       const std::uint32_t child = node.child[side];
-      std::uint64_t number = low_bits(layout.number_bits[side]);  // of a child that is not there
+      std::uint64_t number = low_bits(layout.number_bits[side]);  // of a missing child
       if (node.kind(side) == PlainChild::kLeaf) number = child;
       if (node.kind(side) == PlainChild::kSubtree) {
         number = nodes.number[child];
@@ -76,8 +76,8 @@ std::vector<std::byte> pack(const WalkedNodes<Cut>& nodes, const PackedHeader& h
   return bytes;
 }
 
-// The paper's estimate before a tree exists: three nodes a face. It holds for every mesh seen, and
-// where it would not (or would overflow), the exact width is taken.
+// The paper's estimate before a tree exists: three nodes per face. It holds for every mesh seen;
+// where it is too small or overflows, the exact width is used.
 constexpr std::uint64_t kEstimatedNodesPerFace = 3;
 
 std::uint8_t number_width(std::uint64_t exact_largest, std::uint64_t estimated_largest,
@@ -92,14 +92,14 @@ template <class Cut>
 PackedHeader header_of(const WalkedNodes<Cut>& nodes, std::uint64_t faces, FieldWidths widths) {
   PackedHeader header{};
   header.node_count = nodes.kind_count;
-  // The largest number is one below the largest count, so that count itself fits: all bits set is
-  // never a node and can mark a missing child.
+  // The largest number is one less than the largest count. The width fits the count, so all bits
+  // set is never a node and marks a missing child.
   header.node_bits = number_width(nodes.largest_count(), kEstimatedNodesPerFace * faces, widths);
   header.face_bits = field_width(faces - 1);
   return header;
 }
 
-// The paper's rule between table and nodes: whichever is smaller (section 4.3).
+// The paper's choice between table and nodes: whichever is smaller (section 4.3).
 void choose_table(PackedHeader& header, std::vector<float>& table, std::uint64_t faces,
                   FieldWidths widths) {
   header.cut_bits = 32;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Encoder of plain-f32 and plain-f16 (decoder: format/codec_plain.h), and of the plain nodes that
-// the packed codecs start from: the walk from the build tree to nodes with cuts, carrying the
-// decoded box that a reader will see and cutting only as far as that box allows.
+// Encoder of plain-f32, plain-f16 (decoder: format/codec_plain.h) and of the plain nodes that the
+// packed codecs start from. The walk from the build tree to nodes carries the box that a reader
+// decodes and cuts only as far as that box allows.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,13 +16,13 @@
 namespace boxtree::cooker {
 namespace {
 
-// Levels of nodes that stand together before the walk turns to the subtrees below them, so that a
-// descent reads few pages: 2^8 nodes of 16 bytes are a page of 4096.
+// Number of levels stored together before the subtrees below them, so that a descent reads few
+// pages: 2^8 nodes of 16 bytes are a page of 4096.
 constexpr std::uint32_t kClusterLevels = 8;
 
 // The largest cut for which the reader's plane, fl(plane - cut), is not below `bound`. The first
-// guess is off by rounding only; cut 0 always satisfies, so the loop ends. Never -0, which would
-// be a second way to store 0.
+// guess is off only by rounding; cut 0 always satisfies, so the loop ends. The result is never -0,
+// which would be a second encoding of 0.
 template <class S>
 S largest_cut_down(S plane, S bound) {
   S cut = plane - bound;
@@ -38,7 +38,7 @@ S largest_cut_up(S plane, S bound) {
   return cut + S{0};
 }
 
-// A smaller cut moves a plane less, so rounding toward zero stays on the safe side.
+// A smaller cut moves a plane less, so rounding toward zero is conservative.
 void store_cut(float cut, float& out) {
   out = cut;
 }
@@ -74,8 +74,8 @@ class PlainEncoder {
     const std::size_t leaves = (tree_.nodes.size() + 1) / 2;
     out.root = RootKind::kSubtree;
     out.leaf_count = static_cast<std::uint32_t>(leaves);
-    // A little more than the two nodes a face that trees with many shrink nodes have; pages that
-    // are not used never become resident.
+    // A little more than the two nodes per face of trees with many shrink nodes; unused pages never
+    // become resident.
     bytes_.reserve(leaves * 9 / 4 * sizeof(Node));
     cost_ = VisitCost(root);
     add_cluster({0, 0, root, 0});
@@ -88,23 +88,23 @@ class PlainEncoder {
   }
 
  private:
-  // A subtree to encode: its node of the build tree, the leaves before it, the box that a reader
-  // decodes for it and the nodes above it.
+  // A subtree to encode: its node in the build tree, the number of leaves before it, the box that a
+  // reader decodes for it and the number of nodes above it.
   struct Item {
     std::uint32_t source;
     std::uint32_t leaves_before;
     Box<S> box;
     std::uint32_t depth;
   };
-  // A subtree that was left for later: its parent is waiting for its number.
+  // A subtree to encode later; its parent needs its number then.
   struct Pending {
     Item item;
     std::uint32_t parent;
     std::size_t side;
   };
 
-  // Adds the top levels of a subtree in preorder, then one after the other all that hangs below.
-  // Recursion is as deep as the tree, which kMaxDepth bounds. Returns the subtree's number.
+  // Adds the top levels of a subtree in preorder, then the subtrees below them, one after another.
+  // The recursion is as deep as the tree, which kMaxDepth bounds. Returns the subtree's number.
   std::uint32_t add_cluster(const Item& item) {
     std::vector<Pending> pending;
     const std::uint32_t number = add_subtree(item, kClusterLevels, pending);
@@ -146,7 +146,7 @@ class PlainEncoder {
     return number;
   }
 
-  // `child.depth` is still its parent's.
+  // `child.depth` is still the parent's depth.
   void add_child(std::uint32_t parent, std::size_t side, Item child, std::uint32_t levels,
                  std::vector<Pending>& pending) {
     const BuildNode& build = tree_.nodes[child.source];
@@ -168,13 +168,13 @@ class PlainEncoder {
     std::size_t side = 0;  // 0: cut from the high side, the child is a left child
     std::size_t axis = 0;
     S cut = 0;
-    Box<S> box;  // what is left
+    Box<S> box;  // what remains
   };
 
-  // The thickest of the six empty slabs between a decoded box and what it must hold, if it is worth
-  // a shrink node. Its share of the box's volume is its share of the extent. Guards: the decoded
-  // box must really get smaller (rounding may swallow a cut), and the path must stay within the
-  // depth of the format.
+  // The thickest of the six empty slabs between a decoded box and its content, if it is worth a
+  // shrink node. A slab's share of the box's volume is its share of the extent. The decoded box
+  // must become smaller (rounding may absorb a cut), and the path must not exceed the format's
+  // depth.
   Shrink find_shrink(const Item& item, const Box<S>& content) const {
     Shrink best;
     if (item.depth + 1 + tree_.nodes[item.source].height() > kMaxDepth) return best;
@@ -253,8 +253,8 @@ EncodedNodes encode(const BuildTree& tree, FaceOrder order, double shrink_share,
   return PlainEncoder<Cut, Bounds>(tree, order, shrink_share, bounds).run();
 }
 
-// What each node of the build tree must hold, without rounding to f32: from the leaves up, which
-// have larger indices than their parents.
+// The box that each node of the build tree must contain, without rounding to f32. Computed from the
+// leaves up; children have larger indices than their parents.
 std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMesh& mesh) {
   const Frame frame = tree.frame();
   std::vector<Box<double>> bounds(tree.nodes.size());
@@ -283,7 +283,7 @@ EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCu
     const auto at = [&bounds](std::uint32_t node) -> const Box<double>& { return bounds[node]; };
     return encode<double>(tree, order, shrink_share, at);
   }
-  // The bounds that the build tree holds: f32, rounded outward.
+  // The build tree's own bounds: f32, rounded outward.
   const auto at = [&tree](std::uint32_t node) -> const Box<float>& {
     return tree.nodes[node].bounds;
   };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binary splits by the surface-area heuristic over all places along all axes, eight children a node
-// by opening the largest child first.
+// Binary splits by the surface-area heuristic at every position along every axis. Nodes get eight
+// children by dividing the largest child first.
 #include "cooker/encode/top_level.h"
 
 #include <algorithm>
@@ -17,14 +17,14 @@
 namespace boxtree::cooker {
 namespace {
 
-// From this depth of binary splits on sets are halved, whatever it costs: 28 more levels do for
-// kMaxInstances, and nodes of eight children are never deeper than the splits they come from.
+// From this depth of binary splits on, sets are halved. 28 more levels suffice for kMaxInstances,
+// and nodes with eight children are never deeper than the splits they come from.
 constexpr std::uint32_t kSplitDepth = kMaxWideDepth - 32;
 
-// The largest extent of a tree lies below 2^kExtentExponent, as that of every tree (TreeRecord).
+// The largest extent of a tree is below 2^kExtentExponent, as for every tree (TreeRecord).
 constexpr int kExtentExponent = 15;
 
-// Instances that belong together. FaceBox::face is the number of an instance.
+// Instances of one subtree. FaceBox::face is the number of an instance.
 struct Set {
   std::span<FaceBox> instances;
   std::uint32_t depth;  // of binary splits above it
@@ -57,7 +57,7 @@ class TopLevelBuilder {
   }
 
  private:
-  // Nodes of siblings, and leaves of siblings, have consecutive numbers.
+  // Sibling nodes have consecutive numbers, and so have sibling leaves.
   void fill(std::uint32_t number, const Set& set, std::uint32_t depth) {
     out_.depth = std::max(out_.depth, depth);
     const std::vector<Set> children = open(set);
@@ -103,7 +103,7 @@ class TopLevelBuilder {
     return children;
   }
 
-  // Reorders a set so that its first part, whose size is returned, is apart from the rest.
+  // Reorders a set so that the first part is separate from the rest; returns the size of that part.
   std::size_t divide(const Set& set) {
     const std::span<FaceBox> all = set.instances;
     if (set.depth >= kSplitDepth) {
@@ -143,7 +143,7 @@ class TopLevelBuilder {
   std::vector<double> areas_;
 };
 
-// A middle and a power of two that bring the boxes to where those of all trees are.
+// A centre and a power of two that scale the boxes to the range of all trees.
 Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
   exponent = 0;
   if (boxes.empty()) return {};

@@ -19,9 +19,9 @@ struct EncodedTopLevel {
   std::vector<std::uint32_t> order;  // instance of each leaf, as numbers in the span given
 };
 
-/// Deterministic. `world_boxes`: of the instances, as PlacementBounds::world gives them. An
-/// instance is a leaf of its own: what a leaf costs a query is a whole tree, so boxes are as tight
-/// as they can be. `moving_boxes`: of those that move; they are in no leaf, but set the frame where
+/// Deterministic. `world_boxes`: the boxes of the static instances, as in PlacementBounds::world.
+/// Each instance is a leaf: a leaf costs a query a whole tree, so its box must be tight.
+/// `moving_boxes`: the boxes of moving instances; they are in no leaf, but define the frame if
 /// nothing is static. Precondition: at most kMaxInstances boxes, finite.
 [[nodiscard]] EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes,
                                               std::span<const Box<double>> moving_boxes);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Adds up the expected visits of a tree while it is encoded.
+// Adds up the expected visits of a tree during encoding.
 #pragma once
 
 #include <array>
@@ -10,8 +10,9 @@
 
 namespace boxtree::cooker {
 
-/// See ExpectedVisits. A query reaches a box with the ratio of measures of two convex bodies: areas
-/// for lines, volumes of Minkowski sums for boxes (integral geometry, as in the SAH).
+/// See ExpectedVisits. The probability that a query reaches a box is a ratio of measures of two
+/// convex bodies: areas for lines, volumes of Minkowski sums for boxes (integral geometry, as in
+/// the SAH).
 class VisitCost {
  public:
   VisitCost() = default;
@@ -30,7 +31,7 @@ class VisitCost {
   template <class S>
   void add(const Box<S>& box) {
     const ExpectedVisits here = measure(box);
-    // A root that is a point or a line has no area: then every query that reaches it visits all.
+    // A root that is a point or a line has no area: every query that reaches it visits all nodes.
     sum_.ray += root_.ray > 0 ? here.ray / root_.ray : 1;
     sum_.box += root_.box > 0 ? here.box / root_.box : 1;
     sum_.pair += root_.pair > 0 ? here.pair / root_.pair : 1;

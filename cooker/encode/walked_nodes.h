@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Plain nodes as packing and counting see them: by kind.
+// Plain nodes with their numbers by kind, for packing and counting.
 #pragma once
 
 #include <algorithm>
@@ -12,8 +12,8 @@
 
 namespace boxtree::cooker {
 
-/// The nodes of a binary tree in the order of the walk, cuts in the scalar of the codec, and the
-/// number of each among those of its kind. Points to the bytes of the plain nodes.
+/// The nodes of a binary tree in the order of the walk, with cuts in the codec's scalar type, and
+/// each node's number among the nodes of its kind. Points to the bytes of the plain nodes.
 template <class Cut>
 struct WalkedNodes {
   Bytes bytes;

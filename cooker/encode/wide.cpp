@@ -33,7 +33,7 @@ void set_links(Wide4Node& node, const WideLinks& links) {
                std::uint64_t{links.inner_mask} << 53 | std::uint64_t{links.child_count - 1} << 61;
 }
 
-// A code that is large enough for a plane `distance` from its side: rounding is less than a step.
+// A code large enough for a plane at `distance` from its side; rounding is less than a step.
 template <class Node>
 std::uint32_t first_guess(float distance, float step) {
   if (!(step > 0)) return Node::kLargestCode;  // all codes give the same plane
@@ -42,8 +42,8 @@ std::uint32_t first_guess(float distance, float step) {
   return std::min(Node::kLargestCode, Node::code_above(steps));
 }
 
-// The largest code whose plane, as the reader computes it, does not pass `bound`; 0 never does. A
-// reader that fuses the product into the sum must not pass it either.
+// The largest code whose plane, as the reader computes it, does not pass `bound`; code 0 never
+// does. The plane must not pass it with a fused multiply-add either.
 template <class Node>
 std::uint32_t low_code(float low, float step, float bound) {
   std::uint32_t code = first_guess<Node>(bound - low, step);
@@ -87,7 +87,7 @@ class WideEncoder {
   }
 
  private:
-  // Writes node `number`, whose decoded box is `box`, and all below it.
+  // Writes node `number`, whose decoded box is `box`, and its subtree.
   void encode(std::uint32_t number, const Box<float>& box) {
     cost_.add(box);
     const WideLayout::Node& from = layout_.nodes[number];

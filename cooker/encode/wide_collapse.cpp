@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Costs from the leaves up, choices from the root down.
+// Computes costs from the leaves up and decides from the root down.
 #include "cooker/encode/wide_collapse.h"
 
 #include <limits>
@@ -17,13 +17,13 @@ WideCollapse::WideCollapse(const BuildTree& tree, double node_cost)
     const auto node = static_cast<std::uint32_t>(i);
     double below = 0;
     own_division_[i] = best_division(node, kWideChildren, below);
-    // Without any area every node counts the same.
+    // If the root has no area, all nodes cost the same.
     const double area = root_area > 0 ? half_area(tree.nodes[i].bounds) / root_area : 1;
     forests_[i] = forests_of(node, below + area + node_cost);
   }
 }
 
-// The cheapest forest of exactly two sides with `roots` in all; as many on the left as returned.
+// The cheapest forest with exactly two sides and `roots` roots; returns the number on the left.
 std::uint8_t WideCollapse::best_division(std::uint32_t node, std::size_t roots,
                                          double& cost) const {
   const Forests& left = forests_[node + 1];
@@ -46,7 +46,7 @@ WideCollapse::Forests WideCollapse::forests_of(std::uint32_t node, double own_co
   for (std::size_t roots = 2; roots <= kWideChildren; ++roots) {
     double cost = 0;
     const std::uint8_t division = best_division(node, roots, cost);
-    // Costs fall with the number of roots, because each may be left unused.
+    // Costs fall with the number of roots, because roots may stay unused.
     const bool pays = cost < forests.cost[roots - 2];
     forests.cost[roots - 1] = pays ? cost : forests.cost[roots - 2];
     forests.left_roots[roots - 1] = pays ? division : kSameAsFewer;

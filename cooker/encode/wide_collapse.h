@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From a binary tree to one with eight children a node: which nodes stay.
+// Converts a binary tree to one with eight children per node by choosing which nodes stay.
 #pragma once
 
 #include <array>
@@ -11,10 +11,10 @@
 
 namespace boxtree::cooker {
 
-/// The cheapest way to give every node that stays at most eight children (dynamic programming over
-/// forests, after Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on GPUs Through
-/// Compressed Wide BVHs", 2017). A node costs its area, as it is visited by that share of rays, and
-/// `node_cost` of the root's area for the bytes it takes.
+/// The cheapest choice of nodes that stay such that each has at most eight children (dynamic
+/// programming over forests, after Ylitie, Karras, Laine, "Efficient Incoherent Ray Traversal on
+/// GPUs Through Compressed Wide BVHs", 2017). A node costs its area, as it is visited by that share
+/// of rays, plus `node_cost` of the root's area for the bytes it takes.
 class WideCollapse {
  public:
   /// Precondition: the tree has more than one leaf.
@@ -24,8 +24,8 @@ class WideCollapse {
   void children_of(std::uint32_t node, std::vector<std::uint32_t>& children) const;
 
  private:
-  // Forests with at most 1 .. 8 roots over a node and what is below it: what they cost, and how
-  // many of the roots are on the left; kSameAsFewer when one root less is as cheap.
+  // For forests with at most 1 .. 8 roots over a node and its subtree: the cost, and the number of
+  // roots on the left; kSameAsFewer if one root less is as cheap.
   static constexpr std::uint8_t kSameAsFewer = 0xff;
   struct Forests {
     std::array<double, kWideChildren> cost{};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Numbers nodes, leaves and faces from the root down: first the top levels, then subtrees.
+// Numbers nodes, leaves and faces from the root down: the top levels first, then subtrees.
 #include "cooker/encode/wide_layout.h"
 
 #include <algorithm>
@@ -11,16 +11,16 @@
 namespace boxtree::cooker {
 namespace {
 
-// What the bytes of all nodes together weigh: as much as so many visits more in each query. Each
-// node has its share of that, so that small and large meshes are treated alike.
+// The weight of the bytes of all nodes: equal to this many more visits in each query. Each node has
+// an equal share of it, so that small and large meshes are treated alike.
 constexpr double kVisitsForBytes = 2;
 
-// Levels of nodes that stand together at the front, as every query reads some of each: 73 nodes
-// when all are full, one page of wide4 or little more than one of wide8. With a fourth they were
-// ten.
+// Number of levels stored together at the front, because every query reads some nodes of each: 73
+// nodes if all are full, one page of wide4 or little more than one of wide8. A fourth level would
+// make it ten pages.
 constexpr std::uint32_t kTopLevels = 3;
 
-// As many nodes as hold so many leaves when all are full.
+// The number of full nodes that hold this many leaves.
 double full_nodes(std::size_t leaves) {
   return static_cast<double>(leaves) / (kWideChildren - 1);
 }
@@ -37,7 +37,7 @@ class Layouter {
   }
 
  private:
-  // Gives the nodes of the top levels their numbers, level by level.
+  // Numbers the nodes of the top levels, level by level.
   void place_top() {
     std::vector<std::uint32_t> level = {0};
     std::vector<std::uint32_t> children;
@@ -65,9 +65,8 @@ class Layouter {
 
   [[nodiscard]] bool is_leaf(std::uint32_t node) const { return tree_.nodes[node].is_leaf(); }
 
-  // Fills node `number` from the node `source` of the build tree, and all below it. Below the top
-  // levels, nodes that are siblings stand together, then what is below the first of them, and so
-  // on.
+  // Fills node `number`, and all below it, from node `source` of the build tree. Below the top
+  // levels, siblings are stored together, followed by the subtree of the first, and so on.
   void fill(std::uint32_t number, std::uint32_t source, std::uint32_t depth) {
     out_.depth = std::max(out_.depth, depth);
     std::vector<std::uint32_t> children;
@@ -90,9 +89,9 @@ class Layouter {
     node.links.first_node = place_nodes(source, children.size() - leaves);
     out_.nodes[number] = node;
 
-    // Leaves of a node have consecutive numbers. They come where its first one is met from left to
-    // right, between what is below the children beside it: neighbours in number are neighbours in
-    // space, which geometry in clusters lives on.
+    // Leaves of a node have consecutive numbers. They are placed at the first leaf from left to
+    // right, between the subtrees of its siblings: neighbours in number are then neighbours in
+    // space, which keeps clusters of grid geometry small.
     bool are_placed = false;
     std::uint32_t next_node = node.links.first_node;
     for (const std::uint32_t child : children) {
@@ -105,8 +104,8 @@ class Layouter {
     }
   }
 
-  // The leaf that is not full must have the last number of all. It is the last one from left to
-  // right, so the last one among its siblings, too.
+  // The leaf that is not full must have the largest number. It is the last one from left to right,
+  // so it is also the last of its siblings.
   void place_leaves(std::uint32_t number, const std::vector<std::uint32_t>& children,
                     std::uint32_t leaves, bool hold_partial_leaf) {
     const std::uint32_t first = hold_partial_leaf ? out_.leaf_count - leaves : next_leaf_;
@@ -118,7 +117,7 @@ class Layouter {
     }
   }
 
-  // The faces of a leaf take the places that its number says.
+  // A leaf's number gives the places of its faces.
   void place_leaf(std::uint32_t number, std::uint32_t leaf) {
     const std::size_t from = tree_.nodes[leaf].first();
     const std::size_t to = std::size_t{number} * kLeafFaces;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What wide8 and wide4 have in common: all of a tree but the planes of its boxes.
+// The part of a tree that wide8 and wide4 share: everything except the planes of boxes.
 #pragma once
 
 #include <array>
@@ -11,8 +11,8 @@
 
 namespace boxtree::cooker {
 
-/// Nodes with up to eight children, and where they, leaves and faces stand. Holds all that encoding
-/// needs, so that the build tree can go.
+/// Nodes with up to eight children, and the places of nodes, leaves and faces. Contains all that
+/// encoding needs, so that the build tree can be freed.
 struct WideLayout {
   struct Node {
     WideLinks links;
@@ -24,7 +24,7 @@ struct WideLayout {
   std::vector<Node> nodes;  // by their numbers
   std::uint32_t leaf_count = 0;
   std::uint32_t depth = 0;
-  std::vector<std::uint32_t> face_order;  // source faces by leaf; geometry must follow it
+  std::vector<std::uint32_t> face_order;  // source faces in leaf order; geometry must match it
 };
 
 /// Precondition: a tree with full leaves.
