@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One assimp import without post-processing, checked before and after.
+// Runs one assimp import without post-processing, with checks before and after.
 #include "cooker/import/assimp_import.h"
 
 #include <algorithm>
@@ -35,14 +35,14 @@ namespace fs = std::filesystem;
 
 enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
 
-// What assimp's readers make up, leave out or reorder unless told otherwise, and what costs time
-// without being geometry.
+// Turns off what assimp's readers add, omit or reorder by default, and work on data other than
+// geometry.
 void configure(Assimp::Importer& importer, FaceOrder order) {
-  // Made up: a mesh around the bones of a file without meshes.
+  // Added: a mesh around the bones of a file without meshes.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  // Made up: faces of a subdivision surface instead of those in the file.
+  // Added: faces of a subdivision surface instead of those in the file.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_AC_EVAL_SUBDIVISION, false);
-  // Made up: other files, found by their names, joined to the one requested.
+  // Added: other files, found by their names, joined to the one requested.
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD3_HANDLE_MULTIPART, false);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_MD5_NO_ANIM_AUTOLOAD, true);
   importer.SetPropertyBool(AI_CONFIG_IMPORT_SMD_LOAD_ANIMATION_LIST, false);
@@ -57,8 +57,8 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
 }
 
-// Notes the files read in `files`. Errors do not name the file. No post-processing flags: each of
-// them may drop, reorder, merge or generate.
+// Records the files read in `files`. Errors do not name the file. No post-processing flags: each
+// may drop, reorder, merge or generate data.
 Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, FaceOrder order,
                                             std::vector<fs::path>& files) {
   const CLocaleScope numbers_in_c_locale;
@@ -73,8 +73,8 @@ Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, FaceOrder orde
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
 }
 
-// Runs of materials, and the materials themselves in `scene`. Where assimp cannot read them they
-// are not known; the geometry it has read.
+// Runs of materials; the materials themselves are added to `scene`. If assimp cannot read the
+// materials, there are none; it has read the geometry before.
 std::vector<MeshMaterials> read_fbx_materials(const fs::path& path, aiScene& scene) {
   std::vector<fs::path> read_already;
   const auto sorted = read_scene(path, FaceOrder::kByMaterial, read_already);
@@ -100,7 +100,7 @@ Status take_over(const fs::path& path, ImportWanted wanted, aiScene& scene, Sour
   return take_scene(scene, placements, context, whole);
 }
 
-// All that assimp is going to read, read in a copy of this process.
+// Runs all of assimp's reading in a copy of this process.
 Status try_reading(const fs::path& path) {
   std::error_code unknown;
   const std::uintmax_t bytes = fs::file_size(path, unknown);
@@ -115,10 +115,10 @@ Status try_reading(const fs::path& path) {
   });
 }
 
-// Texts of which assimp takes the beginning for the whole.
+// Text formats of which assimp accepts a truncated file.
 struct TextFormat {
   const char* extension;
-  Status (*check_end)(std::string_view file);  // null where the format states no end
+  Status (*check_end)(std::string_view file);  // null if the format defines no end
 };
 constexpr std::array kTextFormats = {
     TextFormat{"ac", check_ac_end},   TextFormat{"ase", check_blocks_end},
@@ -127,8 +127,7 @@ constexpr std::array kTextFormats = {
     TextFormat{"smd", check_smd_end},
 };
 
-// Whether its last line has no end, for formats in which a file that was cut looks like a whole one
-// otherwise.
+// Whether the last line has no end, in formats in which a truncated file is otherwise valid.
 Result<bool> check_text(const fs::path& path) {
   const TextFormat* const format = find_extension(kTextFormats, path);
   if (format == nullptr) return false;
@@ -163,7 +162,7 @@ Status import_with_assimp(const fs::path& path, const ImportOptions& options, Im
   Status status =
       take_over(path, wanted, *scene.value(), {options, path.string()}, std::move(report), out);
   if (!status.ok()) return status;
-  // Hashed only now, so that a refused file costs no second reading.
+  // Hashed last, so that a refused file is not read twice.
   const Result<std::uint64_t> hash = hash_source_files(files);
   if (!hash.ok()) return hash.error();
   std::visit([&](auto& imported) { imported.report.content_hash = hash.value(); }, out);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Formats that we have no reader of our own for.
+// Imports the formats for which boxtree has no reader of its own.
 #pragma once
 
 #include <cstdint>
@@ -10,10 +10,10 @@
 
 namespace boxtree::cooker {
 
-/// What becomes of a file: one mesh, a scene, or the one of both that its node graph is.
+/// The result of an import: one mesh, a scene, or the one of these that fits the node graph.
 enum class ImportWanted : std::uint8_t { kMesh, kScene, kFitting };
 
-/// Reads `path` into `out`, all but the name, as import.h and source_scene.h promise.
+/// Reads `path` into `out`, except the name, as import.h and source_scene.h specify.
 Status import_with_assimp(const std::filesystem::path& path, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out);
 

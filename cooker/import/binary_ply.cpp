@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One walk over the elements of the file: vertices and faces into the mesh, everything else passed
-// over.
+// Walks the elements of the file once: vertices and faces go into the mesh, everything else is
+// skipped.
 #include "cooker/import/binary_ply.h"
 
 #include <array>
@@ -19,7 +19,7 @@ namespace {
 constexpr std::size_t kCornersAtOnce = 4096;
 static_assert(8 * kCornersAtOnce <= SourceStream::kBufferBytes);
 
-// Bytes that one of `element` takes at least: lists may be empty.
+// The least number of bytes of one `element`: lists may be empty.
 std::size_t least_bytes(const PlyElement& element) {
   std::size_t bytes = 0;
   for (const PlyProperty& property : element.properties) {
@@ -28,7 +28,7 @@ std::size_t least_bytes(const PlyElement& element) {
   return bytes;
 }
 
-// Where x, y and z are in the record of a vertex. Precondition: it has no lists.
+// Offsets of x, y and z in the record of a vertex. Precondition: it has no lists.
 std::array<std::size_t, 3> find_offsets(const PlyLayout& layout) {
   std::array<std::size_t, 3> offsets{};
   std::size_t offset = 0;
@@ -72,14 +72,14 @@ class Reader {
   const bool swapped_;
   const std::string& file_;
   IndexedMesh<T>& mesh_;
-  std::vector<std::uint32_t> corners_;  // of the face or strip at hand
-  std::array<double, 3> position_{};    // of the vertex at hand
+  std::vector<std::uint32_t> corners_;  // of the current face or strip
+  std::array<double, 3> position_{};    // of the current vertex
 };
 
 template <class T>
 Status Reader<T>::read() {
   for (const PlyElement& element : layout_.header.elements) {
-    // Before anything is made room for: counts are whatever the header says.
+    // Checked before memory is reserved: the header may state any count.
     const std::size_t least = least_bytes(element);
     if (least > 0 && element.count > stream_.left() / least) {
       return Error{Errc::kImportFailed,
@@ -150,8 +150,8 @@ Status Reader<T>::read_strips() {
   return {};
 }
 
-// One record of an element with lists; of a face or strip the corners are kept, of a vertex the
-// position.
+// Reads one record of an element with lists; keeps the corners of a face or strip, and the position
+// of a vertex.
 template <class T>
 Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
   for (const PlyProperty& property : element.properties) {
@@ -190,7 +190,7 @@ Status Reader<T>::read_list(const PlyElement& element, const PlyProperty& list,
     const std::size_t step = std::min(count, kCornersAtOnce);
     const char* from = stream_.take(step * size);
     if (from == nullptr) return ended_in(element, number);
-    // Negative numbers become large ones, as in other formats: out of range in any case.
+    // Negative numbers become large ones, as in other formats; both are out of range.
     for (std::size_t i = 0; i < step; ++i, from += size) {
       *to++ = static_cast<std::uint32_t>(load_ply_integer(from, list.type, swapped_));
     }

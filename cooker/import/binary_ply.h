@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The body of a binary PLY file. Assimp's reader needs 83 bytes of memory a face, drops the first
-// byte of a body that starts with a line end, and takes up the end of a shortened file out of what
-// it read a megabyte earlier.
+// Reads the body of a binary PLY file. Assimp's reader is not used: it needs 83 bytes of memory per
+// face, drops the first byte of a body that starts with a line end, and completes a truncated file
+// with data it read a megabyte earlier.
 #pragma once
 
 #include <string>
@@ -12,8 +12,8 @@
 
 namespace boxtree::cooker {
 
-/// Reads the file named from `stream`, of which nothing has been taken yet, into `mesh`; what
-/// follows the last element is not looked at. Errors as for import_mesh.
+/// Reads the body from `stream`, from which nothing has been taken yet, into `mesh`. `file` is for
+/// messages. Bytes after the last element are ignored. Errors: as for import_mesh.
 template <class T>
 Status read_binary_ply(SourceStream& stream, const PlyLayout& layout, const std::string& file,
                        IndexedMesh<T>& mesh);

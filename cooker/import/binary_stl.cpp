@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// 80 bytes of anything, the number of triangles, then 50 bytes each: normal, three corners, two
-// bytes of attributes. Always little-endian, whatever the machine.
+// 80 bytes of any content, the number of triangles, then 50 bytes each: normal, three corners, two
+// bytes of attributes. Always little-endian.
 #include "cooker/import/binary_stl.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@ constexpr std::size_t kTriangleBytes = 50;
 constexpr std::size_t kCornersOffset = 12;
 constexpr std::size_t kCornerBytes = 12;
 
-// Triangles at once; while some are welded, those some places further on are fetched.
+// Triangles per block; while some are welded, later ones are prefetched.
 constexpr std::size_t kTrianglesAtOnce = 2048;
 constexpr std::size_t kAhead = 6;
 static_assert(kTrianglesAtOnce * kTriangleBytes <= SourceStream::kBufferBytes);

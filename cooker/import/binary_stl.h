@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Binary STL files, read by ourselves: assimp's reader needs 171 bytes of memory a face, most of
-// them for normals and for vertices that are merged at once.
+// Reads binary STL files. Assimp's reader is not used: it needs 171 bytes of memory per face,
+// mostly for normals and for vertices that are merged at once.
 #pragma once
 
 #include <string>
@@ -10,11 +10,11 @@
 
 namespace boxtree::cooker {
 
-/// Whether the file is as long as the count in its header says. `stream` is at its start.
+/// Whether the file has the length that the count in its header requires. `stream` is at its start.
 [[nodiscard]] bool is_binary_stl(const SourceStream& stream);
 
-/// Reads the file named from `stream`, of which nothing has been taken yet, into `mesh`. Errors as
-/// for import_mesh.
+/// Reads the triangles from `stream`, from which nothing has been taken yet, into `mesh`. Errors:
+/// as for import_mesh.
 template <class T>
 Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>& mesh);
 

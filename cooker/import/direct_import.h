@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What our own readers do around their walks: one file, one mesh, hashed while it is read.
+// Shared steps of boxtree's own readers: one file, one mesh, hashed while it is read.
 #pragma once
 
 #include <filesystem>
@@ -14,8 +14,8 @@
 
 namespace boxtree::cooker {
 
-/// Calls `read` with the positions, those of `out` that have the precision of `options`, to take
-/// the rest of `stream` into `out` and return a Status; fills in what the report says of the file.
+/// Calls `read` with the positions of `out` in the precision of `options`. `read` takes the rest of
+/// `stream` into `out` and returns a Status. Fills in the file's part of the report.
 template <class Read>
 Status read_into(SourceStream& stream, const std::filesystem::path& path,
                  const ImportOptions& options, Imported& out, const Read& read) {
@@ -31,8 +31,7 @@ Status read_into(SourceStream& stream, const std::filesystem::path& path,
   return {};
 }
 
-/// The same of a file that is a text: calls `read` with all of it, the file's name and the
-/// positions.
+/// The same for a text file: calls `read` with the whole text, the file's name and the positions.
 template <class Read>
 Status read_text_into(const std::filesystem::path& path, const ImportOptions& options,
                       Imported& out, const Read& read) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What readers throw, ours and other people's, as an error: no exception leaves import.
+// Converts exceptions of boxtree's and other readers to errors: no exception leaves import.
 #pragma once
 
 #include <exception>
@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// The error for the exception at hand. Precondition: called in a handler.
+/// The error for the current exception. Precondition: called in a handler.
 [[nodiscard]] inline Error error_of_exception() {
   try {
     throw;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which quads stay, triangles for the rest, face ids once they are needed.
+// Decides which quads stay, splits the rest into triangles, and stores face ids if needed.
 #include "cooker/import/face_intake.h"
 
 #include <algorithm>
@@ -133,7 +133,7 @@ void FaceIntake<T>::end_polygon(std::uint32_t face_id, std::size_t first) {
   const auto begin = mesh_.faces.begin() + static_cast<std::ptrdiff_t>(first);
   if (std::all_of(begin, mesh_.faces.end(), [this](const Face& face) { return has_no_area(face); }))
     ++report_.degenerate_faces;
-  // Ids are written down only once they differ from the position of the face.
+  // Ids are stored only if they differ from the indices of the faces.
   if (mesh_.face_ids.empty() && face_id == first && last == first + 1) return;
   if (mesh_.face_ids.empty()) {
     mesh_.face_ids.reserve(mesh_.faces.capacity());

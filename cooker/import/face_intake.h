@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Polygons in, faces of a SourceMesh out: the end of the way that all readers share.
+// Adds polygons as faces to a SourceMesh: the last step of all readers.
 #pragma once
 
 #include <array>
@@ -19,44 +19,44 @@ struct FaceFault {
   std::string reason;
 };
 
-/// "vertex 7". Numbers that no mesh can have are those below zero, which were read as unsigned
-/// ones.
+/// "vertex 7". Numbers too large for any mesh are printed as negative: they were read as unsigned.
 [[nodiscard]] std::string vertex_text(std::uint32_t vertex);
 
-/// How a corner that names no vertex, and a vertex that is not finite, are put.
+/// The faults of a corner without a vertex, and of a vertex that is not finite.
 [[nodiscard]] FaceFault vertex_out_of_range(std::size_t corner, const std::string& vertex,
                                             std::uint64_t vertex_count);
 [[nodiscard]] FaceFault vertex_not_finite(const std::string& vertex,
                                           const std::array<double, 3>& position);
 
-/// A face is bad: an error that names file and face, or with skip_bad an entry of the report.
+/// Reports a bad face: an error with file and face, or with skip_bad an entry of the report.
 Status report_fault(FaceFault fault, std::uint32_t face_id, const std::string& file,
                     const ImportOptions& options, ImportReport& report);
 
-/// Counts a polygon of less than three corners, which is no face.
+/// Counts a polygon with fewer than three corners, which is not a face.
 void count_no_face(std::size_t corners, ImportReport& report);
 
-/// kMeshTooLarge when `faces`, as stated or counted before splitting, are more than kMaxFaces.
+/// kMeshTooLarge if `faces`, as stated or counted before splitting, exceeds kMaxFaces.
 Status check_face_count(std::uint64_t faces, const std::string& file);
 
 /// The same for faces counted after splitting.
 Status check_split_count(std::uint64_t faces, const std::string& file);
 
-/// kNoFaces when no faces were taken over; `report` says why.
+/// kNoFaces if no faces were imported; the message comes from `report`.
 Status check_any_taken(const std::string& file, std::size_t faces, const ImportReport& report);
 
-/// What holds of a mesh only after the last face: there are some, and not too many of them.
+/// Checks a mesh after its last face: it has faces, and not too many.
 Status check_taken(const std::string& file, const Imported& imported);
 
-/// At most a unit in the last place of `value`, or of the smallest normal number below that. One
-/// rounding makes half of that; assimp's reader of decimal numbers makes two (the integer part,
-/// then its sum with the fraction), and a file may have been rounded when written.
+/// A unit in the last place of `value`, or of the smallest normal number if `value` is smaller: an
+/// upper bound. One rounding errs by half of that. Assimp's reader of decimal numbers rounds twice
+/// (the integer part, then its sum with the fraction), and a file may have been rounded when
+/// written.
 template <class T>
 [[nodiscard]] double rounding_of(double value);
 
-/// Puts polygons into `out.mesh` in the order of their ids and counts them in `out.report`. T is
-/// the type of the positions, `positions` the array that corners refer to: of the mesh, or one
-/// that holds the same positions under other numbers, which are put right later.
+/// Adds polygons to `out.mesh` in the order of their ids and counts them in `out.report`. T is the
+/// type of the positions. Corners refer to `positions`: those of the mesh, or the same positions
+/// with other numbers, which are translated later.
 template <class T>
 class FaceIntake {
  public:
@@ -64,7 +64,7 @@ class FaceIntake {
       : positions_(positions), mesh_(out.mesh), report_(out.report) {}
 
   void add_triangle(std::uint32_t face_id, const std::array<std::uint32_t, 3>& corners);
-  /// Stays a quad if `rounded`, the corners in the winding of the source, are planar and convex.
+  /// Keeps a quad if `rounded`, the corners in the winding of the source, is planar and convex.
   void add_quad(std::uint32_t face_id, const std::array<std::uint32_t, 4>& corners,
                 const std::array<RoundedCorner, 4>& rounded);
   /// Five corners or more.
@@ -84,7 +84,7 @@ class FaceIntake {
   SourceMesh& mesh_;
   ImportReport& report_;
   PolygonSplitter splitter_;
-  std::vector<Eigen::Vector3d> points_;  // of the polygon at hand, for the splitter
+  std::vector<Eigen::Vector3d> points_;  // of the current polygon, for the splitter
 };
 
 extern template class FaceIntake<float>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Materials that our own readers find, by the faces that have them.
+// Materials found by boxtree's own readers, as runs of faces.
 #pragma once
 
 #include <cstdint>
@@ -12,26 +12,26 @@
 
 namespace boxtree::cooker {
 
-/// What faces are called to have that come before the first material of a file, if there is one.
+/// The material of faces before the first material of a file that has one.
 inline constexpr std::string_view kDefaultMaterial = "DefaultMaterial";
 
 struct FaceMaterials {
-  std::vector<std::string> names;  // in order of first use, no two alike
+  std::vector<std::string> names;  // in order of first use, without duplicates
   std::vector<MaterialRun> runs;   // by face number, ascending; empty: no face has a material
 };
 
-/// Fills in FaceMaterials from statements "from here on this material".
+/// Fills in FaceMaterials from statements that set the material of all faces that follow.
 class MaterialUse {
  public:
-  /// `out` must outlive it, and is whole after finish().
+  /// `out` must outlive this object; it is complete after finish().
   explicit MaterialUse(FaceMaterials& out) : out_(out) {}
 
-  /// The next face has it, and so have all after it; none if it has no name.
+  /// Sets the material of the next faces; none if `name` is empty.
   void begin(std::string_view name) {
     current_ = name.empty() ? kDefaultMaterial : name;
     has_changed_ = true;
   }
-  /// `face` has the material at hand.
+  /// `face` has the current material.
   void add_face(std::uint32_t face);
   /// Drops the materials if no face has one by name.
   void finish();

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Both readings walk the file alike: the meshes that one mesh was split into stand in a row, each
-// with its faces in the order of the file. So the faces of a mesh are a shuffle of theirs.
+// Both readings visit the file in the same order: the parts of a split mesh are consecutive, and
+// each part has its faces in the order of the file. The faces of a mesh are therefore an
+// interleaving of the faces of its parts.
 #include "cooker/import/fbx_materials.h"
 
 #include <array>
@@ -33,8 +34,8 @@ bool is_equal(const aiMesh& a, const aiFace& face_of_a, const aiMesh& b, const a
 
 const MeshMaterials kUnknown = {{0, kNoMaterial}};
 
-// Takes the faces of `mesh` one by one from the front of its parts, from the part of the face
-// before if that has it.
+// Matches the faces of `mesh` one by one with the fronts of its parts, trying the part of the
+// previous face first.
 MeshMaterials materials_of(const aiMesh& mesh, std::span<aiMesh* const> parts) {
   std::vector<unsigned> taken(parts.size(), 0);
   MeshMaterials runs;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Materials of the faces of an FBX file. Assimp's reader tells them by meshes of its own, one for
-// each material of a mesh, which sorts the faces; so a file is read twice, and the faces of the
-// sorted reading are found again in the order of the file.
+// Finds the materials of the faces of an FBX file. Assimp states them by splitting a mesh into one
+// per material, which sorts the faces. The file is therefore read twice, and the faces of the
+// sorted reading are matched with those in the order of the file.
 #pragma once
 
 #include <vector>
@@ -12,14 +12,14 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// Runs of the faces of one mesh that have three corners or more, numbered from 0, ascending, the
-/// first from face 0 on; materials are numbers of aiScene::mMaterials, or kNoMaterial.
+/// Runs of the faces of one mesh with three corners or more, numbered from 0: ascending, the first
+/// run starts at face 0. Materials are indices into aiScene::mMaterials, or kNoMaterial.
 using MeshMaterials = std::vector<MaterialRun>;
 
-/// `in_order`: the file read without materials; `sorted`: with them. Gives `in_order` the materials
-/// of `sorted`, and returns the runs of each mesh of `in_order`. A mesh whose faces are not found
-/// again has a run of kNoMaterial: where faces that are equal to the last bit have several
-/// materials, or where the two readings hold other faces.
+/// `in_order`: the file read without materials; `sorted`: with them. Moves the materials of
+/// `sorted` to `in_order` and returns the runs of each mesh of `in_order`. A mesh whose faces
+/// cannot be matched gets one run of kNoMaterial: if bitwise equal faces have several materials, or
+/// if the two readings contain different faces.
 std::vector<MeshMaterials> match_materials(aiScene& in_order, aiScene& sorted);
 
 }  // namespace boxtree::cooker

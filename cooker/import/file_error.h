@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors of what looks at a text, made errors of its file.
+// Converts errors about a text to errors about its file.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace boxtree::cooker {
 
-/// The same error, its words behind the name of the file.
+/// The same error, its message preceded by the name of the file.
 [[nodiscard]] inline Error in_file(const std::filesystem::path& path, const Error& error) {
   return {error.code, path.string() + ": " + error.detail};
 }

@@ -19,7 +19,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// What remap_ says of a vertex before it has a number.
+// State in remap_ of a vertex without a number.
 constexpr std::uint32_t kUnused = 0xffffffffu;
 constexpr std::uint32_t kNotFinite = 0xfffffffeu;
 constexpr std::uint32_t kUsed = 0xfffffffdu;
@@ -28,7 +28,7 @@ Vector3d position_of(const aiVector3D& read) {
   return {read.x, read.y, read.z};
 }
 
-// Normals, colours and the like can be larger than all that is kept.
+// Normals, colours and the like can be larger than all data that is kept.
 void free_attributes(aiMesh& mesh) {
   const auto drop = [](auto*& array) {
     delete[] array;
@@ -41,7 +41,7 @@ void free_attributes(aiMesh& mesh) {
   for (auto*& coordinates : mesh.mTextureCoords) drop(coordinates);
 }
 
-// Takes over one instance after the other. T is the type of the positions.
+// Adds one instance after another. T is the type of the positions.
 template <class T>
 class Flattener {
  public:
@@ -55,7 +55,7 @@ class Flattener {
 
   Status add(const aiMesh& mesh, const Transform& transform);
 
-  /// Faces of three corners or more in what was added: the number of the next one.
+  /// Number of the next face: the faces of three corners or more added so far.
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
 
  private:
@@ -75,10 +75,10 @@ class Flattener {
   Welder<T> welder_;
   FaceIntake<T> intake_;
   std::vector<std::uint32_t> remap_;    // for each vertex of the instance: state or number
-  std::vector<std::uint32_t> corners_;  // of the face at hand, as numbers in positions_
+  std::vector<std::uint32_t> corners_;  // of the current face, as indices into positions_
   std::uint32_t next_face_id_ = 0;
 
-  // The instance at hand.
+  // The current instance.
   const aiMesh* source_ = nullptr;
   Transform transform_;
   bool is_identity_ = true;
@@ -123,7 +123,7 @@ void Flattener<T>::check_vertices() {
   }
 }
 
-// Numbers the faces, counts what is skipped, and marks the vertices that the rest uses.
+// Numbers the faces, counts skipped ones, and marks the vertices of the others.
 template <class T>
 Status Flattener<T>::mark_used() {
   for (unsigned i = 0; i < source_->mNumFaces; ++i) {
@@ -146,8 +146,8 @@ Status Flattener<T>::mark_used() {
   return {};
 }
 
-// Why a face cannot be taken over, if so. Says the same before and after weld_used: that leaves
-// kNotFinite alone.
+// The fault of a face, if it has one. The result is the same before and after weld_used, which does
+// not change kNotFinite.
 template <class T>
 std::optional<FaceFault> Flattener<T>::fault_of(const aiFace& face) const {
   for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
@@ -173,7 +173,8 @@ template <class T>
 void Flattener<T>::weld_used() {
   const auto used = static_cast<std::size_t>(std::count(remap_.begin(), remap_.end(), kUsed));
   report_.vertices_unused += remap_.size() - used;
-  // Formats without shared vertices hold three a face; a closed surface needs half of one.
+  // Formats without shared vertices store three per face; a closed surface has half a vertex per
+  // face.
   welder_.reserve(std::min<std::size_t>(used, source_->mNumFaces));
   const std::size_t before = positions_.size() / 3;
   for (unsigned vertex = 0; vertex < source_->mNumVertices; ++vertex) {
@@ -191,7 +192,7 @@ void Flattener<T>::add_face(const aiFace& face) {
   }
   corners_.clear();
   for (unsigned corner = 0; corner < face.mNumIndices; ++corner) {
-    // A mirrored face would show its back: walk it the other way round, from the same corner.
+    // Mirroring reverses the winding, so it is reversed again, from the same corner.
     const unsigned from = mirrors_ && corner != 0 ? face.mNumIndices - corner : corner;
     corners_.push_back(remap_[face.mIndices[from]]);
   }
@@ -206,8 +207,8 @@ void Flattener<T>::add_face(const aiFace& face) {
   }
 }
 
-// A coordinate was rounded to f32 when the file was written or read, then carried through the
-// transform, and rounded again to T. The arithmetic of the transform adds four roundings.
+// A coordinate is rounded to f32 when the file is written or read, and to T after the transform.
+// The arithmetic of the transform adds four roundings.
 template <class T>
 RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
   const Vector3d source = position_of(source_->mVertices[vertex]);
@@ -229,7 +230,7 @@ RoundedCorner Flattener<T>::rounded_corner(unsigned vertex) const {
   return {after, rounding};
 }
 
-// Faces that the instances will give, or more than kMaxFaces.
+// Number of faces of the instances, or more than kMaxFaces.
 std::uint64_t count_faces(const aiScene& scene, std::span<const MeshInstance> instances) {
   std::uint64_t triangles = 0;
   for (const MeshInstance& instance : instances) {

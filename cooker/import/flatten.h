@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes of an assimp scene become one SourceMesh: transforms, welding, polygons.
+// Converts meshes of an assimp scene to one SourceMesh: transforms, welding, polygons.
 #pragma once
 
 #include <cstdint>
@@ -17,35 +17,35 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// What is known of a file beside assimp's scene.
+/// Facts about a file that are not in assimp's scene.
 struct SourceContext {
   const ImportOptions& options;
-  std::string file;  // what errors call it
-  /// Of each mesh of aiScene::mMeshes; empty where each has one material, and assimp knows it.
+  std::string file;  // the name of the file in errors
+  /// Per mesh of aiScene::mMeshes; empty if each has the one material that assimp states.
   std::span<const MeshMaterials> materials = {};
 };
 
-/// A mesh of aiScene::mMeshes, and where it goes.
+/// A mesh of aiScene::mMeshes and its transform.
 struct MeshInstance {
   unsigned mesh;
   Transform transform;
 };
 
-/// For each mesh of aiScene::mMeshes, how often it is still to be taken over.
+/// For each mesh of aiScene::mMeshes, the number of instances not flattened yet.
 using MeshUses = std::vector<unsigned>;
 
-/// Frees normals, colours and the like, which can be larger than all that is kept.
+/// Frees normals, colours and the like, which can be larger than all data that is kept.
 void free_attributes(aiScene& scene);
 
-/// Puts `instances`, one after the other, into `out.mesh` and counts them in `out.report`, as
-/// import.h says; none may be left. Frees each mesh of the scene as soon as `uses` says that nobody
-/// wants it any more, so that the two never coexist whole. `materials` gets the runs of each
-/// instance with faces; a material is a number of aiScene::mMaterials or kNoMaterial.
+/// Adds `instances`, one after another, to `out.mesh` and counts them in `out.report`, as specified
+/// in import.h; the result may be empty. Frees each mesh of the scene after its last use according
+/// to `uses`, so that source and result never coexist whole. `materials` gets the runs of each
+/// instance with faces; a material is an index into aiScene::mMaterials or kNoMaterial.
 Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                          const SourceContext& context, Imported& out,
                          std::vector<MaterialRun>& materials);
 
-/// The same for everything that is placed; kNoFaces when nothing comes of it.
+/// The same for all placements; kNoFaces if the result is empty.
 Status flatten_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
                      Imported& out, std::vector<MaterialRun>& materials);
 

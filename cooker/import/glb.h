@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where the JSON of a binary glTF file is: behind 12 bytes of header, in the first chunk, which has
-// a length, a type and bytes. Version 1 has the same fields at the same places.
+// Finds the JSON of a binary glTF file: after a 12-byte header, in the first chunk, which has a
+// length, a type and bytes. Version 1 has the same fields at the same places.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// Empty when the file is shorter.
+/// The JSON; empty if the file is too short.
 [[nodiscard]] inline std::string_view glb_json(std::string_view file) {
   constexpr std::size_t kLengthAt = 12, kJsonAt = 20;
   std::uint32_t length = 0;

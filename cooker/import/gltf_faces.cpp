@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Counts in the JSON of glTF files.
+// Reads counts from the JSON of glTF files.
 #include "cooker/import/gltf_faces.h"
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Faces that assimp's reader of glTF has dropped without a word: those with a vertex number out of
+// Detects faces that assimp's glTF reader drops without an error: those with a vertex number out of
 // range.
 #pragma once
 
@@ -16,17 +16,17 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// Vertices and faces of each primitive that a file states. Empty where it states none: glTF 1,
-/// whose reader leaves bad numbers to us, and what is no glTF.
+/// Numbers of vertices and faces stated for each primitive. Empty for glTF 1, whose reader keeps
+/// bad numbers for later checks, and for other formats.
 using StatedFaces = std::set<std::pair<std::uint64_t, std::uint64_t>>;
 
-/// What a document of glTF states, whatever it holds. O(its size).
+/// The counts in a glTF document, which may hold anything. O(its size).
 [[nodiscard]] StatedFaces stated_faces(const nlohmann::json& document);
 
-/// What a .gltf or .glb file states; nothing for others. Refuses what parse_gltf refuses.
+/// The counts in a .gltf or .glb file; empty for others. Errors: as parse_gltf.
 Result<StatedFaces> read_stated_faces(const std::filesystem::path& path);
 
-/// Refuses a scene that holds other counts than `stated`: kMeshIndexOutOfRange, naming the mesh.
+/// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Depths of JSON and of the graph of nodes, without recursion.
+// Computes depths of JSON and of the node graph without recursion.
 #include "cooker/import/gltf_nesting.h"
 
 #include <algorithm>
@@ -38,8 +38,8 @@ bool is_too_deep(std::string_view json) {
   return false;
 }
 
-// Children of each node. Nodes have numbers in glTF 2 and names in glTF 1; what names no node is
-// for the reader to refuse.
+// Children of each node. Nodes have numbers in glTF 2 and names in glTF 1. Invalid references are
+// left to the reader to refuse.
 using Children = std::vector<std::vector<std::uint32_t>>;
 
 Children children_of(const Json& nodes) {
@@ -67,8 +67,8 @@ Children children_of(const Json& nodes) {
   return children;
 }
 
-// From parents to children (Kahn, "Topological sorting of large networks", 1962): what a cycle
-// holds is never free of parents.
+// Visits parents before children (Kahn, "Topological sorting of large networks", 1962). The nodes
+// of a cycle are never reached.
 Status check_nodes(const Children& children) {
   std::vector<std::uint32_t> parents(children.size(), 0), depth(children.size(), 1);
   std::vector<std::uint64_t> visits(children.size(), 0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glTF files whose nesting would take assimp's stack or all time there is: it goes down JSON values
-// and nodes by recursion, and visits a node once for each way that leads to it.
+// Refuses glTF files whose nesting would overflow assimp's stack or take unbounded time: assimp
+// visits JSON values and nodes by recursion, and a node once per path to it.
 #pragma once
 
 #include <cstdint>
@@ -12,14 +12,14 @@
 
 namespace boxtree::cooker {
 
-/// JSON values inside each other; nodes below each other; visits of nodes, one for each path from a
-/// node without a parent, beyond one for each node: some two seconds of assimp's time.
+/// Limits of nested JSON values, of nested nodes, and of repeated visits of nodes (one per path
+/// from a node without a parent, minus one per node): some two seconds of assimp's time.
 inline constexpr std::uint32_t kMaxJsonDepth = 256;
 inline constexpr std::uint32_t kMaxNodeDepth = 1024;
 inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 
-/// The document that a text, glTF 1 or 2, holds; a discarded value if it is no JSON, for the reader
-/// to refuse. kImportFailed if it nests deeper, or its nodes are below themselves. O(bytes log
+/// The document in `text`, glTF 1 or 2; a discarded value if it is not JSON, for the reader to
+/// refuse. kImportFailed if it nests deeper than the limits, or its nodes form a cycle. O(bytes log
 /// bytes).
 Result<nlohmann::json> parse_gltf(std::string_view text);
 

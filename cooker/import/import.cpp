@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which reader a file is for, by the ending of its name.
+// Chooses the reader of a file by the extension of its name.
 #include "cooker/import/import.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Request {
   ImportWanted wanted;
 };
 
-// Formats of one mesh, without nodes. Only OBJ names materials.
+// Formats with one mesh and no nodes. Only OBJ has materials.
 struct MeshReader {
   const char* extension;
   Status (*read)(const fs::path& path, const ImportOptions& options, Imported& out,

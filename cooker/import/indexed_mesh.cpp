@@ -97,7 +97,7 @@ Status IndexedMesh<T>::add_strips(std::span<const std::uint32_t> vertices) {
 
 template <class T>
 Status IndexedMesh<T>::add_strip(std::span<const std::uint32_t> vertices) {
-  if (vertices.empty()) return {};  // the end of one behind the end of another
+  if (vertices.empty()) return {};  // two ends of strips in a row
   if (vertices.size() < 3) return add_face(vertices);
   for (std::size_t i = 0; i + 2 < vertices.size(); ++i) {
     const bool is_turned = i % 2 != 0;
@@ -138,7 +138,7 @@ std::string IndexedMesh<T>::name_of(std::uint32_t vertex) const {
   return name;
 }
 
-// Rounded when the file was written, or now.
+// The error of one rounding, when the file was written or now.
 template <class T>
 RoundedCorner IndexedMesh<T>::rounded(std::uint32_t vertex) const {
   const Eigen::Vector3d at = intake_.position(vertex);
@@ -151,7 +151,8 @@ Status IndexedMesh<T>::finish() {
   const auto used =
       static_cast<std::size_t>(std::count(numbers_.begin(), numbers_.end(), kWeldUsed));
   report.vertices_unused = numbers_.size() - used;
-  // Files without shared vertices hold three a face; a closed surface needs half of one.
+  // Files without shared vertices store three per face; a closed surface has half a vertex per
+  // face.
   weld_in_place(positions_, std::span(numbers_), std::min(used, out_.mesh.faces.size()));
   report.vertices_welded = used - positions_.size() / 3;
   for (Face& face : out_.mesh.faces) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Vertices and faces of a file that numbers its vertices (OBJ, OFF, PLY), on their way into a mesh:
-// vertices as they come, faces with the numbers of the file; then vertices are welded and corners
-// get their new numbers.
+// Adds the vertices and faces of a file that numbers its vertices (OBJ, OFF, PLY) to a mesh. Faces
+// keep the numbers of the file until all are read; then vertices are welded and corners renumbered.
 #pragma once
 
 #include <cmath>
@@ -21,7 +20,7 @@ namespace boxtree::cooker {
 template <class T>
 class IndexedMesh {
  public:
-  /// `first_number`: what the file calls its first vertex, in messages alone.
+  /// `first_number`: the file's number of its first vertex, used in messages.
   IndexedMesh(std::string file, const ImportOptions& options, std::vector<T>& positions,
               Imported& out, std::uint32_t first_number = 0)
       : file_(std::move(file)),
@@ -33,7 +32,7 @@ class IndexedMesh {
   IndexedMesh(const IndexedMesh&) = delete;
   IndexedMesh& operator=(const IndexedMesh&) = delete;
 
-  /// Makes room; `count` must be backed by bytes of the file. Error: kMeshTooLarge.
+  /// Reserves memory; bytes of the file must back `count`. Error: kMeshTooLarge.
   Status begin_vertices(std::uint64_t count);
   /// The next coordinate of the next vertex.
   void add_coordinate(double value) {
@@ -41,26 +40,26 @@ class IndexedMesh {
     positions_.push_back(rounded);
     all_finite_ = all_finite_ && std::isfinite(rounded);
   }
-  /// The next vertex, which stands in that line of a text. Error: kMeshTooLarge.
+  /// Adds the next vertex; `line` is its line in a text. Error: kMeshTooLarge.
   Status add_vertex(const Eigen::Vector3d& position, std::size_t line);
   [[nodiscard]] std::size_t vertices() const { return positions_.size() / 3; }
 
-  /// There are no more vertices.
+  /// Call after the last vertex.
   void end_vertices();
-  /// Makes room likewise.
+  /// Reserves memory in the same way.
   Status reserve_faces(std::uint64_t count);
-  /// Takes a polygon by the numbers of its vertices, from 0; less than three are counted and passed
-  /// over.
+  /// Adds a polygon by the numbers of its vertices, from 0. Polygons with fewer than three are
+  /// counted and skipped.
   Status add_face(std::span<const std::uint32_t> corners);
-  /// A polygon of which the reader knows that it is bad.
+  /// Adds a polygon that the reader has found to be bad.
   Status add_bad_face(FaceFault fault);
-  /// Takes the triangles of strips, which a vertex number of -1 ends; every other triangle of a
-  /// strip is wound the other way round. One or two vertices by themselves are no face.
+  /// Adds the triangles of strips; a vertex number of -1 ends a strip. Every other triangle of a
+  /// strip has the opposite winding. Strips of one or two vertices are not faces.
   Status add_strips(std::span<const std::uint32_t> vertices);
-  /// What the next face is called: faces of three corners and more that came before it.
+  /// The id of the next face: the number of faces of three corners or more before it.
   [[nodiscard]] std::uint32_t next_face_id() const { return next_face_id_; }
 
-  /// Welds the vertices, drops the unused ones, and fails when nothing was taken.
+  /// Welds the vertices and drops unused ones; fails if no face was added.
   Status finish();
 
  private:

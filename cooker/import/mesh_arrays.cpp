@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Views of meshes as a runtime's caller would have them.
+// Makes the views of meshes that a runtime's caller would bind.
 #include "cooker/import/mesh_arrays.h"
 
 #include <vector>

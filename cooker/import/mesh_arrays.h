@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A source mesh in the shape in which a runtime binds an application's arrays.
+// Views a source mesh as the arrays that an application binds.
 #pragma once
 
 #include <boxtree/file.h>
@@ -13,14 +13,14 @@ struct TreeRecord;
 
 namespace boxtree::cooker {
 
-/// Points into `mesh`. Faces are four corners each; kNoCorner is the runtime's missing corner.
+/// Points into `mesh`. Faces have four corners each; kNoCorner is the runtime's missing corner.
 [[nodiscard]] MeshArrays arrays_of(const SourceMesh& mesh);
 
-/// Stands for the mesh of a tree with external geometry when it is not at hand and no leaf will be
-/// read: such a tree can be bound and its boxes walked.
+/// Replaces the missing mesh of a tree with external geometry if no leaf is read: the tree can be
+/// bound and its boxes walked.
 [[nodiscard]] MeshArrays absent_arrays(const TreeRecord& record);
 
-/// A scene of which no leaf will be read, whose external geometry need not be there. Errors as for
+/// Binds a scene whose leaves are not read; external geometry need not be given. Errors: as for
 /// Scene::bind.
 [[nodiscard]] Result<Scene> bind_without_meshes(const File& file);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One walk over the nodes, with an explicit stack: a file may nest as deep as it likes.
+// Walks the nodes once, with an explicit stack: files may nest to any depth.
 #include "cooker/import/node_graph.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Placements find_placements(const aiScene& scene) {
     const Visit visit = stack.back();
     stack.pop_back();
     const aiNode& node = *visit.node;
-    // A product with the identity would turn -0 into +0; nothing else depends on this.
+    // A product with the identity would turn -0 into +0; only the signs of zeros depend on this.
     const Transform own = Transform::from(node.mTransformation);
     const Transform transform = own.is_identity() ? visit.parent : visit.parent * own;
     std::vector<unsigned> meshes = meshes_of(scene, node);

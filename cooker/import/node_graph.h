@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Assimp's node graph: which nodes hold meshes, and where they place them.
+// Assimp's node graph: the nodes that hold meshes and their transforms.
 #pragma once
 
 #include <array>
@@ -14,7 +14,7 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// An affine map in double; assimp's matrices are rows of floats.
+/// An affine map in double (assimp's matrices are rows of floats).
 struct Transform {
   std::array<std::array<double, 4>, 3> row = {{{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}};
 
@@ -48,21 +48,21 @@ struct Transform {
 
 /// A node that holds meshes, or a mesh that no node places.
 struct Placement {
-  std::string name;              // of the node, or of the mesh without one; may be empty
-  std::vector<unsigned> meshes;  // in aiScene::mMeshes; all of them are there
+  std::string name;              // of the node, or of a mesh without a node; may be empty
+  std::vector<unsigned> meshes;  // indices into aiScene::mMeshes; all are valid
   Transform transform;           // from the root down
 };
 
 struct Placements {
-  std::vector<Placement> all;  // in node order, depth first; then what no node places
-  std::size_t unplaced = 0;    // how many of `all` are meshes without a node
+  std::vector<Placement> all;  // in node order, depth first; then meshes without a node
+  std::size_t unplaced = 0;    // number of meshes without a node in `all`
 };
 
-/// Everything that `scene` places. Meshes that no node places come last, as they are: some of
-/// assimp's readers (RAW with several groups) lose the nodes of meshes that the file does hold.
+/// All placements of `scene`. Meshes without a node come last, with the identity: some of assimp's
+/// readers (RAW with several groups) lose the nodes of meshes that are in the file.
 Placements find_placements(const aiScene& scene);
 
-/// Whether two placements or more hold a face of three corners or more.
+/// Whether at least two placements have a face of three corners or more.
 bool places_several(const aiScene& scene, const Placements& placements);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Twice over the text: vertices first, as a face may name one that comes after it.
+// Reads the text twice: vertices first, because a face may refer to a later one.
 #include "cooker/import/obj_import.h"
 
 #include <algorithm>
@@ -23,14 +23,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A keyword of the format, or of one that adds to it; not bytes that an editor does not show, and
-// not a vertex or a face in capitals, which would be passed over as unknown.
+// Whether a keyword belongs to the format or a common extension. Invisible bytes and keywords in
+// capitals are unknown, so that no vertex or face is skipped.
 bool is_known(std::string_view keyword) {
   return keyword != "V" && keyword != "F" &&
          std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; });
 }
 
-// Counted from 1, or backwards from -1; 0 for what is no number. Numbers of texture coordinates and
+// Counted from 1, or backwards from -1; 0 if not a number. Numbers of texture coordinates and
 // normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
 std::int64_t corner_number(std::string_view word) {
   const std::size_t slash = std::min(word.find('/'), word.size());
@@ -55,7 +55,7 @@ class Reader {
 
   Status read();
 
-  /// What follows each `mtllib`: a name that may hold blanks, or several names.
+  /// The rest of each `mtllib`: a name that may contain blanks, or several names.
   [[nodiscard]] const std::vector<std::string>& libraries() const { return libraries_; }
 
  private:
@@ -78,9 +78,9 @@ class Reader {
   MaterialUse materials_;
   std::vector<std::string> libraries_;
   std::size_t vertices_so_far_ = 0;
-  ObjStatement statement_{};  // at hand
-  std::string joined_;        // its lines, if there are several
-  Tokens words_;              // behind its keyword
+  ObjStatement statement_{};  // current statement
+  std::string joined_;        // its lines, if it has several
+  Tokens words_;              // after its keyword
   std::vector<std::uint32_t> corners_;
 };
 
@@ -107,7 +107,7 @@ Status Reader<T>::read_vertex() {
   VertexWords words = kOrigin;
   std::copy_n(words_.begin(), used, words.begin());
   const std::optional<Eigen::Vector3d> position = read_position(words, options_.precision);
-  // Words behind the position are looked at so that nothing else than numbers passes for a vertex.
+  // Words after the position are checked, so that only numbers pass as a vertex.
   const std::string_view no_number = find_no_number(std::span(words_).subspan(position ? used : 0));
   if (!no_number.empty()) return failure(fmt::format("'{}' is no number", no_number));
   if (used < 3) return failure(fmt::format("a vertex of {} numbers", used));
@@ -156,7 +156,7 @@ Status Reader<T>::read_face() {
     corners_.push_back(vertex.value_or(0));
     if (!vertex) fault = fault_of(words_[i], i);
   }
-  // With fewer corners it is no face, and its fault none that skip_bad could leave out.
+  // With fewer corners it is not a face, so skip_bad does not apply.
   if (fault && words_.size() < 3) return Error{fault->code, file_ + ": " + fault->reason};
   if (words_.size() >= 3) materials_.add_face(mesh_.next_face_id());
   return fault ? mesh_.add_bad_face(std::move(*fault)) : mesh_.add_face(corners_);
@@ -173,7 +173,7 @@ std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
   return std::nullopt;
 }
 
-// Why the corner names no vertex.
+// The fault of a corner that refers to no vertex.
 template <class T>
 FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
   const std::int64_t number = corner_number(word);
@@ -188,15 +188,15 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
   return {Errc::kMeshIndexOutOfRange, std::move(why)};
 }
 
-// All but what editors and systems put around a text.
+// The text without bytes that editors and systems add around it.
 std::string_view statements_of(std::string_view text) {
   constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
   if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  if (text.ends_with('\x1a')) text.remove_suffix(1);  // how DOS ended a text
+  if (text.ends_with('\x1a')) text.remove_suffix(1);  // end of text in DOS
   return text;
 }
 
-// Those libraries that are there and can be read, each once.
+// The libraries that exist and can be read, without duplicates.
 void find_libraries(const fs::path& path, const std::vector<std::string>& names,
                     std::vector<fs::path>& files) {
   const auto add = [&](std::string_view name) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// OBJ files (Wavefront, "Object Files (.obj)"): vertices, faces and the names of materials. Assimp
-// refuses a file with a bad vertex number as a whole and says not where, passes over vertices in
-// forms that it does not know, and rounds decimals more than once, to f32.
+// Reads OBJ files (Wavefront, "Object Files (.obj)"): vertices, faces and names of materials.
+// Assimp is not used: it refuses a file with a bad vertex number as a whole without its place,
+// skips vertices in forms that it does not know, and rounds decimals more than once, to f32.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 
 namespace boxtree::cooker {
 
-/// Reads `path`, an OBJ file, into `out`, all but the name, as import_mesh promises: faces in the
-/// order of the file, whatever their objects and groups. `materials` gets the names of `usemtl`.
-/// Libraries of materials that are there count among the files read, though nothing of them is
-/// taken over. Free-form curves and surfaces are passed over.
+/// Reads the OBJ file `path` into `out`, except the name, as specified for import_mesh: faces in
+/// the order of the file, whatever their objects and groups. `materials` gets the names in
+/// `usemtl`. Existing material libraries count among the files read, but nothing is imported from
+/// them. Free-form curves and surfaces are skipped.
 Status import_obj(const std::filesystem::path& path, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials);
 

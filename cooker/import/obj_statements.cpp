@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A line scanner: indentation, comments, line ends of all systems, lines joined by backslashes.
+// A line scanner: indentation, comments, all kinds of line ends, lines joined by backslashes.
 #include "cooker/import/obj_statements.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ bool is_blank(char c) {
   return c == ' ' || c == '\t';
 }
 
-// Where something may end, by the code of the character: files are long.
+// Tables of characters that end something; lookups are fast on long files.
 constexpr std::array<bool, 256> set_of(std::string_view characters) {
   std::array<bool, 256> set{};
   for (const char c : characters) set[static_cast<unsigned char>(c)] = true;
@@ -31,7 +31,7 @@ std::size_t find_of(const std::array<bool, 256>& set, std::string_view text, std
   return from;
 }
 
-// Statements of numbers, in which a hash begins a comment, while names may hold one.
+// Statements of numbers. A hash begins a comment in them; names may contain one.
 bool has_numbers(std::string_view text) {
   const std::string_view keyword = text.substr(0, text.find_first_of(" \t\\"));
   return keyword == "v" || keyword == "f" || keyword == "l" || keyword == "p" || keyword == "vt" ||
@@ -53,7 +53,7 @@ bool ObjStatement::is_element() const {
   return begins_with(text, "flp");
 }
 
-// A comment ends with its line: paths end in backslashes, too.
+// A comment ends with its line even after a backslash: paths end in backslashes, too.
 bool ObjStatements::next(ObjStatement& statement) {
   if (rest_.empty()) return false;
   while (!rest_.empty() && is_blank(rest_[0])) rest_.remove_prefix(1);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The statements of an OBJ file (Wavefront, "Object Files (.obj)"), one after the other.
+// Splits an OBJ file (Wavefront, "Object Files (.obj)") into statements.
 #pragma once
 
 #include <string>
@@ -7,10 +7,10 @@
 
 namespace boxtree::cooker {
 
-/// One statement, with the lines that a backslash joins to it.
+/// One statement, including the lines joined to it by backslashes.
 struct ObjStatement {
-  std::string_view text;  // from its keyword on, without comment and line end; may hold joined ones
-  std::size_t line;       // of its beginning, from 1
+  std::string_view text;  // from its keyword on, without comment and line end; may span lines
+  std::size_t line;       // of its first line, from 1
 
   [[nodiscard]] bool is_vertex() const;
   /// A statement of vertex numbers: f, l or p.
@@ -19,11 +19,11 @@ struct ObjStatement {
 
 class ObjStatements {
  public:
-  /// `text` must outlive this object and what comes out of it.
+  /// `text` must outlive this object and its statements.
   explicit ObjStatements(std::string_view text) : rest_(text) {}
 
-  /// Leaves the next one in `statement`; empty lines and comments are empty statements. False at
-  /// the end.
+  /// Sets `statement` to the next one; empty lines and comments are empty statements. False at the
+  /// end.
   bool next(ObjStatement& statement);
 
  private:
@@ -31,8 +31,8 @@ class ObjStatements {
   std::size_t line_ = 1;
 };
 
-/// The statement as one line, in `buffer` if there are several: backslashes that join them and line
-/// ends become blanks.
+/// The statement as one line; uses `buffer` if it has several. Joining backslashes and line ends
+/// become blanks.
 [[nodiscard]] std::string_view joined_text(const ObjStatement& statement, std::string& buffer);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Word by word, as the format has it; lines tell how long a colour is.
+// Reads word by word, as the format defines; lines matter only for the length of a colour.
 #include "cooker/import/off_import.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-// However long: the number of edges is not used.
+// Of any length: the number of edges is not used.
 bool is_integer(std::string_view word) {
   const std::string_view digits = word.substr(word.find_first_not_of("+-") == 1 ? 1 : 0);
   return !digits.empty() && digits.find_first_not_of("0123456789") == std::string_view::npos;
@@ -52,18 +52,18 @@ class Reader {
     return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, line_, why)};
   }
 
-  std::string_view rest_;  // behind the line at hand
-  std::size_t line_ = 0;   // at hand, from 1
-  Tokens line_words_;      // its words
-  std::size_t word_ = 0;   // of them, the next one
-  Tokens taken_;           // of what is being read
+  std::string_view rest_;  // after the current line
+  std::size_t line_ = 0;   // current line, from 1
+  Tokens line_words_;      // words of the current line
+  std::size_t word_ = 0;   // index of the next one
+  Tokens taken_;           // words of the current element
   const std::string& file_;
   const ImportOptions& options_;
   IndexedMesh<T>& mesh_;
   std::size_t dimensions_ = 3;
   bool is_homogeneous_ = false;
   bool has_colors_ = false;
-  std::size_t others_ = 0;  // numbers of normals and texture coordinates
+  std::size_t others_ = 0;  // number of normal and texture coordinates
   std::uint64_t vertices_ = 0;
   std::uint64_t faces_ = 0;
   std::vector<std::uint32_t> corners_;
@@ -91,7 +91,7 @@ Status Reader<T>::read() {
   return mesh_.finish();
 }
 
-// Moves to the next word that is no comment; false at the end.
+// Moves to the next word that is not a comment; false at the end.
 template <class T>
 bool Reader<T>::find_word() {
   while (word_ == line_words_.size()) {
@@ -104,7 +104,7 @@ bool Reader<T>::find_word() {
   return true;
 }
 
-// Appends the next words to `taken_`, over line ends.
+// Appends the next words to `taken_`, across line ends.
 template <class T>
 Status Reader<T>::take_words(std::size_t count, const char* of) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -114,7 +114,7 @@ Status Reader<T>::take_words(std::size_t count, const char* of) {
   return {};
 }
 
-// [ST][C][N][4][n]OFF, or nothing: then the counts come first.
+// [ST][C][N][4][n]OFF, or missing: then the counts come first.
 template <class T>
 Status Reader<T>::read_header() {
   if (!find_word()) return failure("no OFF header");
@@ -149,14 +149,15 @@ Status Reader<T>::read_dimensions() {
   return {};
 }
 
-// Of vertices, faces and edges; the last one may be missing.
+// Numbers of vertices, faces and edges; the last may be missing.
 template <class T>
 Status Reader<T>::read_counts() {
   taken_.clear();
   if (!take_words(2, "the counts").ok()) return failure("no counts of vertices and faces");
   const std::optional<std::uint64_t> vertices = read_count(taken_[0]);
   const std::optional<std::uint64_t> faces = read_count(taken_[1]);
-  // Each takes a word at least: a count beyond the bytes left is a lie, and costs no memory.
+  // Each takes at least one word: a count beyond the bytes left is false, and no memory is
+  // reserved.
   if (!vertices || !faces || *vertices > rest_.size() || *faces > rest_.size()) {
     return failure(fmt::format("{} vertices and {} faces cannot be in a file of this size",
                                taken_[0], taken_[1]));
@@ -171,8 +172,8 @@ Status Reader<T>::read_counts() {
   return {};
 }
 
-// A line by itself, as nearly all files have it, or so many words. Only the line can tell whether a
-// color has three numbers or four.
+// A line per element, as in nearly all files, or `count` words. Only the line shows whether a color
+// has three numbers or four.
 template <class T>
 Status Reader<T>::read_vertex() {
   const std::size_t needed = dimensions_ + (is_homogeneous_ ? 1 : 0);
@@ -192,7 +193,7 @@ Status Reader<T>::read_vertex() {
   return mesh_.add_vertex(*read_position(words, options_.precision), line);
 }
 
-// The number of corners, and their vertices; what else is in the line is a color.
+// The number of corners and their vertices; the rest of the line is a color.
 template <class T>
 Status Reader<T>::read_face() {
   const std::string_view stated = line_words_[word_++];
@@ -213,7 +214,7 @@ Status Reader<T>::read_face() {
   return fault->has_value() ? mesh_.add_bad_face(std::move(**fault)) : mesh_.add_face(corners_);
 }
 
-// Into `corners_`; the first that names no vertex is a fault of the face, if it is one.
+// Reads into `corners_`. The first corner without a vertex is a fault of the face, if it is a face.
 template <class T>
 Result<std::optional<FaceFault>> Reader<T>::read_corners() {
   std::optional<FaceFault> fault;

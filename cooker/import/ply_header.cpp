@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Words of header lines, values of bodies.
+// Parses the words of header lines and the values of bodies.
 #include "cooker/import/ply_header.h"
 
 #include <algorithm>
@@ -61,13 +61,13 @@ class HeaderReader {
 
   std::string_view file_;
   PlyHeader header_;
-  Tokens tokens_;  // of the line at hand
+  Tokens tokens_;  // of the current line
   char line_end_ = '\n';
   bool has_format_ = false;
 };
 
 Result<PlyHeader> HeaderReader::read() {
-  // Old Macintosh files end lines by a carriage return alone.
+  // Old Macintosh files end lines with a carriage return only.
   if (file_.starts_with("ply\r") && !file_.starts_with("ply\r\n")) line_end_ = '\r';
   if (!next_line() || tokens_.size() != 1 || tokens_[0] != "ply") {
     return Error{Errc::kImportFailed, "no PLY file: its first line is not 'ply'"};
@@ -82,7 +82,7 @@ Result<PlyHeader> HeaderReader::read() {
   return failure("the header has no 'end_header' behind it");
 }
 
-// False at the end of the file; a last line that does not end is none.
+// False at the end of the file, and for a last line without an end.
 bool HeaderReader::next_line() {
   const std::size_t end = file_.find(line_end_, header_.bytes);
   if (end == std::string_view::npos) return false;

@@ -29,13 +29,13 @@ enum class PlyType : std::uint8_t {
 
 /// A value in a binary file. Every type fits into a double without rounding.
 [[nodiscard]] double load_ply_value(const char* at, PlyType type, bool swapped);
-/// Of an integer type.
+/// Precondition: an integer type.
 [[nodiscard]] std::int64_t load_ply_integer(const char* at, PlyType type, bool swapped);
 
 struct PlyProperty {
   std::string name;
   PlyType type;
-  std::optional<PlyType> length;  // of a list: how its length is stored
+  std::optional<PlyType> length;  // of a list: the type of its length
 };
 
 struct PlyElement {
@@ -48,14 +48,14 @@ struct PlyElement {
 
 struct PlyHeader {
   enum class Form { kText, kLittleEndian, kBigEndian } form = Form::kText;
-  std::size_t bytes = 0;  // the body starts there
-  std::size_t lines = 0;  // of the header, its last one included
+  std::size_t bytes = 0;  // offset of the body
+  std::size_t lines = 0;  // of the header, including its last one
   std::vector<PlyElement> elements;
 };
 
-/// The header at the start of `file`. kImportFailed, naming the line, for whatever is no header: a
-/// statement passed over could be a misspelt property, without which every value after it would be
-/// taken for another.
+/// The header at the start of `file`. kImportFailed with the line for anything that is not a
+/// header. Unknown statements are refused: one could be a misspelt property, and every value after
+/// it would be misread.
 [[nodiscard]] Result<PlyHeader> read_ply_header(std::string_view file);
 
 }  // namespace boxtree::cooker

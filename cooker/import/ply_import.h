@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// PLY files: header, then a body of text or of numbers.
+// Reads PLY files: a header, then a body of text or binary numbers.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace boxtree::cooker {
 
-/// Reads `path`, a PLY file, into `out`, all but the name, as import_mesh promises. Positions have
-/// all the digits of the file; polygons and triangle strips are taken, in the order of the file.
+/// Reads the PLY file `path` into `out`, except the name, as specified for import_mesh. Positions
+/// keep all digits of the file; polygons and triangle strips are imported in the order of the file.
 Status import_ply(const std::filesystem::path& path, const ImportOptions& options, Imported& out);
 
 }  // namespace boxtree::cooker

@@ -12,7 +12,7 @@ Error failure(std::string_view why) {
   return {Errc::kImportFailed, "the header: " + std::string(why)};
 }
 
-// The element of that name, if there is one, into `found`.
+// Sets `found` to the element with that name, if there is one.
 Status find_element(const PlyHeader& header, std::string_view name, const PlyElement*& found) {
   for (const PlyElement& element : header.elements) {
     if (element.name != name) continue;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which elements and properties of a PLY file are the mesh.
+// Finds the elements and properties of a PLY file that form the mesh.
 #pragma once
 
 #include <array>
@@ -8,14 +8,14 @@
 
 namespace boxtree::cooker {
 
-/// Points into its own header, so that it must stay where it is.
+/// Points into its own header, so it must not be moved.
 struct PlyLayout {
   PlyHeader header;
   const PlyElement* vertex = nullptr;
   const PlyElement* face = nullptr;       // one polygon each
-  const PlyElement* tristrips = nullptr;  // any number of triangles each, as Stanford's files have
-  const PlyProperty* corners = nullptr;   // of faces: which of their properties
-  const PlyProperty* strip = nullptr;     // of strips likewise
+  const PlyElement* tristrips = nullptr;  // any number of triangles each, as in Stanford's files
+  const PlyProperty* corners = nullptr;   // the property of faces that holds their corners
+  const PlyProperty* strip = nullptr;     // the same for strips
   std::array<const PlyProperty*, 3> xyz{};
 
   PlyLayout() = default;
@@ -23,9 +23,9 @@ struct PlyLayout {
   PlyLayout& operator=(const PlyLayout&) = delete;
 };
 
-/// Fills in all but the header, which is there. kImportFailed where there are several of what there
-/// has to be one of, or faces come before their vertices, which have to be known by then; kNoFaces
-/// where no element is to hold any.
+/// Fills in all members except the header, which is given. kImportFailed if an element or property
+/// that must be unique is not, or if faces precede their vertices; kNoFaces if no element holds
+/// faces.
 Status find_ply_parts(PlyLayout& layout);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// In doubles where their error bound settles it, else as expansions.
+// Uses doubles where their error bound decides the sign, otherwise expansions.
 #include "cooker/import/polygon_normal.h"
 
 #include <cmath>
@@ -14,8 +14,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-// A sum of doubles, none of it lost: terms that do not overlap, the smallest first (Shewchuk's
-// grow-expansion, whose terms are as many as the bits of all numbers span, divided by 53).
+// An exact sum of doubles: terms that do not overlap, smallest first (Shewchuk's grow-expansion;
+// the number of terms is at most the span of all numbers in bits, divided by 53).
 class ExactSum {
  public:
   void add(double value) {
@@ -65,10 +65,10 @@ int dominant_axis(const Vector3d& normal) {
   return axis;
 }
 
-// Seen from the first corner. A product of two differences has three roundings, its sum with the
-// others at most 2n + 1, of at most half an epsilon each, and so has the sum of magnitudes: 2 (n +
-// 4) epsilons hold their second order, too, below 2^50 corners. Each product may lose 2^-1075 to
-// underflow. An axis is as good as the largest if the polygon has half as much area along it.
+// Relative to the first corner. A product of two differences has three roundings and its sum with
+// the others at most 2n + 1, each of at most half an epsilon; the sum of magnitudes has as many. 2
+// (n + 4) epsilons include the second order, too, below 2^50 corners. Each product may lose 2^-1075
+// to underflow. An axis is as good as the largest if the polygon has half as much area along it.
 Vector3d polygon_normal(std::span<const Vector3d> corners) {
   const double count = static_cast<double>(corners.size());
   const double roundings = 2 * (count + 4) * std::numeric_limits<double>::epsilon();

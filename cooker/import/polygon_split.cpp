@@ -20,12 +20,12 @@ using Eigen::Vector3d;
 
 constexpr std::uint32_t kNowhere = CornerSet::kNone;
 
-// Coordinates that orient2d takes as they are, with room for products of three of them. Others
-// (only f64 positions can hold such) are scaled by a power of two, which changes no sign.
+// Largest coordinate that orient2d takes unscaled, with room for products of three. Larger ones
+// (only f64 positions have them) are scaled by a power of two, which changes no sign.
 constexpr double kLargest = 0x1p200;
 constexpr double kSmallest = 0x1p-200;
 
-// The power of two that brings `largest` near 1, or 1 if there is no need to scale.
+// The power of two that scales `largest` to about 1, or 1 if scaling is not needed.
 double scale_for(double largest) {
   if (largest <= kLargest && (largest >= kSmallest || largest == 0)) return 1;
   return std::ldexp(1.0, -std::clamp(std::ilogb(largest), -1000, 1000));
@@ -35,12 +35,12 @@ double largest_of(const Vector3d& a) {
   return std::max({std::abs(a[0]), std::abs(a[1]), std::abs(a[2])});
 }
 
-// Seen along `axis`, from its positive end.
+// The projection along `axis`, from its positive end.
 Vector2d flattened(const Vector3d& a, int axis) {
   return {a[(axis + 1) % 3], a[(axis + 2) % 3]};
 }
 
-// The determinant of three rows of non-negative numbers with every minus made a plus: an upper
+// The determinant of three rows of non-negative numbers with all minus signs made plus: an upper
 // bound of |determinant| for all rows of at most these magnitudes.
 double permanent(const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   return a[0] * (b[1] * c[2] + b[2] * c[1]) + a[1] * (b[2] * c[0] + b[0] * c[2]) +
@@ -51,16 +51,16 @@ Vector3d magnitude(const Vector3d& a) {
   return {std::abs(a[0]), std::abs(a[1]), std::abs(a[2])};
 }
 
-// A quad is planar when D = (p1-p0) . ((p2-p0) x (p3-p0)), six times the volume of its corners, is
-// 0. Let the corners the author meant be q_i, planar, and p_i = q_i + d_i what rounding made of
-// them, |d_i| <= r_i for each coordinate. D is linear in each row, so with rows a, b, c of p and
-// e_i = d_i - d_0, |e_i| <= r_i + r_0:
+// A quad is planar if D = (p1-p0) . ((p2-p0) x (p3-p0)), six times the volume of its corners, is 0.
+// Let q_i be the intended, planar corners and p_i = q_i + d_i the rounded ones, |d_i| <= r_i for
+// each coordinate. D is linear in each row, so with rows a, b, c of p and e_i = d_i - d_0, |e_i| <=
+// r_i + r_0:
 //   D(p) = [terms linear in d] + [terms with two or three of e_1, e_2, e_3], where
 //   linear: the derivative of D by p_1, p_2, p_3 is n_1 = b x c, n_2 = c x a, n_3 = a x b, and by
 //           p_0 it is n_0 = -(n_1 + n_2 + n_3); so at most the sum of |n_i| . r_i
 //   others: at most P(e1,e2,|c|) + P(e1,|b|,e3) + P(|a|,e2,e3) + P(e1,e2,e3), P the permanent.
-// Evaluating D in double errs by at most kOrient3dBound P(|a|,|b|,|c|): the same eight roundings.
-// A quad within the sum of these is planar as far as its coordinates can tell.
+// Evaluating D in double errs by at most kOrient3dBound P(|a|,|b|,|c|): the same eight roundings. A
+// quad with |D| within the sum of these is planar up to the rounding of its coordinates.
 bool is_planar(const std::array<RoundedCorner, 4>& corners) {
   const Vector3d a = corners[1].position - corners[0].position;
   const Vector3d b = corners[2].position - corners[0].position;
@@ -86,7 +86,7 @@ bool is_convex(const std::array<RoundedCorner, 4>& corners) {
   const Vector3d normal =
       polygon_normal(std::array{position(0), position(1), position(2), position(3)});
   if (largest_of(normal) == 0) {
-    // No area in sum: either no area at all, or two equal halves of a bow tie.
+    // The total area is zero: the quad has no area, or is a bow tie with equal halves.
     return is_collinear(position(0), position(1), position(2)) &&
            is_collinear(position(0), position(2), position(3)) &&
            is_collinear(position(0), position(1), position(3));
@@ -163,7 +163,7 @@ std::uint32_t CornerSet::next_around(std::uint32_t from) const {
   return found != kNone ? found : next(0);
 }
 
-// Up while nothing is left in the word, then down to the first of each.
+// Goes up while the rest of the word is empty, then down to the first member.
 std::uint32_t CornerSet::next(std::uint32_t from) const {
   for (std::size_t level = 0; level < levels_.size(); ++level) {
     const std::size_t at = from / 64;
@@ -221,11 +221,10 @@ std::span<const PolygonSplitter::Triangle> PolygonSplitter::split(
   const auto count = static_cast<std::uint32_t>(corners.size());
   make_grid(count);
   link(count);
-  // Terminates: each step clips a corner. An ear that does no harm comes first; then a corner
-  // without area, which changes nothing; then an ear that others touch; if there is none of them
-  // the polygon crosses itself, and any corner will do. After a corner is clipped its neighbour is
-  // passed over, as in earcut: a convex polygon is halved again and again instead of becoming a fan
-  // of slivers.
+  // Terminates: each step clips a corner. Clean ears come first, then corners without area, which
+  // change nothing, then touching ears. If there is none, the polygon crosses itself, and any
+  // corner is clipped. After a corner is clipped, its neighbour is skipped, as in earcut: a convex
+  // polygon is halved repeatedly instead of becoming a fan of slivers.
   std::uint32_t corner = 1;
   for (std::uint32_t left = count; left > 3; --left) {
     std::uint32_t ear = find_ear(corner, EarKind::kClean);
@@ -236,13 +235,13 @@ std::span<const PolygonSplitter::Triangle> PolygonSplitter::split(
     clip(ear);
     corner = next_[after];
   }
-  // The three that are left, beginning with the lowest number so that a quad ends in (0,2,3).
+  // The last three, beginning with the lowest number so that a quad ends in (0,2,3).
   const std::uint32_t first = std::min({corner, next_[corner], previous_[corner]});
   triangles_.push_back({first, next_[first], previous_[first]});
   return triangles_;
 }
 
-// Drops the coordinate along which the polygon looks largest, and turns it counter-clockwise.
+// Drops the coordinate along which the polygon's area is largest; makes the rest counter-clockwise.
 void PolygonSplitter::project(std::span<const Vector3d> corners) {
   double largest = 0;
   for (const Vector3d& corner : corners) largest = std::max(largest, largest_of(corner));
@@ -272,7 +271,7 @@ void PolygonSplitter::link(std::uint32_t count) {
   for (std::uint32_t corner = 0; corner < count; ++corner) update(corner);
 }
 
-// Some four corners a cell, which is about as wide as high; polygons of few corners have one cell.
+// About four corners per cell, and square cells; polygons with few corners have one cell.
 void PolygonSplitter::make_grid(std::uint32_t count) {
   Vector2d high = points_[0];
   grid_low_ = points_[0];
@@ -296,7 +295,7 @@ void PolygonSplitter::make_grid(std::uint32_t count) {
   for (std::size_t cell = 0; cell < used; ++cell) cells_[cell].clear();
 }
 
-// Monotone in each coordinate, so that the cells of a box's corners enclose those of what is in it.
+// Monotone in each coordinate, so the cells of a box's corners enclose the cells of its content.
 std::array<std::uint32_t, 2> PolygonSplitter::cell_of(const Vector2d& point) const {
   std::array<std::uint32_t, 2> cell;
   for (std::size_t axis = 0; axis < 2; ++axis) {
@@ -328,14 +327,14 @@ std::uint32_t PolygonSplitter::find_ear(std::uint32_t from, EarKind kind) {
   return kNowhere;
 }
 
-// A corner that turns left cannot be the only one inside an ear, so the others need not be tested:
-// of those inside the ear the one farthest from its diagonal does not turn left.
+// Only corners that do not turn left are tested: of the corners inside an ear, the one farthest
+// from its diagonal does not turn left.
 std::uint32_t PolygonSplitter::find_blocker(std::uint32_t corner, EarKind kind) {
   const Vector2d &a = points_[previous_[corner]], &b = points_[corner], &c = points_[next_[corner]];
   const auto low = cell_of(a.cwiseMin(b).cwiseMin(c)), high = cell_of(a.cwiseMax(b).cwiseMax(c));
   for (std::uint32_t row = low[1]; row <= high[1]; ++row) {
     for (std::uint32_t column = low[0]; column <= high[0]; ++column) {
-      ++tests_;  // of a cell, too
+      ++tests_;  // counts empty cells, too
       for (const std::uint32_t other : cells_[row * cell_count_[0] + column]) {
         ++tests_;
         if (blocks(other, corner, kind == EarKind::kClean)) return other;
@@ -345,7 +344,7 @@ std::uint32_t PolygonSplitter::find_blocker(std::uint32_t corner, EarKind kind) 
   return kNowhere;
 }
 
-// Whether `other` keeps the ear at `corner` from being clipped.
+// Whether `other` prevents clipping the ear at `corner`.
 bool PolygonSplitter::blocks(std::uint32_t other, std::uint32_t corner, bool border_blocks) const {
   const std::uint32_t before = previous_[corner], after = next_[corner];
   if (other == before || other == corner || other == after) return false;
@@ -354,9 +353,9 @@ bool PolygonSplitter::blocks(std::uint32_t other, std::uint32_t corner, bool bor
   for (int i = 0; i < 2; ++i) {
     if (p[i] < std::min({a[i], b[i], c[i]}) || p[i] > std::max({a[i], b[i], c[i]})) return false;
   }
-  // The outline may touch itself, as where a bridge leads to a hole. Edges that start at a or c and
-  // enter the ear would have to end in it or to cross an edge; those that start at its tip can
-  // leave through the diagonal, so look where they go.
+  // The outline may touch itself, for example where a bridge leads to a hole. Edges that start at a
+  // or c and enter the ear must end in it or cross an edge. Edges that start at its tip can leave
+  // through the diagonal, so their directions are tested.
   if (p == a || p == c) return false;
   if (p == b) {
     const auto enters = [&](const Vector2d& to) {
@@ -382,7 +381,7 @@ void PolygonSplitter::clip(std::uint32_t corner) {
   }
 }
 
-// Takes note of how a corner turns, after its neighbours have changed or it was clipped.
+// Records how a corner turns, after its neighbours have changed or it was clipped.
 void PolygonSplitter::update(std::uint32_t corner) {
   const bool is_clipped = next_[corner] == corner;
   const int turned = is_clipped ? 1 : turn(corner);
@@ -401,7 +400,7 @@ void PolygonSplitter::update(std::uint32_t corner) {
     cell.push_back(corner);
     return;
   }
-  // The last one takes its place.
+  // The last corner of the cell takes its place.
   slot_[cell.back()] = slot;
   cell[slot] = cell.back();
   cell.pop_back();

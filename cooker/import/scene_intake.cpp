@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Each list of meshes that nodes have is flattened once, in its own space; what is equal then is
-// merged by content.
+// Flattens each distinct list of meshes of a node once, in its own space, then merges meshes of
+// equal content.
 #include "cooker/import/scene_intake.h"
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// Names of the materials in use, numbered in order of their first use. Those of one name are one.
+// Names of the materials in use, in order of first use. Materials with the same name are one.
 class MaterialIntake {
  public:
   MaterialIntake(const aiScene& scene, std::vector<std::string>& names)
@@ -38,8 +38,8 @@ class MaterialIntake {
     return taken;
   }
 
-  // Whether the materials taken tell faces apart, or at least have a name: faces without a material
-  // have one of assimp's making.
+  // Whether the materials distinguish faces, or at least have a name: assimp gives faces without a
+  // material a default one.
   [[nodiscard]] bool are_known() const {
     return names_.size() > 1 ||
            (!by_name_.empty() && by_name_.begin()->first != AI_DEFAULT_MATERIAL_NAME);
@@ -74,7 +74,7 @@ class MaterialIntake {
 
   const aiScene& scene_;
   std::vector<std::string>& names_;
-  std::vector<std::uint32_t> numbers_;  // of each source material, or kNoMaterial: not yet in use
+  std::vector<std::uint32_t> numbers_;  // of each source material; kNoMaterial if not in use yet
   std::map<std::string, std::uint32_t> by_name_;
 };
 
@@ -88,9 +88,9 @@ Pose pose_of(const Transform& transform) {
   return pose;
 }
 
-// What is wrong with a pose, or nullptr. The tests of RelativePose, in its arithmetic, on a body
-// seen from itself: the inverse is finite, and so is that of the product of the two (a determinant
-// beyond all doubles makes the first one zero).
+// The fault of a pose, or nullptr. These are the tests of RelativePose, with its arithmetic, for a
+// body relative to itself: the inverse must be finite, and so must the product of both (a
+// determinant beyond the range of doubles makes the inverse zero).
 const char* pose_fault(const Pose& pose) {
   if (!pose.matrix().allFinite()) return "is not finite";
   const Eigen::Matrix3d linear = pose.linear();
@@ -140,7 +140,7 @@ class SceneIntake {
 };
 
 Status SceneIntake::take(const Placements& placements) {
-  // Nodes with the same meshes of the file in the same order share what becomes of them.
+  // Nodes with the same meshes of the file in the same order share one result.
   std::map<std::vector<unsigned>, std::optional<std::uint32_t>> taken;
   for (const Placement& placement : placements.all) {
     if (!taken.try_emplace(placement.meshes).second) continue;

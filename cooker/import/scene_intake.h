@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An assimp scene becomes a SourceScene: meshes that differ, instances, materials.
+// Converts an assimp scene to a SourceScene: distinct meshes, instances, materials.
 #pragma once
 
 #include "cooker/import/flatten.h"
@@ -10,8 +10,8 @@ struct aiScene;
 
 namespace boxtree::cooker {
 
-/// Puts `scene` into `out` and counts in `out.report`, as source_scene.h says of files with a node
-/// graph. Frees each mesh of the scene as soon as it is no longer needed.
+/// Adds `scene` to `out` and counts in `out.report`, as source_scene.h specifies for files with a
+/// node graph. Frees each mesh of the scene after its last use.
 Status take_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
                   SourceScene& out);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Checking, recording and hashing of source files.
+// Checks, records and hashes source files.
 #define XXH_INLINE_ALL
 #include "cooker/import/source_files.h"
 

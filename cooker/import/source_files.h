@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The files behind one import: checked before, recorded while assimp reads, hashed after.
+// The files of one import: checked before, recorded while assimp reads, hashed after.
 #pragma once
 
 #include <cstdint>
@@ -15,17 +15,17 @@
 
 namespace boxtree::cooker {
 
-/// Whether `path` is a regular file that can be opened and holds at least one byte.
+/// Whether `path` is a regular file that can be opened and has at least one byte.
 Status check_source_file(const std::filesystem::path& path);
 
 /// XXH3 (64 bits) over the bytes of the files, one after the other. Does not depend on their paths.
 Result<std::uint64_t> hash_source_files(std::span<const std::filesystem::path> files);
 
-/// Lets assimp read but not write, and notes each file that it really opens, in order of the first
-/// time. A file that is only looked for is not noted.
+/// Lets assimp read but not write, and records each file that it opens, in order of first use.
+/// Files that it only looks for are not recorded.
 class RecordingIo final : public Assimp::DefaultIOSystem {
  public:
-  /// Notes go to `files`, which must outlive this object (assimp's Importer owns that).
+  /// Records into `files`, which must outlive this object (assimp's Importer owns this object).
   explicit RecordingIo(std::vector<std::filesystem::path>& files) : files_(files) {}
 
   bool Exists(const char* path) const override;
@@ -38,8 +38,8 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   std::vector<std::filesystem::path>& files_;
 };
 
-/// While it lives, numbers are read in the "C" locale on this thread, whatever the process has set:
-/// some of assimp's readers use strtod, which would take "1,5" for one and a half.
+/// While it exists, this thread reads numbers in the "C" locale, whatever the process has set: some
+/// of assimp's readers use strtod, which may read "1,5" as one and a half.
 class CLocaleScope {
  public:
   CLocaleScope();

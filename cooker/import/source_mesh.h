@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mesh as it enters the pipeline: everything later stages know of the input file.
+// A mesh before it is cooked: all data that later stages use of the input file.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 
 namespace boxtree::cooker {
 
-/// How vertex positions are held. f32 unless the caller needs f64: most sources are f32.
+/// The type of vertex positions. f32 unless the caller needs f64: most sources are f32.
 enum class Precision : std::uint8_t { kF32, kF64 };
 
-/// Positions of all vertices, three numbers each, in object space (the units of the source).
-/// Exactly one of the two arrays is filled, as `precision` says.
+/// Positions of all vertices, three numbers each, in object space (the units of the source). Only
+/// the array of `precision` is filled.
 struct Positions {
   Precision precision = Precision::kF32;
   std::vector<float> f32;   // x0 y0 z0 x1 ...
@@ -36,21 +36,21 @@ struct Positions {
 /// Marks the missing fourth corner of a triangle.
 inline constexpr std::uint32_t kNoCorner = 0xffffffffu;
 
-/// A triangle (corner[3] == kNoCorner) or a planar convex quad, as vertex numbers in source
-/// winding. A quad stands for the triangles (0,1,2) and (0,2,3).
+/// A triangle (corner[3] == kNoCorner) or a planar convex quad: vertex numbers in source winding. A
+/// quad represents the triangles (0,1,2) and (0,2,3).
 struct Face {
   std::array<std::uint32_t, 4> corner;
 
   [[nodiscard]] bool is_quad() const { return corner[3] != kNoCorner; }
 };
 
-/// One mesh in the making. Invariant after import: every corner < positions.size(), every position
-/// finite, face_ids either empty (face i has id i) or as long as faces.
+/// A mesh to cook. Invariant after import: every corner < positions.size(), every position finite,
+/// face_ids either empty (face i has id i) or as long as faces.
 struct SourceMesh {
   std::string name;
   Positions positions;
   std::vector<Face> faces;
-  std::vector<std::uint32_t> face_ids;  // number of the face in the source; n-gon pieces share one
+  std::vector<std::uint32_t> face_ids;  // source number of each face; parts of an n-gon share one
 
   [[nodiscard]] std::uint32_t face_id(std::size_t face) const {
     return face_ids.empty() ? static_cast<std::uint32_t>(face) : face_ids[face];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What makes two meshes of a scene equal.
+// Compares and merges the meshes of a scene.
 #define XXH_INLINE_ALL
 #include "cooker/import/source_scene.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One buffer over stdio, which passes large reads on.
+// One buffer over stdio; large reads bypass it.
 #define XXH_INLINE_ALL
 #include "cooker/import/source_stream.h"
 
@@ -43,7 +43,7 @@ Result<SourceStream> SourceStream::open(const std::filesystem::path& path) {
   return stream;
 }
 
-// Moves what is left to the front and fills up behind it.
+// Moves the remaining bytes to the front and fills the buffer behind them.
 bool SourceStream::refill(std::size_t count) {
   assert(count <= kBufferBytes);
   if (count > left()) return false;
@@ -56,7 +56,7 @@ bool SourceStream::refill(std::size_t count) {
   XXH3_64bits_update(&hash_->state, behind, got);
   unread_ -= got;
   if (got < wanted) {
-    // Cannot be read, or somebody shortened it: either way there is no more.
+    // The file cannot be read, or has shrunk: there are no more bytes in either case.
     if (std::ferror(file_.get()) != 0) error_ = errno;
     unread_ = 0;
   }

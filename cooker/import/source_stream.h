@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A source file read once, from front to back, and hashed on the way.
+// A source file, read once from front to back and hashed while it is read.
 #pragma once
 
 #include <cstddef>
@@ -17,16 +17,17 @@
 
 namespace boxtree::cooker {
 
-/// Not a mapping: a file that somebody shortens meanwhile ends early instead of raising SIGBUS, and
-/// pages that were read do not count as ours.
+/// Not a mapping: a file that shrinks meanwhile ends early instead of raising SIGBUS, and pages
+/// that were read do not count as the process's memory.
 class SourceStream {
  public:
-  /// The most that `take` gives at once, and what `ahead` shows of a longer file.
+  /// The most that `take` returns at once, and that `ahead` returns of a longer file.
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 
   static Result<SourceStream> open(const std::filesystem::path& path);
 
-  /// What of the file is in memory and not yet taken: at the start kBufferBytes, or all of it.
+  /// The part of the file in memory and not yet taken: at the start kBufferBytes, or the whole
+  /// file.
   [[nodiscard]] std::string_view ahead() const {
     return {at_, static_cast<std::size_t>(end_ - at_)};
   }
@@ -36,8 +37,8 @@ class SourceStream {
     return unread_ + static_cast<std::uint64_t>(end_ - at_);
   }
 
-  /// The next `count` bytes, valid until the next call; nullptr if the file has no more so many.
-  /// Precondition: count <= kBufferBytes.
+  /// The next `count` bytes, valid until the next call; nullptr if fewer are left. Precondition:
+  /// count <= kBufferBytes.
   [[nodiscard]] const char* take(std::size_t count) {
     if (static_cast<std::size_t>(end_ - at_) < count && !refill(count)) return nullptr;
     const char* const bytes = at_;
@@ -45,16 +46,16 @@ class SourceStream {
     return bytes;
   }
 
-  /// All that is left, at once. Errors: as ended_in.
+  /// All remaining bytes. Errors: as ended_in.
   [[nodiscard]] Result<std::string> take_rest();
 
-  /// Passes over `count` bytes; false if the file has no more so many.
+  /// Skips `count` bytes; false if fewer are left.
   [[nodiscard]] bool skip(std::uint64_t count);
 
-  /// What to say when `take` or `skip` failed: the file cannot be read, or ends too early.
+  /// The error after `take` or `skip` failed: the file cannot be read, or ends too early.
   [[nodiscard]] Error ended_in(std::string_view what) const;
 
-  /// Reads the rest; the answer is XXH3 (64 bits) over the whole file.
+  /// Reads the rest; returns XXH3 (64 bits) of the whole file.
   Result<std::uint64_t> finish();
 
  private:
@@ -73,7 +74,7 @@ class SourceStream {
   const char* at_ = nullptr;
   const char* end_ = nullptr;
   std::uint64_t unread_ = 0;  // bytes of the file that are not in the buffer yet
-  int error_ = 0;             // of the system, when reading failed
+  int error_ = 0;             // of the system, if reading failed
 };
 
 }  // namespace boxtree::cooker

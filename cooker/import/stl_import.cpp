@@ -13,7 +13,7 @@ namespace boxtree::cooker {
 Status import_stl(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
   Result<SourceStream> stream = SourceStream::open(path);
   if (!stream.ok()) return stream.error();
-  // A text is hardly ever as long as the count says that is in it by chance.
+  // A text hardly ever has by chance the length that its bytes, read as a count, require.
   const bool is_text = !is_binary_stl(*stream) && is_text_stl(stream->ahead());
 
   const std::string file = path.string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// STL files: of numbers, or of text.
+// Reads STL files, binary or text.
 #pragma once
 
 #include <filesystem>
@@ -8,8 +8,8 @@
 
 namespace boxtree::cooker {
 
-/// Reads `path`, an STL file, into `out`, all but the name, as import_mesh promises. Facets become
-/// faces in the order of the file; their normals are not looked at.
+/// Reads the STL file `path` into `out`, except the name, as specified for import_mesh. Facets
+/// become faces in the order of the file; their normals are ignored.
 Status import_stl(const std::filesystem::path& path, const ImportOptions& options, Imported& out);
 
 }  // namespace boxtree::cooker

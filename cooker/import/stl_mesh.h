@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Triangles of an STL file, of text or of numbers, on their way into a mesh: each has corners of
-// its own, which are welded as they come.
+// Adds triangles of a text or binary STL file to a mesh. Each triangle has its own corners, which
+// are welded as they are added.
 #pragma once
 
 #include <algorithm>
@@ -31,7 +31,8 @@ class StlMesh {
         intake_(positions, out),
         out_(out) {}
 
-  /// Makes room for so many triangles, which bytes of the file must back. Error: kMeshTooLarge.
+  /// Reserves memory for `count` triangles, which bytes of the file must back. Error:
+  /// kMeshTooLarge.
   Status begin(std::uint64_t count) {
     if (Status status = check_face_count(count, file_); !status.ok()) return status;
     out_.mesh.faces.reserve(count);
@@ -39,10 +40,10 @@ class StlMesh {
     return {};
   }
 
-  /// Fetches what adding this corner, soon, looks at first.
+  /// Prefetches the data that adding this corner reads first.
   void prefetch(const Corner& corner) const { welder_.prefetch(corner); }
 
-  /// The next triangle.
+  /// Adds the next triangle.
   Status add(const std::array<Corner, 3>& corners) {
     const auto face_id = static_cast<std::uint32_t>(out_.report.source_faces++);
     for (std::size_t i = 0; i < 3; ++i) {
@@ -59,7 +60,7 @@ class StlMesh {
     return {};
   }
 
-  /// Fills in the report; fails when nothing was taken.
+  /// Fills in the report; fails if no triangle was added.
   Status finish() {
     ImportReport& report = out_.report;
     report.source_vertices = 3 * report.source_faces;

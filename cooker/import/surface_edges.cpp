@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A counting sort by the smaller vertex of each edge; then each vertex has a few edges to sort.
+// A counting sort by the smaller vertex of each edge; then the few edges of each vertex are sorted.
 #include "cooker/import/surface_edges.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 4>;
 
-// Vertex numbers that are the same for -0 and 0; none if there is no -0.
+// Vertex numbers with -0 equal to 0; empty if no coordinate is -0.
 std::vector<std::uint32_t> numbers_by_value(const MeshArrays& mesh) {
   const auto has_negative_zero = [&](std::uint32_t vertex) {
     const Eigen::Vector3d p = position_of(mesh, vertex);
@@ -56,11 +56,11 @@ void visit_sides(const MeshArrays& mesh, const std::vector<std::uint32_t>& numbe
 
 SurfaceEdges count_surface_edges(const MeshArrays& mesh) {
   const std::vector<std::uint32_t> numbers = numbers_by_value(mesh);
-  // Sides of vertex v: those from end[v - 1] to end[v], once they are placed.
+  // Sides of vertex v are at [end[v - 1], end[v]) after placement.
   std::vector<std::size_t> end(std::size_t{mesh.vertex_count} + 1, 0);
   visit_sides(mesh, numbers, [&](std::uint32_t a, std::uint32_t b) { ++end[std::min(a, b) + 1]; });
   for (std::size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
-  // The larger vertex, and in the lowest bit whether the face runs from the larger to the smaller.
+  // The larger vertex, and in the lowest bit whether the face goes from the larger to the smaller.
   std::vector<std::uint64_t> sides(end.back());
   visit_sides(mesh, numbers, [&](std::uint32_t a, std::uint32_t b) {
     sides[end[std::min(a, b)]++] = std::uint64_t{std::max(a, b)} << 1 | (a > b ? 1u : 0u);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whether a mesh is closed: how many of its edges are open, non-manifold or inconsistently oriented.
+// Counts the open, non-manifold and inconsistently oriented edges of a mesh: a closed mesh has
+// none.
 #pragma once
 
 #include <cstdint>
@@ -8,23 +9,23 @@
 
 namespace boxtree::cooker {
 
-/// Edges by the faces that share them. A quad has four; the diagonals of split polygons are edges of
-/// the two triangles beside them.
+/// Edges by the number of faces that share them. A quad has four edges. The diagonals of split
+/// polygons are edges of the two adjacent triangles.
 struct SurfaceEdges {
   std::uint64_t open = 0;          // one face
   std::uint64_t non_manifold = 0;  // three faces or more
-  std::uint64_t inconsistent = 0;  // two faces, whose windings run along it in the same direction
+  std::uint64_t inconsistent = 0;  // two faces whose windings traverse it in the same direction
 
-  /// Whether the surface separates inside from outside wherever it does not cross itself.
+  /// Whether the surface separates inside from outside where it does not cross itself.
   [[nodiscard]] bool is_closed() const { return open + non_manifold + inconsistent == 0; }
   bool operator==(const SurfaceEdges&) const = default;
 };
 
-/// Counts the edges of a mesh whose corners are all vertices and whose vertices are welded. Vertices
-/// that differ in the sign of a zero alone count as one. Faces that name a vertex twice have no
-/// sides, and are skipped.
+/// Counts the edges of a mesh. Precondition: all corners are vertices, and the vertices are welded.
+/// Vertices that differ only in the sign of a zero count as one. Faces that refer to a vertex twice
+/// are skipped: they have no sides.
 ///
-/// O(faces); 24 bytes a triangle of memory while it runs.
+/// O(faces); uses 24 bytes of memory per triangle while it runs.
 [[nodiscard]] SurfaceEdges count_surface_edges(const MeshArrays& mesh);
 
 }  // namespace boxtree::cooker

@@ -17,10 +17,10 @@ Error cut(const char* why) {
 
 }  // namespace
 
-// OBJECT begins an object; its last line, "kids N", says that N objects follow as its children.
+// OBJECT begins an object; its last line, "kids N", states that N child objects follow.
 Status check_ac_end(std::string_view file) {
-  std::uint64_t awaited = 0;  // children that are to come
-  bool is_open = false;       // an object's last line is
+  std::uint64_t awaited = 0;  // children still to come
+  bool is_open = false;       // inside an object, before its last line
   Tokens words;
   while (!file.empty()) {
     split_tokens(take_line(file), words);
@@ -34,7 +34,7 @@ Status check_ac_end(std::string_view file) {
       const std::uint64_t room = std::numeric_limits<std::uint64_t>::max() - awaited;
       awaited += std::min(read_count(words[1]).value_or(0), room);
     } else if (words.size() > 1 && words[0] == "data") {
-      // So many bytes of any kind are in the next line or lines.
+      // The next line or lines contain this many bytes of any kind.
       const std::uint64_t bytes = read_count(words[1]).value_or(0);
       file.remove_prefix(std::min<std::uint64_t>(bytes, file.size()));
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Row by row, without keeping any.
+// Reads rows one by one without storing them.
 #include "cooker/import/text_ply.h"
 
 #include <array>
@@ -18,8 +18,8 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-// A vertex number as binary files have it: those below zero become large ones, out of range in any
-// case. Nothing for what is no whole number, or takes more than 32 bits.
+// A vertex number as in binary files: negative numbers become large ones, which are out of range.
+// Empty if it is not an integer or has more than 32 bits.
 std::optional<std::uint32_t> read_vertex_number(std::string_view word) {
   const std::optional<std::int64_t> number = read_integer(word);
   constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min();
@@ -57,13 +57,13 @@ class Reader {
   }
 
   std::string_view rest_;
-  std::size_t line_;  // at hand, from 1
+  std::size_t line_;  // current line, from 1
   Tokens row_;        // its words
   const PlyLayout& layout_;
   const std::string& file_;
   IndexedMesh<T>& mesh_;
-  std::array<double, 3> position_{};    // of the vertex at hand
-  std::vector<std::uint32_t> corners_;  // of the face or strip at hand
+  std::array<double, 3> position_{};    // of the current vertex
+  std::vector<std::uint32_t> corners_;  // of the current face or strip
 };
 
 template <class T>
@@ -80,7 +80,7 @@ Status Reader<T>::read() {
   return mesh_.finish();
 }
 
-// Each of them takes a line: counts beyond that are lies, and cost no memory.
+// Each element takes a line: a larger count is false, and no memory is reserved for it.
 template <class T>
 Status Reader<T>::check_counts() const {
   for (const PlyElement& element : layout_.header.elements) {
@@ -92,7 +92,7 @@ Status Reader<T>::check_counts() const {
   return {};
 }
 
-// Moves to the next line that holds a word; false at the end.
+// Moves to the next line with a word; false at the end.
 template <class T>
 bool Reader<T>::next_row() {
   while (!rest_.empty()) {
@@ -129,7 +129,7 @@ Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) con
   return no_number.empty() ? Status() : failure(fmt::format("'{}' is no number", no_number));
 }
 
-// How many words an element takes by its properties and by the lengths of its lists.
+// Number of words of an element, given its properties and the lengths of its lists.
 template <class T>
 Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
   std::uint64_t wanted = 0;
@@ -147,7 +147,7 @@ Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
   return wanted;
 }
 
-// Precondition: check_row() has found nothing.
+// Precondition: check_row() has found no fault.
 template <class T>
 Status Reader<T>::take_row(const PlyElement& element) {
   std::size_t at = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Word by word, in the precision of the binary files. Lines mean nothing but after "solid" and
-// "endsolid", where a name of any words follows.
+// Reads text STL word by word, in the precision of binary STL. Line ends matter only after "solid"
+// and "endsolid", which are followed by a name of any words.
 #include "cooker/import/text_stl.h"
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 namespace boxtree::cooker {
 namespace {
 
-// Headers of binary files may begin with "solid", too, but no text holds a zero: so many bytes are
-// looked at as such a file has before its first triangle.
+// Headers of binary files may begin with "solid", too, but a text contains no zero byte. This is
+// the number of bytes before the first triangle of a binary file.
 constexpr std::size_t kShown = 84;
 
 // T is the type of the positions.
@@ -55,7 +55,7 @@ class Reader {
     return is_in_facet_ ? take_inside(word, given) : take_outside(word, given);
   }
 
-  // Of a normal, or of a corner.
+  // A number of a normal or of a corner.
   Status take_number(std::string_view given) {
     const std::optional<float> number = read_number<float>(given);
     if (!number) return failure(fmt::format("'{}' is no number", given));
@@ -64,7 +64,7 @@ class Reader {
     return {};
   }
 
-  // A word passed over could be a misspelt facet.
+  // Unknown words are refused: one could be a misspelt facet.
   Status take_outside(std::string_view word, std::string_view given) {
     if (word == (is_open_ ? "endsolid" : "solid")) {
       is_open_ = !is_open_;
@@ -101,15 +101,15 @@ class Reader {
   std::string_view rest_;
   const std::string& file_;
   StlMesh<T>& mesh_;
-  std::size_t line_ = 0;  // at hand, from 1
+  std::size_t line_ = 0;  // current line, from 1
   Tokens words_;
-  bool is_open_ = false;    // a solid is
-  bool is_name_ = false;    // the rest of the line is
-  bool after_end_ = false;  // the word before was "end"
+  bool is_open_ = false;    // inside a solid
+  bool is_name_ = false;    // the rest of the line is a name
+  bool after_end_ = false;  // the previous word was "end"
   bool is_in_facet_ = false;
-  bool is_corner_ = false;        // the numbers at hand are
-  std::size_t numbers_left_ = 0;  // that are to come
-  std::size_t corners_ = 0;       // of the facet at hand
+  bool is_corner_ = false;        // the current numbers are a corner's
+  std::size_t numbers_left_ = 0;  // still expected
+  std::size_t corners_ = 0;       // of the current facet
   std::array<typename StlMesh<T>::Corner, 3> corner_{};
 };
 

@@ -15,7 +15,7 @@ bool is_space(char c) {
   return c == ' ' || c == '\t' || c == '\n' || c == '\r' || c == '\f' || c == '\v';
 }
 
-// `token` as from_chars reads it, which knows no plus sign.
+// `token` in the spelling of from_chars, which does not accept a plus sign.
 std::string_view without_plus(std::string_view token) {
   const bool has_plus = token.size() > 1 && token[0] == '+' && token[1] != '-';
   return token.substr(has_plus ? 1 : 0);
@@ -30,7 +30,7 @@ std::optional<T> read_whole(std::string_view digits) {
   return number;
 }
 
-// Whether a number, spelled as from_chars reads it, is nearer to zero than to infinity.
+// Whether a number that from_chars finds out of range is too small rather than too large.
 bool is_below_one(std::string_view digits) {
   if (digits.starts_with('-')) digits.remove_prefix(1);
   const std::size_t mantissa = std::min(digits.find_first_of("eE"), digits.size());
@@ -41,7 +41,7 @@ bool is_below_one(std::string_view digits) {
     const char* const first = digits.data() + mantissa + (has_plus ? 2 : 1);
     if (std::from_chars(first, last, exponent).ec != std::errc()) return *first == '-';
   }
-  // Places of the first digit that is not zero before the point, or behind it.
+  // Place of the first non-zero digit relative to the point.
   const std::size_t point = std::min(digits.find('.'), mantissa);
   const std::size_t first = digits.find_first_of("123456789");
   const auto place = static_cast<std::int64_t>(point) - static_cast<std::int64_t>(first);

@@ -35,7 +35,7 @@ std::uint64_t page_bytes() {
 }
 
 std::uint64_t address_space() {
-  std::array<char, 64> line{};  // pages of it, and other figures
+  std::array<char, 64> line{};  // numbers of pages, and other figures
   const FileHandle file(std::fopen("/proc/self/statm", "r"));
   const bool is_read = file && std::fgets(line.data(), line.size(), file.get()) != nullptr;
   return is_read ? std::strtoull(line.data(), nullptr, 10) * page_bytes() : 0;
@@ -48,7 +48,7 @@ void limit(int resource, std::uint64_t most) {
   static_cast<void>(setrlimit(static_cast<__rlimit_resource>(resource), &now));
 }
 
-// The copy's life. Ends without what exit() does: that is the parent's to do.
+// The code of the copy. It ends without the cleanup of exit(), which is the parent's.
 [[noreturn]] void be_child(int to_parent, const TrialLimits& limits,
                            const std::function<Status()>& work) {
   static_cast<void>(prctl(PR_SET_PDEATHSIG, SIGKILL));

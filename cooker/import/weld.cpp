@@ -14,15 +14,15 @@ namespace {
 constexpr std::uint32_t kFree = 0xffffffffu;
 constexpr std::size_t kMinSlots = 64;
 
-// Room for `vertices` at a load of at most 2/3, beyond which linear probing gets slow.
+// Slots for `vertices` at a load of at most 2/3; linear probing is slow above.
 std::size_t slots_for(std::size_t vertices) {
   const std::size_t wanted = vertices + vertices / 2 + 1;
   return std::bit_ceil(wanted < kMinSlots ? kMinSlots : wanted);
 }
 
-// Each coordinate is spread over 64 bits before the next comes in, because the bits of neighbouring
-// positions differ in few places; the top bits of a product depend on all bits below, hence the
-// final fold. Multiplier: 2^64 divided by the golden ratio (Knuth, TAOCP 6.4).
+// Each coordinate is spread over 64 bits before the next is added, because neighbouring positions
+// differ in few bits. The top bits of a product depend on all lower bits, hence the final fold.
+// Multiplier: 2^64 divided by the golden ratio (Knuth, TAOCP 6.4).
 template <class T>
 std::uint64_t hash_bits(const T* position) {
   using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
@@ -72,7 +72,7 @@ template <class T>
 void Welder<T>::reserve(std::size_t more) {
   const std::size_t slots = slots_for(count_ + more);
   if (slots > table_.size()) rehash(slots);
-  // Never by less than doubling: many small calls must not copy the array each time.
+  // At least doubles, so that many small calls do not copy the array each time.
   const std::size_t wanted = 3 * (count_ + more);
   if (wanted > positions_.capacity()) {
     positions_.reserve(positions_.empty() ? wanted : std::max(wanted, 2 * positions_.size()));
@@ -81,7 +81,7 @@ void Welder<T>::reserve(std::size_t more) {
 
 template <class T>
 void Welder<T>::rehash(std::size_t slots) {
-  // The old table is not needed to build the new one: free it first to keep the peak low.
+  // The new table does not need the old one: free it first to keep peak memory low.
   table_ = std::vector<std::uint32_t>();
   table_.assign(slots, kFree);
   const std::size_t mask = slots - 1;
@@ -103,7 +103,7 @@ void weld_in_place(std::vector<T>& positions, std::span<std::uint32_t> numbers,
   };
   for (std::size_t vertex = 0; vertex < numbers.size(); ++vertex) {
     if (vertex + kAhead < numbers.size()) welder.prefetch(position(vertex + kAhead));
-    // A vertex is never written beyond the place where it was read: at most that many were added.
+    // A vertex is never written behind its place of reading: at most that many were added.
     if (numbers[vertex] != kWeldUnused) numbers[vertex] = welder.add(position(vertex));
   }
   positions.resize(3 * welder.size());

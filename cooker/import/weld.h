@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Welding: positions that are equal bit for bit get one vertex number.
+// Welding: vertices whose positions are equal bit for bit get one number.
 #pragma once
 
 #include <array>
@@ -10,33 +10,33 @@
 
 namespace boxtree::cooker {
 
-/// Appends positions to an array (three numbers each) and gives those that are equal bit for bit
-/// one number, the first one's; so -0 and +0 stay apart and nothing ever moves. Numbers follow the
+/// Appends positions to an array (three numbers each). Positions that are equal bit for bit get the
+/// number of the first, so -0 and +0 stay distinct and no position changes. Numbers follow the
 /// order of first appearance: an array without duplicates keeps its order.
 ///
-/// The array may be longer than what was added, so that positions can be welded where they stand:
-/// `add` then overwrites what comes next in it.
+/// The array may be longer than what was added, so that positions can be welded in place: `add`
+/// then overwrites the next ones.
 ///
-/// An open-addressing table of vertex numbers, whose keys are the array itself: 4 bytes a slot, at
-/// most 2/3 full. Expected O(1) an `add`. T is float or double; at most 2^32 - 1 vertices.
+/// An open-addressing table of vertex numbers; the array holds the keys. 4 bytes per slot, at most
+/// 2/3 full. `add` is expected O(1). T is float or double; at most 2^32 - 1 vertices.
 template <class T>
 class Welder {
  public:
-  /// Writes to `positions` from its beginning; it must outlive the welder, and others must leave
-  /// alone what was added. `expected` vertices fit without growing the table.
+  /// Writes to `positions` from its beginning. The array must outlive the welder, and others must
+  /// not change what was added. `expected` vertices fit without growing the table.
   explicit Welder(std::vector<T>& positions, std::size_t expected = 0);
 
   /// The number of the vertex with exactly these bits, appended if it is new.
   std::uint32_t add(const std::array<T, 3>& position);
 
-  /// Fetches what an `add` of this position, soon, looks at first: tables of large meshes are in no
-  /// cache.
+  /// Prefetches the slot that `add` of this position reads first: tables of large meshes do not fit
+  /// into caches.
   void prefetch(const std::array<T, 3>& position) const;
 
   /// Vertices added so far that were new.
   [[nodiscard]] std::size_t size() const { return count_; }
 
-  /// Makes room for `more` further vertices, should they all be new.
+  /// Makes room for `more` new vertices.
   void reserve(std::size_t more);
 
  private:
@@ -47,14 +47,14 @@ class Welder {
   std::vector<std::uint32_t> table_;  // power of two long; kFree or a vertex number
 };
 
-/// What weld_in_place is told of a vertex that stays.
+/// Input of weld_in_place: the vertex stays.
 inline constexpr std::uint32_t kWeldUsed = 0;
-/// ... and of one that goes.
+/// Input of weld_in_place: the vertex is dropped.
 inline constexpr std::uint32_t kWeldUnused = 0xffffffffu;
 
-/// Welds the used ones of `positions` where they stand and drops the others. `numbers`, as many as
-/// vertices, says which are used, and afterwards which number each of those has. `expected`
-/// vertices that differ fit without growing the table.
+/// Welds the used vertices of `positions` in place and drops the others. `numbers` has an element
+/// per vertex: on entry whether it is used, on return the new number of a used one. `expected`
+/// distinct vertices fit without growing the table.
 template <class T>
 void weld_in_place(std::vector<T>& positions, std::span<std::uint32_t> numbers,
                    std::size_t expected);

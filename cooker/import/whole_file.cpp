@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reads files by stdio, whose errors say why.
+// Reads files by stdio, which reports the reason of errors.
 #include "cooker/import/whole_file.h"
 
 #include <cerrno>

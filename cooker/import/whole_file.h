@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Reading a file as a whole, as long as it is no longer than its kind may be: a device never ends.
+// Reads whole files up to a size limit per kind: a device never ends.
 #pragma once
 
 #include <cstdint>
@@ -19,12 +19,12 @@ inline constexpr std::uint64_t kMaxCostsBytes = std::uint64_t{1} << 20;
 inline constexpr std::uint64_t kMaxResultsBytes = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();
 
-/// Hands the bytes of `path` to `sink` in chunks, `most` at most. Errors: kFileNotFound,
-/// kFileUnreadable, also for a file that is longer.
+/// Passes the bytes of `path` to `sink` in chunks. Errors: kFileNotFound; kFileUnreadable, also for
+/// a file of more than `most` bytes.
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
                    const std::function<void(const char* bytes, std::size_t count)>& sink);
 
-/// The whole file. Errors likewise.
+/// The whole file. Errors: the same.
 Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most);
 
 }  // namespace boxtree::cooker
