@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gathers meshes and instances; numbers of a later file follow those of the earlier ones.
+// Collects meshes and instances; numbers of a later file follow those of the earlier ones.
 #include "cooker/scene/cook_input.h"
 
 #include <map>
@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Makes one scene of several: what is equal is there once, as in the scene of one file.
+// Joins several scenes into one; equal meshes are stored once, as in the scene of one file.
 class SceneJoin {
  public:
   explicit SceneJoin(SourceScene& scene) : scene_(scene), meshes_(scene.meshes) {
@@ -56,7 +56,7 @@ class SceneJoin {
     return number;
   }
 
-  // Of two without a name nobody knows whether they are one.
+  // Materials without a name are never merged, because they may differ.
   std::uint32_t add_unnamed() {
     const auto number = static_cast<std::uint32_t>(scene_.materials.size());
     scene_.materials.push_back(unnamed_material(number));
@@ -73,13 +73,13 @@ void note_import(CookInput& input, ImportReport&& report, std::string name) {
   input.import_names.push_back(std::move(name));
 }
 
-// The meshes of a profile become those of the scene, one each; a file that several name is read
-// once for each, as each may be cooked in another way.
+// Each mesh of a profile becomes a mesh of the scene. A file that several name is read once for
+// each, because each may be cooked differently.
 Result<CookInput> load_listed(const Profile& profile, const ImportOptions& options,
                               const Progress& progress) {
   CookInput input;
   input.scene.name = profile.path.stem().string();
-  std::vector<std::uint32_t> numbers;  // of the profile's meshes, in the scene
+  std::vector<std::uint32_t> numbers;  // the scene's numbers of the profile's meshes
   for (const ProfileMesh& listed : profile.meshes) {
     numbers.push_back(static_cast<std::uint32_t>(input.scene.meshes.size()));
     if (!listed.file) continue;
@@ -153,7 +153,7 @@ Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
 
 Result<CookInput> load_trees(std::span<const fs::path> inputs, const ImportOptions& options,
                              const Progress& progress) {
-  // Told before hours of work, not after.
+  // Reported before hours of work, not after.
   if (inputs.size() > kMaxTrees) {
     return Error{Errc::kMeshTooLarge, fmt::format("{} inputs, each a tree: a file holds {} at most",
                                                   inputs.size(), kMaxTrees)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What is cooked: the scene that importers made of a file with a node graph, of the meshes and
-// instances that a profile lists, or of meshes that become trees side by side.
+// The input of a cook: a scene imported from a file with a node graph, the meshes and instances of
+// a profile, or meshes that become separate trees.
 #pragma once
 
 #include <cstddef>
@@ -15,39 +15,39 @@
 
 namespace boxtree::cooker {
 
-/// Told of every step ("import bunny.obj"); may be empty.
+/// Called with every step ("import bunny.obj"); may be empty.
 using Progress = std::function<void(const std::string& step)>;
 
 inline void announce(const Progress& progress, const std::string& step) {
   if (progress) progress(step);
 }
 
-/// A scene and what was imported for it, in the order of import.
+/// A scene and the reports of its imports, in order of import.
 struct CookInput {
   SourceScene scene;
-  /// False: nothing places the meshes, and each is a tree. There are no instances, then.
+  /// False if nothing places the meshes: each is a tree, and there are no instances.
   bool has_top_level = true;
   std::vector<ImportReport> imports;
-  std::vector<std::string> import_names;  // of the files, as the cook record names them
-  /// Imports a mesh of `scene` when it is needed, so that not all need be in memory together;
-  /// called once for each, in order. Empty: all meshes are there.
+  std::vector<std::string> import_names;  // of the files, for the cook record
+  /// Imports a mesh of `scene` when it is needed, so that not all meshes are in memory at once;
+  /// called once per mesh, in order. Empty if all meshes are in memory.
   std::function<Result<Imported>(std::size_t mesh)> importer;
 };
 
-/// Loads the scene of a profile or, where that names no source and lists no meshes, of `inputs`,
-/// which make one scene together. Told of every file before it is read. Errors: those of
-/// import_scene; kProfileInvalid when neither or both say what to load.
+/// Loads the scene of a profile or, if it names no source and lists no meshes, of `inputs`, which
+/// together form one scene. Reports progress before each file is read. Errors: those of
+/// import_scene; kProfileInvalid if neither or both state what to load.
 Result<CookInput> load_scene(std::span<const std::filesystem::path> inputs, const Profile& profile,
                              const ImportOptions& options, const Progress& progress = {});
 
-/// Loads a file as what it is: a scene if it places meshes twice or more, else one tree without a
-/// top level. Errors: those of import_file.
+/// Loads a file as a scene if it places meshes twice or more, otherwise as one tree without a top
+/// level. Errors: those of import_file.
 Result<CookInput> load_file(const std::filesystem::path& path, const ImportOptions& options,
                             const Progress& progress = {});
 
-/// Each input becomes a tree named after its file, without a top level. Reads nothing yet:
-/// CookInput::importer does, with the errors of import_mesh. Error: kMeshTooLarge for more inputs
-/// than a file holds trees.
+/// Makes each input a tree without a top level, named after its file. Reads nothing;
+/// CookInput::importer reads, with the errors of import_mesh. Error: kMeshTooLarge for more inputs
+/// than a file can hold trees.
 Result<CookInput> load_trees(std::span<const std::filesystem::path> inputs,
                              const ImportOptions& options, const Progress& progress = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One number or range a line, so that tools write such lists as easily as people.
+// One number or range per line: easy to write for tools and people.
 #include "cooker/scene/hidden_faces.h"
 
 #include <algorithm>

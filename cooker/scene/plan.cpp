@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which instances and layers there are; what each mesh needs is in plan_meshes.cpp.
+// Plans instances and layers; plan_meshes.cpp plans the meshes.
 #include "cooker/scene/plan.h"
 
 #include <algorithm>
@@ -37,8 +37,8 @@ std::vector<std::uint32_t> objects_of(const SourceScene& scene, const Profile& p
   return objects;
 }
 
-// No query reaches an object that answers none, whether its instances move or not: pairs, too, are
-// met only where both sides answer pair queries.
+// The line that drops an object, if any. An object that answers no query is dropped, whether its
+// instances move or not: pair queries, too, need both sides to answer them.
 std::optional<std::uint32_t> line_that_drops(const ProfileObject& object) {
   if (object.leave_out.value) return object.leave_out.line;
   if (object.needs.queries.value == 0) return object.needs.queries.line;
@@ -94,8 +94,8 @@ bool never_collide(const ProfileObject& object, std::uint32_t other) {
                      [&](const Stated<std::uint32_t>& name) { return name.value == other; });
 }
 
-// Static instances may be moved after all where the application says so when it binds the scene
-// (SceneOptions::moving), so layers of them meet like any others; two at rest are never compared.
+// Applications may move static instances when they bind the scene (SceneOptions::moving), so layers
+// of static objects collide like any others. Two instances at rest are never compared.
 void plan_contacts(const Profile& profile, ScenePlan& plan) {
   for (std::size_t a = 0; a < plan.layers.size(); ++a) {
     PlannedLayer& first = plan.layers[a];

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What each mesh needs: of all objects that use it, what the most demanding needs.
+// Plans each mesh by the most demanding needs of all objects that use it.
 #include "cooker/scene/plan_meshes.h"
 
 #include <algorithm>
@@ -17,21 +17,21 @@
 namespace boxtree::cooker {
 namespace {
 
-// An object that uses a mesh, and how large that gets in it.
+// An object that uses a mesh, and the largest scale of that use.
 struct Use {
   std::uint32_t object;
   double largest_scale;
 };
 
-// From the least demanding to the most; what is not here is never stated. Codecs by the times of
-// docs/MEASUREMENTS.md.
+// From the least demanding to the most, by the times in docs/MEASUREMENTS.md. Codecs that are not
+// listed cannot be stated.
 constexpr std::array kCodecsBySpeed = {CodecId::kPackedF64, CodecId::kDedup,    CodecId::kPackedF16,
                                        CodecId::kPackedF32, CodecId::kPlainF16, CodecId::kPlainF32,
                                        CodecId::kWide4,     CodecId::kWide8};
 static_assert(kCodecsBySpeed.size() == kCodecs.size());
 
-// Memory is less than any codec, balance lies between wide4 and wide8, speed is above all; what
-// nobody states, below.
+// Memory is below all codecs, balance between wide4 and wide8, speed above all codecs; a goal that
+// is not stated is below memory.
 std::size_t demand_of(const Needs& needs) {
   constexpr std::size_t kCodec = 2;  // of the first codec; each takes two numbers
   if (needs.codec) {
@@ -91,7 +91,7 @@ class MeshPlanner {
   const Profile& profile_;
   ScenePlan& plan_;
   std::vector<std::vector<Use>> uses_;       // of each mesh, by object
-  std::vector<const ProfileMesh*> said_of_;  // of each mesh, or nothing
+  std::vector<const ProfileMesh*> said_of_;  // of each mesh, or nullptr
 };
 
 Status MeshPlanner::find_statements() {
@@ -150,7 +150,7 @@ void MeshPlanner::find_uses() {
   }
 }
 
-// Not where the profile says something of that very mesh.
+// False if the profile has settings for this mesh.
 bool MeshPlanner::can_be_shared(std::uint32_t mesh) const {
   const std::vector<Use>& uses = uses_[mesh];
   const auto wants_materials = [&](const Use& use) { return object_of(use).needs.materials.value; };
@@ -158,8 +158,7 @@ bool MeshPlanner::can_be_shared(std::uint32_t mesh) const {
          std::none_of(uses.begin(), uses.end(), wants_materials);
 }
 
-// Meshes that differ in materials alone, which nobody wants, are the first of them: all that use
-// them use that one.
+// Meshes that differ only in materials that no object needs are merged into the first of them.
 void MeshPlanner::share_shapes() {
   std::unordered_multimap<std::uint64_t, std::uint32_t> firsts;  // by shape
   for (std::uint32_t mesh = 0; mesh < scene_.meshes.size(); ++mesh) {
@@ -202,7 +201,7 @@ void MeshPlanner::drop(std::uint32_t mesh) {
          line == 0 ? "it has no instances" : "none of its instances is kept", line);
 }
 
-// Kept if any object needs it; dropped by the line of the first.
+// Kept if any object needs it; otherwise dropped by the line of the first object.
 void MeshPlanner::decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*needed,
                               bool& kept) {
   const std::vector<Use>& uses = uses_[mesh];
@@ -247,14 +246,14 @@ void MeshPlanner::decide_queries(std::uint32_t mesh) {
     planned.queries = static_cast<QueryKinds>(planned.queries | object_of(use).needs.queries.value);
   }
   for (std::size_t kind = 0; kind < kKinds.size(); ++kind) {
-    // What the whole file does not answer has been decided.
+    // Kinds that the whole file does not answer are decided already.
     if (((plan_.queries & ~planned.queries) >> kind & 1) == 0) continue;
     decide(mesh, kKinds[kind], false, "no object that uses it answers them",
            object_of(uses_[mesh].front()).needs.queries.line);
   }
 }
 
-// External if the mesh is said to be, or all objects that use it.
+// External if stated for the mesh or by all objects that use it.
 void MeshPlanner::decide_geometry(std::uint32_t mesh) {
   PlannedMesh& planned = plan_.meshes[mesh];
   constexpr const char* kShared = "the application has these arrays";
@@ -282,7 +281,7 @@ void MeshPlanner::decide_precision(std::uint32_t mesh) {
   planned.default_precision = false;
   std::string reason = "the cooker's own choice";
   std::uint32_t line = 0;
-  // A limit of the world, where it is tighter than those before.
+  // Applies a limit in world lengths if it is tighter than the previous ones.
   const auto limit = [&](double world, double scale, const char* what, std::uint32_t said) {
     const double length = divided_below(world, scale);
     if (planned.tolerance && *planned.tolerance <= length) return;
@@ -304,7 +303,7 @@ void MeshPlanner::decide_precision(std::uint32_t mesh) {
     } else {
       planned.default_precision = true;
     }
-    // Rays alone make no contact, unless somebody says of this very object that they do.
+    // Rays alone make no contact, unless the object itself states a contact rule.
     const auto contact_kinds = static_cast<QueryKinds>(~kRayQueries);
     const bool has_contacts =
         needs.contact && (needs.contact->of_object || (needs.queries.value & contact_kinds) != 0);

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The part of a plan that is about meshes.
+// Plans the meshes of a scene.
 #pragma once
 
 #include "cooker/scene/plan.h"
 
 namespace boxtree::cooker {
 
-/// Fills meshes and material_names of a plan whose instances and layers are there, and adds what
-/// is decided. Errors as of plan_scene.
+/// Fills in the meshes and material_names of a plan with instances and layers, and appends the
+/// decisions. Errors: as for plan_scene.
 Status plan_meshes(const SourceScene& scene, const Profile& profile, ScenePlan& plan);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bounds that decide how fine a grid is, so that their last bits must not depend on the machine.
+// Bounds that decide the step of a grid; their last bits must not depend on the machine.
 #include "cooker/scene/precision.h"
 
 #include <algorithm>
@@ -10,8 +10,8 @@
 namespace boxtree::cooker {
 namespace {
 
-// The largest magnitude where no row and no column has more than one number other than zero: such
-// a matrix stretches along its axes. Nothing otherwise.
+// The largest magnitude if no row and no column has more than one non-zero number: such a matrix
+// stretches along the axes. Otherwise empty.
 std::optional<double> stretch_along_axes(const Eigen::Matrix3d& m) noexcept {
   double largest = 0;
   std::array<int, 3> in_row{}, in_column{};
@@ -42,7 +42,7 @@ Eigen::Matrix3d scaled(const Eigen::Matrix3d& m, int exponent) noexcept {
   return result;
 }
 
-// M^T M, in one order of additions.
+// M^T M, with a fixed order of additions.
 Eigen::Matrix3d gram(const Eigen::Matrix3d& m) noexcept {
   Eigen::Matrix3d result;
   for (int i = 0; i < 3; ++i) {
@@ -56,11 +56,11 @@ Eigen::Matrix3d gram(const Eigen::Matrix3d& m) noexcept {
 }  // namespace
 
 // With B = A^T A, |A|^2 = |B|, and for symmetric B |B|^2 = |B^2| = |B^T B|. After n squarings the
-// largest row sum is at most sqrt(3) |B^(2^n)|, of which the 2^(n+1)-th root is taken: 3 to the
+// largest row sum is at most sqrt(3) |B^(2^n)|. Its 2^(n+1)-th root errs by a factor of 3 to the
 // power of 2^-(n+2), below 1.00007 for n = 12. Matrices are kept near 1 by powers of two. Each
 // product changes the norm by less than 16 u of it (gamma_3 of the product of the magnitudes, whose
-// norm is at most three times as large); its share in the result halves with each root, as do those
-// of the roots themselves: less than 64 u in all.
+// norm is at most three times as large). Each root halves the share of that error and of the roots'
+// own errors in the result: less than 64 u in all.
 double largest_stretch(const Eigen::Matrix3d& linear) noexcept {
   if (const auto along_axes = stretch_along_axes(linear)) return *along_axes;
   constexpr std::size_t kSquarings = 12;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tables of a profile, read into values that are complete: what an object does not say is
-// taken from [scene] here, so that nothing later has to look in two places.
+// Reads the tables of a profile into complete values: values that an object does not state are
+// taken from [scene] here, so that later stages look in one place.
 #include "cooker/scene/profile.h"
 
 #include <algorithm>
@@ -50,7 +50,7 @@ class ProfileReader {
   Status read(const TomlTable& root);
 
  private:
-  // Tables of one kind, each with its line; none if there is none of that name.
+  // Tables of one kind, each with its line; empty if there are none.
   struct Header {
     const TomlTable* table;
     std::uint32_t line;
@@ -119,7 +119,7 @@ void ProfileReader::read_queries(Fields& fields, Stated<QueryKinds>& queries) {
   }
 }
 
-// Where two keys say the same thing in two ways, either replaces what [scene] says by both.
+// If two keys state the same property in two ways, either replaces both values of [scene].
 void ProfileReader::read_needs(Fields& fields, Needs& needs) {
   read_queries(fields, needs.queries);
   override_with(needs.face_ids, fields.flag("face_ids"));
@@ -163,7 +163,7 @@ void ProfileReader::read_contact(Fields& fields, std::optional<ContactRule>& rul
   if (line == 0) return;
   if (!rule && (!stiffness || !mass)) {
     const char* missing = stiffness ? "mass" : "stiffness";
-    // A value that is there but wrong has been complained of already.
+    // Invalid values have been reported already.
     if (fields.find(missing) == nullptr) {
       complaints_.expected(line, "contact", fmt::format("the key \"{}\" as well", missing), "none");
     }
@@ -200,7 +200,7 @@ void ProfileReader::read_budget(const Header& header) {
   fields.finish();
 }
 
-// Names of objects and meshes are known before anything refers to them.
+// Collects names of objects and meshes before anything refers to them.
 void ProfileReader::collect_names(const std::vector<Header>& headers,
                                   std::vector<std::string>& names, std::string_view where) {
   std::map<std::string, std::uint32_t> lines;
@@ -364,7 +364,7 @@ Status ProfileReader::read(const TomlTable& root) {
   return complaints_.status();
 }
 
-// A line up to a '#' that stands in no text.
+// The line up to a '#' outside of strings.
 std::string without_comment(const std::string& line) {
   char quote = 0;
   for (std::size_t i = 0; i < line.size(); ++i) {
@@ -413,7 +413,7 @@ Result<Profile> read_profile(const std::filesystem::path& path) {
   return profile;
 }
 
-// On a mismatch the last '*' takes one character more; an earlier one never has to.
+// On a mismatch the last '*' takes one more character; an earlier one never has to.
 bool glob_matches(std::string_view glob, std::string_view name) noexcept {
   std::size_t g = 0, n = 0;
   std::size_t star = std::string_view::npos, taken = 0;

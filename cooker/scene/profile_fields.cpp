@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Types, ranges, and messages that say what would be right.
+// Checks types and ranges; messages state the expected value.
 #include "cooker/scene/profile_fields.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Typed reading of a profile's tables: each key requested is known, all others are complained of.
+// Typed reading of a profile's tables; keys that no reader requests are reported.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@
 
 namespace boxtree::cooker {
 
-/// What is wrong with a profile; of several complaints, the one that stands first is kept.
+/// The first fault of a profile: of several complaints the one with the smallest line is kept.
 class Complaints {
  public:
   explicit Complaints(std::string path) : path_(std::move(path)) {}
 
-  /// Whether a complaint of this line would be kept: what is costly to word need not be worded.
+  /// Whether a complaint of this line would be kept; if not, its text need not be made.
   [[nodiscard]] bool wants(std::uint32_t line) const { return text_.empty() || line < line_; }
   void add(std::uint32_t line, const std::string& text);
   /// "WHERE: expected EXPECTED, found FOUND".
@@ -34,7 +34,7 @@ class Complaints {
   std::uint32_t line_ = 0;
 };
 
-/// What numbers are allowed.
+/// The range of allowed numbers.
 struct NumberRange {
   const char* wording;  // "a number above 0"
   double low;
@@ -45,11 +45,11 @@ inline constexpr NumberRange kAnyNumber = {"a finite number", std::numeric_limit
 inline constexpr NumberRange kAboveZero = {"a number above 0", 0, false};
 inline constexpr NumberRange kAtLeastOne = {"a number of 1 or more", 1, true};
 
-/// The keys of one table. Each reader returns nothing if the key is missing or its value is not as
-/// it must be; the latter is complained of.
+/// The keys of one table. Each reader returns nothing if the key is missing or its value is
+/// invalid; invalid values are reported.
 class Fields {
  public:
-  /// `where` names the table in messages: "[scene]". `line`: of its header.
+  /// `where` is the name of the table in messages: "[scene]". `line`: of its header.
   Fields(const TomlTable& table, std::string where, std::uint32_t line, Complaints& complaints)
       : table_(table), where_(std::move(where)), line_(line), complaints_(complaints) {}
 
@@ -66,17 +66,17 @@ class Fields {
   std::optional<std::vector<Stated<std::string>>> texts(std::string_view key);
   std::optional<Stated<std::vector<double>>> numbers(std::string_view key, std::size_t count,
                                                      std::string_view wording);
-  /// One of `names`: its number.
+  /// The index of a value in `names`.
   std::optional<Stated<std::uint32_t>> one_of(std::string_view key,
                                               std::span<const std::string> names,
                                               std::string_view wording);
-  /// The number of a name that was read, or a complaint that names the nearest.
+  /// The index of a name that was read; an unknown name is reported with the nearest known one.
   std::optional<std::uint32_t> number_of(const Stated<std::string>& name, std::string_view key,
                                          std::span<const std::string> names,
                                          std::string_view wording);
-  /// Complains of two keys that exclude each other, at the later one.
+  /// Reports two keys that exclude each other, at the later one.
   void exclude(std::string_view first, std::string_view second);
-  /// Complains of all keys that were not requested.
+  /// Reports all keys that were not requested.
   void finish();
 
  private:

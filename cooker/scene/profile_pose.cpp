@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Poses go into files, whose bytes are the same on every machine: no sine or cosine of a library,
-// and no sums of Eigen, whose order follows the instruction set.
+// Poses go into files, whose bytes are the same on every machine. This code therefore uses no sine
+// or cosine of a library and no sums of Eigen, whose order depends on the instruction set.
 #include "cooker/scene/profile_pose.h"
 
 #include <array>
@@ -14,7 +14,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// How far a quaternion's length may be from 1: what drifts by more was never meant as one.
+// Largest deviation of a quaternion's length from 1; beyond it the value is an error.
 constexpr double kQuaternionDrift = 1e-3;
 
 struct SineCosine {
@@ -22,7 +22,7 @@ struct SineCosine {
   double cosine;
 };
 
-// Taylor series, in radians of at most pi / 4: the first term left out is below 2^-56 of the sum.
+// Taylor series, in radians of at most pi / 4: the first omitted term is below 2^-56 of the sum.
 SineCosine of_small(double x) noexcept {
   const double square = x * x;
   double sine = 1, cosine = 1;
@@ -33,7 +33,7 @@ SineCosine of_small(double x) noexcept {
   return {x * sine, cosine};
 }
 
-// Whole quarters are taken off exactly.
+// Whole quarters are subtracted exactly.
 SineCosine of_degrees(double degrees) noexcept {
   constexpr double kRadiansADegree = 0x1.1df46a2529d39p-6;  // pi / 180
   int quarters = 0;
@@ -51,8 +51,8 @@ SineCosine of_degrees(double degrees) noexcept {
   }
 }
 
-// A vector over its largest magnitude, so that squares neither overflow nor vanish, then over its
-// length.
+// Divides a vector by its largest magnitude, so that squares neither overflow nor vanish, then by
+// its length.
 template <int N>
 Eigen::Matrix<double, N, 1> unit(Eigen::Matrix<double, N, 1> v) noexcept {
   double largest = 0;

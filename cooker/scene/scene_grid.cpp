@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Steps of grids from the scene's extent, scales of instances and tolerances.
+// Computes steps of grids from the scene's extent, scales of instances and tolerances.
 #include "cooker/scene/scene_grid.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// By AffineMap, whose order of operations is fixed: the result goes into files.
+// Uses AffineMap, whose order of operations is fixed: the result goes into files.
 Eigen::AlignedBox3d world_bounds(const SourceScene& scene, const ScenePlan& plan,
                                  const std::vector<Eigen::AlignedBox3d>& mesh_bounds) {
   Eigen::AlignedBox3d world;

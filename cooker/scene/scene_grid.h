@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How fine the grid of each tree of a scene is: one step in the world, so that what touches still
-// does, as far as scales of instances and wishes of the profile allow.
+// The grid of each tree of a scene: one step in the world, so that surfaces that touch still touch,
+// as far as scales of instances and the profile allow.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace boxtree::cooker {
 
-/// Steps of which a mesh has no fewer over its largest extent when nobody stated a tolerance: a
-/// small thing in a large world keeps its shape.
+/// Least number of bits over the largest extent of a mesh without a stated tolerance: small objects
+/// in a large world keep their shape.
 inline constexpr int kLeastMeshBits = 16;
 
-/// The grid of each mesh that the plan keeps; nothing for meshes that must not be rounded, or that
-/// no grid is fine enough for. Steps are powers of two and all grids have the origin of object
-/// space on them: a coarser one is part of a finer one. By default `bits` steps over the scene's
-/// largest extent in the world; a tolerance of the plan makes the step smaller or larger.
+/// The grid of each mesh that the plan keeps; empty for meshes that must not be rounded, or for
+/// which no grid is fine enough. Steps are powers of two, and the origin of object space is on all
+/// grids, so a coarser grid is part of a finer one. By default there are `bits` steps over the
+/// scene's largest extent in the world; a tolerance of the plan makes the step smaller or larger.
 [[nodiscard]] std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene,
                                                            const ScenePlan& plan, int bits);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Goes through a TOML text once: strings and comments are passed over, dots of keys counted.
+// Scans a TOML text once: skips strings and comments, counts the dots of keys.
 #include "cooker/scene/toml_checks.h"
 
 #include <algorithm>
@@ -61,7 +61,7 @@ class Scan {
         expects_value_ = false;
         break;
       case ']':
-        is_header_ = false;  // its name ends here, what follows is for the parser to see
+        is_header_ = false;  // the name ends here; the parser checks the rest
         [[fallthrough]];
       case '}':
         if (!open_.empty()) open_.pop_back();
@@ -81,7 +81,7 @@ class Scan {
         return;
     }
     has_begun_ = true;
-    dots_ = 0;  // the next key, or a value
+    dots_ = 0;  // the next is a key or a value
   }
 
   void end_of_line() {
@@ -91,8 +91,8 @@ class Scan {
     if (open_.empty()) has_begun_ = is_value_ = expects_value_ = is_header_ = false;
   }
 
-  // Whether the quote before at_ is where a token begins: elsewhere the parser takes it, and what
-  // follows, for a part of a bare value. Behind a dot it begins a part of a key.
+  // Whether a token begins at the quote before at_. Elsewhere the parser reads the quote and what
+  // follows as part of a bare value. After a dot it begins a part of a key.
   [[nodiscard]] bool may_begin_string() const {
     constexpr std::string_view kBefore = " \t\r\n=[{,.";
     const std::string_view before = text_.substr(0, at_ - 1);
@@ -101,8 +101,7 @@ class Scan {
            !(before.back() == '.' && expects_value_);
   }
 
-  // Behind the first quote. A string of one line that has no end leaves the rest of it to the
-  // parser.
+  // Starts after the first quote. The parser reports a single-line string without an end.
   void pass_string(char quote) {
     const std::string three(3, quote);
     if (text_.substr(at_ - 1, 3) != three) {
@@ -120,7 +119,7 @@ class Scan {
       at_ += escapes ? std::size_t{2} : 1;
     }
     at_ = std::min(at_ + 3, text_.size());
-    // One or two quotes more belong to the string.
+    // One or two more quotes belong to the string.
     for (int i = 0; i < 2 && at_ < text_.size() && text_[at_] == quote; ++i) ++at_;
   }
 
@@ -133,8 +132,8 @@ class Scan {
   std::uint32_t line_ = 1;
   std::uint32_t dots_ = 0;
   std::string open_;            // the brackets of arrays and inline tables
-  bool has_begun_ = false;      // something of a statement has been seen
-  bool is_value_ = false;       // behind the '=' of a statement
+  bool has_begun_ = false;      // some part of a statement has been read
+  bool is_value_ = false;       // after the '=' of a statement
   bool expects_value_ = false;  // not a key of an inline table there
   bool is_header_ = false;
   std::optional<TomlFault> fault_;

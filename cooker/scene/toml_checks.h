@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What toml++ must not be given: it expands keys by recursion, a frame for each part, asserts
-// on a table's name that does not end on its line, and looks up characters beyond ASCII outside of
-// quotes, which TOML 1.0 does not allow, in tables that it runs past.
+// Finds TOML texts that toml++ cannot parse safely. It expands keys by recursion, a frame per part;
+// it asserts on a table's name that does not end on its line; and it looks up characters beyond
+// ASCII outside of quotes, which TOML 1.0 does not allow, in tables that it overruns.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace boxtree::cooker {
 
-/// Parts of a key, "a.b.c" having three.
+/// Largest number of parts of a key; "a.b.c" has three.
 inline constexpr std::uint32_t kMaxKeyParts = 64;
 
 struct TomlFault {
@@ -19,7 +19,7 @@ struct TomlFault {
   std::string what;
 };
 
-/// The first such place of a text, if any. O(bytes). Other faults are left to the parser.
+/// The first such place in a text, if any. O(bytes). Other faults are left to the parser.
 [[nodiscard]] std::optional<TomlFault> find_unreadable_toml(std::string_view text);
 
 }  // namespace boxtree::cooker

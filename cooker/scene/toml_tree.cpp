@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Conversion of what toml++ parses. Values nest at most TOML_MAX_NESTED_VALUES deep, which bounds
+// Converts values parsed by toml++. Values nest at most TOML_MAX_NESTED_VALUES deep, which bounds
 // the recursion.
 #include <algorithm>
 
@@ -60,7 +60,7 @@ struct Shown {
   std::string operator()(double number) const { return fmt::format("{}", number); }
   std::string operator()(const std::string& text) const {
     if (text.size() <= kLongestShown) return '"' + text + '"';
-    std::size_t end = kLongestShown;  // not inside a character of several bytes
+    std::size_t end = kLongestShown;  // not inside a multi-byte character
     while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
     return '"' + text.substr(0, end) + "\"...";
   }

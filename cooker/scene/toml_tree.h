@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A TOML text as plain values, each with its line: the only door to toml++, so that neither its
-// types nor its exceptions get any farther.
+// Parses TOML into plain values with their lines. Only this interface uses toml++; its types and
+// exceptions go no farther.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +21,7 @@ struct TomlDate {};
 
 struct TomlNode {
   std::variant<TomlDate, bool, std::int64_t, double, std::string, TomlArray, TomlTable> value;
-  std::uint32_t line = 0;  // where it begins, from 1
+  std::uint32_t line = 0;  // where the value begins, from 1
 };
 
 struct TomlEntry {
@@ -30,10 +30,10 @@ struct TomlEntry {
   TomlNode node;
 };
 
-/// Error: kProfileInvalid, "PATH:LINE: what is wrong", `path` being that of the text.
+/// Error: kProfileInvalid, "PATH:LINE: what is wrong"; `path` is the path of the text.
 Result<TomlTable> parse_toml(std::string_view text, std::string_view path);
 
-/// How a value is shown in messages: "-1", "\"abc\"", "a table", "an array of 3".
+/// A value as messages show it: "-1", "\"abc\"", "a table", "an array of 3".
 [[nodiscard]] std::string shown(const TomlNode& node);
 
 }  // namespace boxtree::cooker
