@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every query is run in every setting; nodes and errors are of one run, times of several.
+// Runs every query with every setting; nodes and errors are from one run, times from several.
 #include "cooker/report/approximate.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ Settings settings(bool quick) {
           {4, 16, 64, 256, 1024, 4096, 16384, 65536}};
 }
 
-// What both kinds of answers have in common.
+// Bounds that both kinds of answers have.
 struct Bounds {
   Errc error = Errc::kOk;
   double lower = 0;
@@ -63,7 +63,7 @@ Result<std::vector<TrueDistance>> truths_of(const Tree& tree, const std::vector<
   return truths;
 }
 
-// One kind of queries, one setting after the other.
+// Measures one kind of queries, one setting after another.
 template <class Query>
 class Sweep {
  public:
@@ -139,7 +139,7 @@ class Sweep {
   const std::vector<TrueDistance>& truths_;
   const std::size_t runs_;
   double resolution_ = 0;
-  std::vector<double> before_;  // nodes of each query in the step before
+  std::vector<double> before_;  // nodes of each query in the previous step
 };
 
 template <class Query>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What an allowed error or a budget of nodes saves, and how far answers then are from the truth.
+// Measures the savings and the true errors of queries with an allowed error or a budget of nodes.
 #pragma once
 
 #include <array>
@@ -12,23 +12,23 @@
 
 namespace boxtree::cooker {
 
-/// One setting, over all queries. Errors are shares of the true distance. Bounds resolve some
-/// 2^-44 of the mesh's diagonal: errors below that count as none, distances below it as that.
+/// One setting, over all queries. Errors are shares of the true distance. Bounds resolve about
+/// 2^-44 of the mesh's diagonal: smaller errors count as zero, and smaller distances as that value.
 struct ApproximateStep {
   double relative_error = 0;                    // allowed
   std::uint64_t node_budget = kUnlimitedNodes;  // allowed
   KindTimes times;                              // zero unless timed
   double nodes_mean = 0;                        // nodes expanded and leaves read
   double nodes_median = 0;
-  double error_median = 0;  // of what was found: how much farther it is than the nearest
+  double error_median = 0;  // of answers: excess over the true distance
   double error_max = 0;
-  double gap_median = 0;         // what the answers themselves state: upper - lower
-  double gap_max = 0;            // likewise
+  double gap_median = 0;         // upper - lower as stated by the answers
+  double gap_max = 0;            // the same
   std::size_t queries = 0;       // all of them
-  std::size_t found = 0;         // those with a witness: medians and maxima are over these
-  std::size_t converged = 0;     // those that say so: the budget did not run out
-  std::size_t false_bounds = 0;  // those whose bounds do not hold the truth: 0, or a defect
-  std::size_t slower = 0;        // those that took more nodes than in the step before
+  std::size_t found = 0;         // those with a witness; medians and maxima are over these
+  std::size_t converged = 0;     // those that converged: the budget sufficed
+  std::size_t false_bounds = 0;  // bounds that exclude the true distance; must be 0
+  std::size_t slower = 0;        // those that took more nodes than in the previous step
 };
 
 enum class ApproximateKind : std::uint8_t { kPoint, kDistance };
@@ -36,7 +36,7 @@ inline constexpr std::size_t kApproximateKinds = 2;
 inline constexpr std::array<const char*, kApproximateKinds> kApproximateNames = {"point",
                                                                                  "distance"};
 
-/// Steps in order: errors growing without a budget, then budgets growing without an error.
+/// Steps in order: increasing errors without a budget, then increasing budgets without an error.
 struct ApproximateCurves {
   std::vector<ApproximateStep> by_error;
   std::vector<ApproximateStep> by_budget;
@@ -49,13 +49,13 @@ struct TrueDistance {
   double upper = 0;
 };
 
-/// Of the closest points and of the poses apart.
+/// For the closest points and for the poses apart.
 struct TrueDistances {
   std::vector<TrueDistance> points;
   std::vector<TrueDistance> poses;
 };
 
-/// Queries with no error allowed. Errors: those of the queries.
+/// Results of queries with no error allowed. Errors: those of the queries.
 Result<TrueDistances> true_distances(const Tree& tree, const Workload& queries);
 
 struct ApproximateEffort {
@@ -64,7 +64,7 @@ struct ApproximateEffort {
 };
 
 /// Closest points, and distances of the tree and its copy in the poses apart, for each allowed
-/// error and each budget. `truth` may come from any tree of the same geometry.
+/// error and each budget. `truth` may come from any tree with the same geometry.
 Result<ApproximateFigures> measure_approximate(const Tree& tree, const Workload& queries,
                                                const TrueDistances& truth,
                                                const ApproximateEffort& effort);

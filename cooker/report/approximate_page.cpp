@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every figure comes from the steps; captions say what is promised and what was only seen.
+// Every figure comes from the steps; captions distinguish guarantees from observations.
 #include "cooker/report/approximate_page.h"
 
 #include <algorithm>
@@ -65,7 +65,7 @@ PagePlot::Series series_of(const std::string& name, const Steps& steps, const Va
   PagePlot::Series series{name, {}, PagePlot::Joined::kCurve};
   for (const ApproximateStep& step : steps) {
     const bool is_exact = step.node_budget != kUnlimitedNodes && step.converged == step.queries;
-    if (step.found == 0 || is_exact) continue;  // no error to show, or nothing but rounding
+    if (step.found == 0 || is_exact) continue;  // no error to show, or only rounding
     series.points.push_back({x(step), y(step), "", 4,
                              fmt::format("{}, allowed {}: {:.3g}", name, allowed(step), y(step))});
   }
@@ -96,10 +96,10 @@ PagePlot cost_plot(const std::vector<const TradePoint*>& points, std::size_t kin
   return plot;
 }
 
-// What was allowed, what the answers state and what was true, all of one encoding.
+// The allowed, stated and true errors of one encoding.
 PagePlot error_plot(const TradePoint& point, std::size_t kind, bool by_budget) {
   Steps steps = by_budget ? point.approximate[kind].by_budget : point.approximate[kind].by_error;
-  if (!by_budget) steps.erase(steps.begin());  // none allowed: what is left is rounding
+  if (!by_budget) steps.erase(steps.begin());  // no error allowed: only rounding remains
   const auto x = by_budget ? nodes_allowed : error_allowed;
   PagePlot plot;
   plot.title = by_budget ? fmt::format("{}: budget against error", codec_name(point.codec))
@@ -163,7 +163,7 @@ double cost_of(const MeshTradeoff& mesh, const ApproximateStep& step) {
   return mesh.timed ? step.times.median_ns : step.nodes_mean;
 }
 
-// What one allowed error buys, in the first encoding.
+// The effect of one allowed error, in the first encoding.
 PageConclusion conclusion_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind,
                              const ApproximateStep& step) {
   const ApproximateStep& exact = point.approximate[kind].by_error.front();

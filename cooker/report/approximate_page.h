@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Curves of an allowed error or a budget against time, nodes and the error that was made.
+// Curves of time, nodes and error over the allowed error or budget.
 #pragma once
 
 #include <vector>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One pass over plain nodes for each way to store them.
+// Passes over plain nodes once per encoding.
 #include "cooker/report/node_counts.h"
 
 #include <cmath>
@@ -49,7 +49,7 @@ double count_own_sizes(const Nodes& nodes) {
   return bytes;
 }
 
-// Nodes that are left when each takes `levels` levels of subtrees into itself, from the root down.
+// Number of nodes if each absorbs `levels` levels of subtrees, from the root down.
 std::size_t count_collapsed(const Nodes& nodes, int levels) {
   struct Item {
     std::uint32_t node;
@@ -70,8 +70,8 @@ std::size_t count_collapsed(const Nodes& nodes, int levels) {
   return count;
 }
 
-// packed-f16 with exact widths; with `own_kinds`, shrink nodes are two more kinds, which makes the
-// kind of a child 3 bits instead of 2.
+// packed-f16 with exact widths. With `own_kinds`, shrink nodes are two extra kinds, so the kind of
+// a child takes 3 bits instead of 2.
 double count_packed(const Nodes& nodes, std::uint32_t faces, bool own_kinds) {
   const double kind_bits = own_kinds ? 3 : 2;
   const double face_bits = field_width(faces - 1);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Sizes of encodings that nobody would build, counted on the nodes of a tree that was: what the
-// paper weighs and drops (its sections 2.6, 3.2, 3.2.1 and 5.3), and shrink nodes with one cut.
+// Sizes of encodings that boxtree does not build, counted on the nodes of a built tree: those that
+// the paper considers and rejects (sections 2.6, 3.2, 3.2.1 and 5.3), and shrink nodes with one
+// cut.
 #pragma once
 
 #include <cstdint>
@@ -9,23 +10,23 @@
 
 namespace boxtree::cooker {
 
-/// Bytes of one tree, each by its own way to store it. Cuts are f16 unless said otherwise.
+/// Bytes of one tree in various encodings. Cuts are f16 unless stated otherwise.
 struct CountedSizes {
   double implicit_slots =
       0;                // of a perfect binary tree with the same depth, leaves in their parents
-  double implicit = 0;  // 8 bytes a slot, as in table 2.2
+  double implicit = 0;  // 8 bytes per slot, as in table 2.2
 
-  double whole_bytes_f16 = 0;  // 3.2: fields of 1, 2 or 4 bytes, as few as all numbers need
+  double whole_bytes_f16 = 0;  // 3.2: fields of 1, 2 or 4 bytes, the least that all numbers fit
   double whole_bytes_f32 = 0;
   double own_sizes = 0;   // 3.2.1: each node as small as its own numbers allow, as in ext2
   double branching4 = 0;  // 5.3: two levels in one node of 32 bytes
   double branching8 = 0;  // three levels in one node of 64 bytes
 
-  double two_cut_shrink = 0;  // packed-f16 as it is: shrink nodes with both numbers and cuts
-  double one_cut_shrink = 0;  // shrink nodes as two kinds of their own, one number and one cut
+  double two_cut_shrink = 0;  // packed-f16: shrink nodes with both numbers and cuts
+  double one_cut_shrink = 0;  // shrink nodes as two extra kinds, with one number and one cut
 };
 
-/// `tree` is one in codec plain-f32 with a subtree for a root; `faces` its faces.
+/// `tree` is in codec plain-f32 and its root is a subtree; `faces` is its number of faces.
 [[nodiscard]] CountedSizes count_sizes(const EncodedNodes& tree, std::uint32_t faces);
 
 }  // namespace boxtree::cooker

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Text and HTML from the same data. The page follows the reader's light or dark setting, prints,
-// and lets wide tables scroll on narrow windows.
+// Writes the same data as text and HTML. The page follows the reader's light or dark setting, can
+// be printed, and scrolls wide tables in narrow windows.
 #include "cooker/report/page.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ void add_html(const PageTable& table, std::string& out) {
   out += "</tbody></table></div>\n";
 }
 
-// A drawing with its title; on narrow windows it scrolls rather than becoming too small to read.
+// A drawing with its title; in narrow windows it scrolls instead of shrinking.
 void add_figure(const std::string& title, const std::string& drawing, std::string& out) {
   if (drawing.empty()) return;
   out += "<figure>";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A report as data: headings, tables and plots, written as text for a terminal or as one HTML page
+// A report as data: headings, tables and plots. Written as text for a terminal or as one HTML page
 // that needs no network.
 #pragma once
 
@@ -18,7 +18,7 @@ struct PageTable {
   std::size_t word_columns = 1;
 };
 
-/// A paragraph that says what figures mean, its point first.
+/// A paragraph that explains figures, with its main point first.
 struct PageConclusion {
   std::string lead;
   std::string text;

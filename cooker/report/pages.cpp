@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Pages read, by protecting the mapped file: each first touch of a page raises a signal, whose
-// handler notes the page and lets it be read. Unlike counting faults or resident pages this does
-// not see what a kernel maps or reads ahead, and needs no rights.
+// Counts pages by protecting the mapped file: the first read of a page raises a signal, whose
+// handler records the page and makes it readable. Unlike counts of faults or resident pages, this
+// excludes pages that a kernel maps or reads ahead, and needs no privileges.
 #include "cooker/report/pages.h"
 
 #include <algorithm>
@@ -27,12 +27,12 @@ namespace {
 
 constexpr std::size_t kPage = 4096;
 
-// The file that signals are about; one at a time. Plain memory: the handler may use nothing else.
+// The file that is watched, one at a time. Plain memory: a signal handler may use nothing else.
 struct Watched {
   std::byte* begin = nullptr;
   std::size_t bytes = 0;
-  std::size_t unit = 0;             // what the machine protects at once, at least a page of ours
-  std::uint8_t* is_read = nullptr;  // a number for each unit
+  std::size_t unit = 0;             // the machine's unit of protection, at least one page of 4 KiB
+  std::uint8_t* is_read = nullptr;  // one element per unit
 };
 Watched watched;
 struct sigaction previous_action;
@@ -41,7 +41,7 @@ void note_page(int, siginfo_t* info, void*) {
   const auto at = reinterpret_cast<std::uintptr_t>(info->si_addr);
   const auto begin = reinterpret_cast<std::uintptr_t>(watched.begin);
   if (at < begin || at - begin >= watched.bytes) {
-    ::sigaction(SIGSEGV, &previous_action, nullptr);  // not ours: comes back at once
+    ::sigaction(SIGSEGV, &previous_action, nullptr);  // not ours: raised again at once
     return;
   }
   const std::size_t unit = (at - begin) / watched.unit;
@@ -49,7 +49,7 @@ void note_page(int, siginfo_t* info, void*) {
   ::mprotect(watched.begin + unit * watched.unit, watched.unit, PROT_READ);
 }
 
-// A file mapped to be watched, and the signal handler while it is.
+// Maps a file to be watched and installs the signal handler during its lifetime.
 class Watch {
  public:
   explicit Watch(const std::filesystem::path& path) {
@@ -85,7 +85,7 @@ class Watch {
   [[nodiscard]] Bytes bytes() const { return {data_, bytes_}; }
   [[nodiscard]] std::size_t pages() const { return is_read_.size(); }
 
-  // From now on nothing has been read.
+  // Resets all pages to unread.
   void forget() {
     ::mprotect(data_, bytes_, PROT_NONE);
     std::fill(is_read_.begin(), is_read_.end(), std::uint8_t{0});
@@ -108,8 +108,9 @@ class Watch {
   std::vector<std::uint8_t> is_read_;
 };
 
-// Cubes in the middle of leaves, found by taking children at random, each as large as a leaf of
-// kLeafFaces would be if the triangles were spread evenly over a square of the tree's extent.
+// Cubes at the centres of leaves, which are found by descending to random children. Each cube is as
+// large as a leaf of kLeafFaces would be if the triangles were spread evenly over a square of the
+// tree's extent.
 Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size_t count) {
   const double extent = bounds_in_object_space(tree).sizes().maxCoeff();
   const double faces = std::max(tree.face_count(), kLeafFaces);
@@ -133,7 +134,7 @@ Result<std::vector<Eigen::AlignedBox3d>> local_boxes(const Tree& tree, std::size
   return boxes;
 }
 
-// Opens and binds, and runs query after query, each of a file of which nothing was read.
+// Opens and binds, and runs each query on a cold file.
 class ColdFile {
  public:
   ColdFile(Watch& watch, std::uint32_t index) : watch_(watch), index_(index) {}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How much of a file queries read, in pages of 4 KiB: what a cold file costs, counted exactly and
-// the same on every machine.
+// Counts the pages of 4 KiB that queries read: the cost of a cold file, exact and the same on every
+// machine.
 #pragma once
 
 #include <cstddef>
@@ -16,8 +16,7 @@
 
 namespace boxtree::cooker {
 
-/// Pages that one query of a kind reads in a file of which nothing has been read, from opening
-/// to the answer.
+/// Number of pages that one query of a kind reads in a cold file, from opening to the answer.
 struct PageCount {
   std::size_t queries = 0;
   std::size_t median = 0;
@@ -26,20 +25,20 @@ struct PageCount {
 
 struct PageFigures {
   std::size_t file_pages = 0;
-  std::size_t open = 0;  // header, section table, tree table: open and bind alone
+  std::size_t open = 0;  // header, section table, tree table: only open and bind
   PageCount ray;         // closest hit, from outside toward random points of the bounds
-  PageCount box;         // a cube as large as a leaf, in the middle of a random leaf's box
-  PageCount point;       // the middle of such a box
+  PageCount box;         // a cube as large as a leaf, at the centre of a random leaf's box
+  PageCount point;       // the centre of such a box
 };
 
-/// Runs `queries` of each kind on a tree with geometry inside, a fresh file for each. Mapped
-/// pages are kept from being read, and signals of those that are nevertheless are counted; so not
-/// two of these at a time in one program. Errors: those of opening, binding and querying,
-/// kMapFailed.
+/// Runs `queries` of each kind on a tree with geometry inside, each on a freshly opened file.
+/// Mapped pages are protected, and the signals of reads are counted, so only one such measurement
+/// can run in a process at a time. Errors: those of opening, binding and querying, kMapFailed.
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t tree,
                                   std::size_t queries);
 
-/// The pages of a file that `read` reads, in the order of the file; likewise.
+/// The pages of a file that `read` reads, in the order of the file. Restrictions and errors as
+/// above.
 Result<std::vector<std::size_t>> pages_read(const std::filesystem::path& path,
                                             const std::function<Status(Bytes file)>& read);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encodes one mesh in every way the paper has.
+// Encodes one mesh with every variant of the paper.
 #include "cooker/report/paper_figures.h"
 
 #include <algorithm>

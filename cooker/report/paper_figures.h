@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The tables of the paper for any mesh, by the paper's builder: what can be had without a clock,
-// and what opening costs. Times of queries come from programs that know the original.
+// Figures of the paper's tables for any mesh, with the paper's builder: sizes, and times of
+// opening. Times of queries come from programs that run the original.
 #pragma once
 
 #include <array>
@@ -54,9 +54,9 @@ struct PaperFigures {
   }
 };
 
-/// Builds, encodes with every codec, packed ones both ways, and proves each. Errors: as cook_mesh,
-/// kNoFaces when the mesh has fewer than two faces (it then has no nodes to count), and those of a
-/// temporary file.
+/// Builds a tree, encodes it with every codec, packed ones with both kinds of widths, and proves
+/// each. Errors: as cook_mesh; kNoFaces if the mesh has fewer than two faces (its tree has no nodes
+/// to count); those of a temporary file.
 Result<PaperFigures> paper_figures(const SourceMesh& mesh);
 
 }  // namespace boxtree::cooker

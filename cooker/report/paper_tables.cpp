@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One function a table of the paper, in the paper's order.
+// One function per table of the paper, in the paper's order.
 #include "cooker/report/paper_tables.h"
 
 #include <algorithm>
@@ -230,7 +230,7 @@ const PeerRow* find(const PaperReport& report, const std::string& mesh, const st
   return nullptr;
 }
 
-// The variants of the paper's tables, ours by codec.
+// The variants in the paper's tables; boxtree's are named by codec.
 constexpr std::array<std::pair<const char*, const char*>, 10> kVariants = {
     {{"original", "pointers"},
      {"boxtree", "plain-f32"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures to the tables of the paper, each row beside the paper's own range.
+// The tables of the paper with measured figures; each row has the paper's own range.
 #pragma once
 
 #include <optional>
@@ -11,7 +11,7 @@
 
 namespace boxtree::cooker {
 
-/// One measurement of a program that knows the original and other libraries.
+/// One measurement of a program that runs the original and other libraries.
 struct PeerRow {
   std::string mesh;
   std::string library;
@@ -21,11 +21,11 @@ struct PeerRow {
   std::string unit;
 };
 
-/// Everything a paper report shows.
+/// All data of a paper report.
 struct PaperReport {
   std::vector<PaperFigures> meshes;
   std::vector<StairFigures> stairs;
-  std::vector<PeerRow> peers;  // empty: tables of times say that they were left out
+  std::vector<PeerRow> peers;  // empty: tables of times state that they are omitted
   std::string command;         // that made it
 };
 

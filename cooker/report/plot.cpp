@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Axes with steps that a person would choose, marks, curves, and labels where they find room.
+// Draws axes with round steps, marks, curves, and labels where there is room.
 #include "cooker/report/plot.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// The drawing, in units of its own: narrow enough to be read on a telephone.
+// Size of the drawing in its own units: narrow enough for a telephone.
 constexpr double kWidth = 560;
 constexpr double kFrameHeight = 300;
 constexpr double kLeft = 68;
@@ -20,7 +20,7 @@ constexpr double kRight = 24;
 constexpr double kBelow = 48;
 constexpr double kBand = 90;  // left of a logarithmic axis, for values at zero
 constexpr double kLegendLine = 20;
-// Seen without scrolling on a window of 390 pixels, where the page draws 432 of its own wide.
+// Visible without scrolling in a window of 390 pixels, where the page draws 432 units.
 constexpr double kLegendWidth = 460;
 constexpr double kLetter = 6.8;  // mean width of a letter at 12 units, from common sans-serif faces
 constexpr double kLineHeight = 12;
@@ -30,7 +30,7 @@ struct Tick {
   std::string text;
 };
 
-// One axis: where a value stands between 0 and 1, and the ticks.
+// One axis: maps values to 0 to 1, and has the ticks.
 class Axis {
  public:
   Axis(const std::vector<double>& values, AxisScale scale) : scale_(scale) {
@@ -71,8 +71,8 @@ class Axis {
     }
   }
 
-  // From one multiple of 1, 2 or 5 to another; ticks at all of them, at powers of ten, or at every
-  // second power and so on, as there is room.
+  // From one multiple of 1, 2 or 5 to another. Ticks are at all of them, at powers of ten, or at
+  // every second power and so on, as there is room.
   void choose_logarithmic(double low, double high) {
     constexpr double kDecadesOfThree = 2.2;  // with three ticks each
     constexpr int kMostTicks = 8;
@@ -97,7 +97,7 @@ class Axis {
     for (int power = decade(first); power <= decade(last) + 1; ++power) {
       for (const double nice : {1.0, 2.0, 5.0}) {
         const double value = nice_power(nice, power);
-        // Both ends were made by the same expression, so that a half of a digit is slack enough.
+        // Both ends come from the same expression, so this tolerance suffices.
         if (value < first * 0.9999 || value > last * 1.0001) continue;
         if (!three && (nice != 1.0 || power % every != 0)) continue;
         ticks_.push_back({value, text_of(nice, power)});
@@ -153,7 +153,7 @@ void add_text(double x, double y, const char* anchor, const std::string& text, s
                      escaped(text));
 }
 
-// Letters, not bytes: the page is in UTF-8.
+// Counts letters, not bytes: the page is in UTF-8.
 double width_of(const std::string& text) {
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
     return (static_cast<unsigned char>(c) & 0xc0u) != 0x80u;
@@ -161,8 +161,8 @@ double width_of(const std::string& text) {
   return kLetter * static_cast<double>(letters);
 }
 
-// Names beside signs, in as many lines as it takes; returns their number. `draw` gets the number
-// of the name and the place of its sign.
+// Draws names beside signs on as many lines as needed and returns the number of lines. `draw` gets
+// the index of the name and the place of its sign.
 template <class Draw>
 std::size_t add_legend(const std::vector<std::string>& names, double left, double top, Draw draw,
                        std::string& out) {
@@ -182,7 +182,7 @@ std::size_t add_legend(const std::vector<std::string>& names, double left, doubl
   return lines;
 }
 
-// Places where a label would cover something.
+// Places that labels must not cover.
 class Taken {
  public:
   void add(double left, double top, double right, double bottom) {
@@ -206,7 +206,7 @@ struct Placed {
   bool is_zero;  // at the place of zero of a logarithmic axis
 };
 
-// What a page would give a plot, in its light colours.
+// The style that a page would give a plot, in its light colours.
 constexpr const char* kFileStyle =
     "<style>:root{--ink:#1c2024;--faint:#60646c;--line:#d9d9e0;--back:#fff;--well:#f4f5f7;"
     "--c0:#0b68cb;--c1:#c2410c;--c2:#15803d;--c3:#7e22ce;--c4:#b4820a;--c5:#0e7490;--c6:#be185d;"
@@ -281,9 +281,9 @@ class Drawing {
     bottom_ = top_ + kFrameHeight;
   }
 
-  // With values at zero, the axis begins a little further to the right.
+  // With values at zero, the axis begins further to the right.
   [[nodiscard]] double axis_left() const { return has_zero_ ? kLeft + kBand + 20 : kLeft + 8; }
-  // Side by side, as they would cover each other; fronts begin at the edge.
+  // Series side by side, so that they do not cover each other; fronts begin at the edge.
   [[nodiscard]] double zero_x(std::size_t series) const {
     if (!plot_.series[series].marks) return kLeft;
     constexpr double kMargin = 10;
@@ -354,7 +354,7 @@ class Drawing {
                        path, colour(series));
   }
 
-  // Along every curve and front: better left free, but a label may lie there.
+  // The places along curves and fronts: labels avoid them if possible.
   [[nodiscard]] Taken along_lines() const {
     Taken lines;
     const auto add = [&](double x0, double y0, double x1, double y1) {
@@ -393,8 +393,8 @@ class Drawing {
       if (placed.point->label.empty()) continue;
       const double width = width_of(placed.point->label);
       const double r = placed.point->radius + 3;
-      // Above, below, to the right, to the left: the first that lies inside and covers nothing,
-      // else the first that covers a line alone.
+      // Above, below, to the right, to the left: the first place that is inside and covers nothing,
+      // else the first that covers only lines.
       const std::array<std::pair<double, double>, 4> corners = {
           {{placed.x - width / 2, placed.y - r - kLineHeight},
            {placed.x - width / 2, placed.y + r},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Plots and bars as data, and the SVG drawn from them: colours come from the page around it, so
-// that one drawing serves light, dark and paper.
+// Plots and bars as data, and their SVG. Colours come from the surrounding page, so one drawing
+// serves light, dark and paper.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@ namespace boxtree::cooker {
 
 enum class AxisScale : std::uint8_t { kLinear, kLogarithmic };
 
-/// Points over two axes, from about their smallest to about their largest value.
+/// Points over two axes, which range from about the smallest to about the largest value.
 struct PagePlot {
   struct Point {
     double x;
     double y;
-    std::string label;      // beside the mark, where there is room
+    std::string label;      // beside the mark, if there is room
     double radius = 5;      // of the mark, in units of the drawing
     std::string hint = {};  // shown when pointed at
   };
   enum class Joined : std::uint8_t {
     kNot,
-    kCurve,      // in their order, but for points at the place of zero
-    kStaircase,  // a front: to the left of and below each line nothing was found
+    kCurve,      // in order, except points at the place of zero
+    kStaircase,  // a front: there is no point to the left of and below a line
   };
   struct Series {
     std::string name;
@@ -32,21 +32,21 @@ struct PagePlot {
     std::size_t colour = kOwnColour;
     bool marks = true;
   };
-  /// Instead of a number: the series' place among all.
+  /// Use the series' index as its colour.
   static constexpr std::size_t kOwnColour = ~std::size_t{0};
 
   std::string x_title;
   std::string y_title;
-  std::vector<Series> series;  // told apart by colour and shape
+  std::vector<Series> series;  // distinguished by colour and shape
   AxisScale x_scale = AxisScale::kLinear;
   AxisScale y_scale = AxisScale::kLinear;
   std::string title = {};
-  /// Logarithmic x: what stands at the left edge, where values that are not above zero are drawn.
+  /// Logarithmic x: label of the left edge, where values that are not above zero are drawn.
   std::string zero_name = "0";
-  bool lines = false;  // all series are curves without marks, whatever they say
+  bool lines = false;  // all series are curves without marks, whatever they state
 };
 
-/// Colours that a page has for series; more than that start again with another shape.
+/// Number of colours that a page has for series; further series repeat them with other shapes.
 inline constexpr std::size_t kPlotColours = 8;
 
 /// Bars of parts that add up.
@@ -60,14 +60,14 @@ struct PageBars {
   std::vector<Bar> bars;
 };
 
-/// Text in which nothing is markup.
+/// Text with all markup characters escaped.
 [[nodiscard]] std::string escaped(const std::string& text);
 
-/// Nothing for a plot without points; points whose y a logarithm does not have are left out.
+/// Empty for a plot without points. Points whose y has no logarithm are left out.
 [[nodiscard]] std::string to_svg(const PagePlot& plot);
 [[nodiscard]] std::string to_svg(const PageBars& bars);
 
-/// A file of its own: dark on white. Precondition: a point.
+/// A standalone file: dark on white. Precondition: at least one point.
 [[nodiscard]] std::string to_svg_file(const PagePlot& plot);
 
 }  // namespace boxtree::cooker

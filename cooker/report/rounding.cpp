@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Aligned contact on trees that differ in the rounding of their cuts alone.
+// Aligned contact on trees that differ only in the rounding of their cuts.
 #include "cooker/report/rounding.h"
 
 #include <array>
@@ -19,7 +19,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// IEEE round to nearest, ties to even, from the two neighbours. Precondition as half_toward_zero.
+// IEEE round to nearest, ties to even, of the two neighbours. Precondition: as half_toward_zero.
 std::uint16_t half_to_nearest(float value) {
   const std::uint16_t below = half_toward_zero(value);
   const auto above = static_cast<std::uint16_t>(below + 1);
@@ -45,7 +45,7 @@ EncodedTree with_nearest_cuts(const EncodedTree& f32) {
   return tree;
 }
 
-// All rotations that take axes to axes: signed permutations with determinant 1.
+// All rotations that map axes to axes: signed permutations with determinant 1.
 std::vector<Eigen::Matrix3d> axis_rotations() {
   std::vector<Eigen::Matrix3d> rotations;
   constexpr std::array<std::array<Eigen::Index, 3>, 6> kOrders = {
@@ -62,7 +62,7 @@ std::vector<Eigen::Matrix3d> axis_rotations() {
   return rotations;
 }
 
-// Poses in which a face of the copy's bounds lies `depth` deep in a face of the mesh's, centred.
+// Poses in which a face of the copy's bounds is centred on a face of the mesh's, `depth` deep.
 std::vector<Pose> aligned_poses(const Eigen::AlignedBox3d& bounds) {
   std::vector<Pose> poses;
   constexpr std::array kDepths = {0.0, 1e-6, 1e-4};
@@ -110,7 +110,7 @@ void add_quad(SourceMesh& mesh, const std::array<std::array<float, 3>, 4>& corne
 
 constexpr std::size_t kSteps = 64;
 constexpr float kTread = 0.125f;
-constexpr float kRise = 0.17f;  // not a number that f16 holds
+constexpr float kRise = 0.17f;  // not representable in f16
 constexpr float kWidth = 8;
 
 SourceMesh stairs() {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What f16 cuts cost when they are rounded to nearest, as is usual, instead of outward: contacts
-// (paper section 2.5 does not say which it does). Only reports build such trees.
+// Measures the effect of rounding f16 cuts to nearest instead of outward on contacts (paper section
+// 2.5 does not specify the rounding). Only reports build such trees.
 #pragma once
 
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace boxtree::cooker {
 
-/// The same contacts on three trees of one mesh.
+/// The contacts found on three trees of one mesh.
 struct RoundingFigures {
   std::uint64_t queries = 0;
   std::uint64_t pairs_f32 = 0;      // pairs of faces found with f32 cuts
   std::uint64_t pairs_nearest = 0;  // with f16 cuts rounded to nearest
   std::uint64_t pairs_outward = 0;  // with f16 cuts rounded outward: codec plain-f16
-  Gates gates_nearest;              // what the gates say of the nearest tree
+  Gates gates_nearest;              // gates of the nearest tree
   Gates gates_outward;
 };
 
-/// `f32` is a tree in codec plain-f32; the nearest tree is made of its very nodes. The mesh meets
-/// its copy turned by each of the 24 rotations that take axes to axes, with faces of the bounding
-/// boxes in contact or up to 1e-4 of the longest edge deep: aligned contact, as of parts on floors.
+/// `f32` is a tree in codec plain-f32; the nearest tree is made from its nodes. The mesh meets its
+/// copy turned by each of the 24 rotations that map axes to axes. Faces of the bounding boxes touch
+/// or overlap by up to 1e-4 of the longest edge: aligned contact, as of parts on floors.
 Result<RoundingFigures> aligned_contact(const SourceMesh& mesh, const EncodedTree& f32,
                                         const EncodedTree& outward);
 

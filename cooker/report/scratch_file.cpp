@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file found under the descriptor that holds it: no other process, of whatever namespace, comes
-// upon it.
+// The file has no name. Its path is that of its descriptor, so no other process, in any namespace,
+// can find it.
 #include "cooker/report/scratch_file.h"
 
 #include <string>
@@ -22,7 +22,7 @@ Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
   if (!file) return file.error();
   file->remove_name();
   const int descriptor = file->descriptor();
-  // Pages that are not on disk cannot be dropped, and cold reads are what is measured.
+  // Pages that are not on disk cannot be dropped, and the measurements need cold reads.
   if (!write_all(descriptor, bytes) || ::fsync(descriptor) != 0) {
     return write_failure(folder, "cannot write a temporary file");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file for the length of one measurement.
+// A temporary file for one measurement.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 
 namespace boxtree::cooker {
 
-/// A file in the system's temporary folder without a name, gone with the process that made it. Its
-/// path leads through the process's descriptors and means nothing to other processes. Where a file
-/// cannot be made without a name it has one between two system calls; what a process killed there
-/// leaves, the next ScratchFile sweeps.
+/// A file without a name in the system's temporary folder, removed with its process. Its path goes
+/// through the process's descriptors and is invalid in other processes. Where the system cannot
+/// make a file without a name, it has one between two system calls; the next ScratchFile removes a
+/// file left by a process killed there.
 class ScratchFile {
  public:
   /// Writes it. Error: kWriteFailed.

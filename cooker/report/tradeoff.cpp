@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One store of geometry after the other: its candidates are counted by the search of the cooker,
-// then queried here.
+// Measures one geometry store after another: the cooker's search counts its candidates, then they
+// are queried here.
 #include "cooker/report/tradeoff.h"
 
 #include <algorithm>
@@ -30,7 +30,7 @@ struct Effort {
   WorkloadSize answered;
   WorkloadSize approximate;
   std::size_t runs;
-  std::size_t cold;  // queries of a kind, each to a file of which nothing was read
+  std::size_t cold;  // queries of a kind, each on a cold file
 };
 constexpr Effort kFullEffort{
     {20'000, 4'000, 4'000, 64, 0}, {200'000, 0, 20'000, 0, 0}, {0, 0, 2'000, 0, 64}, 7, 300};
@@ -56,7 +56,7 @@ Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Wo
   return times;
 }
 
-// Of exact geometry or of another: what is compared.
+// The answers that are compared, for one geometry.
 struct Answers {
   std::vector<double> ray_lengths;  // to the hit, object space; infinite without one
   std::vector<double> distances;
@@ -107,7 +107,7 @@ AnswerErrors compare(const Answers& found, const Answers& exact, double diagonal
   return errors;
 }
 
-// Root of the mean square of what vertices move on a grid, object space.
+// Root mean square of the vertices' movement on a grid, object space.
 double rms_move(const SourceMesh& mesh, const QuantisedMesh& quantised) {
   double sum = 0;
   const std::size_t count = mesh.positions.size();
@@ -153,7 +153,7 @@ class Measurement {
     if (Status status = measure_store({}); !status) return status.error();
     for (const int bits : grid_sweep(options_.quick)) {
       const Status status = measure_store(bits);
-      // Too fine for positions so far from zero: there is no such grid.
+      // The grid is too fine for positions so far from zero.
       if (!status && status.error().code != Errc::kMeshUnsupported) return status.error();
     }
     enter_extra_work();
@@ -220,7 +220,7 @@ class Measurement {
     return point;
   }
 
-  // The encoded tree of a candidate; the same memory as the next one's.
+  // The encoded tree of a candidate, in memory that the next candidate reuses.
   static EncodedTree& assemble(TriedTree& tried, std::size_t candidate) {
     EncodedTree& tree = tried.families[tried.nodes[candidate].family];
     tree.nodes = std::move(tried.nodes[candidate].nodes);
@@ -256,7 +256,7 @@ class Measurement {
     const EncodedTree& encoded = assemble(tried, candidate);
     const std::vector<std::byte> file = serialize(std::span(&encoded, 1));
     point.bytes = bytes_of(encoded, file.size());
-    if (!point.gates.pass()) return {};  // listed as failed, but it has no answers to look at
+    if (!point.gates.pass()) return {};  // listed as failed, not queried
     const Result<Tree> tree = bind_encoded(encoded);
     if (!tree) return tree.error();
     const Result<Answers> answers = answers_of(*tree, answered_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Recommendations are minima over the points; words are filled in from the same figures.
+// Recommendations are minima over the points; their texts use the same figures.
 #include "cooker/report/tradeoff_advice.h"
 
 #include <algorithm>
@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
-// The first point with the least score; nothing when all are infinite.
+// The first point with the least score; empty if all scores are infinite.
 std::optional<std::size_t> least(const MeshTradeoff& mesh,
                                  const std::function<double(std::size_t)>& score) {
   std::optional<std::size_t> best;
@@ -90,7 +90,7 @@ std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
   for (const TradePoint& point : mesh.points) {
     double sum = 0;
     for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
-      // Shorter than the clock tells: as fast as the fastest.
+      // Below the clock's resolution: counts as the fastest.
       const double time = time_of(mesh, point, kind);
       sum += time > 0 ? time / fastest[kind] : 1;
     }
@@ -157,7 +157,7 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
       Role{"Fastest", advice->fastest},
       Role{"Smallest with every position bit for bit", advice->smallest_exact}};
   static_assert(kFine == 1e-6 && kCoarse == 1e-4, "as the words say");
-  // An encoding that is best at two things is told of once.
+  // An encoding that is best in several ways is listed once.
   std::vector<Role> merged;
   for (const Role& role : roles) {
     const auto same = std::find_if(merged.begin(), merged.end(),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Figures in, text out: no figure is made here.
+// Formats figures as text; computes none.
 #include "cooker/report/tradeoff_data.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-// What follows the first line that begins with `key` and a colon.
+// The rest of the first line that begins with `key` and a colon.
 std::string line_of(const char* path, const std::string& key) {
   std::ifstream in(path);
   for (std::string line; std::getline(in, line);) {
@@ -164,7 +164,7 @@ Json to_json(const MeshTradeoff& mesh) {
   return json;
 }
 
-// Quoted where a comma, a quote or a line end would be taken for the table's own.
+// Quoted if it contains a comma, a quote or a line end.
 std::string cell(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) return text;
   std::string quoted = "\"";

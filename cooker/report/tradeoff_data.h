@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Everything a tradeoff report shows, and the same as JSON and CSV.
+// All data of a tradeoff report, and its JSON and CSV.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +11,10 @@
 
 namespace boxtree::cooker {
 
-/// Where and how figures came about.
+/// The machine and program that made the figures.
 struct Surroundings {
   std::string processor;
-  std::string threads;  // of the machine; the figures are of one
+  std::string threads;  // of the machine; the figures are for one
   std::string system;
   std::string compiler;
   std::string version;  // of boxtree
@@ -22,10 +22,10 @@ struct Surroundings {
   std::string command;
 };
 
-/// Of this machine and this program.
+/// Those of this machine and this program.
 [[nodiscard]] Surroundings surroundings(const std::string& command);
 
-/// One result of another program's checks.
+/// One result of another program.
 struct IncludedRow {
   std::string id;
   std::string what;
@@ -34,7 +34,7 @@ struct IncludedRow {
   std::string pass;
 };
 
-/// Results of another program: a section of their own.
+/// Results of another program, shown in a separate section.
 struct IncludedResults {
   std::string title;
   std::string text;
@@ -51,16 +51,16 @@ struct TradeoffReport {
 };
 
 /// Reads {"title": ..., "text": ..., "rows": [{"id", "what", "figure", "limit", "pass"}, ...]} or
-/// the array of rows alone; numbers and truth values become text, what is missing stays empty.
-/// Errors: kFileNotFound; kFileUnreadable, also when it is no such document.
+/// only the array of rows. Numbers and booleans become text; missing values are empty. Errors:
+/// kFileNotFound; kFileUnreadable, also for another document.
 Result<IncludedResults> read_results(const std::filesystem::path& path);
 
 [[nodiscard]] std::string to_json(const TradeoffReport& report);
 
-/// One row a point, all figures in one table; lengths as shares of the diagonal.
+/// One row per point, all figures in one table; lengths as shares of the diagonal.
 [[nodiscard]] std::string to_csv(const TradeoffReport& report);
 
-/// One row a setting of approximate queries: encoding, kind, what was allowed, costs and errors.
+/// One row per setting of approximate queries: encoding, kind, limits, costs and errors.
 [[nodiscard]] std::string approximate_to_csv(const TradeoffReport& report);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// First what to use, then why: plots, then the tables behind them, then how it was measured.
+// Recommendations first, then plots, the tables behind them, and how they were measured.
 #include "cooker/report/tradeoff_page.h"
 
 #include <algorithm>
@@ -18,13 +18,13 @@ namespace {
 
 using Row = std::vector<std::string>;
 
-// Our own first, the largest trees last.
+// boxtree's own codecs first, the largest trees last.
 constexpr std::array kSeriesOrder = {CodecId::kWide8,    CodecId::kWide4,     CodecId::kPlainF32,
                                      CodecId::kPlainF16, CodecId::kPackedF32, CodecId::kPackedF16,
                                      CodecId::kDedup,    CodecId::kPackedF64};
 static_assert(kSeriesOrder.size() == kCodecs.size());
 
-// How kinds are called on the page; the metric of boxtree_peers; its unit in nanoseconds.
+// The name of a kind on the page, the metric of boxtree_peers, and its unit in nanoseconds.
 struct KindWords {
   const char* title;
   const char* query;
@@ -45,12 +45,12 @@ std::string percent(double share) {
   return fmt::format("{:+.1f} %", 100 * share);
 }
 
-// The area of a mark grows with the bytes; small ones can still be seen.
+// The area of a mark grows with the bytes, from a minimum size.
 double radius_of(double bytes_per_triangle) {
   return std::clamp(1.2 * std::sqrt(bytes_per_triangle), 2.5, 16.0);
 }
 
-// What one library's variant said of a mesh.
+// The figure of one library's variant for a mesh.
 const double* peer_figure(const TradeoffReport& report, const MeshTradeoff& mesh, const PeerRow& of,
                           const std::string& metric) {
   for (const PeerRow& row : report.peers) {
@@ -62,7 +62,7 @@ const double* peer_figure(const TradeoffReport& report, const MeshTradeoff& mesh
   return nullptr;
 }
 
-// One row of each library and variant.
+// One row per library and variant.
 std::vector<PeerRow> peers_of(const TradeoffReport& report, const MeshTradeoff& mesh) {
   std::vector<PeerRow> peers;
   for (const PeerRow& row : report.peers) {
@@ -76,7 +76,7 @@ std::vector<PeerRow> peers_of(const TradeoffReport& report, const MeshTradeoff& 
 
 using ErrorOf = std::function<double(const TradePoint&)>;
 
-// A series of each codec over its grids, then the front; exact points last, where curves of bytes
+// A series per codec over its grids, then the front. Exact points are last, where curves of bytes
 // end.
 std::vector<PagePlot::Series> codec_series(const MeshTradeoff& mesh, std::size_t kind,
                                            const ErrorOf& x_of) {
@@ -107,7 +107,7 @@ PagePlot::Series front_of(const std::vector<PagePlot::Series>& all, AxisScale x_
   std::vector<TwoCosts> costs;
   for (const PagePlot::Series& series : all) {
     for (const PagePlot::Point& point : series.points) {
-      // What has no logarithm stands at one place, so that one is as good as another.
+      // Values without a logarithm are drawn at one place, so they count as equal.
       const double x = x_scale == AxisScale::kLogarithmic ? std::max(point.x, 0.0) : point.x;
       if (point.y > 0) costs.push_back({x, point.y});
     }
@@ -147,7 +147,7 @@ PagePlot kind_plot(const TradeoffReport& report, const MeshTradeoff& mesh, std::
     if (ns == nullptr || bytes == nullptr) continue;
     double x = *bytes;
     if (!against_bytes) {
-      // They keep the vertices as they are. Their distances are told in shares of four diagonals.
+      // These libraries keep the vertices unchanged. Their distances are shares of four diagonals.
       const double* const error = peer_figure(report, mesh, peer, "point_error");
       x = is_distance && error != nullptr ? 4 * *error : 0;
     }
@@ -163,8 +163,7 @@ PagePlot kind_plot(const TradeoffReport& report, const MeshTradeoff& mesh, std::
   return plot;
 }
 
-// All contacts are counted, and only then is their time modelled: no times, no fourth measured
-// kind.
+// All contacts are counted and their time is modelled, so the fourth kind has no measured times.
 std::string kind_query(const MeshTradeoff& mesh, std::size_t kind) {
   return kind == 3 && !mesh.timed ? "all contacts of the mesh and its copy" : kKinds[kind].query;
 }
@@ -315,7 +314,7 @@ PageSection work_section(const MeshTradeoff& mesh) {
   }
   section.tables = {table};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-    // Of pairs the first contact is timed and all are counted: only the model has both.
+    // For pairs, the first contact is timed and all are counted: only the model has both.
     if (kind == 3 && mesh.timed) continue;
     for (const bool leaves : {false, true}) {
       PagePlot plot;

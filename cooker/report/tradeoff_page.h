@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A tradeoff report as a page that a newcomer can read from the top.
+// A tradeoff report as a page for readers new to the project.
 #pragma once
 
 #include "cooker/report/page.h"
@@ -9,7 +9,7 @@ namespace boxtree::cooker {
 
 [[nodiscard]] Page tradeoff_page(const TradeoffReport& report);
 
-/// The page's first words alone: what to use for each mesh.
+/// Only the first part of the page: the recommendation for each mesh.
 [[nodiscard]] Page tradeoff_summary(const TradeoffReport& report);
 
 }  // namespace boxtree::cooker
