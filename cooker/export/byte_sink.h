@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Small pieces gathered into large writes, so that exporters can hand over a vertex at a time.
+// Collects small pieces into large writes, so that exporters can pass one vertex at a time.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 
 namespace boxtree::cooker {
 
-/// Remembers the first error and drops what comes after it: callers look once, by finish().
+/// Keeps the first error and discards later bytes: callers check once, by finish().
 class ByteSink {
  public:
   /// `file` must outlive it.
@@ -27,7 +27,7 @@ class ByteSink {
     if (buffer_.size() >= kBufferBytes) flush();
   }
 
-  /// The bytes of a value as they lie in memory.
+  /// Appends the bytes of a value as in memory.
   template <class T>
   requires std::is_trivially_copyable_v<T>
   void put(const T& value) { write(std::as_bytes(std::span(&value, 1))); }
@@ -39,7 +39,7 @@ class ByteSink {
     write(std::as_bytes(std::span(text_.data(), text_.size())));
   }
 
-  /// Bytes taken so far.
+  /// Number of bytes appended so far.
   [[nodiscard]] std::uint64_t size() const { return flushed_ + buffer_.size(); }
 
   [[nodiscard]] Status finish() {

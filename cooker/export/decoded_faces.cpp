@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stored arrays are shown as they are; a grid is decoded leaf by leaf and welded.
+// Uses stored arrays directly; decodes a grid leaf by leaf and welds its vertices.
 #include "cooker/export/decoded_faces.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ std::vector<std::uint32_t> face_ids_of(const Tree& tree) {
   return ids;
 }
 
-// Which stored face comes when; nothing if they are stored in the order requested.
+// The order of stored faces; empty if they are stored in the requested order.
 Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder order) {
   const std::uint32_t count = tree.face_count();
   if (order == ExportOrder::kSource && !tree.has_face_ids() && !tree.empty()) {
@@ -41,7 +41,7 @@ Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder or
     return std::vector<std::uint32_t>();
   }
   std::vector<std::uint32_t> ids = face_ids_of(tree);
-  if (order == ExportOrder::kTree) {  // external arrays, for which ids are places in them
+  if (order == ExportOrder::kTree) {  // external arrays: ids are indices into them
     for (const std::uint32_t id : ids) {
       if (id < count) continue;
       return Error{Errc::kFaceOutOfRange, fmt::format("{}: face {} of {}", tree.name(), id, count)};

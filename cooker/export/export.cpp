@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Choose and check all that is shown, then write it.
+// Selects and checks all parts to export, then writes them.
 #include "cooker/export/export.h"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ Result<bool> is_glb_name(const std::filesystem::path& output) {
   return Error{Errc::kInvalidQuery, output.string() + ": expected a name in .obj or .glb"};
 }
 
-// `is_chosen(i)`: whether tree i is shown.
+// `is_chosen(i)`: whether tree i is exported.
 template <class IsChosen>
 Result<std::vector<ShownTree>> choose_trees(std::span<const Tree> trees,
                                             const ExportOptions& options, IsChosen is_chosen) {
@@ -117,7 +117,7 @@ Result<std::vector<ShownInstance>> read_instances(const Scene& scene) {
   return instances;
 }
 
-// Around everything that a writer places of a tree.
+// The bounds of all exported parts of a tree.
 Box<double> bounds_of(const ShownTree& shown) {
   Eigen::AlignedBox3d bounds(glb_translation(shown.tree));
   for (std::uint32_t v = 0; shown.faces && v < shown.faces->vertex_count(); ++v) {
@@ -132,7 +132,7 @@ Box<double> bounds_of(const ShownTree& shown) {
           {bounds.max()[0], bounds.max()[1], bounds.max()[2]}};
 }
 
-// The hull of bounds holds what apply() makes of the points within, rounding included.
+// The hull of the bounds contains the results of apply() for all points within, rounding included.
 Status check_poses(const Shown& shown) {
   std::vector<Box<double>> bounds;
   for (const ShownTree& tree : shown.trees) bounds.push_back(bounds_of(tree));
@@ -151,7 +151,7 @@ Result<Shown> choose_scene(const Scene& scene, std::span<const Tree> trees,
                            const ExportOptions& options) {
   Result<std::vector<ShownInstance>> instances = read_instances(scene);
   if (!instances) return instances.error();
-  std::vector<std::uint32_t> number(trees.size(), 0);  // among those shown
+  std::vector<std::uint32_t> number(trees.size(), 0);  // index among the exported trees
   for (const ShownInstance& instance : *instances) number[instance.tree] = 1;
   Result<std::vector<ShownTree>> chosen =
       choose_trees(trees, options, [&](std::size_t i) { return number[i] != 0; });

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Planned first, as the JSON comes before the bytes that it describes; then streamed.
+// Plans the file first, because the JSON precedes the bytes that it describes; then streams it.
 #include "cooker/export/glb_writer.h"
 
 #include <algorithm>
@@ -43,11 +43,11 @@ constexpr std::uint64_t align(std::uint64_t bytes) {
   return (bytes + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment;
 }
 
-// Materials are told apart by what they colour: triangles, leaves, or a level.
+// A material per use: triangles, leaves, or a level.
 constexpr int kTriangleMaterial = -2;
 constexpr int kLeafMaterial = -1;
 
-// One mesh of one primitive: its place in the buffer, and what accessors say of it.
+// One mesh with one primitive: its place in the buffer and the values of its accessors.
 struct Part {
   const BoxGroup* group = nullptr;  // null: the triangles
   std::uint64_t vertex_count = 0;
@@ -77,7 +77,7 @@ struct PlannedTree {
   std::vector<Part> parts;
 };
 
-// Subtraction and rounding keep order, so that what lies in a box still does.
+// Subtraction and rounding are monotone, so points stay inside their boxes.
 Position placed(const Eigen::Vector3d& object, const Eigen::Vector3d& translation) {
   Position position;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -184,7 +184,7 @@ Result<std::vector<PlannedTree>> plan(std::span<const ShownTree> trees, bool sol
   return planned;
 }
 
-// Hues a golden section apart, so that neighbouring levels differ; triangles grey, leaves white.
+// Hues differ by the golden ratio, so neighbouring levels differ; triangles are grey, leaves white.
 Json colour(int material) {
   if (material == kTriangleMaterial) return {0.6, 0.6, 0.6, 1};
   if (material == kLeafMaterial) return {1, 1, 1, 1};
@@ -218,8 +218,8 @@ class Document {
   }
 
  private:
-  // Appends to one of the arrays of the document and says where. glTF forbids empty arrays, so that
-  // they come into being here.
+  // Appends to one of the document's arrays and returns the index. glTF forbids empty arrays, so
+  // the array is created on first use.
   std::size_t append(const char* array, Json item) {
     json_[array].push_back(std::move(item));
     return json_[array].size() - 1;
@@ -256,8 +256,8 @@ class Document {
     }
   }
 
-  // Triangles belong to the node itself, so that who reads meshes alone meets the name and the pose
-  // of the instance.
+  // The instance's node holds the triangles, so that programs that only read meshes find the name
+  // and pose of the instance.
   void add_instance(const ShownInstance& instance, const PlannedTree& tree, std::size_t mesh) {
     Pose pose = instance.pose;
     pose.translation() = map_of(pose).apply(tree.translation);
@@ -281,7 +281,7 @@ class Document {
     add_root(std::move(node));
   }
 
-  // Column by column, as glTF has it. The identity goes without saying.
+  // Column-major, as in glTF. The identity is omitted.
   static void set_matrix(Json& node, const Pose& pose) {
     if (is_identity(pose)) return;
     Json numbers = Json::array();

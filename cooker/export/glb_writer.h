@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// glTF 2.0 in one binary file (GLB): for each tree a mesh of its triangles and one of lines for
-// each level of its boxes, each level in a colour of its own; a node for each tree or instance.
+// Writes glTF 2.0 as one binary file (GLB). Each tree has a mesh of its triangles and a mesh of
+// lines for each level of its boxes, in a colour per level. Each tree or instance has a node.
 #pragma once
 
 #include "cooker/export/shown_tree.h"
@@ -9,21 +9,20 @@ namespace boxtree::cooker {
 
 class ByteSink;
 
-/// Where positions of a tree are counted from, as glTF holds f32 alone: zero for f32 positions,
-/// which stay bit for bit; else near the middle of the tree, in steps of a power of two near its
-/// extent, so that a grid of up to 24 bits loses nothing and others no more than f32 must. Exact in
-/// f32 itself, as many viewers hold translations so.
+/// The origin of a tree's positions in glTF, which stores only f32. It is zero for f32 positions,
+/// which stay bit for bit. Otherwise it is near the centre of the tree, a multiple of a power of
+/// two near its extent, so that grids of up to 24 bits are exact and other positions lose no more
+/// than f32 requires. The origin is exact in f32, because many viewers store translations as f32.
 [[nodiscard]] Eigen::Vector3d glb_translation(const Tree& tree);
 
-/// Quads are split as queries see them: (0,1,2) and (0,2,3). Boxes are rounded outward;
-/// `solid_boxes` makes triangles of them. Axes stay those of object space, or of the world,
-/// whatever glTF says of its own.
+/// Quads are split as in queries: (0,1,2) and (0,2,3). Boxes are rounded outward; `solid_boxes`
+/// writes them as triangles. Axes are those of object space or of the world, not glTF's convention.
 ///
-/// A tree by itself is a node, below which each mesh has its own. An instance is a node with its
-/// tree's triangles, in all digits of f64 the matrix of its pose, after the tree's glb_translation,
-/// and children with the boxes. Where the pose shears, the node stands below another, so that both
-/// have matrices that glTF allows (node_matrices). Faces stay as they are where a pose mirrors:
-/// glTF has readers turn them round.
+/// A tree without a scene is a node whose children have the meshes. An instance is a node with its
+/// tree's triangles; its matrix is the pose, with all digits of f64, after the tree's
+/// glb_translation, and its children have the boxes. If the pose shears, the node has a parent, so
+/// that both have matrices that glTF allows (node_matrices). Faces are not reversed if a pose
+/// mirrors, because glTF requires readers to do that.
 ///
 /// Errors: kMeshUnsupported for positions beyond f32, kMeshTooLarge for more than 4 GiB.
 Status write_glb(const Shown& shown, bool solid_boxes, ByteSink& out);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Text of one tree or instance after the other; vertices are numbered through the whole file,
-// from 1.
+// Writes one tree or instance after another; vertices are numbered through the whole file, from 1.
 #include "cooker/export/obj_writer.h"
 
 #include <algorithm>
@@ -22,7 +21,7 @@ std::string object_name(std::string name) {
   return name;
 }
 
-// Names of groups are words: a line may list several.
+// Names of groups are single words, because a line may list several names.
 std::string group_name(const std::string& object, const std::string& part) {
   std::string name = object_name(object + "_" + part);
   std::replace(name.begin(), name.end(), ' ', '_');
@@ -107,8 +106,8 @@ class ObjText {
     }
   }
 
-  // Boxes around f32 positions are told in f32, too: whatever a reader makes of the digits, it
-  // keeps their order. No finite position lies beyond the largest finite number.
+  // Boxes around f32 positions are written as f32, too: any reader's conversion of digits keeps
+  // their order. No finite position is beyond the largest finite number.
   [[nodiscard]] double below(double value) const {
     return is_f32_ ? f32_below(value) : std::max(value, std::numeric_limits<double>::lowest());
   }
@@ -120,15 +119,15 @@ class ObjText {
   ByteSink& out_;
   bool is_f32_ = false;
   bool mirrors_ = false;
-  std::optional<AffineMap> to_world_;  // nothing: points stay, to the sign of a zero
+  std::optional<AffineMap> to_world_;  // empty: points are unchanged, including signs of zeros
   std::uint64_t next_ = 1;             // number of the next vertex
 };
 
 }  // namespace
 
 std::string f32_digits(float value) {
-  // Nine significant digits tell all f32 apart. From 1e-7 on they end within 15 decimals; up to
-  // 1e15 a whole number is exact in the 64 bits that readers gather digits in.
+  // Nine significant digits distinguish all f32. From 1e-7 on they end within 15 decimals; up to
+  // 1e15 an integer is exact in the 64 bits in which readers collect digits.
   constexpr int kDigits = 9;
   constexpr float kSmallestFixed = 1e-7f;
   constexpr float kLargestFixed = 1e15f;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Wavefront OBJ: an object a tree, or an instance of a scene; a group for its triangles and one for
+// Writes Wavefront OBJ: an object per tree or instance, with a group for its triangles and one for
 // each level of its boxes.
 #pragma once
 
@@ -11,14 +11,14 @@ namespace boxtree::cooker {
 
 class ByteSink;
 
-/// Decimal digits that give the same f32 back, and neither more than 15 decimals nor an exponent
-/// where that can be helped: readers of OBJ, assimp's among them, are exact for these alone.
+/// Decimal digits that read back as the same f32, with at most 15 decimals and no exponent where
+/// possible: readers of OBJ, including assimp's, are exact only for these.
 [[nodiscard]] std::string f32_digits(float value);
 
-/// Quads stay quads. Boxes are lines, or six quads each if `solid_boxes`. Numbers read back as they
-/// were: those of trees with f32 positions as f32 and, with boxes rounded outward to f32, all
-/// others as f64. Instances are placed and told in f64, boxes by their corners; a pose that mirrors
-/// turns faces round, from the same first corner.
+/// Quads stay quads. Boxes are lines, or six quads each if `solid_boxes`. Numbers read back
+/// unchanged: as f32 for trees with f32 positions, whose boxes are rounded outward to f32, and as
+/// f64 for all others. Instances are placed and written in f64, boxes by their corners; if a pose
+/// mirrors, faces are reversed, starting at the same first corner.
 void write_obj(const Shown& shown, bool solid_boxes, ByteSink& out);
 
 }  // namespace boxtree::cooker

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every linear map is a rotation, then a scale along the axes, then a rotation or reflection: two
-// nodes tell it.
+// Every linear map is a rotation, then a scale along the axes, then a rotation or reflection. Two
+// nodes can represent it.
 #include "cooker/export/placed_shape.h"
 
 #include <cmath>
@@ -13,8 +13,8 @@ namespace boxtree::cooker {
 namespace {
 
 // The largest cosine between two axes that counts as rounding. Most poses are products of rotations
-// in f32, each of which puts axes a few 2^-24 off the right angle. A viewer that drops what is left
-// moves points by less than a millionth of their distance from the instance's origin.
+// in f32, each of which changes right angles by a few 2^-24. A viewer that drops the remaining
+// shear moves points by less than a millionth of their distance from the instance's origin.
 constexpr double kLargestCosine = 0x1p-20;
 
 bool shears(const Eigen::Matrix3d& linear) {
@@ -26,7 +26,7 @@ bool shears(const Eigen::Matrix3d& linear) {
   return false;
 }
 
-// The same map at a size at which products neither overflow nor vanish. Exact, but for entries
+// The same map scaled so that products neither overflow nor vanish. Exact, except for entries
 // 2^-1000 below the largest.
 Eigen::Matrix3d at_unit_size(const Eigen::Matrix3d& linear) {
   const double largest = linear.cwiseAbs().maxCoeff();
@@ -48,7 +48,7 @@ std::vector<Pose> node_matrices(const Pose& pose) {
   const Eigen::JacobiSVD<Eigen::Matrix3d> parts(linear, Eigen::ComputeFullU | Eigen::ComputeFullV);
   Eigen::Matrix3d outer = parts.matrixU() * parts.singularValues().asDiagonal();
   Eigen::Matrix3d inner = parts.matrixV().transpose();
-  if (inner.determinant() < 0) {  // a mirror stays with the scale, where a negative one tells it
+  if (inner.determinant() < 0) {  // a negative scale represents the mirror
     outer.col(2) = -outer.col(2);
     inner.row(2) = -inner.row(2);
   }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a pose does to a shape: where points go, whether faces turn, and how glTF may be told.
+// The effect of a pose on a shape: its map of points, whether faces are reversed, and its matrices
+// in glTF.
 #pragma once
 
 #include <vector>
@@ -10,7 +11,7 @@
 
 namespace boxtree::cooker {
 
-/// apply() of it is a point in the world: ((t + m0 x) + m1 y) + m2 z in double on each axis.
+/// Its apply() maps a point to the world: ((t + m0 x) + m1 y) + m2 z in double on each axis.
 [[nodiscard]] inline AffineMap map_of(const Pose& pose) {
   return {pose.linear(), pose.translation()};
 }
@@ -19,14 +20,13 @@ namespace boxtree::cooker {
   return pose.matrix() == Pose::Identity().matrix();
 }
 
-/// Whether `pose` turns shapes inside out, so that a face keeps its front only if its corners are
-/// named the other way round. Exact.
+/// Whether `pose` mirrors, so that a face keeps its front only if its corners are reversed. Exact.
 [[nodiscard]] bool mirrors(const Pose& pose);
 
-/// Matrices of nested nodes, the outermost first, whose product is `pose`. glTF 2.0 demands that
-/// each be made of a translation, a rotation and a scale, and viewers that decompose a matrix lose
-/// what is not: a pose that shears becomes two, equal to it but for rounding. Any other pose is one
-/// matrix, as it is.
+/// Matrices of nested nodes, outermost first, whose product is `pose`. glTF 2.0 requires each to
+/// consist of a translation, a rotation and a scale; viewers that decompose a matrix lose any
+/// shear. A pose that shears becomes two matrices, equal to it up to rounding. Any other pose is
+/// one matrix, unchanged.
 [[nodiscard]] std::vector<Pose> node_matrices(const Pose& pose);
 
 }  // namespace boxtree::cooker

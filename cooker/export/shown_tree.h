@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is shown, chosen and checked: writers only write.
+// The trees, boxes and instances to export, selected and checked before writing.
 #pragma once
 
 #include <cstdint>
@@ -19,21 +19,21 @@ namespace boxtree::cooker {
 struct ShownTree {
   Tree tree;
   std::string name;                   // never empty
-  std::optional<DecodedFaces> faces;  // nothing: boxes alone
+  std::optional<DecodedFaces> faces;  // empty: only boxes
   std::vector<BoxGroup> boxes;
 };
 
-/// A tree where a scene places it.
+/// A tree placed by a scene.
 struct ShownInstance {
   std::string name;        // never empty
-  std::uint32_t tree = 0;  // in Shown::trees
+  std::uint32_t tree = 0;  // index into Shown::trees
   Pose pose = Pose::Identity();
 };
 
 struct Shown {
   std::vector<ShownTree> trees;
-  /// Nothing: each tree once, where its own coordinates put it. Else each tree has an instance, and
-  /// no pose takes anything that is shown of its tree beyond the numbers that a double holds.
+  /// Empty: each tree once, in its own coordinates. Otherwise each tree has an instance, and no
+  /// pose moves any exported part of its tree beyond the range of doubles.
   std::optional<std::vector<ShownInstance>> instances;
 };
 

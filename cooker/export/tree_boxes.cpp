@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which levels a tree has, and rounding of boxes outward.
+// Finds the levels of a tree, and rounds boxes outward.
 #include "cooker/export/tree_boxes.h"
 
 #include <algorithm>

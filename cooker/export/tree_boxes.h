@@ -14,14 +14,14 @@
 
 namespace boxtree::cooker {
 
-/// Levels first..last. The root's box is level 0, the boxes that expanding a node gives are one
-/// level below its own, be they leaves or not.
+/// Levels first..last. The root's box is level 0; the boxes that a node expands to, including
+/// leaves, are one level below it.
 struct LevelRange {
   std::uint32_t first = 0;
   std::uint32_t last = 0;
 };
 
-/// Boxes that are shown together: those of one level, or those of all leaves.
+/// Boxes that form one group in the output: those of one level, or those of all leaves.
 struct BoxGroup {
   std::optional<std::uint32_t> level;  // nothing: the leaves
   std::uint64_t count = 0;
@@ -34,9 +34,9 @@ struct BoxGroup {
   }
 };
 
-/// Calls visit(level, is_leaf, Box<double>) for the boxes of levels 0 to `deepest`, each before
-/// those below it, in the order of the children. Boxes are of tree space. Ends on any bytes, as
-/// WalkBound sees to. kNodeCorrupt and kDepthExceeded for corrupt bytes.
+/// Calls visit(level, is_leaf, Box<double>) for the boxes of levels 0 to `deepest`: each box before
+/// those below it, children in order. Boxes are in tree space. Ends on any bytes (WalkBound).
+/// Errors: kNodeCorrupt and kDepthExceeded for corrupt bytes.
 template <class Visit>
 [[nodiscard]] Errc walk_boxes(const Tree& tree, std::uint32_t deepest, Visit visit) {
   struct Entry {
@@ -67,7 +67,7 @@ template <class Visit>
   return Errc::kOk;
 }
 
-/// The boxes of one group. Precondition: find_groups() met no error in this tree.
+/// The boxes of one group. Precondition: find_groups() succeeded on this tree.
 template <class Visit>
 void visit_group(const Tree& tree, const BoxGroup& group, Visit visit) {
   static_cast<void>(walk_boxes(tree, group.level.value_or(kMaxDepth),
@@ -76,12 +76,12 @@ void visit_group(const Tree& tree, const BoxGroup& group, Visit visit) {
                                }));
 }
 
-/// The groups chosen that have any boxes: levels in ascending order, then the leaves. Errors as
-/// walk_boxes, named after the tree.
+/// The selected groups that have boxes: levels in ascending order, then the leaves. Errors: as
+/// walk_boxes, with the tree's name.
 Result<std::vector<BoxGroup>> find_groups(const Tree& tree, const std::vector<LevelRange>& levels,
                                           bool leaves);
 
-/// The edges of a box as pairs of corner numbers, whose bits choose between low and high: x is
+/// The edges of a box as pairs of corner numbers. Bits of a corner number select low or high: x is
 /// bit 0, y bit 1, z bit 2.
 inline constexpr std::array<std::array<std::uint32_t, 2>, 12> kBoxEdges = {{{0, 1},
                                                                             {2, 3},
@@ -100,10 +100,10 @@ inline constexpr std::array<std::array<std::uint32_t, 2>, 12> kBoxEdges = {{{0, 
 inline constexpr std::array<std::array<std::uint32_t, 4>, 6> kBoxSides = {
     {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}}};
 
-/// The nearest f32 that is not above `value`; the outermost finite one stands for all beyond, as no
-/// finite f32 lies there.
+/// The largest f32 that is not above `value`; the outermost finite one if there is no such finite
+/// f32.
 [[nodiscard]] float f32_below(double value);
-/// The nearest f32 that is not below `value`, in the same way.
+/// The smallest f32 that is not below `value`; likewise.
 [[nodiscard]] float f32_above(double value);
 
 }  // namespace boxtree::cooker
