@@ -65,7 +65,7 @@ class Job {
     if (!job_.costs.empty()) summary.files_read.push_back(job_.costs);
     const std::array outputs{job_.output, job_.depfile};
     if (Status status = check_outputs(outputs, summary.files_read); !status) return status.error();
-    // First, so that no error of it leaves a new output without one.
+    // Written first, so that an error in it leaves no new output without a depfile.
     if (!job_.depfile.empty()) {
       const Status status = write_depfile(job_.depfile, job_.output, summary.files_read);
       if (!status) return status.error();
@@ -85,7 +85,7 @@ class Job {
     return write_file(job_.output, parts);
   }
 
-  // Keeps what is told of a tree and gives its bytes back.
+  // Moves the facts about a tree to `told` and frees its bytes.
   static void release(EncodedTree& tree, CookedTree& told) {
     tree.name = std::move(told.tree.name);
     told.tree = std::move(tree);
@@ -103,7 +103,7 @@ class Job {
 
 }  // namespace
 
-// What a file refers to is known, and checked, only after it was read.
+// Files that another file refers to are known, and checked, only after it is read.
 Status check_job(const CookJob& job) {
   if (job.output.empty()) return Error{Errc::kWriteFailed, "the output has no name"};
   std::vector<fs::path> inputs = job.inputs;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The one shell around the pipeline: reads what a job names, cooks it in memory, checks that
-// nothing that was read would be written over, and writes.
+// Runs the pipeline on files: reads the inputs of a job, cooks them in memory, checks that no input
+// would be overwritten, and writes the output.
 #pragma once
 
 #include <filesystem>
@@ -10,9 +10,9 @@
 
 namespace boxtree::cooker {
 
-/// One output and all that it is made of; a path that was not given is empty.
+/// One output and its inputs; paths that are not given are empty.
 struct CookJob {
-  std::vector<std::filesystem::path> inputs;  // may be empty where the profile says what to cook
+  std::vector<std::filesystem::path> inputs;  // may be empty if the profile states the input
   std::filesystem::path output;
   std::filesystem::path profile = {};  // a scene.toml; makes the inputs one scene
   std::filesystem::path costs = {};    // constants of the user's machine
@@ -22,16 +22,16 @@ struct CookJob {
   CookOptions options = {};
 };
 
-/// What can be said of a job before anything is read: whether the output has a name, and whether it
-/// or the depfile is an input or both are one file. Error: kWriteFailed.
+/// Checks a job before anything is read: the output must have a name, output and depfile must
+/// differ, and neither may be an input. Error: kWriteFailed.
 Status check_job(const CookJob& job);
 
-/// Cooks a job: a scene, where it says so or its only input places meshes twice or more; otherwise
-/// each input becomes a tree named after its file. Each input is imported once; inputs that share a
-/// grid are in memory together, others one after the other. The file is written, proven and takes
-/// the place of another only when it is whole; before it the depfile. On any error nothing of the
-/// output changes. The bytes do not depend on threads or folders. Errors: those of check_job;
-/// kWriteFailed, also where an output is a file that was read; those of read_costs, read_profile,
+/// Cooks a job: a scene if as_scene is set or the only input places meshes twice or more; otherwise
+/// each input becomes a tree named after its file. Each input is imported once. Inputs that share a
+/// grid are in memory together, others one after another. The output is written, proven and then
+/// renamed over the old file; the depfile is written before it. On any error the output is
+/// unchanged. The bytes do not depend on threads or folders. Errors: those of check_job;
+/// kWriteFailed, also if an output is a file that was read; those of read_costs, read_profile,
 /// load_scene, load_file, load_trees, cook and write_file.
 Result<Summary> cook_job(const CookJob& job, const Progress& progress = {});
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a build system is told: which files an output was made of.
+// Writes the dependencies of an output for a build system.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,8 @@
 
 namespace boxtree::cooker {
 
-/// Writes "output: inputs" in make syntax to `path`, which takes the place of another file only
-/// once it is whole. Error: kWriteFailed.
+/// Writes "output: inputs" in make syntax to `path`, replacing an existing file only once it is
+/// complete. Error: kWriteFailed.
 Status write_depfile(const std::filesystem::path& path, const std::filesystem::path& output,
                      std::span<const std::filesystem::path> inputs);
 
