@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Write, fsync, rename, fsync of the directory; whatever can fail is tried before the rename.
+// Write, fsync, rename, fsync of the directory; all steps that can fail come before the rename.
 #include "cooker/write/atomic_file.h"
 
 #include <cerrno>
@@ -18,15 +18,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr mode_t kMode = 0666;  // the umask takes away what the user does not want
+constexpr mode_t kMode = 0666;  // restricted by the umask
 constexpr mode_t kModeBits = 07777;
 
 fs::path directory_of(const fs::path& target) {
   return target.has_parent_path() ? target.parent_path() : fs::path(".");
 }
 
-// What file systems, old kernels and sandboxes say where names cannot be exchanged, and what is
-// said when the old file has gone meanwhile.
+// Errors of file systems, old kernels and sandboxes that cannot exchange names, and the error if
+// the old file no longer exists.
 bool cannot_exchange(int error) {
   return error == EINVAL || error == ENOSYS || error == EOPNOTSUPP || error == EPERM ||
          error == ENOENT;
@@ -85,7 +85,7 @@ Result<AtomicFile> AtomicFile::create(const fs::path& given) {
   if (exists && ::fchmod(file.descriptor(), old.st_mode & kModeBits) != 0) {
     return write_failure(given, "cannot keep its mode");
   }
-  // Only root may give files away.
+  // Only root may set owners.
   if (exists) static_cast<void>(!::fchown(file.descriptor(), old.st_uid, old.st_gid));
   return file;
 }
@@ -94,15 +94,15 @@ Status AtomicFile::write(Bytes bytes) {
   return write_all(descriptor(), bytes) ? Status() : write_failure(target_, "cannot write");
 }
 
-// The old file keeps a name until the new one is known to stay. Where names cannot be exchanged, it
-// does not; and then nothing is left to bring back.
+// The old file keeps a name until the new one is durable. Where names cannot be exchanged, it loses
+// its name, and cannot be restored.
 Status AtomicFile::commit() {
   if (::fsync(descriptor()) != 0) return write_failure(target_, "cannot flush");
   if (Status status = temporary_.add_name(); !status) return status;
   const char* const temporary = temporary_.path().c_str();
   const bool is_exchanged = replaces_ && ::renameat2(AT_FDCWD, temporary, AT_FDCWD, target_.c_str(),
                                                      RENAME_EXCHANGE) == 0;
-  // After other errors they may have been exchanged: a rename would bring the old file back.
+  // After other errors the names may have been exchanged: a rename would restore the old file.
   if (replaces_ && !is_exchanged && !cannot_exchange(errno)) {
     return write_failure(target_, "cannot rename");
   }
@@ -113,7 +113,7 @@ Status AtomicFile::commit() {
     temporary_.release_name();
   }
   if (::fsync(directory_) == 0) {
-    temporary_.remove_name();  // the old file's, if they were exchanged
+    temporary_.remove_name();  // of the old file, if names were exchanged
     return {};
   }
   const Error error = write_failure(target_, "cannot flush the directory");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file that appears whole or not at all: nothing under its name changes before commit().
+// A file that appears complete or not at all: the target does not change before commit().
 #pragma once
 
 #include <filesystem>
@@ -11,18 +11,18 @@
 
 namespace boxtree::cooker {
 
-/// The file that a chain of symbolic links leads to, be it there or not; `target` itself if it is
-/// no link. Error: kWriteFailed for a loop.
+/// The file that a chain of symbolic links leads to, whether it exists or not; `target` itself if
+/// it is not a link. Error: kWriteFailed for a loop.
 Result<std::filesystem::path> follow_links(const std::filesystem::path& target);
 
-/// Collects bytes in a TemporaryFile beside the target and puts them in its place by rename: what a
-/// killed process leaves, the next AtomicFile for the same target sweeps. A target that is a link
-/// stays one: what it leads to is replaced. An existing file keeps its mode, and its owner where
-/// the process may give files away. Two processes that write one target do not hinder each other:
-/// the last one stays. Not for use by several threads at once.
+/// Collects bytes in a TemporaryFile beside the target and renames it to the target. Files left by
+/// a killed process are removed by the next AtomicFile for the same target. If the target is a
+/// link, the file that it leads to is replaced. An existing file keeps its mode, and its owner if
+/// the process may set owners. Two processes may write one target; the last one wins. Not for use
+/// by several threads at once.
 class AtomicFile {
  public:
-  /// Error: kWriteFailed, as for all that follow; the detail names the path and the cause.
+  /// Error: kWriteFailed, as for all other functions; the detail has the path and the cause.
   static Result<AtomicFile> create(const std::filesystem::path& given);
 
   AtomicFile(AtomicFile&& other) noexcept;
@@ -34,11 +34,11 @@ class AtomicFile {
 
   Status write(Bytes bytes);
 
-  /// The descriptor, for reading back what was written before it is committed.
+  /// The descriptor, to read what was written before commit().
   [[nodiscard]] int descriptor() const { return temporary_.descriptor(); }
 
   /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
-  /// After an error the old file is in its place, or none if there was none.
+  /// After an error the target is the old file, or missing if there was none.
   Status commit();
 
  private:
@@ -46,8 +46,8 @@ class AtomicFile {
 
   TemporaryFile temporary_;
   std::filesystem::path target_;
-  bool replaces_;       // whether the target was there
-  int directory_ = -1;  // once moved from, too
+  bool replaces_;       // whether the target existed
+  int directory_ = -1;  // also after a move
 };
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files that are compressed as a whole, written with the same care as mapped ones.
+// Writes files that are compressed as a whole, with the same checks as mapped ones.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,10 @@
 
 namespace boxtree::cooker {
 
-/// Writes the blob of what write_file() would write, opens what was written, compares it bit for
-/// bit with what was meant, proves every tree, and only then lets it take the place of `path`.
-/// Errors: as write_file(); kBlobCorrupt if it does not come back, which is an internal error.
-/// Returns its size.
+/// Writes the blob of the file that write_file() would write, reads it back, compares it bit for
+/// bit with the original, proves every tree, and then renames it to `path`. Errors: as
+/// write_file(); kBlobCorrupt if the comparison fails, which is an internal error. Returns its
+/// size.
 Result<std::uint64_t> write_blob(const std::filesystem::path& path, const FileParts& parts,
                                  BlobMethod method);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Lays sections out one after the other and writes them with the header that describes them.
+// Lays out sections one after another and writes them after the header that describes them.
 #include "cooker/write/file_writer.h"
 
 #include <algorithm>
@@ -18,7 +18,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// One section: what it is, and where its bytes are kept until they are written.
+// One section: its kind, and its bytes until they are written.
 struct Section {
   SectionKind kind;
   std::uint32_t owner;
@@ -29,10 +29,10 @@ Bytes bytes_of(const auto& container) {
   return std::as_bytes(std::span(container));
 }
 
-// Holds the small sections and lists all; the large ones stay where the encoders put them.
+// Owns the small sections and lists all; the large ones stay in the encoders' buffers.
 class Layout {
  public:
-  // Precondition: `scene` is encoded from these trees, or nothing, and its names are `names`.
+  // Precondition: `scene` is encoded from these trees, or null, and its names are `names`.
   Layout(const FileParts& parts, const EncodedScene* scene, std::string names)
       : names_(std::move(names)), cook_record_(parts.cook_record) {
     std::uint32_t name_offset = 0;
@@ -89,7 +89,7 @@ class Layout {
     if (!bytes.empty()) sections_.push_back({kind, owner, bytes});
   }
 
-  // What a top-level walk reads stands together.
+  // Sections that a top-level walk reads are adjacent.
   void add_scene(const EncodedScene& scene) {
     add(SectionKind::kScene, kNoOwner, scene.scene);
     add(SectionKind::kLayers, kNoOwner, scene.layers);
@@ -139,7 +139,7 @@ std::vector<std::byte> bytes_of_file(const Layout& layout) {
   return out;
 }
 
-// The names of all trees, to which a scene adds its own.
+// The names of all trees; a scene appends its own.
 std::string tree_names(std::span<const EncodedTree> trees) {
   std::string names;
   for (const EncodedTree& tree : trees) names += to_utf8(tree.name);

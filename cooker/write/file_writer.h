@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Encoded trees to the bytes of a .bxt file.
+// Writes encoded trees as a .bxt file.
 #pragma once
 
 #include <filesystem>
@@ -14,7 +14,7 @@
 
 namespace boxtree::cooker {
 
-/// What a file holds. `cook_record` is omitted when empty, the scene when there is none.
+/// The contents of a file. An empty `cook_record` and a missing scene are omitted.
 struct FileParts {
   std::span<const EncodedTree> trees;
   std::string cook_record;
@@ -24,7 +24,7 @@ struct FileParts {
 /// The whole file in memory: what write_file writes. Errors: those of encode_scene.
 Result<std::vector<std::byte>> serialize(const FileParts& parts);
 
-/// Where everything stands in that file, and how many bytes it has. Errors likewise.
+/// The place of every section in that file, and its size. Errors: the same.
 struct FileLayout {
   std::vector<SectionEntry> sections;
   std::uint64_t bytes = 0;
@@ -35,10 +35,10 @@ Result<FileLayout> layout_of(const FileParts& parts);
 [[nodiscard]] std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                                const std::string& cook_record = {});
 
-/// Writes the file, maps what was written, proves every tree of it (cooker/proof/proof.h), and only
-/// then lets it take the place of `path`. On any error the old file is untouched. Returns its size.
-/// Errors: kWriteFailed; kMeshTooLarge for more trees than a file can hold; those of encode_scene;
-/// the first finding if the proof fails, which is an internal error.
+/// Writes the file, maps it, proves every tree of it (cooker/proof/proof.h), and then renames it to
+/// `path`. On any error the old file is unchanged. Returns its size. Errors: kWriteFailed;
+/// kMeshTooLarge for more trees than a file can hold; those of encode_scene; the first finding if
+/// the proof fails, which is an internal error.
 Result<std::uint64_t> write_file(const std::filesystem::path& path, const FileParts& parts);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files are the same that have one device and inode; files to come, those of one path.
+// Existing files are the same if device and inode are equal; new files, if their paths are.
 #include "cooker/write/outputs.h"
 
 #include <string>
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The one name of a file, be it there or not; empty if the system does not tell.
+// The canonical path of a file, whether it exists or not; empty if the system reports an error.
 fs::path real_name(const fs::path& path) {
   const Result<fs::path> followed = follow_links(path);
   if (!followed.ok()) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Nothing that is read may be written over.
+// Checks that no input is overwritten.
 #pragma once
 
 #include <filesystem>
@@ -9,9 +9,9 @@
 
 namespace boxtree::cooker {
 
-/// Whether the outputs are files of their own: none of them is an input or another output, by
-/// whatever name, hard link or symbolic link. Empty paths are outputs that were not given. Reads
-/// no file; to be called before anything is written. Error: kWriteFailed.
+/// Checks that no output is an input or another output, under any name, hard link or symbolic link.
+/// Empty paths are outputs that were not given. Reads no file; call it before anything is written.
+/// Error: kWriteFailed.
 Status check_outputs(std::span<const std::filesystem::path> outputs,
                      std::span<const std::filesystem::path> inputs);
 

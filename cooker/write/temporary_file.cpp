@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Whoever is alive holds a lock on its file: what can be locked is nobody's, and is swept.
+// Each owner holds a lock on its file; files that can be locked have no owner and are removed.
 #include "cooker/write/temporary_file.h"
 
 #include <cerrno>
@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kSuffix = ".cooking";
 constexpr std::size_t kRandomDigits = 16;
-constexpr std::size_t kLongestName = 200;  // of what it is for: a name has 255 bytes in all
+constexpr std::size_t kLongestName = 200;  // of the target: a file name has at most 255 bytes
 
 std::string prefix_of(std::string_view name) {
   return fmt::format(".{}.", name.substr(0, kLongestName));
@@ -49,8 +49,8 @@ struct CloseDirectory {
   void operator()(DIR* directory) const { ::closedir(directory); }
 };
 
-// By readdir(), as std::filesystem aborts where memory runs out, and throws where a folder cannot
-// be read to its end: what cannot be swept stays. A lock holds in whatever container its owner is.
+// Uses readdir(), because std::filesystem aborts if memory runs out and throws if a folder cannot
+// be read to its end. Files that cannot be removed stay. Locks work across containers.
 void sweep(const fs::path& folder, std::string_view name) {
   const std::string prefix = prefix_of(name);
   const std::unique_ptr<DIR, CloseDirectory> entries(::opendir(folder.c_str()));
@@ -89,7 +89,7 @@ Result<TemporaryFile> TemporaryFile::create(const fs::path& folder, std::string_
   file.descriptor_ = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, mode);
   if (file.descriptor_ >= 0) {
     if (Status status = file.choose_name(); !status) return status.error();
-    // File systems without locks sweep too much or nothing; a writer whose temporary goes fails.
+    // Without locks, sweeps remove too much or nothing; a writer whose file is removed fails.
     static_cast<void>(::flock(file.descriptor_, LOCK_EX | LOCK_NB));
   } else if (Status status = file.create_named(mode); !status) {
     return status.error();
@@ -104,9 +104,9 @@ Status TemporaryFile::choose_name() {
   return {};
 }
 
-// Before it is locked, another owner's sweep may take the file for a dead one's: then the next name
-// is tried. Each attempt that fails is somebody else's sweep, of which there are not many. A call
-// that fails may have been done all the same, on a network, but where the name was there before.
+// Until the file is locked, another owner's sweep may remove it as abandoned; then the next name is
+// tried. Each failed attempt is one such sweep, so a few attempts suffice. On a network file system
+// a call may fail although it was done, except when the name existed before.
 Status TemporaryFile::create_named(mode_t mode) {
   constexpr int kAttempts = 100;
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
@@ -125,7 +125,7 @@ Status TemporaryFile::create_named(mode_t mode) {
   return write_failure(folder_ / name_, "cannot create");
 }
 
-// Linking by descriptor needs a privilege or /proc. Likewise, a call that fails may have been done.
+// Linking by descriptor needs a privilege or /proc. A call that fails may have been done here, too.
 Status TemporaryFile::add_name() {
   if (is_named_) return {};
   is_named_ = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A file that is gone with its owner, or with the next owner of the same name if that was killed.
+// A file that is removed with its owner, or, if the owner was killed, by the next owner of the same
+// name.
 #pragma once
 
 #include <filesystem>
@@ -11,10 +12,10 @@
 
 namespace boxtree::cooker {
 
-/// An open file in some folder. Where the file system allows (O_TMPFILE) it has no name until it is
-/// given one, so that a killed process leaves nothing behind; elsewhere, and while it has a name,
-/// it is called ".NAME.RANDOM.cooking", and the next TemporaryFile of that folder and name sweeps
-/// what a killed process left. Not for use by several threads at once.
+/// An open file in a folder. If the file system supports it (O_TMPFILE), the file has no name until
+/// add_name(), so that a killed process leaves nothing behind. Otherwise, and while it has a name,
+/// it is called ".NAME.RANDOM.cooking", and the next TemporaryFile with the same folder and name
+/// removes files of killed processes. Not for use by several threads at once.
 class TemporaryFile {
  public:
   /// Error: kWriteFailed, with the path folder/name and the cause.
@@ -29,16 +30,16 @@ class TemporaryFile {
 
   [[nodiscard]] int descriptor() const { return descriptor_; }
 
-  /// The name that it has, or will have.
+  /// Its current or future name.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] bool is_named() const { return is_named_; }
 
-  /// Gives it its name if it has none. Error: kWriteFailed.
+  /// Gives the file its name if it has none. Error: kWriteFailed.
   Status add_name();
-  /// Takes the name away; whoever has it open still can read and write it. Where that fails it is
-  /// tried once more when the owner goes.
+  /// Removes the name; processes that have the file open can still use it. If this fails, the
+  /// destructor tries again.
   void remove_name();
-  /// To be called when the name has been moved: it is no longer this file's to remove.
+  /// Call when the name has been moved: this object no longer removes it.
   void release_name() { is_named_ = false; }
 
  private:
@@ -47,10 +48,10 @@ class TemporaryFile {
   Status create_named(mode_t mode);
 
   std::filesystem::path folder_;
-  std::string name_;  // that of what it is for
+  std::string name_;  // of the target
   std::filesystem::path path_;
   bool is_named_ = false;
-  int descriptor_ = -1;  // once moved from, too
+  int descriptor_ = -1;  // also after a move
 };
 
 }  // namespace boxtree::cooker
