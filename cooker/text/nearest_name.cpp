@@ -8,7 +8,8 @@
 namespace boxtree::cooker {
 
 std::size_t edit_distance(std::string_view from, std::string_view to) {
-  // Rows of the table of distances between the first i letters of one and the first j of the other.
+  // Rows of the table of distances between the first i letters of one word and the first j of the
+  // other.
   std::vector<std::size_t> before_last(to.size() + 1), last(to.size() + 1), row(to.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
   for (std::size_t i = 1; i <= from.size(); ++i) {

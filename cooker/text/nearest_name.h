@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The name that was probably meant by one that was misspelt.
+// Finds the name that a misspelt one was probably meant to be.
 #pragma once
 
 #include <cstddef>
@@ -9,16 +9,16 @@
 
 namespace boxtree::cooker {
 
-/// The fewest letters put in, left out, replaced, or swapped with their neighbour that make one
-/// word of the other (Damerau, "A technique for computer detection and correction of spelling
+/// The least number of letters to insert, delete, replace, or swap with their neighbour to turn one
+/// word into the other (Damerau, "A technique for computer detection and correction of spelling
 /// errors", CACM 1964). Bytes count as letters. Cost: the product of both lengths.
 [[nodiscard]] std::size_t edit_distance(std::string_view from, std::string_view to);
 
-/// Of `names` the first with the least distance; empty if there are none.
+/// The first of `names` with the least distance; empty if there are none.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
 
-/// "; did you mean 'query'?" with the nearest of `names`; empty where more than a third of the
-/// letters would be others.
+/// "; did you mean 'query'?" with the nearest of `names`; empty if more than a third of the letters
+/// would change.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);
 
 }  // namespace boxtree::cooker

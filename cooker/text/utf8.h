@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Texts that come from files and paths, and may be no UTF-8.
+// Texts from files and paths, which may be invalid UTF-8.
 #pragma once
 
 #include <cstddef>
@@ -8,14 +8,14 @@
 
 namespace boxtree::cooker {
 
-/// Bytes of the character that a text begins with; 0 if that is no UTF-8 (Unicode 15, table 3-7),
-/// or if the text is empty.
+/// Bytes of the first character of a text; 0 if it is not UTF-8 (Unicode 15, table 3-7), or if the
+/// text is empty.
 [[nodiscard]] std::size_t character_bytes(std::string_view text);
 
 [[nodiscard]] bool is_utf8(std::string_view text);
 
-/// The text with U+FFFD in place of each byte that is no UTF-8; of at most `most` bytes, cut
-/// between characters. Names in files: docs/FORMAT.md.
+/// The text with U+FFFD in place of each byte that is not UTF-8; at most `most` bytes, cut between
+/// characters. Names in files: docs/FORMAT.md.
 [[nodiscard]] std::string to_utf8(std::string_view text, std::size_t most = std::string::npos);
 
 }  // namespace boxtree::cooker
