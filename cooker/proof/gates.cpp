@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Gates by the same walk that proves a written file.
+// Checks candidates by the walk that proves a written file.
 #include "cooker/proof/gates.h"
 
 #include "cooker/proof/proof.h"
@@ -14,7 +14,7 @@ Gates check_gates(const EncodedTree& tree, const MeshArrays& source) {
   if (!bound) return {tree.face_count, 0, false};
   const TreeProof proof = prove_tree(*bound, true);
   const bool holds = certificate_holds(certificate_of(tree), proof.certificate, true);
-  // A finding that is neither a missed face nor an escape is a contradiction in the counts.
+  // Any finding other than a missed face or an escape contradicts the counts.
   return {proof.missed, proof.escapes,
           holds && (proof.findings.empty() || proof.missed + proof.escapes > 0)};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The gates that a candidate must pass to be offered at all.
+// The gates that a candidate must pass to be chosen.
 #pragma once
 
 #include <cstdint>
@@ -8,17 +8,17 @@
 
 namespace boxtree::cooker {
 
-/// Figures of one candidate; it passes when nothing is missed, nothing escapes and its certificate
-/// says what was found.
+/// Results of one candidate. It passes if no face is missed, no box escapes and its certificate is
+/// correct.
 struct Gates {
   std::uint64_t missed = 0;   // faces that no walk from the root reaches
-  std::uint64_t escapes = 0;  // boxes that do not hold what is below them
+  std::uint64_t escapes = 0;  // boxes that do not contain what is below them
   bool certificate = false;
 
   [[nodiscard]] bool pass() const { return missed == 0 && escapes == 0 && certificate; }
 };
 
-/// Binds the encoded tree as a reader would and walks all of it. `source` serves external geometry.
+/// Binds the encoded tree as a reader would and walks all of it. `source` is for external geometry.
 [[nodiscard]] Gates check_gates(const EncodedTree& tree, const MeshArrays& source);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Texts in the section of names, which trees and scenes refer to by offset and size.
+// Checks texts in the section of names, to which trees and scenes refer by offset and size.
 #pragma once
 
 #include <cstdint>
@@ -12,8 +12,8 @@
 
 namespace boxtree::cooker {
 
-/// Whether such a text is inside the section and UTF-8; otherwise kRecordInvalid, beginning with
-/// `what` it is.
+/// kRecordInvalid, with a message that begins with `what`, unless the text is inside the section
+/// and UTF-8.
 [[nodiscard]] inline Status check_text(Bytes names, std::uint32_t offset, std::uint32_t bytes,
                                        const std::string& what) {
   if (!in_range(offset, bytes, names.size())) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Proof by walking the file that was written, not the tree that was meant.
+// Proves by walking the written file, not the tree in memory.
 #include "cooker/proof/proof.h"
 
 #include <algorithm>
@@ -25,17 +25,17 @@
 namespace boxtree::cooker {
 namespace {
 
-// Trees of fewer faces are walked by one thread; others in tasks for the subtrees some levels down,
-// up to 512 of them.
+// Trees with fewer faces are walked by one thread; others by a task for each subtree some levels
+// down, up to 512 tasks.
 constexpr std::uint32_t kParallelFaces = 16384;
 constexpr std::uint32_t kBinaryTaskLevels = 9;
 constexpr std::uint32_t kWideTaskLevels = 3;
 
-// One byte a face, set once it was met.
+// One byte per face, set when the face is reached.
 using Reached = std::vector<std::atomic<std::uint8_t>>;
 
-// The walk of one subtree. Counts and findings are its own and are added up in the order of the
-// children, so that they do not depend on threads.
+// The walk of one subtree. Its counts and findings are added up in the order of the children, so
+// that they do not depend on threads.
 class Walk {
  public:
   Walk(const Tree& tree, bool with_geometry, Reached& reached, SharedWalkBound& bound,
@@ -72,8 +72,9 @@ class Walk {
                                   ", the tree has " + std::to_string(found));
   }
 
-  // Bounds of all triangles below. A box that contains them contains each triangle; so comparing
-  // every box with the bounds below it is the whole proof. Recursion is at most kMaxDepth deep.
+  // Returns the bounds of all triangles below. A box that contains these bounds contains each
+  // triangle, so comparing every box with the bounds below it is the complete proof. The recursion
+  // is at most kMaxDepth deep.
   Box<double> walk(const Node& node, std::uint32_t depth) {
     Box<double> content = node.is_leaf ? visit_leaf(node) : visit_node(node, depth);
     for (std::size_t k = 0; k < 3; ++k) {
@@ -152,7 +153,7 @@ class Walk {
     for (const Error& finding : part.findings) add(finding.code, finding.detail);
   }
 
-  // Who meets a face first does not matter to anyone but the report of a corrupt tree.
+  // The order in which threads reach a face affects only the report of a corrupt tree.
   bool mark_reached(std::uint32_t face, const char* twice) {
     const bool met = reached_[face].exchange(1, std::memory_order_relaxed) != 0;
     if (met) add(Errc::kFaceRepeated, "face " + std::to_string(face) + " " + twice);
@@ -187,9 +188,9 @@ class Walk {
     expand(content, bounds_of(triangle));
   }
 
-  // Queries report a duplicate where they report its original, and ties are decided for the
-  // original: so it must be in a leaf, be the same to the bit, and have the smaller id. Originals
-  // ascend, as they are searched for.
+  // Queries report a duplicate together with its original, and decide ties for the original. The
+  // original must therefore be in a leaf, be bitwise identical, and have the smaller id. Originals
+  // must ascend for the binary search.
   void visit_duplicates() {
     const std::uint32_t in_leaves = BoundTree::of(tree_).counts().faces_in_leaves;
     std::uint32_t before = 0;
@@ -266,7 +267,7 @@ Status check_certificate(const File& file, std::uint32_t index, bool with_geomet
   return Error{Errc::kCertificateMismatch, "the certificate's figures are not the tree's"};
 }
 
-// Binds for a structural check only: leaves of external geometry are never read.
+// Binds for a structural check: leaves of external geometry are never read.
 Result<Tree> bind_for_proof(const File& file, std::uint32_t index,
                             const std::optional<MeshArrays>& mesh) {
   BindOptions options;

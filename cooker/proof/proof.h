@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The proof behind the certificate: every triangle lies inside every decoded box above it, every
-// face is reached exactly once, and the counts are as stated.
+// Proves the certificate: every triangle is inside every decoded box above it, every face is
+// reached exactly once, and the counts are as stated.
 #pragma once
 
 #include <cstdint>
@@ -15,34 +15,34 @@
 
 namespace boxtree::cooker {
 
-/// Findings of one check, in order of discovery. Empty means: it holds.
+/// Findings of one check, in order of discovery. Empty if the check passes.
 using Findings = std::vector<Error>;
 
-/// At most this many findings are kept of one tree; a damaged tree has millions of them.
+/// The number of findings kept per tree; a damaged tree can have millions.
 inline constexpr std::size_t kMaxFindings = 100;
 
-/// What a walk of one tree found.
+/// The result of walking one tree.
 struct TreeProof {
-  CertificateRecord certificate{};  // the counts met
+  CertificateRecord certificate{};  // the counts found
   std::uint64_t missed = 0;         // faces in no leaf
-  std::uint64_t escapes = 0;        // boxes that do not hold what is below them
-  Findings findings;                // the first kMaxFindings of all that does not hold
+  std::uint64_t escapes = 0;        // boxes that do not contain what is below them
+  Findings findings;                // the first kMaxFindings
 };
 
-/// What is found of a node that a walk cannot go on from, by what decoding it gave.
+/// The message for a node at which a walk cannot continue, given the result of decoding it.
 [[nodiscard]] std::string fault_of_node(std::uint32_t node, NodeState state);
 
 /// Walks the whole tree as a reader would. With `with_geometry` false, leaves are counted but
-/// triangles not looked at (external geometry whose mesh is not at hand). Safe on any bytes.
+/// triangles are not read (external geometry without its mesh). Safe on any bytes.
 [[nodiscard]] TreeProof prove_tree(const Tree& tree, bool with_geometry);
 
-/// Whether a stated certificate is well formed and says what was found.
+/// Whether a stated certificate is well formed and matches `found`.
 [[nodiscard]] bool certificate_holds(const CertificateRecord& stated,
                                      const CertificateRecord& found, bool with_geometry);
 
-/// Everything that can be checked of an open file: padding, section checksums, records, names,
-/// bytes that have to be zero, each tree by prove_tree and against its certificate. `mesh` serves
-/// trees with external geometry; without it their triangles are not looked at.
+/// Checks an open file: padding, section checksums, records, names, reserved bytes, and each tree
+/// by prove_tree and against its certificate. `mesh` is for trees with external geometry; without
+/// it their triangles are not read.
 [[nodiscard]] Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh = {});
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What has to be zero in each codec and in the clusters of the grid.
+// Checks the reserved bits of each codec and of the grid's clusters.
 #include "cooker/proof/reserved.h"
 
 #include <algorithm>
@@ -73,8 +73,8 @@ void check_plain(Bytes nodes, Check& check) {
   }
 }
 
-// Whether a child that is not there is written as one: kind 0 and cut 0. Precondition: `node` is
-// the bit at which a node of that layout starts, and the section has been bound.
+// Whether a missing child is stored with kind 0 and cut 0. Precondition: `node` is the bit at which
+// a node of that layout starts, and the section has been bound.
 bool is_written_as_missing(Bytes nodes, const PackedHeader& header, const PackedLayout& layout,
                            std::uint64_t node, std::size_t side) {
   const std::byte* const bytes = nodes.data();
@@ -120,8 +120,8 @@ void check_packed(Bytes nodes, Check& check) {
                "the bits behind it");
 }
 
-// What stands between the fields that say where leaves start, the leaves of cluster n, and its
-// vertices at bit `vertices`. False if a leaf cannot be read.
+// Checks the bits between the starts of leaves, the leaves of cluster n, and its vertices at bit
+// `vertices`. False if a leaf cannot be read.
 bool check_leaves_of_cluster(const GridView& grid, std::uint32_t n, std::uint64_t vertices,
                              Check& check) {
   const auto cluster = load<ClusterRecord>(grid.clusters, n);
@@ -144,11 +144,11 @@ bool check_leaves_of_cluster(const GridView& grid, std::uint32_t n, std::uint64_
   return true;
 }
 
-// Precondition: the sections have been bound. Clusters whose leaves cannot be found are for the
-// walk to report.
+// Precondition: the sections have been bound. Skips clusters whose leaves cannot be found; the walk
+// reports them.
 void check_grid(const GridView& grid, Check& check) {
   const std::uint32_t clusters = clusters_of(grid.face_count);
-  std::uint64_t end = 0;  // of the cluster before, in bits
+  std::uint64_t end = 0;  // of the previous cluster, in bits
   for (std::uint32_t n = 0; n < clusters; ++n) {
     const auto cluster = load<ClusterRecord>(grid.clusters, n);
     check.expect(cluster.reserved == 0, "cluster ", n, "its last byte");

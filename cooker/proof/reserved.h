@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Bytes inside a tree's sections that mean nothing and that writers leave zero. Queries pass over
-// them; `boxtree verify` does not, so that a later version of the format may give them a meaning.
+// Checks reserved bytes inside a tree's sections, which writers set to zero. Queries ignore them;
+// `boxtree verify` checks them, so that a later version of the format may use them.
 #pragma once
 
 #include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 
-/// What is set in the sections of a tree although docs/FORMAT.md says "zero":
-/// kPaddingNotZero, kMaxFindings at most. O(bytes). Precondition: tree `index` has been bound.
+/// Reserved bits (docs/FORMAT.md: "zero") that are set in the sections of a tree: kPaddingNotZero,
+/// at most kMaxFindings. O(bytes). Precondition: tree `index` has been bound.
 [[nodiscard]] Findings check_reserved(const File& file, std::uint32_t index);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Proof by walking the top level that was written.
+// Proves by walking the written top level.
 #include "cooker/proof/scene_proof.h"
 
 #include <string>
@@ -54,8 +54,8 @@ class SceneWalk {
                                   ", the top level has " + std::to_string(found));
   }
 
-  // The bounds of all instances below, in the scene's frame. Children have larger indices than
-  // their parents, so that numbers grow on every path; the depth is limited all the same.
+  // Returns the bounds of all instances below, in the scene's frame. Children have larger indices
+  // than their parents, so numbers increase on every path; the depth is limited nevertheless.
   Box<double> visit_node(NodeRef node, const Box<float>& box, std::uint32_t depth) {
     Box<double> content = empty_box<double>();
     if (depth > kMaxWideDepth) {
@@ -87,7 +87,7 @@ class SceneWalk {
     reached_[instance] = true;
     const std::optional<BoundScene::Placed> placed = BoundScene::of(scene_).place(instance);
     const auto bounds = placed ? placed->bounds() : std::nullopt;
-    if (!bounds) return empty_box<double>();  // check_instance says why
+    if (!bounds) return empty_box<double>();  // check_instance reports the reason
     const Box<double> content = BoundScene::of(scene_).to_frame(bounds->world);
     check_box(name(instance) + "its leaf", content, box);
     return content;

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The proof of a scene: every instance lies inside every box of the top level above it, each static
-// one is a leaf exactly once, and all that the records refer to is there.
+// Proves a scene: every instance is inside every box of the top level above it, each static
+// instance is a leaf exactly once, and all references in records are valid.
 #pragma once
 
 #include "cooker/proof/proof.h"
 
 namespace boxtree::cooker {
 
-/// What does not hold of the scene of an open file, in order of discovery; empty also for a file
-/// without a scene. At most kMaxFindings. Safe on any bytes.
+/// The faults of the scene of an open file, in order of discovery, at most kMaxFindings; empty for
+/// a file without a scene. Safe on any bytes.
 [[nodiscard]] Findings prove_scene(const File& file);
 
 }  // namespace boxtree::cooker
