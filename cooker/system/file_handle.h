@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A file of stdio that closes itself: its errors say why, which streams do not.
+// A stdio file that closes itself. Unlike streams, stdio reports the reason of errors.
 #pragma once
 
 #include <cstdio>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bytes to a descriptor: the system may take fewer than it is given, or be interrupted.
+// Writes all bytes to a descriptor, although the system may take fewer at a time or be interrupted.
 #pragma once
 
 #include <cerrno>
@@ -9,7 +9,7 @@
 
 namespace boxtree::cooker {
 
-/// Writes all of them. False, with the reason in errno, when the system takes no more.
+/// Writes all bytes. False, with the reason in errno, if the system takes no more.
 [[nodiscard]] inline bool write_all(int descriptor, Bytes bytes) noexcept {
   while (!bytes.empty()) {
     const ssize_t wrote = ::write(descriptor, bytes.data(), bytes.size());

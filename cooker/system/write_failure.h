@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the system said of a file that could not be written.
+// Makes the error for a file that could not be written.
 #pragma once
 
 #include <cerrno>
@@ -11,9 +11,9 @@
 
 namespace boxtree::cooker {
 
-/// kWriteFailed with the path, what failed, and the reason in errno.
+/// kWriteFailed with the path, the failed operation, and the reason in errno.
 [[nodiscard]] inline Error write_failure(const std::filesystem::path& path, const char* what) {
-  const int reason = errno;  // before anything here can change it
+  const int reason = errno;  // before another call changes it
   return {Errc::kWriteFailed,
           path.string() + ": " + what + ": " + std::generic_category().message(reason)};
 }
