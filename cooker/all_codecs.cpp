@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Whoever links the cooker can bind all that it cooks: an object that is linked whether or not
-// somebody needs it.
+// Registers all codecs in programs that link the cooker. This object is always linked, even if
+// nothing refers to it.
 #include <boxtree/paper.h>
 
 namespace {

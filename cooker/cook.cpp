@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The stages, each a member of Cook in the order of the data.
+// Runs the stages, each a member of Cook, in the order of the data.
 #include "cooker/cook.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace boxtree::cooker {
 namespace {
 
-// Without a profile, what the options say holds for every mesh.
+// Without a profile, the options apply to every mesh.
 void apply_options(const CookOptions& options, ScenePlan& plan) {
   for (PlannedMesh& mesh : plan.meshes) {
     mesh.codec = options.codec;
@@ -70,7 +70,7 @@ class Cook {
 
  private:
   Status plan() {
-    if (!input_.has_top_level) {  // nothing is placed, so that the options say all there is to say
+    if (!input_.has_top_level) {  // nothing is placed: the options decide
       plan_.meshes.resize(input_.scene.meshes.size());
       return {};
     }
@@ -81,7 +81,7 @@ class Cook {
     return {};
   }
 
-  // Called for one mesh after the other, maybe again for one that is there.
+  // Called for one mesh after another; may be called again for an imported mesh.
   Status import_mesh(std::size_t mesh) {
     if (!input_.importer || mesh < input_.imports.size()) return {};
     Result<Imported> imported = input_.importer(mesh);
@@ -91,7 +91,7 @@ class Cook {
     return {};
   }
 
-  // The grid of each mesh that must not choose its own.
+  // The grid of each mesh that must not choose one itself.
   Result<std::vector<std::optional<Grid>>> grids() {
     if (input_.has_top_level) return scene_grids(input_.scene, plan_, options_.grid.bits);
     std::vector<std::optional<Grid>> grids(plan_.meshes.size());
@@ -100,7 +100,7 @@ class Cook {
     const bool may_share =
         grids.size() > 1 && (options_.geometry == GeometryId::kGrid || may_choose_grid);
     if (!may_share) return grids;
-    // One for all, so that what touches still does: all are measured first.
+    // One grid for all, so that surfaces that touch still touch: all are measured first.
     Eigen::AlignedBox3d bounds;
     for (std::size_t m = 0; m < grids.size(); ++m) {
       if (Status status = import_mesh(m); !status) return status.error();
@@ -128,7 +128,7 @@ class Cook {
     if (profile_.budget.slowdown) {
       search.wishes.max_slowdown = profile_.budget.slowdown->value;
     }
-    // A number of bytes for the whole file may need any of them.
+    // A limit of bytes for the whole file may need any candidate.
     if (profile_.budget.bytes) search.try_all = true;
     search.face_ids = planned.face_ids || has_several_materials(mesh);
     search.grid.tolerance = planned.tolerance;
@@ -205,9 +205,9 @@ class Cook {
     return {};
   }
 
-  // Whether a tree has the geometry store that others have, so that what touches still does. In a
-  // scene it has its own where the profile, or what it needs of the tree, has decided already, and
-  // touches within its tolerance.
+  // Whether a tree has the same geometry store as others, so that surfaces that touch still touch.
+  // In a scene, a tree has a separate store if the profile or the tree's needs decide it; it then
+  // touches others within its tolerance.
   [[nodiscard]] bool shares_store(std::size_t tree) const {
     const auto has = [&](GeometryId store) {
       const std::vector<Candidate>& candidates = contests_[tree].candidates;
@@ -221,14 +221,14 @@ class Cook {
            (may_use_grid_[tree] && has(GeometryId::kExact) && has(GeometryId::kGrid));
   }
 
-  // Users list trees side by side themselves; of a scene an error says which mesh it is about.
+  // In a scene, errors name the mesh; without one, users list the meshes themselves.
   [[nodiscard]] Error in_mesh(std::size_t mesh, const Error& error) const {
     if (!input_.has_top_level) return error;
     return {error.code, input_.scene.meshes[mesh].mesh.name + ": " + error.detail};
   }
 
-  // A tree of the file: the chosen encoding without what only served to make it. What it was chosen
-  // from is kept where the file may turn out too large.
+  // A tree of the file: the chosen encoding. The candidates are kept if the file may turn out too
+  // large.
   [[nodiscard]] EncodedTree tree_of(std::size_t t) {
     const PlannedMesh& planned = plan_.meshes[mesh_of_tree_[t]];
     TriedTree::Nodes& nodes = tried_[t].nodes[chosen_[t]];
@@ -273,7 +273,7 @@ class Cook {
     add_left_out(tree_of_mesh, parts);
   }
 
-  // Materials of meshes that are kept with theirs, in the order of the source.
+  // Numbers the materials of meshes that keep theirs, in the order of the source.
   void number_materials(SceneParts& parts) {
     std::vector<bool> used(input_.scene.materials.size(), false);
     for (const std::size_t m : mesh_of_tree_) {
@@ -288,15 +288,15 @@ class Cook {
     }
   }
 
-  // By runs of source faces where faces know their numbers, else one by one; ids that served this
-  // alone go.
+  // Materials by runs of source faces if face ids are kept, else per face; then drops face ids that
+  // only this needed.
   [[nodiscard]] TreeMaterials materials_of(std::size_t t, EncodedTree& tree) const {
     const std::size_t m = mesh_of_tree_[t];
     const std::vector<MaterialRun>& runs = input_.scene.meshes[m].materials;
     TreeMaterials materials;
     const bool ids_are_wanted = plan_.meshes[m].face_ids;
     const bool ids_are_structure =
-        tree.geometry.geometry == GeometryId::kExternal;  // leaves name faces by them
+        tree.geometry.geometry == GeometryId::kExternal;  // leaves refer to faces by them
     const auto material_at = [&](std::uint32_t id) {
       const auto after = std::upper_bound(
           runs.begin(), runs.end(), id,
@@ -322,8 +322,8 @@ class Cook {
     return materials;
   }
 
-  // What a reader may miss: of the whole scene, or of one tree; once where one line took it from
-  // every tree. Queries that only some layers answer are told by the layers.
+  // Lists the parts that a reader may miss: for the whole scene, or for one tree; once if one line
+  // removed the part from every tree. Queries of some layers only are recorded in the layers.
   void add_left_out(const std::vector<std::uint32_t>& tree_of_mesh, SceneParts& parts) const {
     std::map<std::pair<Part, std::uint32_t>, std::vector<std::uint32_t>> of_trees;  // part, line
     for (const Decision& decision : plan_.decisions) {
@@ -349,8 +349,8 @@ class Cook {
     }
   }
 
-  // A file that is too large: trees change to smaller candidates, first where a byte saved costs
-  // the least time, until it fits.
+  // Replaces candidates until the file is not too large: trees change to smaller ones, first where
+  // a byte saved costs the least time.
   Status keep_to_bytes() {
     if (!profile_.budget.bytes) return {};
     const std::uint64_t limit = profile_.budget.bytes->value;
@@ -443,7 +443,7 @@ class Cook {
   const CookOptions& options_;
   const Progress& progress_;
   ScenePlan plan_;
-  // One a tree of the file.
+  // One per tree of the file.
   std::vector<std::size_t> mesh_of_tree_;
   std::vector<TriedTree> tried_;
   std::vector<SurfaceEdges> edges_;

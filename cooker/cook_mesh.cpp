@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One mesh without what makes a file of it: for tests, reports and programs that keep trees in
-// memory.
+// Cooks one mesh without writing a file: for tests, reports and programs that keep trees in memory.
 #include <span>
 #include <utility>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Options and sources as JSON, in one order.
+// Writes options and sources as JSON, in a fixed order.
 #include "cooker/cook_record.h"
 
 #include <cstdint>
@@ -53,7 +53,7 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
       {"face_ids", options.face_ids},
       {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
       {"skip_bad", options.import.skip_bad}};
-  // Named where they are not the usual ones: records of other files stay as they were.
+  // Recorded only if not the default, so that records of other files stay the same.
   if (!options.costs.empty()) record["options"]["costs"] = "own";
   if (options.shrink_share != kShrinkShare) {
     record["options"]["shrink_share"] = options.shrink_share;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The record of how a file was made: JSON for humans and build systems, stored in the file.
+// The record of how a file was made: JSON for people and build systems, stored in the file.
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 namespace boxtree::cooker {
 
-/// Tool, options and sources, free of folders; the profile, if there is one, as a hash.
+/// Tool, options and sources, without folders; a profile is recorded as a hash.
 [[nodiscard]] std::string make_cook_record(const CookOptions& options, const CookInput& input,
                                            const Profile& profile);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sections to lines of kept bytes, decisions to lines of what was left out.
+// Makes lines of kept bytes from sections, and lines of parts left out from decisions.
 #include "cooker/scene_account.h"
 
 #include <algorithm>
@@ -32,7 +32,7 @@ class Account {
 
   void add_left_out() {
     for (const Decision& decision : cooked_.plan.decisions) {
-      // Digits are told by what was chosen of what the plan allows.
+      // Precision is reported with the chosen encoding.
       if (decision.kept || decision.aspect == Aspect::kPrecision) continue;
       const Estimate estimate = bytes_of(decision);
       why_.push_back({aspect_name(decision.aspect), owner_of(decision), false, estimate.bytes,
@@ -78,7 +78,7 @@ class Account {
     why_.push_back({std::move(part), "file", true, bytes, false, std::move(reason), {}});
   }
 
-  // What the plan decided of a part of a mesh, else of the whole file.
+  // The plan's decision on a part of a mesh, else on the whole file.
   [[nodiscard]] const Decision* decision_on(Aspect aspect, std::optional<std::size_t> mesh) const {
     const Decision* of_file = nullptr;
     for (const Decision& decision : cooked_.plan.decisions) {
@@ -109,7 +109,7 @@ class Account {
     why_.push_back(std::move(line));
   }
 
-  // Why a section is there, and what the plan may have said of it.
+  // The reason for a section, with the plan's decision on it.
   [[nodiscard]] std::string purpose(SectionKind kind, const SectionEntry& entry,
                                     std::optional<Aspect>& aspect) const {
     switch (kind) {
@@ -177,8 +177,7 @@ class Account {
     return std::uint64_t{tree.face_count} * number_bytes(tree.face_count - 1);
   }
 
-  // Bytes that a triangle takes in this file: what those of a mesh that was never cooked would
-  // have taken, about.
+  // Bytes per triangle in this file: an estimate for meshes that were never cooked.
   [[nodiscard]] double bytes_per_triangle() const {
     double bytes = 0, triangles = 0;
     for (const EncodedTree& tree : cooked_.trees) {
@@ -213,7 +212,7 @@ class Account {
       case Aspect::kContacts:
       case Aspect::kPrecision:
       case Aspect::kCodec:
-        break;  // no part of the file serves one of them alone
+        break;  // no part of the file is for one of them alone
     }
     return {0, false};
   }
@@ -278,7 +277,7 @@ class Account {
     return count * (sizeof(InstanceRecord) + kNumbersOfPose * sizeof(float));
   }
 
-  // Positions that a grid saved: the difference to the exact candidate of the same codec.
+  // Bytes of positions saved by a grid: the difference to the exact candidate of the same codec.
   void add_rounding() {
     for (std::size_t t = 0; t < cooked_.trees.size(); ++t) {
       const std::vector<Candidate>& candidates = cooked_.contests[t].candidates;

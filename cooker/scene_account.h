@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The account behind --why: every byte of the file with what it is for and who wanted it, and every
-// part that is not there with what it would have taken.
+// The account for --why: every byte of the file with its purpose and the decision behind it, and
+// every part left out with its size.
 #pragma once
 
 #include <span>
@@ -13,7 +13,8 @@
 
 namespace boxtree::cooker {
 
-/// What a scene was cooked from and into; one tree, contest and choice for each tree of the file.
+/// The inputs and results of cooking a scene; one tree, contest and choice for each tree of the
+/// file.
 struct CookedParts {
   const SourceScene& scene;  // positions and faces of meshes may be gone
   const Profile& profile;
@@ -26,8 +27,8 @@ struct CookedParts {
   const CookOptions& options;
 };
 
-/// The lines of --why. Of a file that is compressed as a whole the first line is that of the blob,
-/// whose bytes are not known yet.
+/// The lines of --why. For a file that is compressed as a whole, the first line is the blob, whose
+/// size is not known yet.
 [[nodiscard]] std::vector<WhyLine> account(const CookedParts& cooked, const FileLayout& layout);
 
 }  // namespace boxtree::cooker

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The version of the tool, as it stands in cook records and in --version.
+// The version of the tool, for cook records and --version.
 #pragma once
 
 #include <string_view>
