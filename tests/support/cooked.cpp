@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Mesh to bound tree, without a file.
+// From a mesh to a bound tree, in memory.
 #include "tests/support/cooked.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cooked files in memory, for tests that start from a mesh and end at a tree.
+// Cooks meshes to files in memory and binds their trees.
 #pragma once
 
 #include <cstring>
@@ -16,7 +16,7 @@
 
 namespace boxtree::test {
 
-/// The bytes of a file with one tree, in one codec.
+/// The bytes of a file with one tree in one codec.
 [[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
                                                 const cooker::CookOptions& options = {});
 
@@ -27,7 +27,7 @@ struct CookedTree {
   Tree tree;
 };
 
-/// Cooks, opens and binds; a failure is a failed test and throws, as nothing can follow it.
+/// Cooks, opens and binds. A failure fails the test and throws, because the test cannot continue.
 [[nodiscard]] CookedTree cook_tree(const cooker::SourceMesh& mesh, CodecId codec,
                                    const cooker::CookOptions& options = {},
                                    const BindOptions& bind = {});
@@ -41,30 +41,29 @@ struct Encoding {
   GeometryId geometry;
 };
 
-/// Every codec with exact geometry and on a grid, and the names of such tests.
+/// Every codec with exact geometry and on a grid.
 [[nodiscard]] std::vector<Encoding> all_encodings();
 [[nodiscard]] std::string encoding_name(const testing::TestParamInfo<Encoding>& info);
 
 /// Cooks into an encoding; a grid has 16 bits.
 [[nodiscard]] CookedTree cook_tree(const cooker::SourceMesh& mesh, const Encoding& encoding);
 
-/// Every triangle of a tree, in tree space, by the public way down.
+/// Every triangle of a tree, in tree space, read by the public traversal.
 [[nodiscard]] std::vector<Triangle> all_triangles(const Tree& tree);
 
 /// "plain_f32" for "plain-f32": test names allow no dashes.
 [[nodiscard]] std::string test_name(const testing::TestParamInfo<CodecId>& info);
 
-/// The entry of a section of a file with one of the kind.
+/// The section table entry of the file's section of a kind. Precondition: there is one.
 [[nodiscard]] SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind);
 
-/// Changes each record of a section, given its number and how many there are, and makes the
-/// checksums right again: bytes that lie.
+/// Calls `change` for each record of a section, with its index and the number of records, and
+/// repairs the checksums, to make corrupt files with valid checksums.
 template <class Record>
 void edit_records(std::vector<std::byte>& file, SectionKind kind,
                   const std::function<void(Record&, std::uint32_t, std::uint32_t)>& change);
 
-/// Makes the checksums of header and sections right again after a change, so that the checks
-/// behind them are reached.
+/// Repairs the checksums of header and sections after a change, so that later checks are reached.
 void repair_checksums(std::vector<std::byte>& bytes);
 
 template <class Record>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// States of the floating-point unit that an application may have set, for as long as one object.
+// Sets a state of the floating-point unit, as an application may, for the lifetime of an object.
 #pragma once
 
 #include <cfenv>

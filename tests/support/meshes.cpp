@@ -25,7 +25,7 @@ void add_triangle(SourceMesh& mesh, std::uint32_t a, std::uint32_t b, std::uint3
   mesh.faces.push_back({{a, b, c, kNoCorner}});
 }
 
-// A grid of rings x segments points that closes on both sides, as a torus of any cross section.
+// A grid of rings x segments points that is closed in both directions, as a torus.
 template <class Point>
 SourceMesh closed_grid(std::string name, unsigned rings, unsigned segments, Point point) {
   SourceMesh mesh;

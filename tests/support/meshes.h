@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generated meshes of the kinds that tests need. Seeded; the same on every machine.
+// Generated meshes for tests. Seeded; the same on every machine.
 #pragma once
 
 #include <string>
@@ -18,9 +18,9 @@ using cooker::SourceMesh;
 [[nodiscard]] SourceMesh city(unsigned blocks, unsigned seed);
 [[nodiscard]] SourceMesh soup(unsigned faces, unsigned seed);
 [[nodiscard]] SourceMesh slivers(unsigned faces, unsigned seed);
-/// `copies` of one and the same triangle.
+/// `copies` of the same triangle.
 [[nodiscard]] SourceMesh duplicates(unsigned copies);
-/// One face of size 1000 among `tiny` of size 1e-3.
+/// One face of size 1000 and `tiny` faces of size 1e-3.
 [[nodiscard]] SourceMesh huge_among_tiny(unsigned tiny, unsigned seed);
 
 /// One of each kind above, small enough for brute force.

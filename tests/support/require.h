@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Values where nothing can follow a failure.
+// Unwraps results where a test cannot continue after a failure.
 #pragma once
 
 #include <optional>
@@ -11,14 +11,14 @@
 
 namespace boxtree::test {
 
-/// The value, or a throw with the error's message.
+/// The value; throws the error's message otherwise.
 template <class T>
 [[nodiscard]] T require(Result<T> result) {
   if (!result) throw std::runtime_error(result.error().message());
   return std::move(*result);
 }
 
-/// What a query found, which may be nothing, or a throw with its error.
+/// The result of a query, which may be empty; throws the query's error.
 template <class T>
 [[nodiscard]] std::optional<T> require(const QueryResult<T>& result) {
   if (!result.ok()) throw std::runtime_error(result.error().message());

@@ -29,8 +29,8 @@ CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes, cooker::ScenePart
   return {std::move(meshes), std::move(parts), std::move(bytes), std::move(file)};
 }
 
-// Numbers are drawn in braces, whose order is that of the text with every compiler: the scenes are
-// the same ones in every build.
+// Random numbers are drawn inside braces, which every compiler evaluates in order: the scenes are
+// the same in every build.
 Pose random_pose(std::mt19937_64& random, double spread, bool unevenly) {
   const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
   const Eigen::Quaterniond turn = Eigen::Quaterniond{unit(), unit(), unit(), unit()}.normalized();

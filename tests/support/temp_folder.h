@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A folder that lives as long as one test.
+// A temporary folder for the duration of one test.
 #pragma once
 
 #include <atomic>

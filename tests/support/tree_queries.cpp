@@ -14,7 +14,7 @@ Outcome outcome(const QueryResult<T>& result, const Value& value) {
   if (!result.ok()) return {result.code(), 0};
   return {Errc::kOk, result.has_value() ? static_cast<double>(value(*result)) : -1};
 }
-// Of a query with a visitor: how many it was told of.
+// The number of visitor calls of a query.
 template <class RunQuery>
 Outcome outcome_of_visit(const RunQuery& run_query) {
   std::size_t told = 0;

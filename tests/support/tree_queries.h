@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Every query of a tree, each once, for tests of what holds for all of them: none allocates, each
-// keeps to its stack and to its caller's limits, and each says what is corrupt.
+// Every query of a tree, for tests of properties that all queries share: no allocation, bounded
+// stack, the caller's limits, errors for corrupt bytes.
 #pragma once
 
 #include <cstddef>
@@ -11,19 +11,19 @@
 
 namespace boxtree::test {
 
-/// Where queries look, in object space.
+/// The arguments of the queries, in object space.
 struct QuerySet {
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::UnitZ()};
   Eigen::AlignedBox3d box;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   double radius = 1;             // of the sphere around `point`
-  Pose near = Pose::Identity();  // of the second tree, where it touches the first
-  Pose far = Pose::Identity();   // where it does not
-  /// Of the closest point with bounds: nodes expanded.
+  Pose near = Pose::Identity();  // of the second tree, touching the first
+  Pose far = Pose::Identity();   // of the second tree, apart from the first
+  /// Limit of nodes expanded by the closest-point query with bounds.
   std::uint64_t node_budget = 1000;
 };
 
-/// What came of a query: its error, or a number that stands for its answer.
+/// The result of a query: its error, or a number computed from its answer.
 struct Outcome {
   Errc error = Errc::kOk;
   double answer = 0;
@@ -31,14 +31,14 @@ struct Outcome {
 
 struct TreeQuery {
   const char* name;
-  std::size_t stack_kilobytes;  // at most, as its page states
-  bool is_of_pairs;             // of two trees; others do not look at the second
-  bool takes_limits;            // others do not look at the limits
+  std::size_t stack_kilobytes;  // the maximum that its documentation states
+  bool is_of_pairs;             // uses both trees; others ignore the second
+  bool takes_limits;            // others ignore the limits
   std::function<Outcome(const Tree& first, const Tree& second, const QueryLimits& limits)>
       run_query;
 };
 
-/// A query that is added to the public headers has a line here, and none in those tests.
+/// Every query in the public headers has a line here; the tests above then cover it.
 [[nodiscard]] std::vector<TreeQuery> tree_queries(const QuerySet& queries);
 
 }  // namespace boxtree::test

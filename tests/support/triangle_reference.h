@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The distance of two triangles in extended precision, by a way that shares no idea with the code
+// The distance of two triangles in extended precision, by an algorithm independent of the code
 // under test.
 #pragma once
 
@@ -15,9 +15,9 @@ namespace boxtree::test {
 using LongVector = Eigen::Matrix<long double, 3, 1>;
 using LongTriangle = std::array<LongVector, 3>;
 
-// Squared distance of the origin to the hull of points: every vertex, segment and triangle of the
-// set is tried, each by its own small linear system. A closest point lies in one of them unless the
-// origin is inside, and then no answer is below zero.
+// Squared distance of the origin from the hull of points. Every vertex, segment and triangle of the
+// points is tried, each by a small linear system. A closest point is in one of them unless the
+// origin is inside; then the result is at least zero.
 inline long double squared_to_hull(const std::array<LongVector, 9>& d) {
   long double best = d[0].squaredNorm();
   for (std::size_t i = 0; i < 9; ++i) {
@@ -33,7 +33,7 @@ inline long double squared_to_hull(const std::array<LongVector, 9>& d) {
         const LongVector f = d[k] - d[i];
         const LongVector n = e.cross(f);
         const long double nn = n.squaredNorm();
-        if (!(nn > 1e-24L * ee * f.squaredNorm())) continue;  // its segments are tried
+        if (!(nn > 1e-24L * ee * f.squaredNorm())) continue;  // its segments are tried, too
         const long double s = n.dot((-d[i]).cross(f)) / nn;
         const long double t = n.dot(e.cross(-d[i])) / nn;
         if (s < 0 || t < 0 || s + t > 1) continue;
@@ -45,7 +45,7 @@ inline long double squared_to_hull(const std::array<LongVector, 9>& d) {
 }
 
 /// The distance of the triangles, that is of the origin from the hull of the differences of their
-/// corners; of no use where they cross.
+/// corners. Not valid for triangles that cross.
 inline long double distance_in_extended_precision(const LongTriangle& p, const LongTriangle& q) {
   std::array<LongVector, 9> differences;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ inline double distance_in_extended_precision(const Triangle& p, const Triangle& 
   return static_cast<double>(distance_in_extended_precision(a, b));
 }
 
-/// How far a point is from a triangle.
+/// The distance of a point from a triangle.
 inline double distance_in_extended_precision(const Eigen::Vector3d& point, const Triangle& t) {
   return distance_in_extended_precision(Triangle{{point, point, point}}, t);
 }
