@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All our codecs under measurement, through the public queries.
+// Measures all boxtree codecs through the public queries.
 #include <stdexcept>
 
 #include <boxtree/blob.h>
@@ -24,7 +24,7 @@ cooker::EncodedTree cook(const TriangleMesh& mesh, CodecId codec,
   return require(cooker::cook_as(mesh.source, codec, options));
 }
 
-// Where a node's bytes lie.
+// The address of a node's bytes.
 template <class Cut>
 Bytes node_bytes(const PlainCodec<Cut>& codec, NodeRef ref) {
   constexpr std::size_t kBytes = sizeof(typename PlainCodec<Cut>::Node);
@@ -42,8 +42,8 @@ Bytes node_bytes(const WideCodec<Node>& codec, NodeRef ref) {
   return {codec.nodes + std::size_t{ref.first} * sizeof(Node), sizeof(Node)};
 }
 
-// Counts the work of a walk of one tree against itself, and shows the cache model what it reads.
-// Cuts in the table of dedup are found through the nodes.
+// Counts the work of a walk of one tree against itself, and passes the addresses read to the cache
+// model. Cuts in dedup's table are found through the nodes.
 template <Codec C>
 struct Listener {
   const C* codec;
@@ -132,7 +132,7 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
-  // The bound that some two points realise, as other libraries return it.
+  // The upper bound, which some two points attain, as other libraries return it.
   bool distances(std::span<const DistanceRequest> queries, std::span<double> out) override {
     for (std::size_t i = 0; i < queries.size(); ++i) {
       DistanceOptions options;
@@ -162,7 +162,7 @@ class BoxtreeSubject : public Subject {
 
   [[nodiscard]] std::optional<PairWork> pair_work(std::span<const Pose> poses, bool first_only,
                                                   CacheModel& cache) override {
-    if (encoded_.geometry.geometry == GeometryId::kGrid) return {};  // listens to arrays alone
+    if (encoded_.geometry.geometry == GeometryId::kGrid) return {};  // walks arrays only
     PairWork work;
     const BoundTree& tree = BoundTree::of(tree_);
     for (const Pose& pose : poses) {
@@ -185,7 +185,7 @@ class BoxtreeSubject : public Subject {
   Tree tree_;
 };
 
-// A compressed file has nothing but an opening time and a size: once open it is its plain-f32 tree.
+// A compressed file has only an opening time and a size: once open it is its plain-f32 tree.
 class BlobSubject : public Subject {
  public:
   BlobSubject(const TriangleMesh& mesh, BlobMethod method, const cooker::CookOptions& options)
@@ -235,7 +235,7 @@ void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder) {
                            return std::make_unique<BlobSubject>(mesh, method, options);
                          }});
   }
-  // A library of its own, as its answers are those of the mesh on the grid.
+  // A separate library: its answers are those of the mesh on the grid.
   options.geometry = GeometryId::kGrid;
   for (const int bits : {24, 16}) {
     options.grid.bits = bits;

@@ -46,7 +46,7 @@ struct CountInBox : btTriangleCallback {
   }
 };
 
-// The mesh in the form of both shapes, which refer to it.
+// The mesh in the forms that both shapes refer to.
 struct BulletMesh {
   explicit BulletMesh(const TriangleMesh& mesh) {
     for (const auto& t : mesh.triangles) {
@@ -80,7 +80,7 @@ class BulletSubject : public Subject {
     return {tree, tree + bullet_.bytes()};
   }
   bool rays(std::span<const Ray> rays, std::span<double> out) override {
-    // Bullet knows segments; this one leaves the mesh behind from any origin of the workload.
+    // Bullet uses segments; this length passes the mesh from any origin of the workload.
     const double length = 4 * mesh_.bounds.diagonal().norm();
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const double t = length / rays[i].direction.norm();
@@ -109,7 +109,7 @@ class BulletSubject : public Subject {
   std::unique_ptr<btBvhTriangleMeshShape> shape_;
 };
 
-// GImpact finds pairs of boxes; its own triangle test (inexact) decides them.
+// GImpact finds pairs of boxes and decides them by its own, inexact triangle test.
 class GimpactSubject : public Subject {
  public:
   explicit GimpactSubject(const TriangleMesh& mesh) : bullet_(mesh) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// perf_event_open(2), which has no wrapper.
+// Calls perf_event_open(2), which has no wrapper.
 #include "tests/bench/cache_model.h"
 
 #include <linux/perf_event.h>

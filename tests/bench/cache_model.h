@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cache misses: counted by the processor where the kernel lets us, otherwise by a model.
+// Counts cache misses: by the processor's counter if the kernel permits it, otherwise by a model.
 #pragma once
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 
 namespace boxtree::bench {
 
-/// One set-associative level, least recently used line out first.
+/// One set-associative level with LRU replacement.
 class CacheLevel {
  public:
   static constexpr std::size_t kLineBytes = 64;
@@ -18,7 +18,7 @@ class CacheLevel {
   CacheLevel(std::size_t bytes, std::size_t ways)
       : ways_(ways), sets_(bytes / kLineBytes / ways), lines_(sets_ * ways, kNone) {}
 
-  /// Brings a line in; returns whether it was there.
+  /// Loads a line; returns whether it was present.
   bool touch(std::uint64_t line) {
     const auto set = lines_.begin() + static_cast<std::ptrdiff_t>(line % sets_ * ways_);
     const auto end = set + static_cast<std::ptrdiff_t>(ways_);
@@ -63,7 +63,7 @@ class CacheModel {
 /// The processor's own counter of cache misses, for the calling thread in user mode.
 class CacheMissCounter {
  public:
-  /// Nothing where the kernel or the machine has no such counter.
+  /// Empty if the kernel or the machine has no such counter.
   static std::optional<CacheMissCounter> open();
   ~CacheMissCounter();
   CacheMissCounter(CacheMissCounter&& other) noexcept;

@@ -36,7 +36,8 @@ class CgalSubject : public Subject {
     tree_.accelerate_distance_queries();
   }
 
-  // Nodes hold a box in double and two pointers, primitives an iterator; triangles are held apart.
+  // Nodes hold a box in double and two pointers, primitives an iterator; triangles are stored
+  // separately.
   [[nodiscard]] SubjectBytes bytes() const override {
     const auto n = static_cast<double>(triangles_.size());
     const double tree =
@@ -97,7 +98,8 @@ class CgalSubject : public Subject {
   }
 
  private:
-  // CGAL's own pair of trees wants closed halfedge meshes; a soup is queried triangle by triangle.
+  // CGAL's pair queries need closed halfedge meshes; a triangle soup is queried triangle by
+  // triangle.
   template <class Test>
   bool any_of_copy(const Pose& pose, Test test) {
     const auto bounds = tree_.bbox();

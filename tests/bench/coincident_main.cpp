@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// boxtree_coincident: what queries cost where faces lie on each other or in one plane, against an
-// ordinary mesh of as many faces.
+// boxtree_coincident: the cost of queries on meshes with coincident or coplanar faces, compared
+// with an ordinary mesh of as many faces.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -41,7 +41,7 @@ std::vector<Eigen::Vector3d> directions(std::size_t count) {
   return all;
 }
 
-// Just beside the mesh along (-1, 0, 1), the normal of the plane z = x, so that boxes overlap.
+// Beside the mesh along (-1, 0, 1), the normal of the plane z = x, so near that boxes overlap.
 Pose beside(bool tilted) {
   Pose pose = Pose::Identity();
   pose.translation() = Eigen::Vector3d(-0.01, 0, 0.01);
@@ -51,7 +51,7 @@ Pose beside(bool tilted) {
   return pose;
 }
 
-// Seconds a query: the least of three runs, or one that took long.
+// Seconds per query: the least of three runs; fewer if one takes long.
 template <class Body>
 double seconds(std::size_t queries, const Body& body) {
   constexpr double kLong = 0.5;
@@ -66,7 +66,7 @@ double seconds(std::size_t queries, const Body& body) {
   return least / static_cast<double>(queries);
 }
 
-// An answer that nobody looks at.
+// Discards an answer.
 template <class T>
 void run(const T& result) {
   static_cast<void>(require(result));
@@ -86,7 +86,7 @@ Row measure(const SourceMesh& mesh, CodecId codec) {
     for (const Eigen::Vector3d& d : from) run(closest_point(tree, Eigen::Vector3d(2 * d)));
   });
   const Pose at = Pose::Identity();
-  // Far enough that ordinary meshes are apart as well.
+  // So far that ordinary meshes are apart, too.
   Pose apart = beside(true);
   apart.translation() = Eigen::Vector3d(-1.43, 0, 1.43);
   const bool is_thin = mesh.name.find("sphere") == std::string::npos && mesh.name != "plates";

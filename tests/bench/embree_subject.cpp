@@ -70,7 +70,8 @@ class EmbreeSubject : public Subject {
     }
     return true;
   }
-  // Embree has no box query: its point query with the box's circumscribed sphere, and our test.
+  // Embree has no box query: uses its point query with the box's circumscribed sphere, and our
+  // test.
   bool boxes(std::span<const Eigen::AlignedBox3d> boxes, std::span<double> out) override {
     struct Request {
       const TriangleMesh* mesh;

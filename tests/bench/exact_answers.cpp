@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loops over all triangles, and for pairs a sweep along x, which is no tree either.
+// Loops over all triangles; for pairs a sweep along x, which does not use a tree either.
 #include "tests/bench/exact_answers.h"
 
 #include <algorithm>
@@ -82,7 +82,7 @@ std::size_t count_pairs(const std::vector<Triangle>& triangles, const Pose& pose
                     [&](const auto& b, const auto& a) { return start(b) <= start(a); });
 }
 
-// The point of the surface that is nearest to another.
+// The point of the surface nearest to `to`.
 Eigen::Vector3d nearest_to(const std::vector<Triangle>& triangles, const Eigen::Vector3d& from) {
   double best = std::numeric_limits<double>::infinity();
   Eigen::Vector3d nearest = from;
@@ -95,8 +95,8 @@ Eigen::Vector3d nearest_to(const std::vector<Triangle>& triangles, const Eigen::
   return nearest;
 }
 
-// Triangles that lie together, by a sort along x and one along y: not a tree, but enough to leave
-// most pairs of a large mesh unread.
+// Neighbouring triangles, found by a sort along x and one along y. This is not a tree, but it skips
+// most pairs of a large mesh.
 struct Block {
   Eigen::AlignedBox3d bounds;
   std::span<const BoundedTriangle> triangles;
@@ -126,8 +126,9 @@ std::vector<Block> in_blocks(std::vector<BoundedTriangle>& triangles) {
   return blocks;
 }
 
-// Every pair of triangles whose bounds are nearer than some two points that are known: first those
-// that going from one surface to the other and back leads to, from the corners of the bounds.
+// Tests every pair of triangles whose bounds are nearer than the best known distance. The first
+// known distances come from projecting the corners of the bounds onto one surface, then the other,
+// and back.
 double distance_of_copy(const TriangleMesh& mesh, const std::vector<Triangle>& triangles,
                         const Pose& pose) {
   const Pose back = pose.inverse();
@@ -191,12 +192,12 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
     }
     answers.points.push_back(std::sqrt(best));
   }
-  // Sorting both sides and the neighbours along x, of which there are some hundreds each.
+  // Sorting both sides, and the neighbours along x, some hundreds each.
   constexpr double kSweepWork = 300;
   for (std::size_t i = 0; i < affordable(workload.poses.size(), kSweepWork * size); ++i) {
     answers.pairs.push_back(static_cast<double>(count_pairs(triangles, workload.poses[i])));
   }
-  // The ways there and back, and the pairs that are left.
+  // The projections, and the remaining pairs.
   constexpr double kDistanceWork = 100;
   for (std::size_t i = 0; i < affordable(workload.apart.size(), kDistanceWork * size); ++i) {
     answers.distances.push_back(distance_of_copy(mesh, triangles, workload.apart[i]));

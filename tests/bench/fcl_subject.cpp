@@ -44,7 +44,7 @@ class FclSubject : public Subject {
     }
     return true;
   }
-  // The other volumes do not turn with a pose: FCL would build the copy anew for each query.
+  // The other volumes do not rotate with a pose: FCL would rebuild the copy for each query.
   bool distances(std::span<const DistanceRequest> queries, std::span<double> out) override {
     if constexpr (!std::is_same_v<Volume, fcl::OBBRSSd>) return false;
     for (std::size_t i = 0; i < queries.size(); ++i) {

@@ -52,8 +52,9 @@ double noise(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t wa
   return below + (above - below) * v;
 }
 
-// Octaves from `wavelength` down to `finest`, each half as long as the one before and a little less
-// than half as high, so that slopes stay alike and small features are not all spikes.
+// Octaves from `wavelength` down to `finest`. Each has half the wavelength of the previous one and
+// a little less than half its height, so that slopes stay similar and small features are not all
+// spikes.
 double height_at(std::uint64_t seed, std::int64_t x, std::int64_t y, std::int64_t wavelength,
                  std::int64_t finest) {
   double height = 0;
@@ -71,7 +72,7 @@ std::uint32_t add_vertex(SourceMesh& mesh, const Point& at) {
   return static_cast<std::uint32_t>(mesh.positions.size() - 1);
 }
 
-// Takes triangles until there are as many as wanted; those beyond are left out.
+// Collects triangles up to the requested number; further ones are dropped.
 class Canvas {
  public:
   Canvas(SourceMesh& mesh, std::size_t triangles) : mesh_(mesh), left_(triangles) {
@@ -90,7 +91,7 @@ class Canvas {
   template <class PointAt>
   void add_grid(std::size_t columns, std::size_t rows, const PointAt& point_at) {
     const std::size_t width = columns + 1;
-    // Rows that no triangle is left for would be vertices of no face.
+    // Rows without triangles would have vertices of no face.
     rows = std::min(rows, (left_ + 2 * columns - 1) / (2 * columns));
     if (rows == 0) return;
     const std::size_t first = mesh_.positions.size();
@@ -124,8 +125,8 @@ double ground_at(std::uint64_t seed, std::int64_t x, std::int64_t y) {
 
 struct Building {
   Point centre;       // of the floor
-  Point size;         // along its own axes
-  double cosine = 1;  // of the angle by which it is turned
+  Point size;         // along the building's axes
+  double cosine = 1;  // of the angle of rotation
   double sine = 0;
   double cell = 1;  // metres between vertices of the facades
 };
@@ -183,7 +184,7 @@ Building design(std::uint64_t seed, std::int64_t lot_x, std::int64_t lot_y, std:
                    5 + tall * tall * highest};
   building.cell = std::array{0.5, 0.5, 1.0, 1.0, 2.0, 4.0, 8.0, 1000.0}[roll(3) % 8];
   if (roll(4) % 4 == 0) {
-    // Angles of Pythagorean triples; smaller, so as not to stand on the neighbour's ground.
+    // Angles of Pythagorean triples; rotated buildings are smaller, to stay on their own ground.
     const auto turn =
         std::array<std::array<double, 3>, 3>{{{3, 4, 5}, {12, 5, 13}, {15, 8, 17}}}[roll(5) % 3];
     building.cosine = turn[0] / turn[2];
@@ -204,7 +205,7 @@ void add_lot(Canvas& canvas, std::uint64_t seed, std::int64_t lot_x, std::int64_
   const std::int64_t across = std::array{1, 2, 2, 4}[hash(seed, lot_x, lot_y, 99) % 4];
   for (std::int64_t place = 0; place < across * across; ++place) {
     Building building = design(seed, lot_x, lot_y, across, place);
-    // No building may take the whole mesh, however small that is.
+    // Makes cells coarser, so that no building takes most of a small mesh.
     while (triangles_of(building, building.cell) > canvas.left() / 4 && building.cell < 1000) {
       building.cell *= 2;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Large meshes for benchmarks, of exactly as many triangles as requested.
+// Large meshes for benchmarks, with exactly the requested number of triangles.
 #pragma once
 
 #include <cstddef>
@@ -15,9 +15,9 @@ namespace boxtree::bench {
 /// A fractal height field over a square grid of one metre, in rows.
 [[nodiscard]] cooker::SourceMesh make_terrain(std::size_t triangles, std::uint64_t seed);
 
-/// Streets of lots on hilly ground, from the centre outwards; on each lot sheds, houses or a tower,
-/// whose facades are divided into cells of half a metre up to the whole wall, a quarter of them
-/// turned. Vertices on the edges of walls and lots are there twice, bit for bit.
+/// Streets of lots on hilly ground, from the centre outwards. Lots have sheds, houses or a tower.
+/// Facades are divided into cells from half a metre up to the whole wall; a quarter of the
+/// buildings is rotated. Vertices on the edges of walls and lots exist twice, bit for bit.
 [[nodiscard]] cooker::SourceMesh make_city(std::size_t triangles, std::uint64_t seed);
 
 }  // namespace boxtree::bench

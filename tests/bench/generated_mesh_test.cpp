@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Generated meshes are what they are said to be: so many triangles, the same bits everywhere.
+// Generated meshes have the requested number of triangles and the same bits on every machine.
 #include "tests/bench/generated_mesh.h"
 
 #include <bit>
@@ -41,7 +41,7 @@ TEST(GeneratedMesh, ExactlyAsManyTrianglesAsAskedFor) {
   }
 }
 
-// Pinned: figures measured on one machine are to be compared with those of another.
+// Pinned, so that figures measured on different machines are comparable.
 TEST(GeneratedMesh, SameBitsOnEveryMachine) {
   EXPECT_EQ(hash_of(make_terrain(10'000, 1)), 8191482105794275195u);
   EXPECT_EQ(hash_of(make_city(10'000, 1)), 9566175541783242768u);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is compiled into this program, and what is not.
+// Lists the libraries that are compiled into this program, and those that are not.
 #include "tests/bench/libraries.h"
 
 namespace boxtree::bench {

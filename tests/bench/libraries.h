@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// All libraries that can be measured here.
+// All libraries that this program can measure.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace boxtree::bench {
 
-/// Every library and variant that was found when this program was built; ours with `builder`.
+/// Every library and variant found when this program was built; boxtree's with `builder`.
 [[nodiscard]] std::vector<Library> all_libraries(cooker::Builder builder);
 
-/// Names of those that were not.
+/// Names of the libraries that were not found.
 [[nodiscard]] std::vector<std::string> missing_libraries();
 
 }  // namespace boxtree::bench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Records of PLY and STL, written through one buffer.
+// Writes PLY and STL records through one buffer.
 #include "tests/bench/mesh_files.h"
 
 #include <bit>
@@ -55,7 +55,7 @@ void put_ply(const cooker::SourceMesh& mesh, Output& out) {
   }
 }
 
-// Normals are left zero: readers are to take them from the winding then.
+// Normals are zero, so readers compute them from the winding.
 void put_stl(const cooker::SourceMesh& mesh, Output& out) {
   out.put_text(std::string(80, ' '));
   out.put(static_cast<std::uint32_t>(mesh.faces.size()));

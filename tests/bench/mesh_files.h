@@ -8,8 +8,8 @@
 
 namespace boxtree::bench {
 
-/// Writes `mesh`, triangles with f32 positions, as little-endian PLY or as STL, whichever the
-/// extension of `path` says. Throws std::runtime_error when that fails.
+/// Writes `mesh`, triangles with f32 positions, as little-endian PLY or as STL, depending on the
+/// extension of `path`. Throws std::runtime_error on failure.
 void write_mesh(const cooker::SourceMesh& mesh, const std::filesystem::path& path);
 
 }  // namespace boxtree::bench

@@ -9,7 +9,7 @@
 namespace boxtree::bench {
 namespace {
 
-// ODE starts and ends once.
+// Initialises ODE once per process.
 struct OdeSession {
   OdeSession() { dInitODE2(0); }
   ~OdeSession() { dCloseODE(); }
@@ -48,7 +48,7 @@ class OdeSubject : public Subject {
     dGeomTriMeshDataDestroy(data_);
   }
 
-  // OPCODE's default "no leaf" tree: a node of 40 bytes a triangle.
+  // OPCODE's default "no leaf" tree: a node of 40 bytes per triangle.
   [[nodiscard]] SubjectBytes bytes() const override {
     constexpr double kNodeBytes = 40;
     const double tree = kNodeBytes * static_cast<double>(mesh_.triangles.size());

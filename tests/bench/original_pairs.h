@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The original's collision test: both trees descended together, boxes compared on six axes, their
-// intervals kept up to date cut by cut instead of being computed anew.
+// The original's collision test: descends both trees together and compares boxes on six axes.
+// Intervals are updated cut by cut instead of being recomputed.
 #pragma once
 
 #include <algorithm>
@@ -13,14 +13,14 @@
 
 namespace boxtree::bench {
 
-/// What a walk tells about itself; this one does not listen.
+/// Receives the steps of a walk; this one ignores them.
 struct NoTrace {
   void node(const OriginalNode*) {}
   void pair() {}
   void leaf_test(const OriginalNode::Leaf&, const OriginalNode::Leaf&) {}
 };
 
-/// One collision test of two trees, the second one turned and moved by a rigid pose.
+/// One collision test of two trees; a rigid pose places the second one.
 /// Visitor: (polygon of the first, polygon of the second) -> whether to go on.
 template <class Visitor, class Trace = NoTrace>
 class OriginalPairs {
@@ -47,7 +47,8 @@ class OriginalPairs {
     std::array<float, 6> low;
     std::array<float, 6> high;
   };
-  // Of one side: where its own axes and the other's begin, and how own axes lie on the other's.
+  // For one side: the indices of its own and the other's axes, and its own axes in the other's
+  // frame.
   struct Frames {
     std::size_t own;
     std::size_t other;
@@ -56,8 +57,8 @@ class OriginalPairs {
   [[nodiscard]] Frames first_frames() const { return {0, 3, &to_second_}; }
   [[nodiscard]] Frames second_frames() const { return {3, 0, &to_first_}; }
 
-  // Every interval is widened once by the original's 1e-6 of its largest coordinate, which is what
-  // it has against the rounding of all later updates.
+  // Every interval is widened once by the original's 1e-6 of its largest coordinate, its allowance
+  // for the rounding of all later updates.
   static Intervals root_intervals(const Box<float>& box, const Eigen::Matrix3f& onto_other,
                                   const Eigen::Vector3f& translation, std::size_t own) {
     constexpr float kInflation = 1e-6f;
@@ -87,7 +88,7 @@ class OriginalPairs {
     return out;
   }
 
-  // Entering a child moves one bound on the own axis and one on each axis of the other tree.
+  // Entering a child moves one bound on its own axis and one on each axis of the other tree.
   static Intervals entered(const Intervals& from, const Frames& frames, std::size_t axis,
                            std::size_t side, float cut) {
     Intervals to = from;
@@ -124,7 +125,7 @@ class OriginalPairs {
     return apart;
   }
 
-  // Returns whether to go on. Recursion is as deep as both trees together.
+  // Returns whether to continue. The recursion is as deep as both trees together.
   bool check(const OriginalNode* e, const Intervals& ei, const OriginalNode* f,
              const Intervals& fi) {
     trace_.pair();
@@ -171,7 +172,7 @@ class OriginalPairs {
     return true;
   }
 
-  // The second polygon is transformed anew for every pair of leaves, as in the original.
+  // Transforms the second polygon again for every pair of leaves, as the original does.
   bool test_leaves(const OriginalNode::Leaf& e, const OriginalNode::Leaf& f) {
     trace_.leaf_test(e, f);
     for (std::size_t i = 2; i < 4 && e.point[i] != kNoPoint; ++i) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The original under measurement. Rays, boxes and points descend its pointers with the box tests of
-// the runtime's queries and end at the runtime's leaf tests.
+// Measures the original. Rays, boxes and points descend its pointers with the runtime's box tests
+// and end with the runtime's leaf tests.
 #include <cmath>
 #include <vector>
 
@@ -186,8 +186,8 @@ class OriginalSubject : public Subject {
   }
 
  private:
-  // Cuts in f32 leave planes that are off by their rounding; what the original's 1e-6 does for
-  // pairs, this does for rays.
+  // Planes from cuts in f32 are off by their rounding. The widening allows for it in rays, as the
+  // original's 1e-6 does in pairs.
   static Eigen::Vector3d widened(const Eigen::Vector3d& max_abs) {
     constexpr double kShareOfSlabMargin = 1e-6 / (8 * 0x1p-53);
     return max_abs * kShareOfSlabMargin;

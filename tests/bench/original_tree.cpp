@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Building the original: what is split where comes from the paper's builder, what is cut off empty
-// from its 15 % rule.
+// Builds the original tree: splits come from the paper's builder, empty slabs are cut off by its 15
+// % rule.
 #include "tests/bench/original_tree.h"
 
 #include <algorithm>
@@ -29,7 +29,7 @@ Box<float> in_object_space(const cooker::BuildTree& build, std::uint32_t node) {
 struct Slab {
   double share = 0;
   std::size_t axis = 0;
-  std::size_t side = 0;  // the child that is left: 0 when the slab is on the high side
+  std::size_t side = 0;  // the remaining child: 0 when the slab is on the high side
   float cut = 0;
 };
 

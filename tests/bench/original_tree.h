@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The baseline: the BoxTree as it was before the paper (its section 2.1 and table 2.1). Nodes and
-// leaves are objects of their own on the heap, linked by pointers; each leaf holds one polygon of
-// three or four points. Its leaf tests are the runtime's, so that all differences are the tree's.
+// The baseline: the BoxTree before the paper (its section 2.1 and table 2.1). Nodes and leaves are
+// separate objects on the heap, linked by pointers; each leaf holds one polygon of three or four
+// points. Leaf tests are the runtime's, so all differences are the tree's.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ namespace boxtree::bench {
 /// Marks the missing fourth point of a triangle.
 inline constexpr std::uint32_t kNoPoint = 0xffffffffu;
 
-/// A node or a leaf: 48 bytes, and 8 of malloc's own.
+/// A node or a leaf: 48 bytes, plus 8 for malloc.
 struct OriginalNode {
   struct Inner {
     OriginalNode* child[2];  // null: an empty box was cut off
@@ -30,7 +30,7 @@ struct OriginalNode {
     const Eigen::Vector3f* points;
   };
 
-  virtual ~OriginalNode() = default;  // the original has one and never needs it
+  virtual ~OriginalNode() = default;  // the original has one, without needing it
 
   [[nodiscard]] bool is_leaf() const { return (cutplane & kLeafFlag) != 0; }
 
@@ -46,7 +46,7 @@ inline constexpr std::size_t kOriginalNodeBytes = 56;
 
 class OriginalTree {
  public:
-  /// From the cooker's splits. `points` must outlive the tree. Coordinates are those of the mesh.
+  /// Uses the cooker's splits. `points` must outlive the tree. Coordinates are those of the mesh.
   OriginalTree(const cooker::BuildTree& build, const cooker::SourceMesh& mesh,
                const std::vector<Eigen::Vector3f>& points);
   ~OriginalTree();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// boxtree_peers: every codec, the original and other libraries on the same queries in one run,
-// each time beside its answers, each answer beside brute force.
+// boxtree_peers: every codec, the original and other libraries on the same queries in one run. Each
+// time is listed with its answers, and each answer is compared with brute force.
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -58,7 +58,7 @@ class Rows {
   nlohmann::ordered_json& rows_;
 };
 
-// A run of one kind of query takes no longer than about this; slow libraries are queried less.
+// Approximate limit of a run of one kind of query; slow libraries run fewer queries.
 constexpr double kSecondsPerRun = 4;
 
 double sum(const std::vector<double>& values) {
@@ -67,7 +67,7 @@ double sum(const std::vector<double>& values) {
   return total;
 }
 
-// In how many of the queries that brute force answered the two differ by more than `slack`.
+// The number of queries answered by brute force whose answers differ by more than `slack`.
 double count_wrong(const std::vector<double>& found, const std::vector<double>& exact,
                    double slack) {
   double wrong = 0;
@@ -104,11 +104,11 @@ double count_finite(const std::vector<double>& values) {
                                            [](double value) { return std::isfinite(value); }));
 }
 
-// How one kind of query is reported.
+// Names and units of one kind of query in reports.
 struct Kind {
   std::string name;   // of its rows
   std::string unit;   // of its time
-  std::string total;  // the row of all answers together
+  std::string total;  // the row of the sum of all answers
   std::string total_unit;
   double (*total_of)(const std::vector<double>&) = sum;
 };
@@ -116,8 +116,8 @@ struct Kind {
 template <class Query>
 using QueryFunction = bool (Subject::*)(std::span<const Query>, std::span<double>);
 
-// The median over single queries, each one's time the least of the runs, in seconds. By the wall
-// clock, which is read in a fraction of what the processor time of a thread takes to read.
+// The median over single queries in seconds; each query's time is the least of the runs. Uses the
+// wall clock, which is much faster to read than a thread's processor time.
 template <class Query>
 double median_of_each(Subject& subject, QueryFunction<Query> query, std::span<const Query> queries,
                       std::span<double> answers, std::size_t runs) {
@@ -134,9 +134,8 @@ double median_of_each(Subject& subject, QueryFunction<Query> query, std::span<co
   return cooker::median(std::move(least));
 }
 
-// Times one kind of query and adds the rows of time and answers. Nothing if the library does not
-// know the query. The run that is not counted finds out how many queries are affordable;
-// answers to the others are cut off.
+// Times one kind of query and adds the rows of time and answers. Empty if the library does not have
+// the query. An untimed run finds the number of affordable queries; other answers are dropped.
 template <class Query>
 std::optional<std::vector<double>> run_query(Subject& subject, QueryFunction<Query> query,
                                              const std::vector<Query>& queries, const Kind& kind,
@@ -170,7 +169,7 @@ std::optional<std::vector<double>> run_query(Subject& subject, QueryFunction<Que
 
 void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
                     const ExactAnswers& exact, std::size_t runs, Rows& rows) {
-  // A library in f32 cannot know distances better than this share of the scene.
+  // A library in f32 cannot resolve distances below this share of the scene.
   const double scene = 4 * mesh.bounds.diagonal().norm();
   const double slack = scene * 1e-5;
   if (const auto found = run_query(subject, &Subject::rays, workload.rays,
@@ -208,10 +207,10 @@ void measure_pairs(Subject& subject, const cooker::Workload& workload, const Exa
   }
 }
 
-// With no error allowed, and with errors: what was found may be that much farther than the nearest.
+// Queries without and with an allowed error: results may exceed the true distance by that error.
 void measure_distances(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
                        const ExactAnswers& exact, std::size_t runs, Rows& rows) {
-  // A library in double cannot know distances better than some roundings of its coordinates.
+  // A library in double cannot resolve distances below a few roundings of its coordinates.
   const double slack = 1e-12 * mesh.bounds.diagonal().norm();
   struct Allowed {
     const char* name;
@@ -240,7 +239,7 @@ void measure_distances(const TriangleMesh& mesh, Subject& subject, const cooker:
   }
 }
 
-// Protocol P1: 20 distances from 2.0 to 0.6 half extents, `steps` turns at each.
+// Protocol P1: 20 distances from 2.0 to 0.6 half extents, `steps` rotations at each.
 std::vector<Pose> all_tumble_poses(const TriangleMesh& mesh, std::size_t steps) {
   constexpr std::size_t kDistances = 20;
   constexpr double kFar = 2.0;
@@ -312,7 +311,7 @@ void measure_library(const TriangleMesh& mesh, const Library& library,
   measure_tumble(*subject, tumble, arguments.runs, rows);
 }
 
-// Queries that are not wanted are none.
+// Kinds of queries that are not selected get a count of zero.
 cooker::WorkloadSize workload_size(const Arguments& arguments) {
   cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
   const auto wanted = [&](const char* kind) {

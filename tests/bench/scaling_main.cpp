@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// boxtree_scaling: what a query costs as meshes grow. Where a level more of the tree is a step
-// more, times over the binary logarithm of the size lie on a line.
+// boxtree_scaling: the cost of a query as meshes grow. If cost grows by one step per level of the
+// tree, times over the binary logarithm of the size form a line.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -46,10 +46,10 @@ struct Row {
   std::size_t triangles = 0;
   double ray_ns = 0;
   double pair_first_us = 0;         // mean over poses
-  double pair_first_median_us = 0;  // of the poses
+  double pair_first_median_us = 0;  // over the poses
   std::uint64_t ray_hits = 0;       // of one run
-  std::uint64_t pair_hits = 0;      // likewise
-  double tree_bytes = 0;            // a triangle
+  std::uint64_t pair_hits = 0;      // the same
+  double tree_bytes = 0;            // per triangle
   std::uint32_t depth = 0;
 };
 
@@ -86,7 +86,7 @@ Row measure(const std::string& name, const SourceMesh& mesh, const Arguments& ar
                           row.pair_hits += require(contact).has_value() ? 1u : 0u;
                         }
                       });
-  // A pose takes less than a clock can tell.
+  // A pose takes less than the resolution of a clock.
   constexpr std::size_t kTimes = 16;
   std::vector<double> of_poses;
   for (const Pose& pose : workload.poses) {
@@ -116,7 +116,7 @@ std::vector<Row> measure_all(const Arguments& arguments) {
   return rows;
 }
 
-// One series a mesh. `value` is what stands on the other axis.
+// One series per mesh. `value` is the value on the other axis.
 template <class Value>
 cooker::PagePlot plot_of(const std::vector<Row>& rows, const std::string& title, Value value) {
   cooker::PagePlot plot{"log2 of the number of triangles", title, {}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// boxtree_scenes: a level of placed props as a scene, and as one tree over all their triangles:
-// bytes, and times of the same queries in one run.
+// boxtree_scenes: a level of placed props as a scene, and as one tree of all their triangles.
+// Prints bytes, and times of the same queries in one run.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -59,7 +59,7 @@ std::vector<SourceMesh> make_props(std::uint32_t count) {
   return props;
 }
 
-// Rows of props, turned about axes near the vertical, each scaled to some 1.5 metres.
+// Rows of props, rotated about axes near the vertical, each scaled to about 1.5 metres.
 cooker::SceneParts place(const std::vector<SourceMesh>& props, const Arguments& arguments) {
   std::mt19937_64 random(1);
   const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
@@ -103,7 +103,7 @@ SourceMesh merge(const std::vector<SourceMesh>& props, const cooker::SceneParts&
 
 struct Row {
   std::string kind;
-  double scene_ns = 0;  // medians of the rounds, of each way and of their ratio
+  double scene_ns = 0;  // medians of the rounds: of each variant and of their ratio
   double merged_ns = 0;
   double ratio = 0;
   std::uint64_t scene_answers = 0;
@@ -145,8 +145,8 @@ class Bench {
     return {middle - half, middle + half};
   }
 
-  // Both ways by turns, so that what slows the machine for a while slows both; the first round only
-  // warms up. Counts the answers of the last.
+  // Alternates the two variants, so that temporary slowness of the machine affects both. The first
+  // round only warms up. Counts the answers of the last.
   template <class OfScene, class OfTree>
   Row compare(const char* kind, std::size_t queries, OfScene of_scene, OfTree of_tree) const {
     Row row{kind};
@@ -165,14 +165,14 @@ class Bench {
     row.ratio = cooker::median(ratios);
     return row;
   }
-  // The sum of what `run_query` says of each query.
+  // The sum of the results of `run_query` over all queries.
   template <class Queries, class RunQuery>
   static std::uint64_t sum(const Queries& queries, RunQuery run_query) {
     std::uint64_t answers = 0;
     for (const auto& query : queries) answers += run_query(query);
     return answers;
   }
-  // Counts what a query visits.
+  // Counts the visits of a query.
   template <class Answer, class Query>
   static std::uint64_t count(Query query) {
     std::uint64_t visited = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What a library under measurement is queried. Answers come one number a query, so that they can
-// be compared one by one; querying a whole workload in one call keeps the indirection out of the
-// times.
+// The interface of a library under measurement. Each query has one number as its answer, so that
+// answers can be compared one by one. A call runs a whole workload, so times exclude the
+// indirection.
 #pragma once
 
 #include <cstdint>
@@ -25,27 +25,27 @@ struct SubjectBytes {
   double total = 0;
 };
 
-/// From a closed file to answers, where a library has files.
+/// From a closed file to answers, for libraries with files.
 struct SubjectOpen {
   double micros = 0;          // to the first answer
   double file_bytes = 0;      // on disk
-  double resident_bytes = 0;  // that opening alone allocates or must read
+  double resident_bytes = 0;  // allocated or read by opening alone
 };
 
-/// What pair queries did, summed over all poses.
+/// Work of pair queries, summed over all poses.
 struct PairWork {
   std::uint64_t node_pairs = 0;  // pairs of nodes expanded; the original also counts leaf pairs
   std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
 };
 
-/// Of the mesh and its copy in that pose.
+/// The mesh and its copy in that pose.
 struct DistanceRequest {
   Pose pose;
   double relative_error = 0;  // allowed
 };
 
-/// One mesh in one library's structure. A query that the library does not have returns false and
-/// leaves its answers alone.
+/// One mesh in one library's structure. Queries that the library does not have return false and do
+/// not change their answers.
 class Subject {
  public:
   virtual ~Subject() = default;
@@ -59,14 +59,15 @@ class Subject {
   virtual bool boxes(std::span<const Eigen::AlignedBox3d>, std::span<double>) { return false; }
   /// Distance to the closest point.
   virtual bool points(std::span<const Eigen::Vector3d>, std::span<double>) { return false; }
-  /// Distance to the copy: no more than the error allowed above the true one.
+  /// Distance to the copy; at most the allowed error above the true one.
   virtual bool distances(std::span<const DistanceRequest>, std::span<double>) { return false; }
-  /// Of the mesh against its copy in that pose: 1 if they touch, else 0.
+  /// The mesh against its copy in that pose: 1 if they touch, else 0.
   virtual bool first_contacts(std::span<const Pose>, std::span<double>) { return false; }
-  /// Likewise: the number of pairs of triangles that touch.
+  /// The number of pairs of triangles that touch, in the same pose.
   virtual bool all_pairs(std::span<const Pose>, std::span<double>) { return false; }
 
-  /// Repeats first_contacts or all_pairs with a listening walk that also feeds the cache model.
+  /// Repeats first_contacts or all_pairs with a walk that counts and passes addresses to the cache
+  /// model.
   [[nodiscard]] virtual std::optional<PairWork> pair_work(std::span<const Pose>,
                                                           bool /*first_only*/, CacheModel&) {
     return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The mesh that every library is given: triangles alone, f32 positions.
+// The mesh that every library receives: only triangles, f32 positions.
 #pragma once
 
 #include <array>
@@ -12,10 +12,10 @@
 
 namespace boxtree::bench {
 
-/// The same triangles twice: as the cooker takes them and as plain arrays for others.
+/// The same triangles in two forms: for the cooker, and as plain arrays for other libraries.
 struct TriangleMesh {
   std::string name;
-  cooker::SourceMesh source;  // quads split, face ids left out: face i is triangle i
+  cooker::SourceMesh source;  // quads split, no face ids: face i is triangle i
   std::vector<Eigen::Vector3f> positions;
   std::vector<std::array<std::uint32_t, 3>> triangles;
   Eigen::AlignedBox3d bounds;
@@ -28,7 +28,7 @@ struct TriangleMesh {
   }
 };
 
-/// `longest_edge`: size of the bounds to scale to, 0 to leave every coordinate alone.
+/// `longest_edge`: size of the scaled bounds; 0 leaves every coordinate unchanged.
 [[nodiscard]] TriangleMesh make_triangle_mesh(const cooker::SourceMesh& mesh, std::string name,
                                               double longest_edge);
 
