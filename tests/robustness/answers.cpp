@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries, and the bits of what comes back.
+// Makes queries, and the bits of their answers.
 #include "tests/robustness/answers.h"
 
 #include <algorithm>
@@ -73,11 +73,11 @@ class Maker {
   }
   Pose pose(std::size_t i) {
     Pose pose = Pose::Identity();
-    if (i % 3 == 0) {  // aligned contact: by the difference of two vertices
+    if (i % 3 == 0) {  // aligned contact: moved by the difference of two vertices
       pose.translation() = vertex() - vertex();
       return pose;
     }
-    // Around the middle, wherever it is.
+    // About the centre of the mesh.
     pose.translate(bounds_.center() + 0.6 * (point() - bounds_.center()));
     pose.rotate(
         Eigen::Quaterniond(unit() - 0.5, unit() - 0.5, unit() - 0.5, unit() - 0.5).normalized());
@@ -88,18 +88,18 @@ class Maker {
 
   const SourceMesh& mesh_;
   Eigen::AlignedBox3d bounds_;
-  Eigen::Vector3d size_;  // extents, but none of them zero
+  Eigen::Vector3d size_;  // extents; zeros replaced
   std::mt19937_64 random_;
 };
 
-// The longest answer that names nothing: of a ray.
+// The size of the longest answer without a face: that of a ray.
 constexpr std::size_t kLongestMiss = 3;
 
 std::uint64_t bits(double x) {
-  return std::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);  // -0 says the same as 0
+  return std::bit_cast<std::uint64_t>(x == 0 ? 0.0 : x);  // -0 equals 0
 }
 
-// One answer in the making.
+// Builds one answer.
 class Writer {
  public:
   explicit Writer(int exponent) : exponent_(exponent) {}

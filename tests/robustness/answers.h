@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries of every kind to one tree, and the answers as bits, so that "the same" means the same.
+// Queries of every kind on one tree, and their answers as bits for exact comparison.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ struct Sphere {
   double radius;
 };
 
-/// In object space. Pairs are the tree against itself, the second one in that pose.
+/// In object space. For pairs, the tree against itself; the second one has that pose.
 struct QuerySet {
   std::vector<Ray> rays;
   std::vector<Eigen::AlignedBox3d> boxes;
@@ -24,7 +24,7 @@ struct QuerySet {
   std::vector<Pose> poses;
 };
 
-/// How many of each kind.
+/// Number of queries of each kind.
 struct QueryCounts {
   std::size_t rays = 200;
   std::size_t boxes = 60;
@@ -33,25 +33,26 @@ struct QueryCounts {
   std::size_t poses = 6;
 };
 
-/// Seeded queries about a mesh; a part of each kind is degenerate on purpose: along axes, through
-/// vertices, of no size, in the planes of vertices.
+/// Seeded queries on a mesh. A part of each kind is degenerate: along axes, through vertices, of
+/// zero size, in the planes of vertices.
 [[nodiscard]] QuerySet queries_for(const SourceMesh& mesh, std::uint64_t seed,
                                    const QueryCounts& counts = {});
 
-/// Every coordinate and length times 2^exponent; directions too, so that parameters stay.
+/// Scales every coordinate and length by 2^exponent, directions too, so that parameters do not
+/// change.
 [[nodiscard]] QuerySet scaled(const QuerySet& queries, int exponent);
 
-/// The answers to one query after the other, in the order of Queries: error code, face ids
-/// (sorted where the order is not promised) and the bits of all numbers.
+/// The answers to all queries, in the order of Queries: error code, face ids (sorted if the order
+/// is not guaranteed) and the bits of all numbers.
 using Answers = std::vector<std::vector<std::uint64_t>>;
 
 /// `exponent`: lengths are divided by 2^exponent before their bits are taken.
 [[nodiscard]] Answers run_query(const Tree& tree, const QuerySet& queries, int exponent = 0);
 
-/// How many answers differ; all when the numbers of queries do.
+/// The number of answers that differ; all if the numbers of queries differ.
 [[nodiscard]] std::size_t count_differing(const Answers& a, const Answers& b);
 
-/// How many answers name a face.
+/// The number of answers with a face.
 [[nodiscard]] std::size_t count_hits(const Answers& answers);
 
 }  // namespace boxtree::robustness

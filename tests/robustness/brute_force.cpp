@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Loops over decoded triangles, with the leaf predicates alone.
+// Loops over decoded triangles, using only the leaf predicates.
 #include "tests/robustness/brute_force.h"
 
 #include <algorithm>
@@ -26,7 +26,7 @@ auto collector(std::vector<std::uint32_t>& found) {
   };
 }
 
-// Whether a triangle shows the ray nothing but an edge: no area, or in the ray's plane.
+// Whether the ray sees only an edge of a triangle: no area, or in the ray's plane.
 bool is_edge_on(const RayShear& ray, const Triangle& triangle) {
   std::array<Eigen::Vector2d, 3> seen;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -63,7 +63,7 @@ class Brute {
       if (!found) continue;
       const double at = found->t * scale;
       if (is_edge_on(shear, t.triangle)) {
-        // That it was hit is rounding, and where is anybody's guess between its corners.
+        // The hit is due to rounding, and may be anywhere between the corners.
         is_found |= hit.has_value() && hit->face.id == t.face;
         continue;
       }

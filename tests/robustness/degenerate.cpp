@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Triangles without area, one on top of the other, none at all, and meshes without volume.
+// Triangles without area, coincident triangles, no triangles, and meshes without volume.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -26,7 +26,7 @@ std::vector<test::IntVector> whole(const Corners& corners) {
   return points;
 }
 
-// The sign of the squared distance of whole points p and segment ab minus r * r, exactly.
+// The exact sign of the squared distance between point p and segment ab, minus r * r; all integers.
 int compare_distance(const test::IntVector& p, const test::IntVector& a, const test::IntVector& b,
                      std::int64_t r) {
   const auto dot = [](const test::IntVector& u, const test::IntVector& v) {
@@ -42,7 +42,7 @@ int compare_distance(const test::IntVector& p, const test::IntVector& a, const t
   return test::sign_of(dot(from_a, from_a) * length - along * along - test::Int128(r) * r * length);
 }
 
-// Faces that a query names; visit is the query.
+// Faces that a query reports; `visit` is the query.
 template <class Query>
 std::vector<std::uint32_t> faces_of(Query query) {
   std::vector<std::uint32_t> faces;
@@ -55,7 +55,7 @@ std::vector<std::uint32_t> faces_of(Query query) {
   return faces;
 }
 
-// Distance of a line from a segment.
+// The distance between a line and a segment.
 double line_to_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& direction,
                        const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
   const Eigen::Vector3d unit = direction.normalized();
@@ -102,7 +102,7 @@ class DegenerateKind {
  private:
   struct Boxes {
     std::vector<Eigen::AlignedBox3d> box;
-    std::vector<std::vector<std::uint32_t>> faces;  // that touch it
+    std::vector<std::vector<std::uint32_t>> faces;  // that touch the point
   };
 
   Boxes make_boxes() {
@@ -133,7 +133,7 @@ class DegenerateKind {
     }
   }
 
-  // A sphere that touches a segment exactly where double cannot say so may go either way.
+  // If a sphere touches a segment exactly and double cannot decide it, either result is valid.
   void check_spheres(const Subject& subject) {
     for (int i = 0; i < 60; ++i) {
       const Eigen::Vector3d center = cases_.point(kRange);
@@ -156,8 +156,8 @@ class DegenerateKind {
     }
   }
 
-  // A ray that passes a face without area misses it. One that goes right through may do either, as
-  // the seams of closed surfaces are such faces; what it then says must be true.
+  // A ray that passes a face without area must miss it. A ray through such a face may hit or miss,
+  // because seams of closed surfaces are such faces; a reported hit must be correct.
   void check_rays(const Subject& subject) {
     for (int i = 0; i < 400; ++i) {
       const Corners& aimed = corners_[static_cast<std::size_t>(i) % corners_.size()];
@@ -176,7 +176,7 @@ class DegenerateKind {
     double distance = std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < 3; ++c) {
       const Corners& corners = corners_[hit.face.id];
-      // Of the ray's line, not of the reported point: t is uncertain along the segment.
+      // Uses the ray's line, not the reported point: t is uncertain along the segment.
       distance =
           std::min(distance, line_to_segment(at, direction, corners[c], corners[(c + 1) % 3]));
     }
@@ -204,11 +204,11 @@ long double segment_distance(const Eigen::Vector3d& point, const Eigen::Vector3d
   return (a + at * edge - p).norm();
 }
 
-// In units in the last place of the largest number that enters the answer, a coordinate of the
-// point relative to the segment.
+// Errors are in units in the last place of the largest number in the computation, a coordinate of
+// the point relative to the segment.
 void closest_point_on_degenerate(Run& run) {
   std::mt19937_64 random(16);
-  // Twelve bits: differences and multiples are exact in f32, so collinear is collinear.
+  // Twelve bits: differences and multiples are exact in f32, so collinear points stay collinear.
   const auto number = [&](int bits) {
     return static_cast<double>(random() >> (64 - bits)) - std::ldexp(1.0, bits - 1);
   };
@@ -272,7 +272,7 @@ void duplicates(Run& run) {
     for_each_subject(test::duplicates(copies), [&](const Subject& subject) {
       check_duplicates(run, subject, copies);
       const Tree& tree = subject.tree();
-      // A million pairs of coplanar triangles: not in every codec.
+      // A million pairs of coplanar triangles: too slow for every codec.
       const bool is_one_of_few = BoundTree::of(tree).codec() == CodecId::kPlainF32 ||
                                  BoundTree::of(tree).codec() == CodecId::kWide8;
       if (copies > 50 && !is_one_of_few && !run.is_full()) return;
@@ -349,7 +349,7 @@ void few_triangles(Run& run) {
   for (const auto& triangles : {std::vector<Corners>{one}, std::vector<Corners>{one, two}}) {
     const SourceMesh mesh = from_triangles(std::to_string(triangles.size()), triangles);
     run.premise(check_answers(run, mesh, queries_for(mesh, 21)) > 100, "hardly any hit");
-    // Coordinates that f32 does not hold: boxes and spheres at the corners tell.
+    // Coordinates that are not exact in f32: boxes and spheres at the corners detect rounding.
     const SourceMesh fine = times(in_double(mesh), 1.0 / 3);
     run.premise(check_answers(run, fine, queries_for(fine, 22)) > 100, "hardly any hit");
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bad input: meshes with numbers that are none, and files that were damaged.
+// Bad input: meshes with NaN, infinite or out-of-range numbers, and damaged files.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -62,8 +62,8 @@ std::string as_stl(const SourceMesh& mesh) {
   return bytes;
 }
 
-// One bad triangle among 1000: the file is refused and the culprit named, or, where requested, left
-// out and reported; the other 999 are found in every codec.
+// One bad triangle among 1000. The file is refused and the error names the triangle; with skip_bad
+// it is left out and reported, and the other 999 are found in every codec.
 void bad_vertices(Run& run) {
   constexpr std::uint32_t kBad = 137;
   const test::TempFolder folder;
@@ -111,7 +111,7 @@ bool is_accepted(Bytes bytes) {
   return file.ok() && cooker::verify_file(*file).empty();
 }
 
-// Whatever comes back, it must come back.
+// Every query must return, whatever its result.
 void query_everything(Bytes bytes) {
   const auto file = File::open(bytes);
   if (!file) return;
@@ -147,7 +147,8 @@ void hostile_files(Run& run) {
         bytes[at] ^= damage;
       }
     }
-    // Written by a machine of the other byte order: all words of the header turned.
+    // The header as a machine of the other byte order would write it: the bytes of all words
+    // reversed.
     for (const std::size_t width : {2u, 4u, 8u}) {
       bytes = whole;
       for (std::size_t at = 8; at + width <= sizeof(FileHeader); at += width) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Making and changing meshes.
+// Makes and changes meshes.
 #include "tests/robustness/mesh_kinds.h"
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 namespace boxtree::robustness {
 namespace {
 
-// change(coordinate, axis), in double, rounded once.
+// Applies change(coordinate, axis) in double; rounds the result once.
 template <class Change>
 SourceMesh changed(SourceMesh mesh, Change change) {
   const auto apply = [&](auto& positions) {

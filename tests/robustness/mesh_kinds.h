@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes of the robustness suite, and changes to meshes. Positions are f32 unless said otherwise.
+// Meshes of the robustness suite, and changes to meshes. Positions are f32 unless stated otherwise.
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@ namespace boxtree::robustness {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
-/// Every triangle with three vertices of its own. f32 positions must hold the corners.
+/// Every triangle with its own three vertices. The corners must be exact in f32.
 [[nodiscard]] SourceMesh from_triangles(std::string name, const std::vector<Corners>& triangles,
                                         cooker::Precision precision = cooker::Precision::kF32);
 
@@ -29,7 +29,7 @@ using Corners = std::array<Eigen::Vector3d, 3>;
 [[nodiscard]] SourceMesh times(SourceMesh mesh, const Eigen::Vector3d& factor);
 /// Coordinates plus a vector, rounded once.
 [[nodiscard]] SourceMesh plus(SourceMesh mesh, const Eigen::Vector3d& offset);
-/// With the same coordinates in f64.
+/// The same coordinates in f64.
 [[nodiscard]] SourceMesh in_double(SourceMesh mesh);
 /// Coordinates rounded to multiples of 2^exponent.
 [[nodiscard]] SourceMesh snapped(SourceMesh mesh, int exponent);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pairs of trees: exact decisions, contact that just touches, what is no contact.
+// Pairs of trees: exact decisions, barely touching contact, and cases without contact.
 #include <cmath>
 #include <random>
 
@@ -17,8 +17,8 @@ std::vector<test::IntVector> whole_corners(const Triangle& triangle) {
   return corners;
 }
 
-// Two trees of triangles with whole coordinates, each triangle of one with each of the other,
-// decided in integer arithmetic by an algorithm that shares nothing with ours.
+// Compares two trees of triangles with integer coordinates, each triangle with each, with integer
+// arithmetic by an independent algorithm.
 void exact_pairs(Run& run) {
   constexpr std::int64_t kRange = 1 << 14;  // coordinates below 2^19: exact in f32 and on the grid
   const std::size_t count = run.count(60, 400);
@@ -55,7 +55,7 @@ void exact_pairs(Run& run) {
 struct Touching {
   const char* name;
   SourceMesh first;
-  SourceMesh second;  // touches the first one where it is; along +x they part
+  SourceMesh second;  // touches the first one at rest; along +x they separate
   Eigen::Vector3d shift;
 };
 
@@ -84,8 +84,8 @@ std::vector<Touching> touching() {
   };
 }
 
-// Contact goes on at exactly touching and never comes back: gaps of +-2^-k, as far as double tells
-// them from nothing.
+// Contact ends exactly where the meshes stop touching, and does not recur: gaps of +-2^-k, as far
+// as double distinguishes them from zero.
 void touching_sweep(Run& run) {
   Eigen::Matrix3d quarter_turn;
   quarter_turn << 0, -1, 0, 1, 0, 0, 0, 0, 1;
@@ -115,8 +115,8 @@ void touching_sweep(Run& run) {
   }
 }
 
-// Surfaces are compared: a cube inside a cube is no contact. Whether it is inside is another
-// query, which the number of times that a ray comes out answers.
+// Contact compares surfaces: a cube inside a cube is no contact. Containment is another query,
+// answered by the number of times that a ray leaves the surface.
 void containment(Run& run) {
   for (const Store& store : kStores) {
     for (const CodecInfo& codec : kCodecs) {
@@ -134,7 +134,7 @@ void containment(Run& run) {
   }
 }
 
-// No number in an answer is NaN, whatever the mesh; where there is no contact there is no record.
+// No number in an answer is NaN, for any mesh; without a contact there is no record.
 void no_nan(Run& run) {
   std::vector<SourceMesh> meshes = test::all_kinds();
   std::vector<Corners> points;

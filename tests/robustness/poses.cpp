@@ -27,7 +27,8 @@ class Random {
   std::mt19937_64 random_;
 };
 
-// Holds a pose against brute force in every codec and store. Returns the pairs found.
+// Compares the answers in a pose with brute force in every codec and store. Returns the number of
+// pairs.
 std::size_t check_poses(Run& run, const SourceMesh& a, const SourceMesh& b,
                         const std::vector<Pose>& poses) {
   std::size_t pairs = 0;
@@ -50,8 +51,8 @@ std::size_t check_poses(Run& run, const SourceMesh& a, const SourceMesh& b,
   return pairs;
 }
 
-// Two bodies 1e6 away, each turned, a metre long; the second one's corner over the middle of the
-// first one's face. The gap at which contact begins is known to the rounding of the poses.
+// Two rotated bodies, a metre long, 1e6 from the origin. A corner of the second is above the middle
+// of a face of the first. The gap at which contact begins is known up to the rounding of the poses.
 void far_away(Run& run) {
   Random random(4);
   const SourceMesh box = box_mesh(Eigen::Vector3d(0.5, 0.5, 0.5));
@@ -63,7 +64,7 @@ void far_away(Run& run) {
       first.translation() = 1e6 * Eigen::Vector3d(1, -0.5, 0.75) + random.vector();
       second.linear() = random.rotation();
       const Eigen::Vector3d normal = first.linear().col(0);
-      // The corner that lies deepest against the normal: gap 0 is contact.
+      // The lowest corner along the normal: it touches at gap 0.
       Eigen::Vector3d corner;
       for (Eigen::Index k = 0; k < 3; ++k) {
         corner[k] = second.linear().col(k).dot(normal) > 0 ? -0.5 : 0.5;
@@ -76,7 +77,7 @@ void far_away(Run& run) {
         return contact.ok() && contact.has_value();
       };
       run.check(!touches_at(1), "contact at a gap of 1");
-      // Between these the answer changes once; rounding of 1e6 is 1.2e-10.
+      // The answer changes once between these; the rounding at 1e6 is 1.2e-10.
       double touching = -1e-3, apart = 1e-3;
       run.premise(touches_at(touching) && !touches_at(apart), "no contact begins");
       for (int step = 0; step < 60; ++step) {
@@ -88,7 +89,7 @@ void far_away(Run& run) {
   }
 }
 
-// Shifts that double holds: out there the answers are those at the origin, to the last pair.
+// Translations that are exact in double: answers there equal those at the origin, to the last pair.
 void huge_translations(Run& run) {
   const SourceMesh mesh = snapped(test::torus(16, 12), -6);
   Random random(8);
@@ -109,7 +110,7 @@ void huge_translations(Run& run) {
           beside.translation() += away * Eigen::Vector3d(1, -1, 0.5);
           run.check(found_pairs(subject.tree(), there, subject.tree(), beside) == expected,
                     [&] { return subject.name + ": " + std::to_string(away); });
-          // One here, one there.
+          // One tree is here, the other far away.
           run.check(found_pairs(subject.tree(), first, subject.tree(), beside).empty(),
                     [&] { return subject.name + ": one at " + std::to_string(away); });
         }
@@ -117,7 +118,7 @@ void huge_translations(Run& run) {
       run.premise(pairs > 100, "hardly any pair of faces touches");
     }
   }
-  // Baked out there and brought back by the pose.
+  // The mesh is cooked far away, and the pose moves it back.
   const SourceMesh baked = plus(mesh, Eigen::Vector3d(0x1p17, -0x1p16, 0x1p17));
   const Subject here = make_subject(mesh, CodecId::kWide8, kExactStore);
   for (const CodecInfo& codec : kCodecs) {
@@ -154,7 +155,7 @@ void near_parallel(Run& run) {
   run.premise(pairs > 1000, "hardly any pair of faces touches");
 }
 
-// Poses that lose nothing on lattice coordinates: the same pairs as with the vertices transformed.
+// Poses that are exact on lattice coordinates: the same pairs as with transformed vertices.
 void affine_poses(Run& run) {
   const SourceMesh first = snapped(times(test::torus(14, 10), 4), -4);
   const SourceMesh second = snapped(times(test::sphere(8, 10), 2), -4);
@@ -196,7 +197,7 @@ void affine_poses(Run& run) {
     }
   }
   run.premise(pairs > 1000, "hardly any pair of faces touches");
-  // Scales that round: against brute force.
+  // Scales that are rounded: compared with brute force.
   std::vector<Pose> poses;
   Random random(22);
   for (const double scale : {1e-3, 0.1, 10.0, 1e3}) {

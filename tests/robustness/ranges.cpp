@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Boxes that must hold what is below them, whatever the numbers: narrow types, rounding of the
-// traversal, sizes without a limit.
+// Boxes must contain what is below them for all numbers: narrow types, rounding of the traversal,
+// all sizes.
 #include <algorithm>
 #include <cmath>
 #include <random>
@@ -24,13 +24,13 @@ void check_boxes(Run& run, const Subject& subject) {
 void boxes_hold_triangles(Run& run) {
   for (const SourceMesh& mesh : test::all_kinds()) {
     for_each_subject(mesh, [&](const Subject& subject) { check_boxes(run, subject); });
-    // Coordinates that no codec holds exactly: every cut is rounded.
+    // Coordinates that no codec represents exactly: every cut is rounded.
     const SourceMesh odd = times(mesh, std::sqrt(2.0) / 3);
     for_each_subject(odd, [&](const Subject& subject) { check_boxes(run, subject); });
   }
 }
 
-// 65504 is the largest f16, 65520 the least that rounds to infinity.
+// 65504 is the largest f16; 65520 is the smallest number that rounds to infinity.
 void boxes_beyond_half_range(Run& run) {
   for (const double scale : {1e5, 1e6, 65504.0, 65520.0, 1e12, 1e-5, 1e-8}) {
     for (const SourceMesh& mesh : {test::sphere(16, 24), test::city(24, 2), test::soup(200, 3)}) {
@@ -40,7 +40,7 @@ void boxes_beyond_half_range(Run& run) {
   }
 }
 
-// Poses that round everything: no pair of triangles may be lost on the way down.
+// Poses with rounding in every step: traversal must not lose a pair of triangles.
 void traversal_rounding(Run& run) {
   std::mt19937_64 random(3);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53; };
@@ -52,7 +52,7 @@ void traversal_rounding(Run& run) {
     const double size = bounds_of(mesh).diagonal().maxCoeff();
     for (std::size_t i = 0; i < run.count(8, 400); ++i) {
       Pose pose = Pose::Identity();
-      // Rotations by multiples of 90 degrees, off by little: aligned faces that graze each other.
+      // Rotations near multiples of 90 degrees: aligned faces that graze each other.
       const double off = i % 2 == 0 ? std::ldexp(unit() - 0.5, -static_cast<int>(i % 50)) : unit();
       pose.rotate(Eigen::AngleAxisd(std::acos(0.0) * static_cast<double>(i % 4) + off,
                                     Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i % 3))));
@@ -74,8 +74,8 @@ void traversal_rounding(Run& run) {
   run.premise(pairs > 1000, "hardly any pair of faces touches");
 }
 
-// Every face must be found where it is: a small box around its centroid names it, a ray down on the
-// centroid hits it, and the closest point to the centroid is no farther than rounding.
+// Every face must be found at its place: a small box around its centroid reports it, a ray at the
+// centroid hits it, and the closest point to the centroid is as near as rounding allows.
 void check_every_face_is_found(Run& run, const SourceMesh& mesh) {
   for_each_subject(mesh, [&](const Subject& subject) {
     const Frame& frame = BoundTree::of(subject.tree()).frame();
@@ -116,8 +116,7 @@ void tiny_models(Run& run) {
   }
 }
 
-// All of a surface in one plane, at a coordinate that is larger than its extent by any power of
-// two.
+// A flat surface in one plane, at coordinates that exceed its extent by any power of two.
 void flat_and_far(Run& run) {
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (const int exponent : {20, 24, 26, 41, 60, 64, 85, 100, 126}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays where slab tests divide by zero and triangle tests leave gaps; queries that make no sense.
+// Rays for which slab tests divide by zero and triangle tests leave gaps; invalid queries.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -18,8 +18,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr std::ptrdiff_t kPackedHeader = sizeof(PackedHeader);
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// A number of the half-integer lattice that a city stands on: in planes of its boxes every other
-// time. The sign of a zero is random.
+// Multiples of one half, the lattice of a city: every other one is in planes of its boxes. The sign
+// of a zero is random.
 class Lattice {
  public:
   explicit Lattice(std::uint64_t seed) : random_(seed) {}
@@ -92,7 +92,7 @@ void negative_zero(Run& run) {
   SourceMesh negative = positive;
   std::size_t zeros = 0;
   for (std::size_t i = 0; i < negative.positions.f32.size(); ++i) {
-    // Every other one, so that vertices which are equal as numbers differ as bits.
+    // Every other zero, so that vertices equal as numbers differ in their bits.
     if (negative.positions.f32[i] != 0 || zeros++ % 2 != 0) continue;
     negative.positions.f32[i] = -0.0F;
   }
@@ -124,7 +124,7 @@ void negative_zero(Run& run) {
   }
 }
 
-// Rays from inside a closed surface at its vertices and at points of its edges.
+// Rays from inside a closed surface to its vertices and to points on its edges.
 void watertight(Run& run) {
   struct Closed {
     SourceMesh mesh;
@@ -166,9 +166,9 @@ void watertight(Run& run) {
   }
 }
 
-// A box whose sides are two triangles each and whose lid is a fan with `parts` triangles an edge:
-// at each of these edges a row of triangles without area closes the seam. Whole coordinates, turned
-// by a whole matrix, so that collinear is collinear.
+// A box whose sides have two triangles each and whose lid is a fan with `parts` triangles per edge.
+// A row of triangles without area closes the seam at each of these edges. Integer coordinates,
+// rotated by an integer matrix, so that collinear points stay collinear.
 SourceMesh box_with_seams(int parts) {
   Eigen::Matrix3d turn;
   turn << 3, 1, 0, -1, 5, 2, 1, 0, 7;
@@ -194,7 +194,7 @@ SourceMesh box_with_seams(int parts) {
   return from_triangles("box with seams", triangles);
 }
 
-// Faces without area hold a surface together where its vertices do not meet: rays at the seams.
+// Faces without area close a surface where its vertices do not meet: rays at the seams must hit.
 void seams_without_area(Run& run) {
   for (const int parts : {3, 8, 100}) {
     const SourceMesh mesh = box_with_seams(parts);
@@ -219,7 +219,7 @@ void seams_without_area(Run& run) {
   }
 }
 
-// A triangle that another engine's users fell through.
+// A triangle through which bodies fell in another engine.
 void real_world_triangle(Run& run) {
   const Corners corners = {Eigen::Vector3d(2832.862F, 200.0F, -641.5822F),
                            Eigen::Vector3d(2834.611F, 200.0066F, -643.3685F),
@@ -239,7 +239,7 @@ void real_world_triangle(Run& run) {
       const auto hit = closest_hit(subject.tree(), {from, at - from});
       run.check(hit.ok() && hit.has_value() && std::abs(hit->t - 1) < 1e-3,
                 [&] { return subject.name + ": ray " + std::to_string(i); });
-      // A small triangle that stands in the face.
+      // A small triangle perpendicular to the face.
       const Eigen::Vector3d side = 0.01 * aside.cross(normal);
       const SourceMesh other = from_triangles(
           "probe", {{at - 0.01 * normal, Eigen::Vector3d(at + 0.01 * normal), at + side}},
@@ -254,7 +254,7 @@ void real_world_triangle(Run& run) {
   });
 }
 
-// Along axes nothing is rounded on the way, so that distance is no excuse.
+// Along axes nothing is rounded on the way, so distance must not matter.
 void rays_from_afar(Run& run) {
   const SourceMesh mesh = icosphere_mesh(1);
   for_each_subject(mesh, [&](const Subject& subject) {
@@ -275,14 +275,14 @@ void rays_from_afar(Run& run) {
   });
 }
 
-// Queries without sense are refused with a code. That no node is read for it is seen on a tree
-// whose nodes are all damaged: any look at them would be another code.
+// Invalid queries are refused with an error code before any node is read. The tree's nodes are all
+// damaged, so reading one would give another code.
 void invalid_queries(Run& run) {
   const auto all = [](const auto&) { return true; };
   const SourceMesh mesh = test::sphere(10, 12);
   for (const CodecInfo& codec : kCodecs) {
     cooker::EncodedTree encoded = test::require(cooker::cook_as(mesh, codec.id));
-    // But for what binding checks, the header of packed nodes.
+    // Keeps the header of packed nodes, which binding checks.
     const auto first = encoded.nodes.bytes.begin() + (is_packed(codec.id) ? kPackedHeader : 0);
     std::fill(first, encoded.nodes.bytes.end(), std::byte{0xff});
     const Tree tree = test::require(cooker::bind_encoded(encoded));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// boxtree_robustness: one line a case; exits with 7 when one does not keep its limit.
+// boxtree_robustness: prints one line per case; exits with 7 if one exceeds its limit.
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -13,7 +13,7 @@
 namespace boxtree::robustness {
 namespace {
 
-// As the command line of the cooker has them.
+// The same exit codes as the cooker's command line.
 constexpr int kUsage = 1;
 constexpr int kWriteFailed = 2;
 constexpr int kDifferenceFound = 7;
@@ -28,7 +28,7 @@ bool is_wanted(const Case& tested, const std::vector<std::string>& only) {
   return only.empty() || std::find(only.begin(), only.end(), tested.id) != only.end();
 }
 
-// A case that is not there must not pass.
+// An unknown case must not pass.
 bool all_known(const std::vector<std::string>& only) {
   const std::vector<Case> cases = all_cases();
   return std::all_of(only.begin(), only.end(), [&](const std::string& id) {

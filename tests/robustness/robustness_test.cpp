@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Each case as a test of its own, Robustness.R07_...
+// Runs each case as a test: Robustness.R07_...
 #include <gtest/gtest.h>
 
 #include "tests/robustness/run.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A case of the robustness suite: what it examines, the figure it comes to, the limit it must keep.
+// A case of the robustness suite: what it checks, the resulting figure, and its limit.
 #pragma once
 
 #include <cstddef>
@@ -10,10 +10,10 @@
 
 namespace boxtree::robustness {
 
-/// What one case found, while it runs.
+/// Collects the results of one case.
 class Run {
  public:
-  /// `full`: the counts of a documented run instead of those that every test run can afford.
+  /// `full`: use the counts of a documented run instead of those of a regular test run.
   explicit Run(bool full) : full_(full) {}
 
   [[nodiscard]] bool is_full() const { return full_; }
@@ -21,7 +21,7 @@ class Run {
     return full_ ? full : quick;
   }
 
-  /// One thing that must hold. `describe()` names the place; only the first failures are kept.
+  /// Checks one condition. `describe()` names the place; only the first failures are kept.
   template <class Describe>
   void check(bool holds, Describe describe) {
     ++checks_;
@@ -33,13 +33,13 @@ class Run {
     check(holds, [what] { return std::string(what); });
   }
 
-  /// Without this the case would prove nothing (enough rays hit, ...): a failure of the case
-  /// itself, not counted in the figure.
+  /// A condition without which the case would prove nothing (enough rays hit, ...). If it is false,
+  /// the case itself fails; it is not counted in the figure.
   void premise(bool holds, std::string what) {
     if (!holds) broken_premises_.push_back(std::move(what));
   }
 
-  /// For cases whose figure is a size and not a count of failures: the largest one counts.
+  /// For cases whose figure is a size instead of a number of failures; keeps the largest.
   void measure(double figure) {
     ++checks_;
     measured_ = true;
@@ -55,7 +55,7 @@ class Run {
     return checks_ > 0 && broken_premises_.empty() && figure() <= limit &&
            (!measured_ || failures_ == 0);
   }
-  /// Why it does not pass, one line each.
+  /// The reasons for failure, one line each.
   [[nodiscard]] std::vector<std::string> complaints() const {
     std::vector<std::string> all = broken_premises_;
     all.insert(all.end(), messages_.begin(), messages_.end());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sizes, distances from the origin and the state of the floating-point unit that must not matter.
+// Sizes, distances from the origin and floating-point states that must not affect results.
 #include <cfenv>
 #include <cmath>
 #include <random>
@@ -13,7 +13,7 @@
 namespace boxtree::robustness {
 namespace {
 
-// Mesh and queries times 2^exponent give the same bits times 2^exponent, in every codec and
+// Mesh and queries scaled by 2^exponent give the same bits scaled by 2^exponent, in every codec and
 // store.
 void check_scaling(Run& run, const SourceMesh& mesh, const std::vector<int>& exponents,
                    const std::vector<Store>& stores = {kStores.begin(), kStores.end()}) {
@@ -37,13 +37,13 @@ void check_scaling(Run& run, const SourceMesh& mesh, const std::vector<int>& exp
 }
 
 void exponents(Run& run) {
-  // Whole multiples of 2^-12, so that f32 holds them without loss at 2^-100.
+  // Multiples of 2^-12, so that they are exact in f32 at 2^-100.
   const SourceMesh mesh = snapped(test::torus(20, 14), -12);
   check_scaling(run, mesh, {-100, -60, -13, 13, 60, 100});
   check_scaling(run, in_double(mesh), {-950, -500, 500, 950});
 }
 
-// Cuts, planes and grids are relative: where a mesh lies must not cost visits.
+// Cuts, planes and grids are relative: the position of a mesh must not affect the number of visits.
 void far_from_origin(Run& run) {
   std::mt19937_64 random(5);
   const auto unit = [&] { return static_cast<double>(random() >> 11) * 0x1p-53 - 0.5; };
@@ -74,7 +74,8 @@ void far_from_origin(Run& run) {
   const SourceMesh sphere = times(test::sphere(24, 36), 50);
   for (const double distance : {1e4, 1e5, 1e6}) {
     const Eigen::Vector3d offset(distance, -distance / 2, distance / 3);
-    // What f32 holds out there, brought back without rounding: the same shape at both places.
+    // Positions rounded to f32 at the offset, moved back without rounding: the same shape at both
+    // places.
     const SourceMesh away = plus(sphere, offset);
     const SourceMesh here = plus(away, -offset.cast<float>().cast<double>());
     for (const Store& store : kStores) {
@@ -87,7 +88,7 @@ void far_from_origin(Run& run) {
   }
 }
 
-// The same queries with and without a state of the floating-point unit, cooked without it.
+// Runs the same queries with and without a floating-point state; cooks without it.
 template <class State>
 void check_state(Run& run, const SourceMesh& mesh) {
   const QuerySet queries = queries_for(mesh, 7);
@@ -122,7 +123,7 @@ void flush_to_zero(Run& run) {
     run.premise(tiny * 1.0F == 0.0F, "the state has no effect");
   }
   for (const SourceMesh& mesh : meshes_with_subnormals()) check_state<test::FlushToZero>(run, mesh);
-  // Files cooked in that state are the same to the byte.
+  // Files cooked in that state are identical byte for byte.
   for (const SourceMesh& mesh : meshes_with_subnormals()) {
     for (const CodecInfo& codec : kCodecs) {
       const auto expected = test::cook_bytes(mesh, codec.id);
@@ -142,7 +143,7 @@ void rounding_modes(Run& run) {
   }
 }
 
-// Whole multiples of the smallest f32 behave as the same whole numbers.
+// Multiples of the smallest f32 behave like the corresponding integers.
 void denormal_extents(Run& run) {
   const SourceMesh whole = snapped(times(test::torus(16, 12), 4096), 0);
   check_scaling(run, whole, {-149, -145, -130});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Meshes that drive builders into depth, and counts beyond what 16, 21 and 24 bits can number.
+// Meshes that make deep trees, and counts that exceed 16, 21 and 24 bits.
 #include <cmath>
 #include <cstring>
 #include <random>
@@ -14,7 +14,7 @@
 namespace boxtree::robustness {
 namespace {
 
-// Triangles around one and the same middle, from 1 down to 2^-40.
+// Triangles with the same centre, of sizes from 1 to 2^-40.
 SourceMesh concentric(int count) {
   std::vector<Corners> triangles;
   std::mt19937_64 random(19);
@@ -28,8 +28,8 @@ SourceMesh concentric(int count) {
   return from_triangles("concentric", triangles);
 }
 
-// Each triangle half as far from the origin as the one before, and half as large: every split at a
-// middle leaves one apart from all others.
+// Each triangle has half the size and half the distance from the origin of the previous one: every
+// split at a middle separates one triangle from all others.
 SourceMesh chain(int links, int copies) {
   std::vector<Corners> triangles;
   for (int i = 0; i < links; ++i) {
@@ -56,7 +56,7 @@ void equal_centroids(Run& run) {
     hits += check_answers(run, mesh, queries_for(mesh, 19));
   }
   run.premise(hits > 5000, "hardly any answer names a face");
-  // A file may not claim a depth beyond the stacks of its readers.
+  // A file must not state a depth beyond the stacks of its readers.
   for_each_subject(test::torus(12, 8), [&](const Subject& subject) {
     std::vector<std::byte> bytes = subject.cooked.bytes;
     const Bytes record = OpenFile::of(subject.cooked.file).section(SectionKind::kTrees);
@@ -89,7 +89,7 @@ void deep_chains(Run& run) {
   run.premise(hits > 5000, "hardly any answer names a face");
 }
 
-// All faces reached, and what is decoded is what went in, corner by corner.
+// All faces are reached, and decoded triangles equal the input, corner by corner.
 void check_counts(Run& run, const SourceMesh& mesh, CodecId codec, const Store& store) {
   const Subject subject = make_subject(mesh, codec, store);
   const auto name = [&] {
@@ -114,8 +114,8 @@ void check_counts(Run& run, const SourceMesh& mesh, CodecId codec, const Store& 
   run.check(wrong == 0, name);
 }
 
-// A strip of quads and triangles with exactly so many vertices, the last one used as a fourth
-// corner too: 0xffff marks a missing one where corners take 16 bits.
+// A strip of quads and triangles with exactly `count` vertices; the last vertex is also a fourth
+// corner, because 0xffff marks a missing corner where corners take 16 bits.
 SourceMesh with_vertices(std::uint32_t count) {
   SourceMesh mesh;
   mesh.name = std::to_string(count) + " vertices";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What rounding to a grid does: how many triangles lose their area, and that shared stays shared.
+// Effects of rounding to a grid: the number of triangles that lose their area, and shared vertices.
 #include <array>
 #include <bit>
 #include <cmath>
@@ -17,7 +17,7 @@ namespace {
 
 constexpr GeometryId kGrid = GeometryId::kGrid;
 
-// The whole number of steps nearest to a coordinate, halves up.
+// The number of steps nearest to a coordinate, halves up.
 std::int64_t steps_of(double x, int step_exponent) {
   return static_cast<std::int64_t>(std::floor(std::ldexp(x, -step_exponent) + 0.5));
 }
@@ -36,7 +36,7 @@ bool has_no_area(const SourceMesh& mesh, std::size_t face, std::size_t half, int
   return test::cross_signs(minus(p[1], p[0]), minus(p[2], p[0])) == std::array{0, 0, 0};
 }
 
-// Counted again in whole numbers; vertices moved by half a step on each axis at most.
+// Counts the same with integers; vertices move by at most half a step on each axis.
 void collapsed_faces(Run& run) {
   constexpr int kFinest = -40;  // nothing of these meshes is degenerate there
   std::uint32_t collapsed_in_all = 0;
@@ -87,8 +87,8 @@ Position bits_of(const Eigen::Vector3d& v) {
           std::bit_cast<std::uint64_t>(v[2] + 0.0)};
 }
 
-// Tiles of one terrain, each a mesh of its own: where they share a vertex of the source, all their
-// faces decode it to the same bits.
+// Tiles of one terrain as separate meshes. All faces that share a vertex of the source decode it to
+// the same bits.
 void shared_vertices(Run& run) {
   SourceMesh terrain = times(test::terrain(24, 1), 1.0 / 3);
   terrain = plus(terrain, Eigen::Vector3d(1000, -500, 3));
@@ -103,7 +103,7 @@ void shared_vertices(Run& run) {
     const std::size_t tile = (at[0] < middle[0] ? 0u : 1u) + (at[1] < middle[1] ? 0u : 2u);
     tiles[tile].faces.push_back(terrain.faces[f]);
   }
-  // Only what a tile uses, so that its bounds are its own.
+  // Only the faces and vertices of the tile, so that each tile has separate bounds.
   for (SourceMesh& tile : tiles) {
     std::vector<Corners> triangles;
     for (std::size_t f = 0; f < tile.faces.size(); ++f) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cooking and decoding of subjects.
+// Cooks and decodes subjects.
 #include "tests/robustness/subjects.h"
 
 #include <algorithm>
@@ -57,7 +57,7 @@ class Walk {
     }
   }
 
-  // Copies stand in no leaf; they are met where their originals are.
+  // Copies are in no leaf; they are found with their originals.
   void visit_duplicates() {
     for (std::uint32_t face = 0; face < BoundTree::of(tree_).face_count(); ++face) {
       if (!met_[face] || BoundTree::of(tree_).original_of(face) != face) continue;

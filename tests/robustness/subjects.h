@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A mesh as every codec and store holds it.
+// A mesh cooked with every codec and store.
 #pragma once
 
 #include <array>
@@ -17,11 +17,11 @@ struct Store {
   int grid_bits;  // of geometry grid
 };
 
-/// The stores whose answers are held against brute force over what they decode to.
+/// The stores; answers are compared with brute force over the triangles that they decode to.
 inline constexpr std::array kStores = {Store{GeometryId::kExact, 24}, Store{GeometryId::kGrid, 24}};
 inline constexpr Store kExactStore = kStores[0];
 
-/// One mesh cooked in one way.
+/// One mesh cooked with one codec and store.
 struct Subject {
   test::CookedTree cooked;
   std::string name;  // mesh, codec, store
@@ -46,21 +46,21 @@ struct DecodedTriangle {
   Triangle triangle;
 };
 
-/// All triangles, read from the geometry alone, face by face, without a look at the nodes. By face
-/// and half. Throws on corrupt bytes.
+/// All triangles, read only from the geometry, face by face, without nodes. Ordered by face and
+/// half. Throws on corrupt bytes.
 [[nodiscard]] std::vector<DecodedTriangle> decoded_triangles(const Tree& tree);
 
-/// What a walk over all nodes finds.
+/// The results of a walk over all nodes.
 struct WalkFigures {
-  std::uint64_t escapes = 0;         // pairs of a box and a triangle below it that sticks out of it
-  std::uint64_t boxes_infinite = 0;  // boxes with a coordinate that is not finite
+  std::uint64_t escapes = 0;         // pairs of a box and a triangle below it that is not inside
+  std::uint64_t boxes_infinite = 0;  // boxes with a non-finite coordinate
   std::uint64_t missed = 0;          // faces in no leaf
-  std::uint64_t repeated = 0;        // leaves' faces that had been met before
+  std::uint64_t repeated = 0;        // faces of leaves that were reached before
   std::uint64_t leaves = 0;
   std::uint32_t depth = 0;  // inner nodes on the longest path
 };
 
-/// Decodes every node and holds every triangle against every box on the path to it.
+/// Decodes every node and compares every triangle with every box on the path to it.
 [[nodiscard]] WalkFigures walk_tree(const Tree& tree);
 
 }  // namespace boxtree::robustness
