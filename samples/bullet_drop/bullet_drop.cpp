@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Crates fall on stairs and hills, once on a mapped tree and once on Bullet's own triangle mesh.
-//   bullet_drop [LEVEL.bxt]     where to put the cooked level [default: level.bxt]
+//   bullet_drop [LEVEL.bxt]     path of the cooked level to write [default: level.bxt]
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <cstdio>

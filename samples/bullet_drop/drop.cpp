@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// One simulation, whatever shape the level is.
+// Runs the same simulation with any shape of the level.
 #include "samples/bullet_drop/drop.h"
 
 #include <algorithm>
@@ -54,7 +54,7 @@ void place_crates(std::vector<btTransform>& places) {
   }
   for (unsigned i = 0; i < kCells; i += 2) {
     for (unsigned j = 0; j < kCells; j += 2) {
-      // Flat above the middle of a cell's lower triangle, so that it lands and does not tumble.
+      // Flat above the middle of a cell's lower triangle, so that the crate lands without tumbling.
       const btVector3 corners[] = {hill_vertex(i, j), hill_vertex(i + 1, j),
                                    hill_vertex(i + 1, j + 1)};
       const btVector3 normal =
@@ -125,7 +125,7 @@ std::vector<Crate> drop_crates(btConcaveShape& level) {
     btRigidBody::btRigidBodyConstructionInfo info(kMass, nullptr, &box, inertia);
     info.m_startWorldTransform = place;
     info.m_friction = kFriction;
-    // Asleep is to mean at rest: a hundredth of Bullet's own thresholds.
+    // Bodies sleep only at rest: a hundredth of Bullet's own thresholds.
     info.m_linearSleepingThreshold = btScalar(0.05);
     info.m_angularSleepingThreshold = btScalar(0.1);
     bodies.push_back(std::make_unique<btRigidBody>(info));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// From the application's arrays to the cooker's mesh, and to Bullet's.
+// Converts the application's arrays to the cooker's mesh, and to Bullet's.
 #include "samples/bullet_drop/level_file.h"
 
 namespace bullet_drop {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Bullet needs the triangles near each moving body: a box query.
+// Gives Bullet the triangles near each moving body, found by a box query.
 #include "samples/bullet_drop/mapped_shape.h"
 
 #include <LinearMath/btAabbUtil2.h>
@@ -25,7 +25,7 @@ MappedShape::MappedShape(const boxtree::Tree& tree) : tree_(tree) {
 
 void MappedShape::processAllTriangles(btTriangleCallback* callback, const btVector3& low,
                                       const btVector3& high) const {
-  // Negative scales turn the box over.
+  // Negative scales swap the corners of the box.
   const Eigen::Vector3d scale = from_bullet(scaling_);
   const Eigen::Vector3d a = from_bullet(low).cwiseQuotient(scale);
   const Eigen::Vector3d b = from_bullet(high).cwiseQuotient(scale);
@@ -35,11 +35,11 @@ void MappedShape::processAllTriangles(btTriangleCallback* callback, const btVect
                                             faces.push_back(face);
                                             return true;
                                           });
-  // A damaged file: no contact rather than a wrong one. An engine would report visit.error().
+  // A damaged file gives no contact instead of a wrong one. An engine would report visit.error().
   if (!visit) return;
   std::sort(faces.begin(), faces.end(), [](const auto& x, const auto& y) { return x.id < y.id; });
   for (const boxtree::FaceRef& face : faces) {
-    // A quad has a second half.
+    // A quad has two triangles.
     for (std::uint32_t half = 0; half < 2; ++half) {
       const auto triangle = tree_.triangle(face, half);
       if (!triangle) break;

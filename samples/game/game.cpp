@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Maps the cooked level and crate: where is the ground, and does the crate touch the stairs?
+// Maps the cooked level and crate, finds the ground, and tests whether the crate touches the
+// stairs.
 #include <cstdio>
 #include <string>
 

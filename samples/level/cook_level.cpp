@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Cooks a level by its profile, as `boxtree cook --profile scene.toml -o level.bxt --why` does:
+// Cooks a level with its profile, like `boxtree cook --profile scene.toml -o level.bxt --why`:
 //   cook_level scene.toml level.bxt
 #include <cstdio>
 #include <filesystem>

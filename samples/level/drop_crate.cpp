@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Drops the moving crate of the level, frame by frame, and stops it at its first contacts: poses at
-// run time, no byte of the mapped file written.
+// Drops the moving crate of the level frame by frame and stops it at its first contacts. Poses
+// change at run time; the mapped file is never written.
 //   drop_crate level.bxt
 #include <cstdio>
 #include <set>
@@ -32,7 +32,7 @@ int main(int argument_count, char** arguments) {
     return 1;
   }
 
-  // Falls until something is met, then halves its last frame until the gap is a tenth of a
+  // Falls until the first contact, then halves the last step until the gap is a tenth of a
   // millimetre.
   boxtree::Pose pose = *start;
   double speed = 0, frame = 1.0 / 60;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A character walks through the courtyard and up the stairs: a sphere keeps it off the walls, a ray
-// keeps its feet on the ground and tells what it steps on.
+// A character walks through the courtyard and up the stairs. A sphere keeps it away from walls; a
+// ray keeps its feet on the ground and finds the material below.
 //   walk_level level.bxt
 #include <algorithm>
 #include <cstdio>
@@ -12,12 +12,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kStride = 0.05;     // metres a frame
+constexpr double kStride = 0.05;     // metres per frame
 constexpr double kRadius = 0.35;     // of the character
-constexpr double kStepHeight = 0.3;  // that it climbs without a jump
+constexpr double kStepHeight = 0.3;  // largest step that it climbs without a jump
 constexpr double kWaist = kStepHeight + kRadius;
 
-// Whether a character with its feet there touches anything that is higher than a step.
+// Whether a character with its feet there touches anything higher than a step.
 bool is_blocked(const boxtree::Scene& scene, const Vector3d& feet) {
   bool blocked = false;
   const auto visit = boxtree::overlap_sphere(scene, feet + Vector3d(0, kWaist, 0), kRadius,
@@ -40,7 +40,7 @@ int main(int argument_count, char** arguments) {
     std::fprintf(stderr, "%s\n", file.error().message().c_str());
     return 1;
   }
-  boxtree::SceneOptions needs;  // a level that was cooked without these is refused here, by line
+  boxtree::SceneOptions needs;  // bind() fails with the profile's line if the level lacks these
   needs.queries = boxtree::kRayQueries | boxtree::kBoxQueries;
   needs.require_materials = needs.require_names = true;
   const auto scene = boxtree::Scene::bind(*file, needs);
@@ -61,7 +61,7 @@ int main(int argument_count, char** arguments) {
       Vector3d next = feet + kStride * ahead.normalized();
       const auto hit = boxtree::closest_hit(
           *scene, {next + Vector3d(0, kStepHeight, 0), Vector3d(0, -1, 0), 0, 10});
-      if (!hit) break;  // the edge of the world
+      if (!hit) break;  // the end of the level
       next[1] += kStepHeight - hit->t;
       if (is_blocked(*scene, next)) {
         if (++blocked == 40)
