@@ -114,7 +114,7 @@ class LeafVertices {
     return place;
   }
 
-  [[nodiscard]] bool are_sound() const { return (negative_ >> 31) != 0; }
+  [[nodiscard]] bool are_valid() const { return (negative_ >> 31) != 0; }
   [[nodiscard]] std::uint32_t count() const { return count_; }
 
  private:
@@ -255,7 +255,7 @@ BOXTREE_ALWAYS_INLINE bool read_grid_faces(const GridView& grid, std::uint32_t l
   }
   out.vertex_count = vertices.count();
   if (place != nullptr) *place = {leaf_start, bits.position()};
-  return vertices.are_sound();
+  return vertices.are_valid();
 }
 
 }  // namespace boxtree

@@ -161,7 +161,7 @@ class Measurement {
   }
 
  private:
-  void tell(const std::string& what) {
+  void announce(const std::string& what) {
     if (progress_) {
       progress_(mesh_.name + ": " + what,
                 static_cast<double>(std::min(step_, steps_)) / static_cast<double>(steps_));
@@ -170,7 +170,7 @@ class Measurement {
 
   // All candidates with exact geometry, or those of the wide codecs on a grid.
   Status measure_store(std::optional<int> grid_bits) {
-    tell(grid_bits ? fmt::format("grid of {} bits", *grid_bits) : "exact geometry");
+    announce(grid_bits ? fmt::format("grid of {} bits", *grid_bits) : "exact geometry");
     SearchOptions search;
     search.try_all = !grid_bits;
     search.geometry = grid_bits ? GeometryId::kGrid : GeometryId::kExact;
@@ -196,7 +196,7 @@ class Measurement {
       point.grid_bits = grid_bits.value_or(0);
       point.surface_rms = in_diagonals(rms);
       point.surface_bound = in_diagonals(bound);
-      tell("query " + point.name());
+      announce("query " + point.name());
       if (Status status = run_query(*tried, i, point); !status) return status;
       out_.points.push_back(std::move(point));
       ++step_;
@@ -226,7 +226,7 @@ class Measurement {
     tree.nodes = std::move(tried.nodes[candidate].nodes);
     return tree;
   }
-  static void take_apart(TriedTree& tried, std::size_t candidate) {
+  static void release(TriedTree& tried, std::size_t candidate) {
     tried.nodes[candidate].nodes = std::move(tried.families[tried.nodes[candidate].family].nodes);
   }
 
@@ -248,7 +248,7 @@ class Measurement {
     Result<TrueDistances> truth = true_distances(*tree, approximate_);
     if (!truth) return truth.error();
     truth_ = std::move(*truth);
-    take_apart(tried, i);
+    release(tried, i);
     return {};
   }
 
@@ -276,7 +276,7 @@ class Measurement {
                                            point.codec) != kApproximateCodecs.end();
     if (point.grid_bits != 0 || !is_approximated) return {};
     ++step_;
-    tell("query " + point.name() + ", approximately");
+    announce("query " + point.name() + ", approximately");
     Result<ApproximateFigures> figures =
         measure_approximate(*tree, approximate_, truth_,
                             {options_.quick, options_.times ? effort_.runs : std::size_t{0}});

@@ -119,7 +119,7 @@ class LeafPairs {
     // Which pairs of faces were found: a quad has two triangles, but is reported once.
     std::uint64_t found = 0;
     for (std::size_t group = 0; group < second_.groups(); ++group) {
-      const std::uint32_t near = reach_into(first_box, group) & second_.lanes(group);
+      const std::uint32_t near = may_touch_box(first_box, group) & second_.lanes(group);
       const bool go_on = for_each_bit(near, [&](std::uint32_t i) {
         return visit_one(static_cast<std::uint32_t>(group * kWideChildren) + i, found);
       });
@@ -170,7 +170,7 @@ class LeafPairs {
   }
 
   // Bit i: triangle i of the second leaf may overlap the box of the first.
-  HWY_INLINE std::uint32_t reach_into(const Box<float>& box, std::size_t group) const {
+  HWY_INLINE std::uint32_t may_touch_box(const Box<float>& box, std::size_t group) const {
     const Floats d;
     const FloatMap& map = filter_.to_first;
     std::uint32_t near = 0;
@@ -271,7 +271,7 @@ class LeafPairs {
     }
     if (!touch) return true;
     found |= pair;
-    return report_.tell(first_face, second_face);
+    return report_.add(first_face, second_face);
   }
 
   const RelativePose& pose_;

@@ -35,7 +35,7 @@ Errc LeafPairTest::run(const LeafPair& leaves, const TriangleWatch* watch) {
         continue;
       if (triangles_intersect(triangle, leaves_.moved[j])) {
         found |= std::uint64_t{1} << j;
-        if (!report_.tell(leaves_.first.face[i], leaves_.second.face[j])) return report_.error();
+        if (!report_.add(leaves_.first.face[i], leaves_.second.face[j])) return report_.error();
       } else if (watch != nullptr && (*watch)(triangle, leaves_.moved[j])) {
         stopped_ = true;
         return Errc::kOk;

@@ -170,16 +170,16 @@ class WidePairWalk {
       to.side = 0;
       to.other = &second;
       to.other_image = &second_image;
-      return take_apart(first, to, depth);
+      return expand(first, to, depth);
     }
     to.side = 1;
     to.other = &first;
     to.other_image = &first_image;
-    return take_apart(second, to, depth);
+    return expand(second, to, depth);
   }
 
   // Called from four places of choose() and compiled once.
-  HWY_NOINLINE bool take_apart(const PairPart& parent, PairChildren& to, std::size_t depth) {
+  HWY_NOINLINE bool expand(const PairPart& parent, PairChildren& to, std::size_t depth) {
     const WideCodec<Node>& codec = *codec_[to.side];
     const NodeView<Node> node(codec, parent.number);
     to.links = node.links();

@@ -17,7 +17,7 @@ PairReport::PairReport(const BoundTree& first, const BoundTree& second,
       pairs_left_(saturated_product(first.face_count(), second.face_count())) {}
 
 // In valid files each pair is reported once; in corrupt ones many faces may have the same copies.
-bool PairReport::tell_copies(std::uint32_t first, std::uint32_t second) {
+bool PairReport::report_copies(std::uint32_t first, std::uint32_t second) {
   const FaceWithCopies a(first_, first), b(second_, second);
   const std::uint64_t pairs = saturated_product(a.count(), b.count());
   if (pairs > pairs_left_) {

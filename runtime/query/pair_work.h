@@ -68,12 +68,12 @@ class PairReport {
 
   /// Reports two faces, and each copy of the one with each of the other. Returns whether to go on;
   /// see stopped() and error().
-  [[nodiscard]] bool tell(std::uint32_t first, std::uint32_t second) {
+  [[nodiscard]] bool add(std::uint32_t first, std::uint32_t second) {
     if (!first_.has_duplicates() && !second_.has_duplicates()) {
       stopped_ = !visitor_({face_ref(first_, first), face_ref(second_, second)});
       return !stopped_;
     }
-    return tell_copies(first, second);
+    return report_copies(first, second);
   }
 
   /// Whether the visitor stopped the walk.
@@ -81,7 +81,7 @@ class PairReport {
   [[nodiscard]] Errc error() const noexcept { return error_; }
 
  private:
-  [[nodiscard]] bool tell_copies(std::uint32_t first, std::uint32_t second);
+  [[nodiscard]] bool report_copies(std::uint32_t first, std::uint32_t second);
 
   const BoundTree& first_;
   const BoundTree& second_;
