@@ -14,137 +14,155 @@
 
 namespace boxtree {
 
+/// Every error of the project. Compare with these, print error_info(code).name, and log the number:
+/// all three are pinned.
 enum class Errc : std::uint16_t {
-  kOk = 0,
+  kOk = 0,  ///< No error.
 
   // 10..29: the container (header, section table, sections).
-  kBadMagic = 10,
-  kTruncated = 11,
-  kVersionUnsupported = 12,
-  kFeatureUnsupported = 13,
-  kHeaderCorrupt = 14,
-  kTooManySections = 15,
-  kSectionOutOfRange = 16,
-  kSectionMisaligned = 17,
-  kSectionOverlap = 18,
-  kSectionDuplicate = 19,
-  kSectionMissing = 20,
-  kSectionSize = 21,
-  kSectionUnknown = 22,
-  kPaddingNotZero = 23,
-  kChecksumMismatch = 24,
-  kBlobLimit = 25,
-  kBlobCorrupt = 26,
+  kBadMagic = 10,            ///< Not a .bxt file.
+  kTruncated = 11,           ///< The file ends before its own stated size.
+  kVersionUnsupported = 12,  ///< Written by a newer format than this reader knows.
+  kFeatureUnsupported = 13,  ///< Uses a feature that a reader must know and this one does not.
+  kHeaderCorrupt = 14,       ///< Header or section table is damaged.
+  kTooManySections = 15,     ///< More sections than the limit.
+  kSectionOutOfRange = 16,   ///< A section leaves the file.
+  kSectionMisaligned = 17,   ///< A section is not aligned.
+  kSectionOverlap = 18,      ///< Sections overlap or are out of order.
+  kSectionDuplicate = 19,    ///< A section occurs twice.
+  kSectionMissing = 20,      ///< A section that the tree needs is absent.
+  kSectionSize = 21,         ///< A section's size contradicts its records.
+  kSectionUnknown = 22,      ///< A section that a reader must know and this one does not.
+  kPaddingNotZero = 23,      ///< Padding or reserved bytes are not zero.
+  kChecksumMismatch = 24,    ///< A section's bytes have changed.
+  kBlobLimit = 25,           ///< Decompressing would take more memory than allowed.
+  kBlobCorrupt = 26,         ///< A compressed file is damaged.
 
   // 30..49: the trees inside.
-  kCodecUnsupported = 30,
-  kGeometryUnsupported = 31,
-  kRecordInvalid = 32,
-  kNodeCorrupt = 33,
-  kDepthExceeded = 34,
-  kFaceOutOfRange = 35,
-  kVertexOutOfRange = 36,
-  kCertificateMismatch = 37,
-  kBoxEscape = 38,
-  kFaceUnreachable = 39,
-  kFaceRepeated = 40,
-  kVertexNotFinite = 41,
-  kDuplicateDiffers = 42,
+  kCodecUnsupported = 30,     ///< Unknown node codec.
+  kGeometryUnsupported = 31,  ///< Unknown geometry store.
+  kRecordInvalid = 32,        ///< A tree record contradicts itself.
+  kNodeCorrupt = 33,          ///< A node points outside its own subtree.
+  kDepthExceeded = 34,        ///< The tree is deeper than it states.
+  kFaceOutOfRange = 35,       ///< A leaf names a face that is not there.
+  kVertexOutOfRange = 36,     ///< A face names a vertex that is not there.
+  kCertificateMismatch = 37,  ///< The certificate does not hold for this tree.
+  kBoxEscape = 38,            ///< A triangle sticks out of a box above it.
+  kFaceUnreachable = 39,      ///< No leaf holds this face.
+  kFaceRepeated = 40,         ///< More than one leaf holds this face.
+  kVertexNotFinite = 41,      ///< A stored vertex is NaN or infinite.
+  kDuplicateDiffers = 42,     ///< A face listed as a copy of another one is not the same.
 
   // 50..59: binding and querying.
-  kInvalidQuery = 50,
-  kInvalidPose = 51,
-  kPartLeftOut = 52,
+  kInvalidQuery = 50,  ///< NaN, infinite or empty query.
+  kInvalidPose = 51,   ///< Pose is not finite or not invertible.
+  kPartLeftOut = 52,   ///< The query needs a part that was left out.
+  /// The tree was cooked without geometry; give the mesh when binding.
   kExternalMeshNeeded = 53,
-  kExternalMeshMismatch = 54,
-  kTreeIndex = 55,
-  kNoScene = 56,
-  kInstanceIndex = 57,
-  kInstanceStatic = 58,
-  kWorkLimit = 59,
+  kExternalMeshMismatch = 54,  ///< The mesh given is not the one the tree was cooked from.
+  kTreeIndex = 55,             ///< No tree with this number in the file.
+  kNoScene = 56,               ///< The file holds trees but no scene.
+  kInstanceIndex = 57,         ///< No instance with this number in the scene.
+  kInstanceStatic = 58,        ///< An instance that was bound as static cannot be moved.
+  kWorkLimit = 59,             ///< The query would cost more than its caller allows.
 
   // 60..69: the operating system.
-  kFileNotFound = 60,
-  kFileUnreadable = 61,
-  kMapFailed = 62,
-  kWriteFailed = 63,
+  kFileNotFound = 60,    ///< No such file.
+  kFileUnreadable = 61,  ///< The file cannot be read.
+  kMapFailed = 62,       ///< The file cannot be mapped.
+  kWriteFailed = 63,     ///< The file cannot be written.
 
   // 70..79: meshes.
-  kImportFailed = 70,
-  kNoFaces = 71,
-  kMeshNotFinite = 72,
-  kMeshIndexOutOfRange = 73,
-  kMeshTooLarge = 74,
-  kMeshUnsupported = 75,
-  kBudgetUnreachable = 76,
-  kProfileInvalid = 77,
+  kImportFailed = 70,         ///< The mesh cannot be read.
+  kNoFaces = 71,              ///< The mesh has no faces.
+  kMeshNotFinite = 72,        ///< A vertex is NaN or infinite.
+  kMeshIndexOutOfRange = 73,  ///< A face names a vertex that is not there.
+  kMeshTooLarge = 74,         ///< More faces or vertices than the format holds.
+  kMeshUnsupported = 75,      ///< The mesh cannot be stored in the way requested.
+  kBudgetUnreachable = 76,    ///< No encoding keeps to the bytes and the time requested.
+  kProfileInvalid = 77,       ///< A profile says what it must not, or of nothing that is there.
 
   // 90: our own bug; please report.
-  kInternal = 90,
+  kInternal = 90,  ///< A defect in boxtree itself; please report it.
 };
 
 /// One row of the error table: pinned number, stable name, meaning, exit status of the command
 /// line.
 struct ErrcInfo {
-  Errc code;
-  std::string_view name;
-  std::string_view meaning;
-  int exit_status;
+  Errc code;                 ///< The error.
+  std::string_view name;     ///< Its name in messages and JSON, as "box_escape".
+  std::string_view meaning;  ///< What it means, in one sentence without a full stop.
+  int exit_status;           ///< Of the command line: 0 to 5, see docs/GUIDE.md.
 };
 
-/// Every code in ascending order of its number.
+/// Every code in ascending order of its number. Thread-safe, never allocates.
 [[nodiscard]] std::span<const ErrcInfo> error_table() noexcept;
 
-/// The row of `code`; an unknown number gets the row of kInternal.
+/// The row of `code`; an unknown number gets the row of Errc::kInternal. O(codes), thread-safe,
+/// never allocates.
 [[nodiscard]] const ErrcInfo& error_info(Errc code) noexcept;
 
 /// What went wrong, and where: `detail` names the place, what was expected and what was found.
 struct Error {
-  Errc code = Errc::kInternal;
-  std::string detail;
+  Errc code = Errc::kInternal;  ///< What went wrong.
+  std::string detail;           ///< Where, what was expected and what was found; may be empty.
 
-  /// "box_escape: tree 0, node 17: ..."; the form that the command line prints.
+  /// "box_escape: tree 0, node 17: ...", the form that the command line prints; the meaning of the
+  /// code where there is no detail.
   [[nodiscard]] std::string message() const {
     const ErrcInfo& info = error_info(code);
     return std::string(info.name) + ": " + (detail.empty() ? std::string(info.meaning) : detail);
   }
 };
 
-/// A value or the first error that prevented it. Stands in for std::expected, which C++20 lacks.
+/// A value or the first error that prevented it. Stands in for `std::expected`, which C++20 lacks.
 template <class T>
 class [[nodiscard]] Result {
  public:
+  /// A value.
   Result(T value) : value_(std::move(value)) {}
+  /// An error with its detail.
   Result(Error error) : error_(std::move(error)) {}
+  /// An error that its code says in full.
   Result(Errc code) : error_{code, {}} {}
 
+  /// Whether there is a value.
   [[nodiscard]] bool ok() const noexcept { return value_.has_value(); }
+  /// The same: `if (const auto file = File::open(path))`.
   explicit operator bool() const noexcept { return ok(); }
 
-  /// Precondition: ok().
+  /// The value. Precondition, here and for the operators: ok().
   [[nodiscard]] T& value() & {
     assert(ok());
     return *value_;
   }
+  /// \copydoc value()
   [[nodiscard]] const T& value() const& {
     assert(ok());
     return *value_;
   }
+  /// The value, to be moved from.
   [[nodiscard]] T&& value() && {
     assert(ok());
     return *std::move(value_);
   }
+  /// The value.
   T& operator*() & { return value(); }
+  /// The value.
   const T& operator*() const& { return value(); }
+  /// The value, to be moved from.
   T&& operator*() && { return std::move(*this).value(); }
+  /// A member of the value.
   T* operator->() { return &value(); }
+  /// A member of the value.
   const T* operator->() const { return &value(); }
 
-  /// Precondition: !ok().
+  /// The error. Precondition: not ok().
   [[nodiscard]] const Error& error() const {
     assert(!ok());
     return error_;
   }
+  /// The code of the error; Errc::kOk if there is a value.
   [[nodiscard]] Errc code() const noexcept { return error_.code; }
 
  private:
@@ -155,13 +173,20 @@ class [[nodiscard]] Result {
 /// The result of an operation that has no value.
 class [[nodiscard]] Status {
  public:
+  /// Success.
   Status() = default;
+  /// An error with its detail.
   Status(Error error) : error_(std::move(error)) {}
+  /// An error that its code says in full; Errc::kOk is success.
   Status(Errc code) : error_{code, {}} {}
 
+  /// Whether there was no error.
   [[nodiscard]] bool ok() const noexcept { return error_.code == Errc::kOk; }
+  /// The same.
   explicit operator bool() const noexcept { return ok(); }
+  /// The error; its code is Errc::kOk if there was none.
   [[nodiscard]] const Error& error() const { return error_; }
+  /// The code of the error, or Errc::kOk.
   [[nodiscard]] Errc code() const noexcept { return error_.code; }
 
  private:

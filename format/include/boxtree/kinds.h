@@ -14,11 +14,11 @@ using Bytes = std::span<const std::byte>;
 
 /// Kinds of queries, as bits: what a scene is queried for, what its instances answer.
 using QueryKinds = std::uint8_t;
-inline constexpr QueryKinds kRayQueries = 1;
-inline constexpr QueryKinds kBoxQueries = 2;    // boxes and spheres
-inline constexpr QueryKinds kPointQueries = 4;  // closest points
-inline constexpr QueryKinds kPairQueries = 8;   // contacts
-inline constexpr QueryKinds kAllQueries = 15;
+inline constexpr QueryKinds kRayQueries = 1;    ///< Closest and any hits of rays.
+inline constexpr QueryKinds kBoxQueries = 2;    ///< Overlaps of boxes and spheres.
+inline constexpr QueryKinds kPointQueries = 4;  ///< Closest points.
+inline constexpr QueryKinds kPairQueries = 8;   ///< Contacts.
+inline constexpr QueryKinds kAllQueries = 15;   ///< All of them.
 
 /// The id of a face in trees that were cooked without ids, and of no face.
 inline constexpr std::uint32_t kNoFaceId = 0xffffffffu;
@@ -28,8 +28,8 @@ inline constexpr std::uint32_t kNoMaterial = 0xffffffffu;
 
 /// How a file that is compressed as a whole is compressed.
 enum class BlobMethod : std::uint32_t {
-  kLzma = 1,  // an .xz stream
-  kZstd = 2,  // a zstd frame
+  kLzma = 1,  ///< An .xz stream.
+  kZstd = 2,  ///< A zstd frame.
 };
 
 }  // namespace boxtree

@@ -17,12 +17,13 @@ static_assert(BOXTREE_HAS_PAIR_QUERIES,
 /// Answers are exact for the coordinates that arise when the second tree's triangles are brought
 /// into the first one's space in double precision (translations subtracted first).
 /// Errors: kInvalidPose (not finite, not invertible) and the codes of corrupt bytes as for
-/// closest_hit; kWorkLimit. Never allocates; takes up to 320 KB of stack.
+/// closest_hit(); kWorkLimit. Never allocates; takes up to 320 KB of stack.
 Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
                             const Pose& second_pose, PairVisitor visitor,
                             const QueryLimits& limits = {});
 
-/// Some pair of faces that share a point, or nothing. Errors as for overlap_pairs.
+/// Some pair of faces that share a point, or nothing: cheaper than overlap_pairs() when only the
+/// fact matters. Exactness, errors, stack and threads as there.
 QueryResult<FacePair> first_contact(const Tree& first, const Pose& first_pose, const Tree& second,
                                     const Pose& second_pose, const QueryLimits& limits = {});
 

@@ -15,6 +15,7 @@ namespace boxtree {
 
 class OpenFile;
 
+/// How a file is opened.
 struct OpenOptions {
   /// Read the file into private memory instead of mapping it [default false]: for files that other
   /// programs may modify in place. Only for open(path).
@@ -38,12 +39,19 @@ class File {
   /// to it lives. Any alignment.
   static Result<File> open(Bytes memory, const OpenOptions& options = {});
 
+  /// Takes the file over; trees bound to it stay valid. One that was moved from may only be
+  /// assigned to or destroyed.
   File(File&&) noexcept;
+  /// The same, after closing what was open.
   File& operator=(File&&) noexcept;
+  /// Unmaps or frees the bytes.
   ~File();
 
+  /// All bytes of the file, as mapped, read or given.
   [[nodiscard]] Bytes bytes() const noexcept;
+  /// How many trees it holds, those of a scene included.
   [[nodiscard]] std::uint32_t tree_count() const noexcept;
+  /// Whether Scene::bind() finds a scene.
   [[nodiscard]] bool has_scene() const noexcept;
 
   /// Name of tree `index`, empty if it has none or the file has no such tree.

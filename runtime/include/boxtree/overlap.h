@@ -18,7 +18,7 @@ static_assert(BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_H
 #if BOXTREE_HAS_BOX_QUERIES
 /// Visits every face that touches the closed box `box` (object space), each once, in no promised
 /// order. Touching counts. Errors: kInvalidQuery (NaN, infinite or empty box) and the codes of
-/// corrupt bytes and limits as for closest_hit. Never allocates.
+/// corrupt bytes and limits as for closest_hit(). Never allocates.
 Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
                           const QueryLimits& limits = {});
 #endif
@@ -26,43 +26,48 @@ Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, Face
 #if BOXTREE_HAS_SPHERE_QUERIES
 /// Visits every face whose distance from `center` is at most `radius` (object space), each once, in
 /// no promised order. Errors: kInvalidQuery (NaN, infinite, negative radius) and the codes of
-/// corrupt bytes and limits as for closest_hit. Never allocates.
+/// corrupt bytes and limits as for closest_hit(). Never allocates.
 Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
                              FaceVisitor visitor, const QueryLimits& limits = {});
 #endif
 
 #if BOXTREE_HAS_WITHIN_QUERIES
+/// What is known of two things.
 enum class Overlap : std::uint8_t {
-  kOverlapping,  // some face touches
-  kDisjoint,     // none does
-  kUndecided,    // not told apart, and closer to each other than the given distance
-  kBudgetSpent,  // the budget ran out before anything was known
+  kOverlapping,  ///< Some face touches.
+  kDisjoint,     ///< None does.
+  kUndecided,    ///< Not told apart, and closer to each other than the given distance.
+  kBudgetSpent,  ///< The budget ran out before anything was known.
 };
 
+/// Whether two surfaces touch.
 struct PairOverlap {
-  Overlap overlap = Overlap::kDisjoint;
-  std::optional<FacePair> contact;   // where they overlap
-  std::uint64_t nodes_expanded = 0;  // pairs of nodes expanded and of leaves compared
+  Overlap overlap = Overlap::kDisjoint;  ///< What is known.
+  std::optional<FacePair> contact;       ///< Where they overlap.
+  std::uint64_t nodes_expanded = 0;      ///< Pairs of nodes expanded and of leaves compared.
 };
 
 /// Whether two surfaces touch. Overlapping and disjoint are certain: exact predicates decide, as
-/// for overlap_pairs. Where the walk comes upon parts of both that are closer than `distance` (in
+/// for overlap_pairs(). Where the walk comes upon parts of both that are closer than `distance` (in
 /// the world) it may end with kUndecided: the larger the distance, the earlier; never if it is 0.
 /// The walk ends with kBudgetSpent rather than visit more than `node_budget` pairs. Poses as for
-/// overlap_pairs. Errors: kInvalidPose, kInvalidQuery (distance NaN or negative) and those of
+/// overlap_pairs(). Errors: kInvalidPose, kInvalidQuery (distance NaN or negative) and those of
 /// corrupt bytes. Never allocates; takes up to 192 KB of stack.
 Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
                                    const Pose& second_pose, double distance,
                                    std::uint64_t node_budget = kUnlimitedNodes);
 
+/// Whether a box touches a surface.
 struct BoxOverlap {
-  Overlap overlap = Overlap::kDisjoint;
-  std::optional<FaceRef> face;       // where they overlap
-  std::uint64_t nodes_expanded = 0;  // nodes expanded and leaves read
+  Overlap overlap = Overlap::kDisjoint;  ///< What is known.
+  std::optional<FaceRef> face;           ///< Where they overlap.
+  std::uint64_t nodes_expanded = 0;      ///< Nodes expanded and leaves read.
 };
 
-/// The same for a closed box in object space and the surface. Certain here means exact, where
-/// overlap_box may report a face that misses the box by a rounding.
+/// Whether a closed box and the surface touch, in object space; kUndecided and `node_budget` as for
+/// overlap_within(). Overlapping and disjoint are certain: exact predicates decide, as for
+/// overlap_box(). Errors: kInvalidQuery (NaN, infinite or empty box, distance NaN or negative) and
+/// the codes of corrupt bytes as for closest_hit(). Never allocates.
 Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
                                       double distance, std::uint64_t node_budget = kUnlimitedNodes);
 #endif

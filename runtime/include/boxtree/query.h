@@ -31,22 +31,31 @@ using Pose = Eigen::Transform<double, 3, Eigen::Affine, Eigen::DontAlign>;
 template <class T>
 class [[nodiscard]] QueryResult {
  public:
+  /// Nothing.
   QueryResult() = default;
+  /// An answer.
   QueryResult(const T& answer) : value_(answer), has_value_(true) {}
+  /// An error.
   QueryResult(Errc code) noexcept : code_(code) {}
 
   /// Whether there is an answer.
   [[nodiscard]] bool has_value() const noexcept { return has_value_; }
+  /// The same.
   explicit operator bool() const noexcept { return has_value_; }
+  /// The answer, or the value that T starts with.
   const T& operator*() const noexcept { return value_; }
+  /// A member of it.
   const T* operator->() const noexcept { return &value_; }
+  /// The answer for code that takes `std::optional`; an error is nothing, too.
   [[nodiscard]] std::optional<T> as_optional() const {
     return has_value_ ? std::optional<T>(value_) : std::nullopt;
   }
 
   /// Whether the query was carried out, be there an answer or not.
   [[nodiscard]] bool ok() const noexcept { return code_ == Errc::kOk; }
+  /// The error, or Errc::kOk.
   [[nodiscard]] Errc code() const noexcept { return code_; }
+  /// The same for code that takes an Error.
   [[nodiscard]] Error error() const { return {code_, {}}; }
 
  private:
@@ -58,9 +67,11 @@ class [[nodiscard]] QueryResult {
 /// A borrowed callable: no allocation, valid during the call it is passed to.
 template <class Signature>
 class FunctionRef;
+/// A borrowed callable that takes `Args` and returns `R`.
 template <class R, class... Args>
 class FunctionRef<R(Args...)> {
  public:
+  /// Borrows a lambda, function object or function.
   // The constraint keeps it from standing in for the copy constructor.
   template <class F,
             class = std::enable_if_t<!std::is_same_v<std::remove_cvref_t<F>, FunctionRef> &&
@@ -80,6 +91,7 @@ class FunctionRef<R(Args...)> {
       };
     }
   }
+  /// Calls it.
   R operator()(Args... args) const { return call_(target_, std::forward<Args>(args)...); }
 
  private:
@@ -96,8 +108,8 @@ using FaceVisitor = FunctionRef<bool(const FaceRef&)>;
 
 /// A face of the first tree and a face of the second one that touch.
 struct FacePair {
-  FaceRef first;
-  FaceRef second;
+  FaceRef first;   ///< Of the first tree.
+  FaceRef second;  ///< Of the second tree.
 };
 
 /// Receives one pair after the other; returns whether to go on.
@@ -105,8 +117,8 @@ using PairVisitor = FunctionRef<bool(const FacePair&)>;
 
 /// How a query with a visitor ended.
 enum class Visit : std::uint8_t {
-  kComplete,  // every answer was visited
-  kStopped,   // the visitor stopped it
+  kComplete,  ///< Every answer was visited.
+  kStopped,   ///< The visitor stopped it.
 };
 
 /// No limit of the nodes that a query may visit.
@@ -121,12 +133,12 @@ struct QueryLimits {
 };
 
 /// How near to the truth an answer has to be, and what it may cost. An answer [lower, upper] has
-/// converged if upper <= lower * (1 + relative_error) or upper <= lower + absolute_error: whichever
-/// allows more. Zeros require all that double tells.
+/// converged if `upper <= lower * (1 + relative_error)` or `upper <= lower + absolute_error`:
+/// whichever allows more. Zeros require all that double tells.
 struct Approximation {
-  double relative_error = 0;  // [0] 0 or more
-  double absolute_error = 0;  // [0] [length] 0 or more
-  /// Nothing farther is looked for [infinity] [length].
+  double relative_error = 0;  ///< 0 or more [0].
+  double absolute_error = 0;  ///< A length, 0 or more [0].
+  /// A length: nothing farther is looked for [infinity].
   double max_distance = std::numeric_limits<double>::infinity();
   /// Nodes expanded and leaves read (pairs of them, for two trees) before the query ends with what
   /// it knows [unlimited].

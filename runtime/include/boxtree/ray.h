@@ -15,17 +15,19 @@ static_assert(BOXTREE_HAS_RAY_QUERIES,
 
 /// A ray or segment in object space: all points origin + t * direction with t_min <= t <= t_max.
 struct Ray {
-  Eigen::Vector3d origin;
-  Eigen::Vector3d direction;  // any length but zero; t counts in its units
-  double t_min = 0;           // >= 0
-  double t_max = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d origin;     ///< Where t is 0.
+  Eigen::Vector3d direction;  ///< Of any length but zero; the unit of t.
+  double t_min = 0;           ///< Begin, 0 or more.
+  double t_max = std::numeric_limits<double>::infinity();  ///< End, `t_min` or more.
 };
 
+/// Where a ray meets a surface.
 struct RayHit {
-  double t = std::numeric_limits<double>::infinity();
-  FaceRef face;
-  std::uint32_t triangle = 0;  // 0, or 1 for the second half (0,2,3) of a quad
-  double u = 0, v = 0;         // weights of the triangle's corners 1 and 2; corner 0 has 1 - u - v
+  double t = std::numeric_limits<double>::infinity();  ///< In units of the ray's direction.
+  FaceRef face;                                        ///< The face that was hit.
+  std::uint32_t triangle = 0;  ///< 0, or 1 for the second half (0,2,3) of a quad.
+  double u = 0,                ///< Weight of the triangle's corner 1.
+      v = 0;                   ///< Weight of its corner 2; corner 0 has 1 - u - v.
   /// Where the face was hit, on the face by its weights: from far away more exact than
   /// origin + t * direction.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
@@ -34,6 +36,7 @@ struct RayHit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
+/// A hit, nothing, or an error.
 using RayResult = QueryResult<RayHit>;
 
 /// The hit with the smallest t, in object space; of several at the same t the one with the smallest
@@ -41,13 +44,14 @@ using RayResult = QueryResult<RayHit>;
 /// a face count, edges and corners are part of it and no gap lies between faces that share them; a
 /// ray in the plane of a face does not hit it, nor does any ray hit a face without area, but for
 /// rounding. Errors: kInvalidQuery (NaN or infinite origin or direction, zero direction, empty
-/// interval, an origin more than 2^180 mesh extents away), and
+/// interval, an origin more than 2^185 mesh extents away), and
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
 /// bytes that the ray comes upon, whatever it has hit by then; kWorkLimit when `limits` do not
 /// suffice. Never allocates.
 RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
-/// Some hit, or nothing: cheaper than closest_hit when only the fact matters. Errors as there.
+/// Some hit, or nothing: cheaper than closest_hit() when only the fact matters. Errors as there.
+/// Never allocates.
 RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 }  // namespace boxtree

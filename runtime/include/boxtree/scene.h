@@ -28,22 +28,27 @@ class BoundScene;
 
 /// Layers of a scene, as bits.
 using LayerMask = std::uint32_t;
+/// Every layer.
 inline constexpr LayerMask kAllLayers = 0xffffffffu;
 
 /// The application's arrays for one tree with external geometry.
 struct SceneMeshArrays {
-  std::uint32_t tree;
-  MeshArrays arrays;
+  std::uint32_t tree;  ///< Its number in the file.
+  MeshArrays arrays;   ///< Positions and corners of its source mesh.
 };
 
+/// What an application needs of a scene, said when it is bound.
 struct SceneOptions {
   /// The kinds of queries that the application will make. One that the profile left out is refused
   /// here, and named.
   QueryKinds queries = 0;
-  /// Refuse a scene without these [default false] rather than answer kNoFaceId, kNoMaterial or an
-  /// empty name later: a tree without face ids, no material at all, no instance with a name.
+  /// Refuse a scene of which a tree has no face ids [default false] rather than answer kNoFaceId
+  /// later.
   bool require_face_ids = false;
+  /// Refuse a scene without any material [default false] rather than answer kNoMaterial later.
   bool require_materials = false;
+  /// Refuse a scene of which no instance has a name [default false] rather than answer an empty
+  /// name later.
   bool require_names = false;
   /// For trees with external geometry.
   std::span<const SceneMeshArrays> meshes = {};
@@ -54,11 +59,11 @@ struct SceneOptions {
 
 /// What the file says of one instance.
 struct InstanceInfo {
-  std::string_view name;  // empty when it has none, or names were left out
-  std::uint32_t tree = 0;
-  std::uint32_t id = 0;  // number in the source, depth first
-  std::uint32_t layer = 0;
-  bool moves = false;
+  std::string_view name;    ///< Empty when it has none, or names were left out.
+  std::uint32_t tree = 0;   ///< The number of its tree in the file, and in Scene::trees().
+  std::uint32_t id = 0;     ///< Its number in the source, depth first.
+  std::uint32_t layer = 0;  ///< The number of its layer: bit `1 << layer` of a LayerMask.
+  bool moves = false;       ///< Whether Scene::update() may move it.
 };
 
 /// The instance of a body that is no part of the scene, and of no answer.
@@ -66,8 +71,8 @@ inline constexpr std::uint32_t kNoInstance = 0xffffffffu;
 
 /// A face of an instance.
 struct SceneFace {
-  std::uint32_t instance = kNoInstance;
-  FaceRef face;
+  std::uint32_t instance = kNoInstance;  ///< The number of the instance.
+  FaceRef face;                          ///< A face of its tree.
 };
 
 /// One scene. Points into the bytes of its File. Instances are numbered from 0 in the order of the
@@ -85,34 +90,43 @@ class Scene {
   // A scene must not outlive its file.
   static Result<Scene> bind(const File&& file, const SceneOptions& options = {}) = delete;
 
+  /// Takes the scene over.
   Scene(Scene&&) noexcept;
+  /// Takes the scene over, after freeing this one's moving instances.
   Scene& operator=(Scene&&) noexcept;
+  /// Frees the moving instances; the bytes are the File's.
   ~Scene();
 
+  /// How many instances it has, numbered from 0.
   [[nodiscard]] std::uint32_t instance_count() const noexcept;
+  /// Its trees, in the order of the file.
   [[nodiscard]] std::span<const Tree> trees() const noexcept;
+  /// The kinds of queries that it was cooked for.
   [[nodiscard]] QueryKinds query_kinds() const noexcept;
 
-  /// Error: kInstanceIndex; kRecordInvalid where the bytes of the instance are corrupt.
+  /// What the file says of an instance. Errors: kInstanceIndex; kRecordInvalid where the bytes of
+  /// the instance are corrupt.
   [[nodiscard]] Result<InstanceInfo> info(std::uint32_t number) const;
   /// The number of the instance with that name, the first if several share it; O(instances).
-  /// Error: kInstanceIndex.
+  /// Error: kInstanceIndex when there is none.
   [[nodiscard]] Result<std::uint32_t> find_instance(std::string_view name) const;
   /// Its pose, object space to world: as last given to update(), else as in the file. Errors as for
   /// info().
   [[nodiscard]] Result<Pose> pose(std::uint32_t number) const;
   /// Name of a layer; empty when it has none.
   [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
+  /// How many layers have records in the file, numbered from 0.
   [[nodiscard]] std::uint32_t layer_count() const noexcept;
 
   /// A triangle of a face that an answer names, in world coordinates: each corner is brought there
-  /// in double precision. `half` and cost as for Tree::triangle. Errors: as there and for info().
+  /// in double precision. `half` and cost as for Tree::triangle(). Errors: as there and for info().
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half = 0) const;
 
   /// The material of a face that an answer names; kNoMaterial without materials.
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
   /// Name of a material; empty when it has none.
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
+  /// How many materials the file has, numbered from 0.
   [[nodiscard]] std::uint32_t material_count() const noexcept;
 
   /// Lets update() move a static instance from now on; nothing happens where it moves already.
@@ -135,12 +149,13 @@ class Scene {
 /// Receives one face after the other; returns whether to go on.
 using SceneFaceVisitor = FunctionRef<bool(const SceneFace&)>;
 
-/// `t` counts in units of the ray's direction; point and normal are in world coordinates, the
-/// normal carried there by the pose.
+/// A hit of an instance. `t` counts in units of the ray's direction; point and normal are in world
+/// coordinates, the normal carried there by the pose.
 struct SceneRayHit : RayHit {
-  std::uint32_t instance = kNoInstance;
+  std::uint32_t instance = kNoInstance;  ///< The instance that was hit.
 };
 
+/// A hit, nothing, or an error.
 using SceneRayResult = QueryResult<SceneRayHit>;
 
 /// The hit with the smallest t; of several at the same t that of the instance with the smallest id,
@@ -149,7 +164,7 @@ using SceneRayResult = QueryResult<SceneRayHit>;
 SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
                            const QueryLimits& limits = {});
 
-/// Some hit, or nothing.
+/// Some hit, or nothing: cheaper than closest_hit() when only the fact matters.
 SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
                        const QueryLimits& limits = {});
 
@@ -164,11 +179,12 @@ Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, 
                              SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
                              const QueryLimits& limits = {});
 
-/// Point and distance are in world coordinates.
+/// A closest point on an instance. Point and distance are in world coordinates.
 struct SceneClosestPoint : ClosestPoint {
-  std::uint32_t instance = kNoInstance;
+  std::uint32_t instance = kNoInstance;  ///< The instance that it lies on.
 };
 
+/// A closest point, nothing, or an error.
 using ScenePointResult = QueryResult<SceneClosestPoint>;
 
 /// The nearest point of any surface within `max_distance` of `point`, or nothing. Of several at the
@@ -179,15 +195,17 @@ ScenePointResult closest_point(const Scene& scene, const Eigen::Vector3d& point,
 
 /// A face of an instance and a face of another body that touch.
 struct ScenePair {
-  SceneFace first;
-  SceneFace second;
+  SceneFace first;   ///< A face of the scene; which one, each query says.
+  SceneFace second;  ///< A face of the other body.
 };
+/// Receives one pair after the other; returns whether to go on.
 using ScenePairVisitor = FunctionRef<bool(const ScenePair&)>;
 
 /// Visits every contact of a moving instance with any other one, each pair of faces once; `first`
-/// is the moving instance, of two the one with the smaller number. Pairs whose layers do not collide,
-/// and pairs of static instances, are not looked at. Each pair of instances is answered as by
-/// overlap_pairs of the two trees, the one whose pose magnifies errors less being the first there.
+/// is the moving instance, of two the one with the smaller number. Pairs whose layers do not
+/// collide, and pairs of static instances, are not looked at. Each pair of instances is answered as
+/// by overlap_pairs() of the two trees, the one whose pose magnifies errors less being the first
+/// there.
 Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor,
                        const QueryLimits& limits = {});
 

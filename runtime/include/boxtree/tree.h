@@ -24,21 +24,21 @@ class BoundTree;
 struct FaceRef {
   /// Number in the source mesh; kNoFaceId when the file has no ids.
   std::uint32_t id = kNoFaceId;
-  /// Number in the tree's own order, from 0: what Tree::triangle takes.
+  /// Number in the tree's own order, from 0: what Tree::triangle() takes.
   std::uint32_t index = kNoFaceId;
 };
 
 /// Where positions and corners lie, in the file or in the application's memory. A face has
 /// `corners_per_face` corner numbers, 3 or 4; with 4, the last may be the missing corner.
 struct MeshArrays {
-  const std::byte* positions = nullptr;
-  std::size_t position_stride = 0;  // bytes from one vertex to the next
-  bool positions_f64 = false;       // three doubles a vertex, otherwise three floats
-  std::uint32_t vertex_count = 0;
-  const std::byte* corners = nullptr;
-  std::uint32_t corner_bytes = 0;  // 2 or 4
-  std::uint32_t corners_per_face = 3;
-  std::uint32_t face_count = 0;
+  const std::byte* positions = nullptr;  ///< The first vertex.
+  std::size_t position_stride = 0;       ///< Bytes from one vertex to the next.
+  bool positions_f64 = false;            ///< Three doubles a vertex, otherwise three floats.
+  std::uint32_t vertex_count = 0;        ///< Number of vertices.
+  const std::byte* corners = nullptr;    ///< The first corner number of the first face.
+  std::uint32_t corner_bytes = 0;        ///< Of one corner number: 2 or 4.
+  std::uint32_t corners_per_face = 3;    ///< 3 or 4.
+  std::uint32_t face_count = 0;          ///< Number of faces.
 };
 
 /// Marks the missing fourth corner of a triangle in 32-bit corner arrays with four corners a face;
@@ -64,6 +64,7 @@ template <class Scalar, class Corner>
           face_count};
 }
 
+/// How a tree is bound.
 struct BindOptions {
   /// The application's arrays, for trees with external geometry; ignored otherwise.
   std::optional<MeshArrays> mesh;
@@ -92,19 +93,24 @@ class Tree {
   static Result<Tree> bind(const File&& file, std::uint32_t index,
                            const BindOptions& options = {}) = delete;
 
+  /// Another handle of the same tree: a copy of some hundred bytes.
   Tree(const Tree&) noexcept;
+  /// The same.
   Tree& operator=(const Tree&) noexcept;
+  /// Frees nothing: the bytes are the File's.
   ~Tree();
 
-  /// Empty when it has none.
+  /// Its name in the file; empty when it has none.
   [[nodiscard]] std::string_view name() const noexcept;
-  /// "wide8"
+  /// The name of its codec, as "wide8".
   [[nodiscard]] std::string_view codec_name() const noexcept;
+  /// How many faces it has: triangles and quads.
   [[nodiscard]] std::uint32_t face_count() const noexcept;
-  /// A quad counts as two.
+  /// How many triangles it has; a quad counts as two.
   [[nodiscard]] std::uint32_t triangle_count() const noexcept;
   /// Whether it has no faces.
   [[nodiscard]] bool empty() const noexcept;
+  /// Whether FaceRef::id is the number in the source mesh, or always kNoFaceId.
   [[nodiscard]] bool has_face_ids() const noexcept;
   /// A box around all faces, in object space, rounded outward. Empty for an empty tree.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const noexcept;

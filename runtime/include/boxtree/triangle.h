@@ -11,7 +11,7 @@ namespace boxtree {
 /// A triangle in any orthogonal coordinates. Corners may coincide or lie on a line: queries treat
 /// such a degenerate triangle as the segment or point that it is.
 struct Triangle {
-  std::array<Eigen::Vector3d, 3> corner;
+  std::array<Eigen::Vector3d, 3> corner;  ///< Counterclockwise, seen from the front.
 };
 
 }  // namespace boxtree
