@@ -1,0 +1,113 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# The examples of the API reference, on meshes cooked here. What they must print follows from the meshes: level.obj is a floor of
+# 8 x 8 (face 0) below a stair of two plates, 2 x 2 at height 0.25 (face 1) and 1 x 2 at height 0.5 (face 2); crate.obj is a cube
+# of side 1 that stands on its origin.
+#   samples_test.sh BOXTREE FOLDER_OF_PROGRAMS SOURCE_DIR
+set -euo pipefail
+boxtree=$1 programs=$2 source=$3
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+cd "$work" || exit 1
+
+meshes=$source/samples/meshes
+"$boxtree" cook "$meshes/level.obj" -o level.bxt >/dev/null
+"$boxtree" cook "$meshes/crate.obj" -o crate.bxt >/dev/null
+"$boxtree" cook "$meshes/level.obj" "$meshes/crate.obj" -o both.bxt >/dev/null
+"$boxtree" cook "$source/samples/level/level.gltf" -o courtyard.bxt >/dev/null
+
+tested=
+# prints NAME FILE...: the program NAME prints what standard input says.
+prints() {
+  local name=$1
+  shift
+  tested+="$name "
+  "$programs/$name" "$@" >"$name.out" || { echo "$name failed"; exit 1; }
+  diff "$name.out" - || { echo "$name printed something else (left)"; exit 1; }
+}
+# bounds NAME TRUTH FACTOR: the "between A and B" that NAME printed holds the truth, and B is at most A times the factor.
+bounds() {
+  awk -v truth="$2" -v factor="$3" '/^between/ { found = 1; ok = $2 <= truth && truth <= $4 && $4 <= $2 * factor + 0.0005 }
+    END { exit !(found && ok) }' "$1.out" || { echo "$1: bounds that do not hold"; exit 1; }
+}
+
+prints first level.bxt <<<"ground at height 0.5, face 2"
+# The second goal is seen: the segment ends above the floor, and passes the plates before they begin.
+prints ray level.bxt <<'END'
+t 9.5, normal (0, 0, 1)
+goal at x 2.5: hidden
+goal at x -2: seen
+END
+prints box level.bxt <<'END'
+face 0
+face 1
+face 2
+nothing
+END
+# The ball around (2.5, 0, 1) touches the lower plate in one point.
+"$programs/sphere" level.bxt | sort >sphere.sorted
+tested+="sphere "
+diff sphere.sorted - <<'END'
+face 1 at height 0.25
+face 2 at height 0.5
+END
+# From (0, 0, 2) the floor is 2 away, the lower plate's edge the root of 1 + 1.75^2.
+"$programs/closest_point" level.bxt >closest_point.out
+tested+="closest_point "
+bounds closest_point 2 1.1
+diff <(grep -v '^between' closest_point.out) - <<'END'
+distance 2 to face 0
+within 1.5: nothing
+END
+# At height 0.5 the crate stands on the upper plate: its bottom and the four sides touch; lower, the sides alone.
+prints pairs level.bxt crate.bxt <<'END'
+height 0.625: 0 pairs, free
+height 0.5: 5 pairs, touches
+height 0.375: 4 pairs, touches
+END
+"$programs/distance" level.bxt crate.bxt >distance.out
+tested+="distance "
+bounds distance 0.5 1.1
+grep -q '^0.500000, from face 2 to face ' distance.out
+# Nearer than the distance, both answers and "undecided" are true; without a distance, one is.
+"$programs/overlap_within" level.bxt crate.bxt >overlap_within.out
+tested+="overlap_within "
+diff <(grep 'within 0:' overlap_within.out) - <<'END'
+height 0.375, within 0: overlapping
+height 0.53125, within 0: disjoint
+height 2, within 0: disjoint
+END
+grep -Eq '^height 0.375, within 0.0625: (overlapping|undecided)$' overlap_within.out
+grep -Eq '^height 0.53125, within 0.0625: (disjoint|undecided)$' overlap_within.out
+grep -q '^height 2, within 0.0625: disjoint$' overlap_within.out
+# Below 0.375: the floor and the lower plate, 64 + 4.
+prints traverse level.bxt <<<"68 square metres"
+# Step 6 of make_level.py ends at 6 * 0.18 and at z from -4.65 to -4.35; the crate reaches from -4.9 to -4.1, into both neighbours.
+prints scene courtyard.bxt <<'END'
+Step 6 at height 1.080
+meets Step 5
+meets Step 6
+meets Step 7
+END
+"$programs/errors" level.bxt >errors.out
+tested+="errors "
+grep -q '^file_not_found: no-such-file.bxt' errors.out
+grep -q '^50 invalid_query$' errors.out
+prints files both.bxt <<'END'
+level: 3 faces, 6 triangles, 8 x 8 x 0.5
+crate: 6 faces, 12 triangles, 1 x 1 x 1
+the crate is tree 1
+END
+# 2 x 2 of 8 x 8.
+prints threads level.bxt <<<"400 of 6400 rays meet the stair"
+
+# No program without a test, and a file that is not there is an error of each.
+for program in "$source"/samples/api/*.cpp; do
+  name=$(basename "$program" .cpp)
+  case " $tested" in
+    *" $name "*) ;;
+    *) echo "$name has no test"; exit 1 ;;
+  esac
+  if "$programs/$name" none.bxt none.bxt >/dev/null 2>&1; then echo "$name: no error without a file"; exit 1; fi
+done
+echo "every example prints what it must"
