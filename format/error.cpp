@@ -83,7 +83,7 @@ constexpr std::array kTable = {
              "no encoding keeps to the bytes and the time requested", 1},
     ErrcInfo{Errc::kProfileInvalid, "profile_invalid",
              "a profile says what it must not, or of nothing that is there", 3},
-    ErrcInfo{Errc::kInternal, "internal", "a defect in boxtree itself; please report it", 4},
+    ErrcInfo{Errc::kInternal, "internal", "an internal error; please report it", 4},
 };
 
 static_assert(std::is_sorted(kTable.begin(), kTable.end(),

@@ -83,7 +83,7 @@ enum class Errc : std::uint16_t {
   kProfileInvalid = 77,       ///< A profile says what it must not, or of nothing that is there.
 
   // 90: our own bug; please report.
-  kInternal = 90,  ///< A defect in boxtree itself; please report it.
+  kInternal = 90,  ///< An internal error; please report it.
 };
 
 /// One row of the error table: pinned number, stable name, meaning, exit status of the command
