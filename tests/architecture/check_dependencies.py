@@ -29,7 +29,7 @@ PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"
 # What format shares with applications, in format/include.
-OF_FORMAT = ("boxtree/error.h", "boxtree/kinds.h")
+OF_FORMAT = ("boxtree/error.h", "boxtree/export.h", "boxtree/kinds.h")
 
 
 def folder_of(path):

@@ -12,6 +12,8 @@
 #include <string_view>
 #include <utility>
 
+#include <boxtree/export.h>
+
 namespace boxtree {
 
 /// Every error of the project. Compare with these, print error_info(code).name, and log the number:
@@ -96,11 +98,11 @@ struct ErrcInfo {
 };
 
 /// Every code in ascending order of its number. Thread-safe, never allocates.
-[[nodiscard]] std::span<const ErrcInfo> error_table() noexcept;
+[[nodiscard]] BOXTREE_API std::span<const ErrcInfo> error_table() noexcept;
 
 /// The row of `code`; an unknown number gets the row of Errc::kInternal. O(codes), thread-safe,
 /// never allocates.
-[[nodiscard]] const ErrcInfo& error_info(Errc code) noexcept;
+[[nodiscard]] BOXTREE_API const ErrcInfo& error_info(Errc code) noexcept;
 
 /// What went wrong, and where: `detail` names the place, what was expected and what was found.
 struct Error {

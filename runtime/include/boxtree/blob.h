@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include <boxtree/export.h>
 #include <boxtree/file.h>
 
 namespace boxtree {
@@ -20,17 +21,18 @@ inline constexpr std::uint64_t kDefaultBlobMemory = std::uint64_t{1} << 30;
 /// more is ever produced, whatever the stream holds.
 /// Errors: as File::open(); kFeatureUnsupported when the file is no blob; kBlobLimit; kBlobCorrupt
 /// when the stream is truncated, damaged or not as long as stated. Thread-safe.
-Result<File> open_blob(const std::string& path, std::uint64_t memory_limit = kDefaultBlobMemory);
+BOXTREE_API Result<File> open_blob(const std::string& path,
+                                   std::uint64_t memory_limit = kDefaultBlobMemory);
 
 /// The same over memory of the caller, which is not needed any more afterwards.
-Result<File> open_blob(Bytes blob, std::uint64_t memory_limit = kDefaultBlobMemory);
+BOXTREE_API Result<File> open_blob(Bytes blob, std::uint64_t memory_limit = kDefaultBlobMemory);
 
 /// The blob of a whole .bxt file. Deterministic for one version of the compressor. Error: kInternal
 /// when the compressor fails. Allocates; thread-safe.
-Result<std::vector<std::byte>> make_blob(Bytes file, BlobMethod method);
+BOXTREE_API Result<std::vector<std::byte>> make_blob(Bytes file, BlobMethod method);
 
 /// Size in bytes of `bytes` compressed alone, as make_blob() would. For tables. Error and cost as
 /// there.
-Result<std::uint64_t> compressed_size(Bytes bytes, BlobMethod method);
+BOXTREE_API Result<std::uint64_t> compressed_size(Bytes bytes, BlobMethod method);
 
 }  // namespace boxtree

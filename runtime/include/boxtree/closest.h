@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -31,9 +32,9 @@ using PointResult = QueryResult<ClosestPoint>;
 /// involved, for triangles of every shape. Errors: kInvalidQuery (NaN or infinite point, NaN or
 /// negative distance) and the codes of corrupt bytes and limits as for closest_hit(). Never
 /// allocates.
-PointResult closest_point(const Tree& tree, const Eigen::Vector3d& point,
-                          double max_distance = std::numeric_limits<double>::infinity(),
-                          const QueryLimits& limits = {});
+BOXTREE_API PointResult closest_point(const Tree& tree, const Eigen::Vector3d& point,
+                                      double max_distance = std::numeric_limits<double>::infinity(),
+                                      const QueryLimits& limits = {});
 
 /// How near to the truth a closest point has to be.
 using PointOptions = Approximation;
@@ -61,7 +62,7 @@ struct ApproximatePoint {
 /// without one it is that of the exact query, leaving out what cannot improve the answer by more
 /// than the error. Errors as above; kInvalidQuery also for options that are NaN or negative. Takes
 /// up to 160 KB of stack; never allocates.
-Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
-                                       const PointOptions& options);
+BOXTREE_API Result<ApproximatePoint> closest_point(const Tree& tree, const Eigen::Vector3d& point,
+                                                   const PointOptions& options);
 
 }  // namespace boxtree

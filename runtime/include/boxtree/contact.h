@@ -3,6 +3,7 @@
 #pragma once
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -18,13 +19,14 @@ static_assert(BOXTREE_HAS_PAIR_QUERIES,
 /// into the first one's space in double precision (translations subtracted first).
 /// Errors: kInvalidPose (not finite, not invertible) and the codes of corrupt bytes as for
 /// closest_hit(); kWorkLimit. Never allocates; takes up to 320 KB of stack.
-Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose, const Tree& second,
-                            const Pose& second_pose, PairVisitor visitor,
-                            const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_pairs(const Tree& first, const Pose& first_pose,
+                                        const Tree& second, const Pose& second_pose,
+                                        PairVisitor visitor, const QueryLimits& limits = {});
 
 /// Some pair of faces that share a point, or nothing: cheaper than overlap_pairs() when only the
 /// fact matters. Exactness, errors, stack and threads as there.
-QueryResult<FacePair> first_contact(const Tree& first, const Pose& first_pose, const Tree& second,
-                                    const Pose& second_pose, const QueryLimits& limits = {});
+BOXTREE_API QueryResult<FacePair> first_contact(const Tree& first, const Pose& first_pose,
+                                                const Tree& second, const Pose& second_pose,
+                                                const QueryLimits& limits = {});
 
 }  // namespace boxtree

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -54,7 +55,7 @@ struct Distance {
 ///
 /// Errors: kInvalidPose, kInvalidQuery (options that are NaN or negative) and the codes of corrupt
 /// bytes as for closest_hit(). Never allocates; takes half a megabyte of stack.
-Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
-                          const Pose& second_pose, const DistanceOptions& options = {});
+BOXTREE_API Result<Distance> distance(const Tree& first, const Pose& first_pose, const Tree& second,
+                                      const Pose& second_pose, const DistanceOptions& options = {});
 
 }  // namespace boxtree

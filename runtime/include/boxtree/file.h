@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include <boxtree/error.h>
+#include <boxtree/export.h>
 #include <boxtree/kinds.h>
 
 namespace boxtree {
@@ -26,7 +27,7 @@ struct OpenOptions {
 
 /// Immutable once open; safe to use from many threads. Move-only; trees bound to it point into its
 /// bytes and must not outlive it (moving the File keeps them valid).
-class File {
+class BOXTREE_API File {
  public:
   /// Maps `path` (UTF-8) and checks header and section table; no section but the tree table is
   /// touched, so the cost does not depend on the size of the file. Safe for untrusted bytes.
@@ -69,6 +70,6 @@ class File {
 
 /// Whether the bytes of every section have the checksum of the section table; reads the whole file.
 /// Error: kChecksumMismatch.
-Status verify_checksums(const File& file);
+BOXTREE_API Status verify_checksums(const File& file);
 
 }  // namespace boxtree

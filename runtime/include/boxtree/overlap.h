@@ -8,6 +8,7 @@
 #include <optional>
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -19,16 +20,17 @@ static_assert(BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_H
 /// Visits every face that touches the closed box `box` (object space), each once, in no promised
 /// order. Touching counts. Errors: kInvalidQuery (NaN, infinite or empty box) and the codes of
 /// corrupt bytes and limits as for closest_hit(). Never allocates.
-Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box, FaceVisitor visitor,
-                          const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3d& box,
+                                      FaceVisitor visitor, const QueryLimits& limits = {});
 #endif
 
 #if BOXTREE_HAS_SPHERE_QUERIES
 /// Visits every face whose distance from `center` is at most `radius` (object space), each once, in
 /// no promised order. Errors: kInvalidQuery (NaN, infinite, negative radius) and the codes of
 /// corrupt bytes and limits as for closest_hit(). Never allocates.
-Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center, double radius,
-                             FaceVisitor visitor, const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center,
+                                         double radius, FaceVisitor visitor,
+                                         const QueryLimits& limits = {});
 #endif
 
 #if BOXTREE_HAS_WITHIN_QUERIES
@@ -53,9 +55,10 @@ struct PairOverlap {
 /// The walk ends with kBudgetSpent rather than visit more than `node_budget` pairs. Poses as for
 /// overlap_pairs(). Errors: kInvalidPose, kInvalidQuery (distance NaN or negative) and those of
 /// corrupt bytes. Never allocates; takes up to 192 KB of stack.
-Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose, const Tree& second,
-                                   const Pose& second_pose, double distance,
-                                   std::uint64_t node_budget = kUnlimitedNodes);
+BOXTREE_API Result<PairOverlap> overlap_within(const Tree& first, const Pose& first_pose,
+                                               const Tree& second, const Pose& second_pose,
+                                               double distance,
+                                               std::uint64_t node_budget = kUnlimitedNodes);
 
 /// Whether a box touches a surface.
 struct BoxOverlap {
@@ -68,8 +71,9 @@ struct BoxOverlap {
 /// overlap_within(). Overlapping and disjoint are certain: exact predicates decide, as for
 /// overlap_box(). Errors: kInvalidQuery (NaN, infinite or empty box, distance NaN or negative) and
 /// the codes of corrupt bytes as for closest_hit(). Never allocates.
-Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
-                                      double distance, std::uint64_t node_budget = kUnlimitedNodes);
+BOXTREE_API Result<BoxOverlap> overlap_box_within(const Tree& tree, const Eigen::AlignedBox3d& box,
+                                                  double distance,
+                                                  std::uint64_t node_budget = kUnlimitedNodes);
 #endif
 
 }  // namespace boxtree

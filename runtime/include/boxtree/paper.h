@@ -4,6 +4,7 @@
 #pragma once
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 
 static_assert(BOXTREE_HAS_PLAIN_F32 || BOXTREE_HAS_PLAIN_F16 || BOXTREE_HAS_PACKED_F32 ||
                   BOXTREE_HAS_PACKED_F16 || BOXTREE_HAS_PACKED_F64 || BOXTREE_HAS_DEDUP,
@@ -13,6 +14,6 @@ namespace boxtree {
 
 /// From now on trees of these codecs can be bound, in all of the program. Costs nothing; once is
 /// enough. Thread-safe.
-void use_paper_codecs() noexcept;
+BOXTREE_API void use_paper_codecs() noexcept;
 
 }  // namespace boxtree

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <boxtree/configuration.h>
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -48,10 +49,10 @@ using RayResult = QueryResult<RayHit>;
 /// kNodeCorrupt, kDepthExceeded, kFaceOutOfRange, kVertexOutOfRange, kVertexNotFinite on corrupt
 /// bytes that the ray comes upon, whatever it has hit by then; kWorkLimit when `limits` do not
 /// suffice. Never allocates.
-RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
+BOXTREE_API RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 /// Some hit, or nothing: cheaper than closest_hit() when only the fact matters. Errors as there.
 /// Never allocates.
-RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
+BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
 
 }  // namespace boxtree

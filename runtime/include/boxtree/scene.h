@@ -17,6 +17,7 @@
 #include <boxtree/closest.h>
 #include <boxtree/configuration.h>
 #include <boxtree/contact.h>
+#include <boxtree/export.h>
 #include <boxtree/ray.h>
 
 static_assert(BOXTREE_HAS_SCENE_QUERIES,
@@ -80,7 +81,7 @@ struct SceneFace {
 /// make_movable() and rebuild() need the scene for themselves. The file's bytes are never written:
 /// poses of moving instances, and the tree over them, live in the Scene. Move-only; a scene that
 /// was moved from may only be assigned to or destroyed.
-class Scene {
+class BOXTREE_API Scene {
  public:
   /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows
   /// with the number of trees and moving instances alone.
@@ -161,23 +162,25 @@ using SceneRayResult = QueryResult<SceneRayHit>;
 /// The hit with the smallest t; of several at the same t that of the instance with the smallest id,
 /// then of the smallest face. The ray is brought into each tree's object space in double precision
 /// and answered there, so no gap lies between faces of one instance that share an edge.
-SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
-                           const QueryLimits& limits = {});
+BOXTREE_API SceneRayResult closest_hit(const Scene& scene, const Ray& ray,
+                                       LayerMask layers = kAllLayers,
+                                       const QueryLimits& limits = {});
 
 /// Some hit, or nothing: cheaper than closest_hit() when only the fact matters.
-SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers = kAllLayers,
-                       const QueryLimits& limits = {});
+BOXTREE_API SceneRayResult any_hit(const Scene& scene, const Ray& ray,
+                                   LayerMask layers = kAllLayers, const QueryLimits& limits = {});
 
 /// Visits every face that touches the closed box `box` of the world, each once. Exact for the
 /// triangles that arise when each corner is brought into the world in double precision.
-Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
-                          SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
-                          const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_box(const Scene& scene, const Eigen::AlignedBox3d& box,
+                                      SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
+                                      const QueryLimits& limits = {});
 
 /// Visits every face whose distance from `center` is at most `radius`, likewise.
-Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center, double radius,
-                             SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
-                             const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector3d& center,
+                                         double radius, SceneFaceVisitor visitor,
+                                         LayerMask layers = kAllLayers,
+                                         const QueryLimits& limits = {});
 
 /// A closest point on an instance. Point and distance are in world coordinates.
 struct SceneClosestPoint : ClosestPoint {
@@ -189,9 +192,10 @@ using ScenePointResult = QueryResult<SceneClosestPoint>;
 
 /// The nearest point of any surface within `max_distance` of `point`, or nothing. Of several at the
 /// same distance that of the instance with the smallest id, then of the smallest face.
-ScenePointResult closest_point(const Scene& scene, const Eigen::Vector3d& point,
-                               double max_distance = std::numeric_limits<double>::infinity(),
-                               LayerMask layers = kAllLayers, const QueryLimits& limits = {});
+BOXTREE_API ScenePointResult
+closest_point(const Scene& scene, const Eigen::Vector3d& point,
+              double max_distance = std::numeric_limits<double>::infinity(),
+              LayerMask layers = kAllLayers, const QueryLimits& limits = {});
 
 /// A face of an instance and a face of another body that touch.
 struct ScenePair {
@@ -206,18 +210,18 @@ using ScenePairVisitor = FunctionRef<bool(const ScenePair&)>;
 /// collide, and pairs of static instances, are not looked at. Each pair of instances is answered as
 /// by overlap_pairs() of the two trees, the one whose pose magnifies errors less being the first
 /// there.
-Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor,
-                       const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor,
+                                   const QueryLimits& limits = {});
 
 /// The contacts of one instance, moving or not, with all others: `first` is the instance.
 /// Also kInstanceIndex.
-Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor,
-                          const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance,
+                                      ScenePairVisitor visitor, const QueryLimits& limits = {});
 
 /// Visits every pair of a face of the scene (`first`) and a face of a tree that is no part of it,
 /// placed by `pose` (`second`, whose instance is kNoInstance).
-Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
-                            ScenePairVisitor visitor, LayerMask layers = kAllLayers,
-                            const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
+                                        ScenePairVisitor visitor, LayerMask layers = kAllLayers,
+                                        const QueryLimits& limits = {});
 
 }  // namespace boxtree

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include <boxtree/export.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -29,7 +30,7 @@ using TriangleVisitor = FunctionRef<bool(const LeafTriangle&)>;
 /// that coincide with another face are represented by it; see Tree::without_duplicates(). Errors:
 /// the codes of corrupt bytes and limits as for closest_hit(). Never allocates. Every check that
 /// keeps a walk of hostile bytes finite and inside the file is made here.
-Result<Visit> traverse(const Tree& tree, BoxTest intersect, TriangleVisitor visitor,
-                       const QueryLimits& limits = {});
+BOXTREE_API Result<Visit> traverse(const Tree& tree, BoxTest intersect, TriangleVisitor visitor,
+                                   const QueryLimits& limits = {});
 
 }  // namespace boxtree

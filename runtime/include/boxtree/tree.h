@@ -12,6 +12,7 @@
 #include <Eigen/Geometry>
 
 #include <boxtree/error.h>
+#include <boxtree/export.h>
 #include <boxtree/file.h>
 #include <boxtree/kinds.h>
 #include <boxtree/triangle.h>
@@ -76,7 +77,7 @@ struct BindOptions {
 
 /// One tree. Points into the bytes of its File and, with external geometry, into the application's
 /// arrays; cheap to copy; immutable, so safe to query from many threads at once.
-class Tree {
+class BOXTREE_API Tree {
  public:
   /// Binds the only tree of a file. kTreeIndex when the file holds several or none, or a scene:
   /// then say which tree by its number (below) or bind a Scene. Other errors as below.
