@@ -1,38 +1,154 @@
-# boxtree_add_cooked_assets(TARGET target MESHES mesh... [OPTIONS option...] [OUTPUT_DIR dir])
+# boxtree_add_cooked_assets(TARGET target MESHES mesh... [OPTIONS option...] [OUTPUT_DIR dir]
+#                           [DEFINITION name])
 #
-# Cooks each mesh into OUTPUT_DIR/NAME.bxt [default: the current binary directory] before `target` is
-# built. A depfile lists every file that a mesh refers to: touching one recooks just the meshes that
-# read it. OPTIONS are passed to `boxtree cook`. The target learns the directory as the compile
-# definition BOXTREE_ASSET_DIR.
+# Cooks each mesh into OUTPUT_DIR/NAME.bxt before `target`, or what links it, is built. A depfile lists
+# every file that a mesh refers to: touching one recooks just the meshes that read it.
+#
+#   TARGET      any target; what links an INTERFACE library gets its definition and its order of building
+#   OPTIONS     passed to `boxtree cook`; generator expressions are evaluated
+#   OUTPUT_DIR  [default: the current binary directory, which a relative one is below]
+#   DEFINITION  compile definition by which sources know OUTPUT_DIR [default: BOXTREE_ASSET_DIR]; INTERFACE
+#               of an INTERFACE library, otherwise PRIVATE
+#
+# May be called again for the same target. Targets that want the same mesh in the same OUTPUT_DIR with
+# the same OPTIONS share the file.
+#
+# Runs BOXTREE_TOOL, a `boxtree` of the machine that builds, if that is set; otherwise boxtree::cli. When
+# cross compiling, or if there is no boxtree::cli, a `boxtree` of the PATH.
+
+# Projects that include this may require an older CMake.
+cmake_policy(VERSION 3.20...3.25)
+
+# Sets RESULT to the program that cooks: a target or a path.
+function(boxtree_find_tool result)
+  if(NOT BOXTREE_TOOL)
+    if(TARGET boxtree::cli AND NOT CMAKE_CROSSCOMPILING)
+      set(${result} boxtree::cli PARENT_SCOPE)
+      return()
+    endif()
+    # CMAKE_PREFIX_PATH and the root of the target machine hold programs of the target machine.
+    find_program(BOXTREE_TOOL boxtree NO_PACKAGE_ROOT_PATH NO_CMAKE_PATH NO_CMAKE_ENVIRONMENT_PATH
+                 NO_CMAKE_INSTALL_PREFIX NO_CMAKE_FIND_ROOT_PATH
+                 DOC "The program boxtree, for the machine that builds")
+  endif()
+  if(NOT BOXTREE_TOOL)
+    set(why "this boxtree was built without its command line")
+    if(CMAKE_CROSSCOMPILING)
+      set(why "programs of the target machine do not run on the machine that cross compiles")
+    endif()
+    message(FATAL_ERROR "boxtree_add_cooked_assets: no program to cook with: ${why}. Install boxtree on the "
+                        "machine that builds, or set BOXTREE_TOOL to the path of the program boxtree there")
+  endif()
+  if(NOT EXISTS "${BOXTREE_TOOL}" OR IS_DIRECTORY "${BOXTREE_TOOL}" OR NOT IS_ABSOLUTE "${BOXTREE_TOOL}")
+    message(FATAL_ERROR "boxtree_add_cooked_assets: BOXTREE_TOOL is '${BOXTREE_TOOL}'; expected the absolute "
+                        "path of the program boxtree")
+  endif()
+  set(${result} ${BOXTREE_TOOL} PARENT_SCOPE)
+endfunction()
+
+# Tells TARGET the folder by the compile definition NAME.
+function(boxtree_define_asset_dir target name dir)
+  get_target_property(known ${target} BOXTREE_DEFINED_${name})
+  if(known STREQUAL dir)
+    return()
+  elseif(known)
+    message(FATAL_ERROR "boxtree_add_cooked_assets: ${name} of target ${target} is ${known} already and cannot "
+                        "be ${dir}, too: add DEFINITION and another name for it, or use one OUTPUT_DIR")
+  endif()
+  get_target_property(type ${target} TYPE)
+  set(scope PRIVATE)
+  if(type STREQUAL "INTERFACE_LIBRARY")
+    set(scope INTERFACE)
+  elseif(type STREQUAL "UTILITY")
+    return() # compiles nothing
+  endif()
+  target_compile_definitions(${target} ${scope} "${name}=\"${dir}\"")
+  set_target_properties(${target} PROPERTIES BOXTREE_DEFINED_${name} ${dir})
+endfunction()
+
 function(boxtree_add_cooked_assets)
-  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR" "MESHES;OPTIONS")
+  cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION" "MESHES;OPTIONS")
   if(NOT ARG_TARGET OR NOT ARG_MESHES OR ARG_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "boxtree_add_cooked_assets(TARGET target MESHES mesh... [OPTIONS option...] "
-                        "[OUTPUT_DIR dir]): unexpected '${ARG_UNPARSED_ARGUMENTS}' or a part is missing")
+                        "[OUTPUT_DIR dir] [DEFINITION name]): unexpected '${ARG_UNPARSED_ARGUMENTS}' or a part "
+                        "is missing")
   endif()
-  if(NOT ARG_OUTPUT_DIR)
-    set(ARG_OUTPUT_DIR ${CMAKE_CURRENT_BINARY_DIR})
+  if(NOT TARGET ${ARG_TARGET})
+    message(FATAL_ERROR "boxtree_add_cooked_assets: there is no target ${ARG_TARGET}")
   endif()
-  file(MAKE_DIRECTORY ${ARG_OUTPUT_DIR})
+  get_target_property(aliased ${ARG_TARGET} ALIASED_TARGET)
+  if(aliased)
+    set(ARG_TARGET ${aliased})
+  endif()
+  if(NOT ARG_DEFINITION)
+    set(ARG_DEFINITION BOXTREE_ASSET_DIR)
+  endif()
+  if(ARG_OUTPUT_DIR MATCHES "\\$<")
+    message(FATAL_ERROR "boxtree_add_cooked_assets: OUTPUT_DIR is ${ARG_OUTPUT_DIR}; only OPTIONS may hold "
+                        "generator expressions")
+  endif()
+  get_filename_component(dir "${ARG_OUTPUT_DIR}" ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
+  boxtree_find_tool(tool)
+  file(MAKE_DIRECTORY ${dir})
+
   set(outputs)
+  set(shared_targets)
+  get_property(call_count TARGET ${ARG_TARGET} PROPERTY BOXTREE_ASSET_CALLS)
+  set(assets_target ${ARG_TARGET}_assets)
+  if(call_count)
+    math(EXPR call_count "${call_count} + 1")
+    string(APPEND assets_target _${call_count})
+  else()
+    set(call_count 1)
+  endif()
   foreach(mesh IN LISTS ARG_MESHES)
     get_filename_component(mesh ${mesh} ABSOLUTE)
     get_filename_component(name ${mesh} NAME_WLE)
-    set(output ${ARG_OUTPUT_DIR}/${name}.bxt)
-    if(output IN_LIST outputs)
-      message(FATAL_ERROR "boxtree_add_cooked_assets: two meshes would be cooked into ${output}")
+    set(output ${dir}/${name}.bxt)
+    # What is cooked into it, by which options and target, all over the project.
+    get_property(known_mesh GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}")
+    get_property(known_options GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}")
+    get_property(known_target GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}")
+    if(known_mesh AND NOT known_mesh STREQUAL mesh)
+      message(FATAL_ERROR "boxtree_add_cooked_assets: ${known_mesh} and ${mesh} would both be cooked into "
+                          "${output}: give one of them another OUTPUT_DIR")
+    elseif(known_mesh AND NOT "${known_options}" STREQUAL "${ARG_OPTIONS}")
+      message(FATAL_ERROR "boxtree_add_cooked_assets: ${mesh} is cooked into ${output} with the options "
+                          "'${known_options}' already; to cook it with '${ARG_OPTIONS}', too, give one of them "
+                          "another OUTPUT_DIR")
+    elseif(known_mesh)
+      if(NOT known_target STREQUAL assets_target)
+        list(APPEND shared_targets ${known_target})
+      endif()
+      continue()
+    endif()
+    set_property(GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}" "${mesh}")
+    set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
+    set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
+
+    set(options_file)
+    if(CMAKE_GENERATOR MATCHES "Makefiles") # Make does not notice that a command has changed.
+      set(options_file ${output}.options)
+      file(GENERATE OUTPUT ${options_file} CONTENT "${ARG_OPTIONS}\n")
     endif()
     add_custom_command(
       OUTPUT ${output}
-      COMMAND boxtree::cli cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${ARG_OPTIONS}
-      MAIN_DEPENDENCY ${mesh}
-      DEPENDS boxtree::cli
+      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${ARG_OPTIONS}
+      DEPENDS ${mesh} ${tool} ${options_file}
       DEPFILE ${output}.d
       COMMENT "Cooking ${name}.bxt"
+      COMMAND_EXPAND_LISTS # an option that a generator expression leaves empty is none
       VERBATIM)
     list(APPEND outputs ${output})
   endforeach()
-  add_custom_target(${ARG_TARGET}_assets DEPENDS ${outputs})
-  add_dependencies(${ARG_TARGET} ${ARG_TARGET}_assets)
-  target_compile_definitions(${ARG_TARGET} PRIVATE BOXTREE_ASSET_DIR="${ARG_OUTPUT_DIR}")
+  if(outputs)
+    set_target_properties(${ARG_TARGET} PROPERTIES BOXTREE_ASSET_CALLS ${call_count})
+    add_custom_target(${assets_target} DEPENDS ${outputs})
+    list(APPEND shared_targets ${assets_target})
+  endif()
+  if(shared_targets)
+    list(REMOVE_DUPLICATES shared_targets)
+    add_dependencies(${ARG_TARGET} ${shared_targets})
+  endif()
+  boxtree_define_asset_dir(${ARG_TARGET} ${ARG_DEFINITION} ${dir})
 endfunction()
