@@ -1,34 +1,110 @@
-# Installation: find_package(boxtree CONFIG) gives boxtree::format, boxtree::runtime and boxtree::paper,
-# the program boxtree::cli, and boxtree_add_cooked_assets(); find_package(boxtree CONFIG COMPONENTS
-# blob) adds boxtree::blob, which alone needs liblzma and zstd. Codecs and queries are components, too:
-# one that was left out is not found.
+# Installation, for find_package(boxtree CONFIG) and for pkg-config, in three components of install rules:
+# boxtree_runtime (the shared library, if there is one), boxtree_development (headers, archives and what
+# finds them) and boxtree_program (the command line). boxtreeConfig.cmake.in lists the components of
+# find_package.
 include(CMakePackageConfigHelpers)
 
 set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
-install(TARGETS boxtree_format boxtree_runtime EXPORT boxtreeTargets
-        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-if(TARGET boxtree_paper)
-  install(TARGETS boxtree_paper EXPORT boxtreeTargets ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+if(BUILD_SHARED_LIBS)
+  set(targets boxtree_shared boxtree_shared_format)
+  if(BOXTREE_PAPER_CODECS)
+    list(APPEND targets boxtree_shared_paper)
+  endif()
+  if(BOXTREE_BLOB)
+    list(APPEND targets boxtree_shared_blob)
+  endif()
+else()
+  set(targets boxtree_format boxtree_runtime)
+  if(BOXTREE_PAPER_CODECS)
+    list(APPEND targets boxtree_paper)
+  endif()
+  # In a file of its own, because its targets want liblzma and zstd to be found.
+  if(BOXTREE_BLOB)
+    install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets
+            ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_development)
+    install(EXPORT boxtreeBlobTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
+            COMPONENT boxtree_development)
+  endif()
 endif()
-if(BOXTREE_BLOB)
-  install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets
-          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  install(EXPORT boxtreeBlobTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
-endif()
+install(TARGETS ${targets} EXPORT boxtreeTargets
+        ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_development
+        LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT boxtree_runtime
+                                                    NAMELINK_COMPONENT boxtree_development)
+install(EXPORT boxtreeTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
+        COMPONENT boxtree_development)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/format/include/boxtree/ ${PROJECT_SOURCE_DIR}/runtime/include/boxtree/
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree)
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree COMPONENT boxtree_development)
 install(FILES ${BOXTREE_INCLUDE_DIR}/boxtree/configuration.h
-        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree)
+        DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/boxtree COMPONENT boxtree_development)
+# With the program, so that boxtree::cli is there exactly where the program is.
 if(BOXTREE_BUILD_COOKER)
-  install(TARGETS boxtree_cli EXPORT boxtreeTargets RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS boxtree_cli EXPORT boxtreeCliTargets
+          RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT boxtree_program)
+  install(EXPORT boxtreeCliTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
+          COMPONENT boxtree_program)
 endif()
-install(EXPORT boxtreeTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR})
+
+set(BOXTREE_NEEDS_HIGHWAY OFF)
+if(BOXTREE_HIGHWAY AND NOT BUILD_SHARED_LIBS)
+  set(BOXTREE_NEEDS_HIGHWAY ON)
+endif()
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/boxtreeConfig.cmake.in
                               ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
                               INSTALL_DESTINATION ${BOXTREE_CONFIG_DIR})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
-                                 COMPATIBILITY SameMajorVersion)
+                                 COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
               ${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/BoxtreeCookedAssets.cmake
-        DESTINATION ${BOXTREE_CONFIG_DIR})
+        DESTINATION ${BOXTREE_CONFIG_DIR} COMPONENT boxtree_development)
+
+# boxtree_install_pkg_config(NAME DESCRIPTION REQUIRES LIBS): NAME.pc, which finds all from where it lies.
+function(boxtree_install_pkg_config name description requires libs)
+  set(PC_PREFIX ${CMAKE_INSTALL_PREFIX})
+  if(NOT IS_ABSOLUTE ${CMAKE_INSTALL_LIBDIR})
+    file(RELATIVE_PATH PC_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+    string(REGEX REPLACE "/$" "" PC_PREFIX "\${pcfiledir}/${PC_PREFIX}")
+  endif()
+  set(PC_LIBDIR "\${prefix}")
+  cmake_path(APPEND PC_LIBDIR ${CMAKE_INSTALL_LIBDIR})
+  set(PC_INCLUDEDIR "\${prefix}")
+  cmake_path(APPEND PC_INCLUDEDIR ${CMAKE_INSTALL_INCLUDEDIR})
+  set(PC_NAME ${name})
+  set(PC_DESCRIPTION ${description})
+  set(PC_REQUIRES ${requires})
+  set(PC_LIBS ${libs})
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/boxtree.pc.in ${PROJECT_BINARY_DIR}/${name}.pc @ONLY)
+  install(FILES ${PROJECT_BINARY_DIR}/${name}.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig
+          COMPONENT boxtree_development)
+endfunction()
+
+# Archives are linked with all that they need, so nothing of it is "private". The shared library brings
+# along what it needs.
+set(runtime_requires "eigen3 >= 3.4")
+set(runtime_libs "-lboxtree")
+set(paper_libs "")
+set(blob_requires "boxtree = ${PROJECT_VERSION}")
+set(blob_libs "")
+if(NOT BUILD_SHARED_LIBS)
+  set(runtime_libs "-lboxtree_runtime -lboxtree_format")
+  if(BOXTREE_HIGHWAY)
+    string(APPEND runtime_requires ", libhwy >= 1.0")
+  endif()
+  set(paper_libs "-lboxtree_paper")
+  set(blob_libs "-lboxtree_blob")
+  string(APPEND blob_requires ", libzstd >= 1.5, liblzma >= 5.4")
+endif()
+boxtree_install_pkg_config(boxtree "Queries on collision trees in mapped files" "${runtime_requires}"
+                           "${runtime_libs}")
+if(BOXTREE_PAPER_CODECS)
+  boxtree_install_pkg_config(boxtree-paper "The codecs of the BoxTree paper" "boxtree = ${PROJECT_VERSION}"
+                             "${paper_libs}")
+endif()
+if(BOXTREE_BLOB)
+  boxtree_install_pkg_config(boxtree-blob "Collision trees in files that are compressed whole"
+                             "${blob_requires}" "${blob_libs}")
+endif()
+
+if(PROJECT_IS_TOP_LEVEL)
+  include(${CMAKE_CURRENT_LIST_DIR}/BoxtreePackages.cmake)
+endif()

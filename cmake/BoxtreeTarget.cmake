@@ -37,17 +37,22 @@ function(boxtree_set_target target)
   endif()
 endfunction()
 
-# A library `boxtree_NAME`, known to users as boxtree::NAME.
-function(boxtree_add_library name)
-  add_library(boxtree_${name} STATIC ${ARGN})
-  add_library(boxtree::${name} ALIAS boxtree_${name})
-  set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
-  target_include_directories(boxtree_${name} PUBLIC
+# Where users of a target find the public headers.
+function(boxtree_offer_headers target)
+  target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}/format/include>
     $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}/runtime/include>
     $<BUILD_INTERFACE:${BOXTREE_INCLUDE_DIR}>
-    $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+endfunction()
+
+# An archive `boxtree_NAME`. The project's own targets link these; applications link boxtree::NAME, which
+# runtime/CMakeLists.txt makes of them.
+function(boxtree_add_library name)
+  add_library(boxtree_${name} STATIC ${ARGN})
+  set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
+  boxtree_offer_headers(boxtree_${name})
+  target_include_directories(boxtree_${name} PUBLIC $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>)
   boxtree_set_target(boxtree_${name})
 endfunction()
 

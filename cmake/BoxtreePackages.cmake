@@ -1,0 +1,70 @@
+# Debian packages: `cpack` in the build directory makes libboxtree0.1 (of a build with BUILD_SHARED_LIBS
+# alone), libboxtree-dev and, with the cooker, boxtree. To have libraries where Debian has them, configure
+# with CMAKE_INSTALL_PREFIX=/usr.
+set(soversion ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+set(version_of_build "(= ${PROJECT_VERSION})")
+
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME boxtree)
+set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
+set(CPACK_PACKAGE_CONTACT "boxtree developers <boxtree@example.org>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_GENERATE_SHLIBS ON)
+set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
+# Folders of packages are the same whatever the umask of who makes them.
+set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
+    OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+
+file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz PATHS ${PROJECT_SOURCE_DIR}/CHANGELOG.md
+     FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9)
+
+# boxtree_add_package(COMPONENT NAME SECTION DEPENDS DESCRIPTION): a package of one component of install
+# rules. Debian wants licence and changes in each.
+macro(boxtree_add_package component name section depends description)
+  list(APPEND CPACK_COMPONENTS_ALL ${component})
+  string(TOUPPER ${component} upper)
+  set(CPACK_DEBIAN_${upper}_PACKAGE_NAME ${name})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_SECTION ${section})
+  set(CPACK_DEBIAN_${upper}_PACKAGE_DEPENDS "${depends}")
+  set(CPACK_DEBIAN_${upper}_DESCRIPTION "${description}")
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${name}
+          RENAME copyright COMPONENT ${component} EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/doc/${name}
+          COMPONENT ${component} EXCLUDE_FROM_ALL)
+endmacro()
+
+set(CPACK_COMPONENTS_ALL)
+set(needed "libeigen3-dev (>= 3.4)")
+if(BUILD_SHARED_LIBS)
+  boxtree_add_package(boxtree_runtime libboxtree${soversion} libs ""
+"queries on collision trees in mapped files (shared library)
+Maps .bxt files, which boxtree cooks from meshes, and answers ray, box, sphere,
+closest-point, contact and distance queries straight from their bytes.")
+  file(WRITE ${PROJECT_BINARY_DIR}/triggers "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_BOXTREE_RUNTIME_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/triggers)
+  string(PREPEND needed "libboxtree${soversion} ${version_of_build}, ")
+else()
+  if(BOXTREE_HIGHWAY)
+    string(APPEND needed ", pkg-config, libhwy-dev")
+  endif()
+  if(BOXTREE_BLOB)
+    string(APPEND needed ", liblzma-dev, libzstd-dev")
+  endif()
+endif()
+if(BOXTREE_BUILD_COOKER)
+  boxtree_add_package(boxtree_program boxtree graphics ""
+"cooks meshes into collision trees and queries them (command line)
+Turns meshes of any format that assimp reads into .bxt files: small, versioned,
+checked, and queried without loading. Also verifies, exports and measures them.")
+  string(PREPEND needed "boxtree ${version_of_build}, ")
+endif()
+boxtree_add_package(boxtree_development libboxtree-dev libdevel "${needed}"
+"queries on collision trees in mapped files (development files)
+Headers, library, and the files by which CMake and pkg-config find them. In
+CMake, boxtree_add_cooked_assets() cooks the meshes of a target as it is built.")
+include(CPack)
