@@ -5,7 +5,8 @@ compile, and the README's answers what the command above it answers.
 
     commands_test.py SOURCE_DIR BOXTREE CXX INCLUDES LIBRARIES     the last two separated by ;
 
-tests/bare_machine.sh runs what builds or installs the project (BUILDS below) on a bare Debian.
+tests/bare_machine.sh and tests/bare_packages.sh run what builds or installs the project (BUILDS below) on
+a bare Debian.
 """
 import os
 import pathlib
@@ -16,7 +17,7 @@ import tempfile
 
 from blocks import blocks_of
 
-BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|\. samples/packages\.sh)")
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|\. samples/packages\.sh|cmake -S \. -B build-deb )")
 
 # What programs of the pages use of the application around them.
 AROUND = """

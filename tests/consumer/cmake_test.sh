@@ -1,0 +1,334 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# What projects meet that use boxtree by CMake: boxtree_add_cooked_assets in all its forms, find_package
+# with its components, versions and silence, boxtree below another project, and pkg-config. Builds little:
+# most is seen when CMake configures.
+#   cmake_test.sh BUILD SOURCE
+set -euo pipefail
+build=$1 source=$2
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "cmake: $*"; exit 1; }
+# quiet COMMAND...: runs it; its output is shown if it fails.
+quiet() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log"; fail "$* failed"; }; }
+cache() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
+compiler=$(cache CMAKE_CXX_COMPILER)
+version=$(cache CMAKE_PROJECT_VERSION)
+shared=$(cache BUILD_SHARED_LIBS)
+quiet cmake --install "$build" --prefix "$work/prefix"
+config=$(find "$work/prefix" -name boxtreeConfig.cmake)
+lib=${config%/cmake/boxtree/*}
+# Where Debian has libraries; CMake looks there if a compiler tells it to, and a project without languages has none.
+architecture=()
+[[ $lib == */lib/* ]] && architecture=(-DCMAKE_LIBRARY_ARCHITECTURE="${lib##*/}")
+cp -r "$source/samples/meshes" "$work/meshes"
+
+# project NAME LANGUAGES: a project of the lines of standard input.
+project() {
+  mkdir -p "$work/$1"
+  { printf 'cmake_minimum_required(VERSION 3.25)\nproject(%s VERSION 7.8.9 LANGUAGES %s)\n' "$1" "$2"; cat; } \
+    >"$work/$1/CMakeLists.txt"
+}
+configure() {
+  local name=$1
+  shift
+  cmake -S "$work/$name" -B "$work/$name/build" -G Ninja --no-warn-unused-cli -DCMAKE_BUILD_TYPE=Release \
+    -DCMAKE_PREFIX_PATH="$work/prefix" \
+    -DCMAKE_CXX_COMPILER="$compiler" "${architecture[@]}" "$@" >"$work/log" 2>&1
+}
+configured() { configure "$@" || { cat "$work/log"; fail "$1 is not configured"; }; }
+# refused WHY OPTION...: CMake must refuse a project without languages, the lines of standard input, and say
+# WHY, whatever the places where it breaks lines.
+refused() {
+  local why=$1
+  shift
+  rm -rf "$work/refused"
+  project refused NONE
+  if configure refused "$@"; then fail "not refused: $why"; fi
+  tr -s ' \n' '  ' <"$work/log" | grep -qF -- "$why" || { cat "$work/log"; fail "unclear, without: $why"; }
+}
+
+# --- boxtree_add_cooked_assets ---
+
+# Several calls for a target, options by generator expressions, relative folders, an INTERFACE library,
+# a file that two targets in two folders share.
+project assets CXX <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_executable(game game.cpp)
+boxtree_add_cooked_assets(TARGET game MESHES ../meshes/level.obj ../meshes/crate.obj)
+boxtree_add_cooked_assets(TARGET game MESHES ../meshes/crate.obj OUTPUT_DIR small DEFINITION SMALL_DIR
+                          OPTIONS --codec $<IF:$<CONFIG:Release>,${CODEC},none> $<$<CONFIG:Debug>:--none>)
+boxtree_add_cooked_assets(TARGET game MESHES ../meshes/crate.obj)
+add_subdirectory(library)
+add_executable(viewer game.cpp)
+target_link_libraries(viewer PRIVATE library)
+CMAKE
+mkdir "$work/assets/library"
+cat >"$work/assets/library/CMakeLists.txt" <<'CMAKE'
+add_library(library INTERFACE)
+boxtree_add_cooked_assets(TARGET library MESHES ../../meshes/level.obj OUTPUT_DIR ${PROJECT_BINARY_DIR})
+boxtree_add_cooked_assets(TARGET library MESHES ../../meshes/level.obj OUTPUT_DIR own/deep DEFINITION SMALL_DIR)
+CMAKE
+cat >"$work/assets/game.cpp" <<'CODE'
+#include <cstdio>
+int main() { std::puts(BOXTREE_ASSET_DIR "\n" SMALL_DIR); }
+CODE
+codec_of() { "$work/prefix/bin/boxtree" info "$1" --json | jq -r '.trees[0].codec'; }
+out=$work/assets/build
+configured assets -DCODEC=packed-f32
+quiet cmake --build "$out" --target viewer
+for file in "$out/level.bxt" "$out/library/own/deep/level.bxt"; do
+  [ -f "$file" ] || fail "viewer: $file was not cooked before it was built"
+done
+[ ! -e "$out/small/crate.bxt" ] || fail "viewer: cooked what it does not use"
+[ "$("$out/viewer")" = "$(printf '%s\n%s/library/own/deep' "$out" "$out")" ] || fail "viewer: $("$out/viewer")"
+quiet cmake --build "$out"
+[ "$("$out/game")" = "$(printf '%s\n%s/small' "$out" "$out")" ] || fail "game: $("$out/game")"
+[ "$(codec_of "$out/small/crate.bxt")" = packed-f32 ] || fail "options of the call were lost"
+[ "$(codec_of "$out/crate.bxt")" != packed-f32 ] || fail "options of another call were used"
+for generator in Ninja "Unix Makefiles"; do # another option cooks again, and just that
+  rm -rf "$out"
+  configured assets -G "$generator" -DCODEC=packed-f32
+  quiet cmake --build "$out"
+  sleep 1.1 # Make compares whole seconds on some file systems
+  configured assets -G "$generator" -DCODEC=plain-f16
+  quiet cmake --build "$out"
+  [ "$(codec_of "$out/small/crate.bxt")" = plain-f16 ] || fail "$generator: another option did not recook"
+  [ "$(grep -c Cooking "$work/log")" = 1 ] || fail "$generator: another option recooked all"
+done
+
+# What is refused when CMake configures, with what to do about it.
+refused 'level.obj is cooked into' <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact)
+CMAKE
+tr -s ' \n' '  ' <"$work/log" | grep -q "with '--exact', too, give one of them another OUTPUT_DIR" || fail "no remedy"
+cp "$work/meshes/level.obj" "$work/level.obj"
+refused 'would both be cooked into' <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj ../level.obj)
+CMAKE
+refused 'would both be cooked into' <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(first)
+add_custom_target(second)
+boxtree_add_cooked_assets(TARGET first MESHES ../meshes/level.obj)
+boxtree_add_cooked_assets(TARGET second MESHES ../level.obj)
+CMAKE
+refused 'add DEFINITION and another name for it, or use one OUTPUT_DIR' <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_library(assets INTERFACE)
+boxtree_add_cooked_assets(TARGET assets MESHES ../meshes/level.obj)
+boxtree_add_cooked_assets(TARGET assets MESHES ../meshes/crate.obj OUTPUT_DIR other)
+CMAKE
+refused "there is no target nothing" <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+boxtree_add_cooked_assets(TARGET nothing MESHES ../meshes/level.obj)
+CMAKE
+refused 'only OPTIONS may hold generator expressions' <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OUTPUT_DIR $<CONFIG>)
+CMAKE
+
+# A tool of the machine that builds.
+project tool NONE <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets ALL)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
+CMAKE
+cat >"$work/tool.sh" <<SHELL
+#!/bin/sh
+echo "\$1" >>"$work/calls"
+exec "$work/prefix/bin/boxtree" "\$@"
+SHELL
+chmod +x "$work/tool.sh"
+configured tool -DBOXTREE_TOOL="$work/tool.sh" -DCMAKE_SYSTEM_NAME=Linux # which is cross compiling
+quiet cmake --build "$work/tool/build"
+touch "$work/tool.sh"
+quiet cmake --build "$work/tool/build"
+[ "$(cat "$work/calls")" = "$(printf 'cook\ncook')" ] || fail "BOXTREE_TOOL was not run twice: $(cat "$work/calls")"
+nowhere='set(CMAKE_FIND_USE_CMAKE_SYSTEM_PATH OFF)
+set(CMAKE_FIND_USE_SYSTEM_ENVIRONMENT_PATH OFF)'
+refused 'or set BOXTREE_TOOL to the path of the program boxtree there' -DCMAKE_SYSTEM_NAME=Linux <<CMAKE
+find_package(boxtree CONFIG REQUIRED)
+$nowhere
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
+CMAKE
+refused "BOXTREE_TOOL is '/nothing'" -DBOXTREE_TOOL=/nothing <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
+CMAKE
+rm -rf "$work/tool/build"
+PATH="$work/prefix/bin:$PATH" configured tool -DCMAKE_SYSTEM_NAME=Linux
+grep -q "^BOXTREE_TOOL:FILEPATH=$work/prefix/bin/boxtree" "$work/tool/build/CMakeCache.txt" ||
+  fail "no tool was found in PATH"
+
+# --- find_package ---
+
+# silent LINES: the project's lines print nothing, found or not. expect: boxtree_FOUND afterwards.
+silent() {
+  local expect=$1 lines=$2
+  shift 2
+  rm -rf "$work/silent" "$work/without"
+  project silent NONE <<<"$lines
+if(NOT \"\${boxtree_FOUND}\" STREQUAL \"$expect\")
+  message(FATAL_ERROR \"boxtree_FOUND is '\${boxtree_FOUND}'\")
+endif()"
+  project without NONE <<<""
+  configured without "$@"
+  sed 's/without/silent/' "$work/log" >"$work/nothing"
+  configured silent "$@"
+  diff "$work/nothing" "$work/log" || fail "QUIET prints: $lines"
+}
+silent 1 'find_package(boxtree CONFIG QUIET COMPONENTS runtime paper blob cli wide8 ray)'
+silent 0 'find_package(boxtree CONFIG QUIET COMPONENTS wide5)'
+silent 0 'find_package(boxtree CONFIG QUIET)' -DCMAKE_PREFIX_PATH=/nothing
+
+refused 'wide5: there is no such component' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
+# Versions 0.x are compatible within x.
+minor=${version%.*}
+for wanted in "$minor" "$version"; do
+  project version NONE <<<"find_package(boxtree $wanted CONFIG REQUIRED)"
+  configure version || fail "$wanted: not compatible with $version: $(cat "$work/log")"
+done
+for wanted in "${minor%.*}.$((${minor#*.} + 1))" 1.0 "$minor.$((${version##*.} + 1))"; do
+  refused "compatible with requested version \"$wanted\"" <<<"find_package(boxtree $wanted CONFIG REQUIRED)"
+done
+
+# Components that are not wanted add no dependencies; one whose dependencies are missing is not found, and
+# says so. Of a static build: the shared library brings its own.
+mkdir "$work/pc"
+if [ "$shared" != ON ]; then
+  for name in libhwy eigen3; do
+    pc=$(pkg-config --variable=pcfiledir "$name") && cp "$pc/$name.pc" "$work/pc/"
+  done
+  project alone NONE <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED COMPONENTS runtime paper cli)
+if(TARGET PkgConfig::boxtree_zstd OR TARGET boxtree::blob)
+  message(FATAL_ERROR "the component blob is found without being wanted")
+endif()
+CMAKE
+  PKG_CONFIG_LIBDIR=$work/pc configured alone
+  PKG_CONFIG_LIBDIR=$work/pc refused 'pkg-config does not find libzstd>=1.5' \
+    <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS blob)'
+fi
+
+# A runtime with less in it says what was left out, and where.
+quiet cmake -S "$source" -B "$work/less" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DBOXTREE_BUILD_COOKER=OFF \
+  -DBOXTREE_CODECS=wide4 -DBOXTREE_QUERIES=ray -DBOXTREE_BLOB=OFF
+while read -r component why; do
+  refused "$component: $why" -DCMAKE_PREFIX_PATH="$work/less" \
+    <<<"find_package(boxtree CONFIG REQUIRED COMPONENTS $component)"
+done <<'CASES'
+pair BOXTREE_QUERIES left it out of this build, which has ray
+wide8 BOXTREE_CODECS left it out of this build, which has wide4
+paper BOXTREE_CODECS left all codecs of the paper out of this build
+blob this build has BOXTREE_BLOB=OFF
+cli the command line is not installed here
+CASES
+
+# --- Below another project ---
+
+# Its settings, variables, cache entries, targets and rules of installation stay as they are.
+# shellcheck disable=SC2016 # variables of CMake
+for way in 'add_subdirectory("${SOURCE}" boxtree)' \
+  'include(FetchContent)
+   FetchContent_Declare(boxtree SOURCE_DIR "${SOURCE}" BINARY_DIR "${CMAKE_BINARY_DIR}/boxtree")
+   FetchContent_MakeAvailable(boxtree)'; do
+  rm -rf "$work/parent"
+  project parent CXX <<CMAKE
+$(grep -q FetchContent <<<"$way" && echo 'include(FetchContent)')
+set(CMAKE_INSTALL_PREFIX /elsewhere)
+get_cmake_property(variables_before VARIABLES)
+foreach(name IN LISTS variables_before)
+  set(before_\${name} "\${\${name}}")
+endforeach()
+get_cmake_property(cache_before CACHE_VARIABLES)
+macro(see_boxtree)
+  $way
+endmacro()
+see_boxtree()
+get_cmake_property(cache_after CACHE_VARIABLES)
+foreach(name IN LISTS variables_before)
+  if(NOT name MATCHES "^(ARG[CNV0-9]*|variables_before|CACHE_VARIABLES|.*_before|CMAKE_MATCH_.*)$" AND
+     NOT "\${before_\${name}}" STREQUAL "\${\${name}}")
+    message(SEND_ERROR "\${name} was '\${before_\${name}}' and is '\${\${name}}'")
+  endif()
+endforeach()
+# New in the cache: options, where packages lie, and what modules of CMake put there by itself.
+list(REMOVE_ITEM cache_after \${cache_before})
+foreach(name IN LISTS cache_after)
+  if(NOT name MATCHES "^(BOXTREE_|boxtree_|_?_?pkg_config_|pkgcfg_lib_boxtree_|PKG_CONFIG_|FETCHCONTENT_|_CMAKE_|_GNUInstallDirs_)|_DIR$|^FIND_PACKAGE_MESSAGE_DETAILS|^CMAKE_INSTALL_[A-Z]*DIR$|\
+^prefix_result$")
+    message(SEND_ERROR "new in the cache: \${name}")
+  endif()
+endforeach()
+function(check_targets folder)
+  get_property(targets DIRECTORY \${folder} PROPERTY BUILDSYSTEM_TARGETS)
+  foreach(target IN LISTS targets)
+    if(NOT target MATCHES "^boxtree_")
+      message(SEND_ERROR "\${folder} has a target \${target}")
+    endif()
+  endforeach()
+  get_property(below DIRECTORY \${folder} PROPERTY SUBDIRECTORIES)
+  foreach(each IN LISTS below)
+    check_targets(\${each})
+  endforeach()
+endfunction()
+check_targets("\${SOURCE}")
+get_property(includes DIRECTORY PROPERTY INCLUDE_DIRECTORIES)
+get_property(tests DIRECTORY PROPERTY TESTS)
+if(includes OR tests OR NOT "\${CMAKE_BUILD_TYPE}" STREQUAL "")
+  message(SEND_ERROR "folders '\${includes}', tests '\${tests}', build type '\${CMAKE_BUILD_TYPE}'")
+endif()
+foreach(target boxtree::format boxtree::runtime boxtree::paper boxtree::blob boxtree::cli)
+  if(NOT TARGET \${target})
+    message(SEND_ERROR "there is no \${target}")
+  endif()
+endforeach()
+add_executable(game game.cpp)
+boxtree_add_cooked_assets(TARGET game MESHES ../meshes/level.obj OUTPUT_DIR assets)
+target_link_libraries(game PRIVATE boxtree::runtime)
+CMAKE
+  echo 'int main() {}' >"$work/parent/game.cpp"
+  configured parent -DCMAKE_BUILD_TYPE= -DSOURCE="$source"
+  if grep -rl --include=cmake_install.cmake 'file(INSTALL' "$work/parent/build"; then fail "boxtree installs itself"; fi
+  ninja -C "$work/parent/build" -n game >"$work/log"
+  grep -q 'Cooking level.bxt' "$work/log" || fail "nothing would be cooked"
+  [ -e "$work/parent/build/CPackConfig.cmake" ] && fail "boxtree configures packages"
+done
+# Unless it is wanted.
+configured parent -DCMAKE_BUILD_TYPE= -DSOURCE="$source" -DBOXTREE_INSTALL=ON
+grep -rq --include=cmake_install.cmake 'file(INSTALL' "$work/parent/build" || fail "BOXTREE_INSTALL=ON installs nothing"
+quiet cmake -S "$source" -B "$work/less" -DBOXTREE_INSTALL=OFF
+grep -rq --include=cmake_install.cmake 'file(INSTALL' "$work/less" && fail "BOXTREE_INSTALL=OFF installs"
+
+# --- pkg-config ---
+
+cat >"$work/plain.cpp" <<'CODE'
+#include <boxtree/boxtree.h>
+#include <boxtree/paper.h>
+int main(int, char** argv) {
+  boxtree::use_paper_codecs();
+  const auto file = boxtree::File::open(argv[1]);
+  if (!file) return 1;
+  const auto tree = boxtree::Tree::bind(*file);
+  return tree.ok() && boxtree::closest_hit(*tree, {{0, 0, 10}, {0, 0, -1}}) ? 0 : 2;
+}
+CODE
+"$work/prefix/bin/boxtree" cook "$work/meshes/level.obj" -o "$work/level.bxt" --codec plain-f32 -q
+mv "$work/prefix" "$work/moved"
+lib=${lib/prefix/moved}
+export PKG_CONFIG_PATH=$lib/pkgconfig
+[ "$(pkg-config --modversion boxtree)" = "$version" ] || fail "boxtree.pc has another version"
+sanitize=$(cache BOXTREE_SANITIZE)
+read -ra flags <<<"$(pkg-config --cflags --libs boxtree-paper) ${sanitize:+-fsanitize=$sanitize}"
+quiet "$compiler" -std=c++20 "$work/plain.cpp" -o "$work/plain" "${flags[@]}"
+LD_LIBRARY_PATH=$lib quiet "$work/plain" "$work/level.bxt"
+echo "cmake: as expected"
