@@ -177,7 +177,7 @@ PageSection counted(const PaperReport& report) {
          percent(sizes.one_cut_shrink / sizes.two_cut_shrink - 1)});
   }
   return {
-      "What the paper weighs and drops, counted",
+      "Layouts that the paper considers and rejects, by counting",
       "Sizes of nodes as they would be: fields of whole bytes (3.2), each node as small as its own "
       "numbers allow (3.2.1, not addressable by number), two or three levels in one node (5.3), "
       "and shrink nodes with their one useful cut and number.",
