@@ -28,7 +28,7 @@ inline constexpr std::uint16_t kVersionMinor = 0;
 /// First bytes of the file, followed by the section table.
 struct FileHeader {
   std::array<std::uint8_t, 8> magic;
-  std::uint16_t version_major;  // a reader refuses a larger one
+  std::uint16_t version_major;  // a reader refuses any other
   std::uint16_t version_minor;  // a reader accepts any
   std::uint32_t header_bytes;   // 64
   std::uint64_t file_bytes;
