@@ -137,7 +137,8 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["tree"].get<double>(),
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
-    fmt::print("  surface: {}\n", text_of_surface(tree["surface"]));
+    fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
+               text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
                line_of(tree["bounds"]["max"]));
   }

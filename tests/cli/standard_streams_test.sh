@@ -106,7 +106,7 @@ expect 0 "$boxtree" info open.bxt
 grep -q '^  surface: not in the file$' out
 expect 0 "$boxtree" cook open.obj -o open.bxt --grid-bits 12
 expect 0 "$boxtree" info open.bxt
-grep -qE '^  surface: [34] open edges$' out
+grep -qE '^  surface on the grid: [34] open edges$' out
 
 # A cook of one mesh prints six lines at most, whatever there is to say.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.7 0\np 1\nl 1 2\nf 1 2 3\nf 1 1 2\nf 1 2 3' >notes.obj
