@@ -125,16 +125,10 @@ function(boxtree_add_cooked_assets)
     set_property(GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}" "${mesh}")
     set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
     set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
-
-    set(options_file)
-    if(CMAKE_GENERATOR MATCHES "Makefiles") # Make does not notice that a command has changed.
-      set(options_file ${output}.options)
-      file(GENERATE OUTPUT ${options_file} CONTENT "${ARG_OPTIONS}\n")
-    endif()
     add_custom_command(
       OUTPUT ${output}
       COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${ARG_OPTIONS}
-      DEPENDS ${mesh} ${tool} ${options_file}
+      DEPENDS ${mesh} ${tool}
       DEPFILE ${output}.d
       COMMENT "Cooking ${name}.bxt"
       COMMAND_EXPAND_LISTS # an option that a generator expression leaves empty is none

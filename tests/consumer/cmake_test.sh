@@ -264,7 +264,7 @@ endforeach()
 # New in the cache: options, where packages lie, and what modules of CMake put there by itself.
 list(REMOVE_ITEM cache_after \${cache_before})
 foreach(name IN LISTS cache_after)
-  if(NOT name MATCHES "^(BOXTREE_|boxtree_|_?_?pkg_config_|pkgcfg_lib_boxtree_|PKG_CONFIG_|FETCHCONTENT_|_CMAKE_|_GNUInstallDirs_)|_DIR$|^FIND_PACKAGE_MESSAGE_DETAILS|^CMAKE_INSTALL_[A-Z]*DIR$|\
+  if(NOT name MATCHES "^(BOXTREE_|boxtree_|_?_?pkg_config_|pkgcfg_lib_boxtree_|PKG_CONFIG_|FETCHCONTENT_|_CMAKE_|_GNUInstallDirs_)|^([A-Za-z0-9]+|nlohmann_json)_DIR$|^FIND_PACKAGE_MESSAGE_DETAILS|^CMAKE_INSTALL_[A-Z]*DIR$|\
 ^prefix_result$")
     message(SEND_ERROR "new in the cache: \${name}")
   endif()
