@@ -29,20 +29,18 @@ readelf -d "$lib/libboxtree.so" >"$work/dynamic"
 grep -q "soname: \[libboxtree.so.$soversion\]" "$work/dynamic" || fail "wrong soname: $(cat "$work/dynamic")"
 if grep -E 'RPATH|RUNPATH' "$work/dynamic"; then fail "has a path to search"; fi
 
-# Exported functions have names of public headers. Members of classes do, too: a private class or
-# function has none there.
+# Exported is what the public headers declare: their functions, and members of their classes.
 nm -DC --defined-only --format=posix "$lib/libboxtree.so" | grep -v ' A ' >"$work/exported"
 [ -s "$work/exported" ] || fail "nothing is exported"
 sed -E 's/@@.*//; s/\(.*//' "$work/exported" | sort -u >"$work/names"
-cat "$work"/prefix/include/boxtree/*.h >"$work/headers"
+sed 's|//.*||' "$work"/prefix/include/boxtree/*.h >"$work/headers"
 while read -r name _; do
   [[ $name == boxtree::* ]] || fail "exports $name, which is not boxtree's"
-  IFS=: read -ra parts <<<"${name#boxtree::}"
-  for part in "${parts[@]}"; do
-    [ -z "$part" ] && continue
-    [[ $part == operator* ]] && part=operator
-    grep -qE "(^|[^A-Za-z_])$part" "$work/headers" || fail "exports $name, of which no public header knows '$part'"
-  done
+  name=${name#boxtree::}
+  if [[ $name == *::* ]]; then
+    grep -q "^class BOXTREE_API ${name%%::*} {" "$work/headers" || fail "exports $name, whose class is not public"
+  fi
+  grep -qE "(^|[^A-Za-z_])${name##*::} ?\(" "$work/headers" || fail "exports $name, which no public header declares"
 done <"$work/names"
 # And every function is marked that a public header declares, templates excepted, and exported.
 awk '!after_template && /^[A-Za-z[][^#;=]* [&*]?[a-z_]+\(/ && !/BOXTREE_API/ {print} {after_template = /^template/}' \
