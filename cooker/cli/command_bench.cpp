@@ -10,7 +10,9 @@
 
 #include "cooker/choose/cost_file.h"
 #include "cooker/choose/measure.h"
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
@@ -219,11 +221,10 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_bench_command(CLI::App& app, int& status) {
+void add_bench_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("bench", "Time queries on .bxt files");
-  command.add_option("FILE", arguments->files, "Files with geometry inside")
-      ->type_name("FILE")
+  Command& command = program.add_command("bench", "Time queries on .bxt files");
+  command.add_file("FILE", arguments->files, Values::kCookedFiles, "Files with geometry inside")
       ->required();
   command
       .add_flag("--calibrate", arguments->calibrate,
@@ -239,6 +240,7 @@ void add_bench_command(CLI::App& app, int& status) {
   command.add_flag("--approximate", arguments->approximate,
                    "Instead: closest points and distances against the error that is allowed");
   command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.example("A first impression", "boxtree bench bunny.bxt --quick --runs 1");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -14,8 +14,10 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
 #include "cooker/cli/cook_report.h"
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
@@ -171,9 +173,9 @@ int run(Arguments& arguments) {
 
 }  // namespace
 
-void add_cook_command(CLI::App& app, int& status) {
+void add_cook_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand(
+  Command& command = program.add_command(
       "cook",
       "Cook meshes into one .bxt file\n"
       "Positions may be rounded: beside every bit of them auto tries a grid of 24 bits over the "
@@ -182,23 +184,23 @@ void add_cook_command(CLI::App& app, int& status) {
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
-  CLI::Option* inputs = command.add_option(
-      "MESH", arguments->job.inputs,
+  CLI::Option* inputs = command.add_file(
+      "MESH", arguments->job.inputs, Values::kMeshes,
       "Mesh files, one tree each; one file with a node graph that places several is a scene; - is "
       "standard input");
-  inputs->type_name("MESH");
   command
-      .add_option("-o,--output", arguments->job.output, "The file to write; - is standard output")
-      ->type_name("FILE")
+      .add_file("-o,--output", arguments->job.output, Values::kCookedFiles,
+                "The file to write; - is standard output")
       ->required();
-  command.add_option("--format", arguments->format, "Of the input -: the ending of its files, obj")
+  command
+      .takes(command.add_option("--format", arguments->format,
+                                "Of the input -: the ending of its files, obj"),
+             Values::kMeshEndings)
       ->type_name("ENDING")
       ->check(ending_fault);
   CLI::Option* profile =
-      command
-          .add_option("--profile", arguments->job.profile,
-                      "A scene.toml: what the scene is queried for, and so what may be left out")
-          ->type_name("FILE");
+      command.add_file("--profile", arguments->job.profile, Values::kProfiles,
+                       "A scene.toml: what the scene is queried for, and so what may be left out");
   CLI::Option* scene = command.add_flag("--scene", arguments->job.as_scene,
                                         "Make all inputs one scene of placed trees");
   command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
@@ -266,10 +268,9 @@ void add_cook_command(CLI::App& app, int& status) {
       ->type_name("SHARE")
       ->check(share_fault, "0.01 to 1")
       ->capture_default_str();
-  rare(command.add_option("--costs", arguments->job.costs,
-                          "Choose by the constants of your own machine, as `bench --calibrate "
-                          "--json` prints them: the choice may then differ from other machines'"))
-      ->type_name("FILE");
+  rare(command.add_file("--costs", arguments->job.costs, Values::kFiles,
+                        "Choose by the constants of your own machine, as `bench --calibrate "
+                        "--json` prints them: the choice may then differ from other machines'"));
   CLI::Option* external =
       rare(command.add_flag("--external", arguments->external,
                             "Leave positions and corners to the application, which binds its own "
@@ -283,9 +284,8 @@ void add_cook_command(CLI::App& app, int& status) {
   rare(command.add_flag("--trusted", arguments->trusted,
                         "Read formats that assimp reads once, not first in another process that "
                         "may crash"));
-  rare(command.add_option("--depfile", arguments->job.depfile,
-                          "Write the files read, in make syntax"))
-      ->type_name("FILE");
+  rare(command.add_file("--depfile", arguments->job.depfile, Values::kFiles,
+                        "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   rare(command.add_flag("--try-all", arguments->job.options.try_all,
@@ -295,6 +295,13 @@ void add_cook_command(CLI::App& app, int& status) {
        {codec, goal, exact, tolerance, grid_bits, budget, slowdown, no_face_ids, external}) {
     profile->excludes(option);
   }
+  command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");
+  command.example("Vertices may move by 0.001, for the fewest bytes",
+                  "boxtree cook bunny.obj -o small.bxt --tolerance 0.001 --for memory");
+  command.example("A scene, with what each part takes",
+                  "boxtree cook level.gltf -o level.bxt --why");
+  command.example("A scene by its profile", "boxtree cook --profile scene.toml -o profiled.bxt");
+  command.example("Through a pipe", "boxtree cook - --format obj -o - < bunny.obj > piped.bxt");
   command.callback([arguments, inputs, profile, grid_bits, &status] {
     if (inputs->count() == 0 && profile->count() == 0) {
       throw CLI::RequiredError("MESH, or --profile with a source");

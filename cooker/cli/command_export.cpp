@@ -11,7 +11,9 @@
 
 #include <fmt/format.h>
 
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
@@ -276,17 +278,19 @@ int run(Arguments& arguments) {
 
 }  // namespace
 
-void add_export_command(CLI::App& app, int& status) {
+void add_export_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command =
-      *app.add_subcommand("export", "Show triangles and boxes in a viewer: OBJ or glTF");
-  command.add_option("FILE", arguments->file, "The file to show; - is standard input")
-      ->type_name("FILE")
+  Command& command = program.add_command("export",
+                                         "Write triangles and boxes for a viewer, as OBJ or glTF\n"
+                                         "Without --triangles, --boxes, --levels and --leaves: "
+                                         "triangles, and boxes of levels 0 to 3.");
+  command
+      .add_file("FILE", arguments->file, Values::kCookedFiles,
+                "The file to show; - is standard input")
       ->required();
   command
-      .add_option("-o,--output", arguments->output,
-                  "What to write: a name in .obj or .glb, or - for standard output")
-      ->type_name("FILE")
+      .add_file("-o,--output", arguments->output, Values::kFiles,
+                "What to write: a name in .obj or .glb, or - for standard output")
       ->required();
   command.add_option("--format", arguments->format, "Of the output - [glb]")
       ->type_name("FORMAT")
@@ -312,9 +316,14 @@ void add_export_command(CLI::App& app, int& status) {
       ->type_name("ORDER")
       ->check(CLI::IsMember({"source", "tree"}))
       ->group(kRareOptions);
-  command.add_option("--mesh", arguments->mesh, "The source of trees cooked with --external")
-      ->type_name("FILE")
+  command
+      .add_file("--mesh", arguments->mesh, Values::kMeshes,
+                "The source of trees cooked with --external")
       ->group(kRareOptions);
+  command.example("Triangles and the boxes of levels 0 to 3",
+                  "boxtree export bunny.bxt -o bunny.glb");
+  command.example("The boxes of all leaves",
+                  "boxtree export bunny.bxt -o leaves.obj --boxes --leaves");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

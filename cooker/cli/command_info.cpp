@@ -9,6 +9,9 @@
 
 #include <boxtree/boxtree.h>
 
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/scene_info.h"
@@ -198,12 +201,16 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_info_command(CLI::App& app, int& status) {
+void add_info_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command =
-      *app.add_subcommand("info", "What a .bxt file holds and what each part costs");
-  command.add_option("FILE", arguments->files, "Files to look into")->type_name("FILE")->required();
+  Command& command =
+      program.add_command("info", "Show what a .bxt file holds and what each part takes");
+  command.add_file("FILE", arguments->files, Values::kCookedFiles, "Files to look into")
+      ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
+  command.example("What is in a file", "boxtree info bunny.bxt");
+  command.example("The names of its trees",
+                  "boxtree info level.bxt --json | jq -r '.trees[].name'");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -11,8 +11,11 @@
 
 #include <fmt/format.h>
 
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
 #include "cooker/cli/query_request.h"
 #include "cooker/cli/scene_query.h"
 
@@ -125,12 +128,7 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   return status;
 }
 
-// `missing` names an option that the kind needs and that was not given; or is empty.
-int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request,
-        const std::string& missing) {
-  if (arguments.batch.empty() && !missing.empty()) {
-    return usage(fmt::format("{} is required", missing));
-  }
+int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request) {
   Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
   const File& file = opened->file;
@@ -162,16 +160,34 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
   });
 }
 
-// Declares what a request is made of as options of its command.
+// A value like "1,-2.5,3e4". `out` has to live until the command line has been parsed.
+CLI::Option* add_vector_option(Command& command, const std::string& option, Eigen::Vector3d& out,
+                               const char* help) {
+  return command
+      .add_option_function<std::string>(
+          option,
+          [option, &out](const std::string& text) {
+            const std::optional<Eigen::Vector3d> vector = parse_vector(text);
+            if (!vector) {
+              throw CLI::ValidationError(option, "expected X,Y,Z, found \"" + text + "\"");
+            }
+            out = *vector;
+          },
+          help)
+      ->type_name("X,Y,Z");
+}
+
+// Declares what a request is made of as options of its command. What is needed may be missing where
+// `batch` is given.
 class OptionFields {
  public:
-  explicit OptionFields(CLI::App& command) : command_(command) {}
+  OptionFields(Command& command, const CLI::Option* batch) : command_(command), batch_(batch) {}
 
   void required(const char* key, Eigen::Vector3d& out, const char* help) {
-    required_.push_back(add_vector_option(command_, option_name(key), out, help));
+    command_.is_needed(add_vector_option(command_, option_name(key), out, help), batch_);
   }
   void required(const char* key, double& out, const char* help) {
-    required_.push_back(command_.add_option(option_name(key), out, help)->type_name("N"));
+    command_.is_needed(command_.add_option(option_name(key), out, help)->type_name("N"), batch_);
   }
   void optional(const char* key, double& out, const char* help, bool* given = nullptr) {
     note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
@@ -187,38 +203,29 @@ class OptionFields {
     command_.add_flag(option_name(key), out, help);
   }
   void second(SecondTree& tree) {
-    second_ = command_.add_option("FILE2", tree.file, "The second .bxt file")->type_name("FILE2");
+    command_.is_needed(
+        command_.add_file("FILE2", tree.file, Values::kCookedFiles, "The second .bxt file"),
+        batch_);
     command_
         .add_option_function<std::string>(
             "--pose",
-            [this, &tree](const std::string& text) {
+            [&tree](const std::string& text) {
               const std::optional<Pose> pose = parse_pose(text);
-              if (pose) {
-                tree.pose = *pose;
-              } else {
-                problem_ = fmt::format("--pose: expected X,Y,Z or 12 numbers, found \"{}\"", text);
+              if (!pose) {
+                throw CLI::ValidationError("--pose",
+                                           "expected X,Y,Z or 12 numbers, found \"" + text + "\"");
               }
+              tree.pose = *pose;
             },
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
     command_.add_option("--tree2", tree.tree, "Its tree, by name or number")
         ->type_name("TREE")
         ->group(kRareOptions);
-    command_.add_option("--mesh2", tree.mesh, "Its source mesh, if it was cooked with --external")
-        ->type_name("FILE")
+    command_
+        .add_file("--mesh2", tree.mesh, Values::kMeshes,
+                  "Its source mesh, if it was cooked with --external")
         ->group(kRareOptions);
-  }
-
-  // What is wrong with what was given; nothing if all is right.
-  [[nodiscard]] const std::string& problem() const { return problem_; }
-
-  // What has to be given and was not; nothing if all was.
-  [[nodiscard]] std::string first_missing() const {
-    if (second_ != nullptr && second_->count() == 0) return "the second file";
-    for (const CLI::Option* option : required_) {
-      if (option->count() == 0) return option->get_name();
-    }
-    return {};
   }
 
  private:
@@ -230,33 +237,47 @@ class OptionFields {
     if (given != nullptr) option->each([given](const std::string&) { *given = true; });
   }
 
-  CLI::App& command_;
-  std::vector<const CLI::Option*> required_;
-  const CLI::Option* second_ = nullptr;
-  std::string problem_;
+  Command& command_;
+  const CLI::Option* batch_;
+};
+
+// What a kind needs of the command around it.
+struct Around {
+  Command& query;
+  const CLI::Option* file;
+  const CLI::Option* batch;
+  std::shared_ptr<Arguments> arguments;
 };
 
 template <class Kind>
-void add_kind(CLI::App& query, const std::shared_ptr<Arguments>& arguments, int& status) {
-  CLI::App& command = *query.add_subcommand(Kind::kKind, Kind::kHelp);
+void add_kind(const Around& around, int& status) {
+  Command& command = around.query.add_command(Kind::kKind, Kind::kHelp);
   const auto request = std::make_shared<Kind>();
-  const auto options = std::make_shared<OptionFields>(command);
-  request->describe(*options);
-  command.callback([arguments, request, options, &status] {
-    status = options->problem().empty()
-                 ? run(*arguments, Kind::kKind, *request, options->first_missing())
-                 : usage(options->problem());
+  OptionFields options(command, around.batch);
+  request->describe(options);
+  for (const KindExample& example : Kind::kExamples) command.example(example.what, example.line);
+  // `query pair A B` would leave B for the first file.
+  const auto is_file_first = std::make_shared<bool>(false);
+  command.preparse_callback([is_file_first, file = around.file](std::size_t /*arguments*/) {
+    *is_file_first = file->count() > 0;
+  });
+  command.callback([is_file_first, request, arguments = around.arguments, &status] {
+    status = *is_file_first ? run(*arguments, Kind::kKind, *request)
+                            : usage(fmt::format("query: FILE comes before {}", Kind::kKind));
   });
 }
 
 }  // namespace
 
-void add_query_command(CLI::App& app, int& status) {
+void add_query_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command = *app.add_subcommand("query", "Query a .bxt file");
-  command.add_option("FILE", arguments->file, "The file to query; - is standard input")
-      ->type_name("FILE")
-      ->required();
+  Command& command = program.add_command("query",
+                                         "Query a .bxt file\n"
+                                         "Queries one tree or a scene, or two trees against each "
+                                         "other. The options of query may also stand "
+                                         "behind the kind.");
+  CLI::Option* file = command.is_needed(command.add_file(
+      "FILE", arguments->file, Values::kCookedFiles, "The file to query; - is standard input"));
   command
       .add_option("--tree", arguments->tree,
                   "Which tree, by name or number [the scene of the file, or else tree 0]")
@@ -266,22 +287,25 @@ void add_query_command(CLI::App& app, int& status) {
                   "Of a scene, as often as needed: INSTANCE=POSE, the instance by name or "
                   "number, the pose as X,Y,Z or 12 numbers")
       ->type_name("INSTANCE=POSE");
-  command
-      .add_option("--batch", arguments->batch,
-                  "Query every line of a file (- for standard input): JSON objects with the names "
-                  "of the options as keys, and \"kind\" if no kind of query is given here")
-      ->type_name("FILE");
+  CLI::Option* batch = command.add_file(
+      "--batch", arguments->batch, Values::kFiles,
+      "Query every line of a file (- for standard input): JSON objects with the names "
+      "of the options as keys, and \"kind\" if no kind of query is given here");
   command.add_flag("--json", arguments->json, "Print one JSON document");
-  command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
-      ->type_name("FILE")
+  command
+      .add_file("--mesh", arguments->mesh, Values::kMeshes,
+                "The source mesh of a tree cooked with --external")
       ->group(kRareOptions);
   command.require_subcommand(0, 1);
   command.fallthrough();
-  for_each_kind([&]<class Kind>() { add_kind<Kind>(command, arguments, status); });
+  const Around around{command, file, batch, arguments};
+  for_each_kind([&]<class Kind>() { add_kind<Kind>(around, status); });
+  command.example("Many queries, one per line, from standard input",
+                  "echo '{\"kind\":\"point\",\"at\":[1,2,3]}' | boxtree query bunny.bxt --batch -");
   command.callback([&command, arguments, &status] {
     if (!command.get_subcommands().empty()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
-                                      : run(*arguments, "", RayRequest(), {});
+                                      : run(*arguments, "", RayRequest());
   });
 }
 

@@ -9,7 +9,9 @@
 #include <fmt/format.h>
 #include <oneapi/tbb/task_arena.h>
 
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/peers.h"
@@ -293,37 +295,33 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_report_command(CLI::App& app, int& status) {
+void add_report_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command =
-      *app.add_subcommand("report", "Which encoding to use for meshes: bytes, times and errors");
-  command.add_option("MESH", arguments->meshes, "Mesh files")->type_name("MESH")->required();
+  Command& command = program.add_command(
+      "report", "Show which encoding to use for meshes: bytes, times and errors");
+  command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   CLI::Option* paper =
       command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
-  command.add_option("-o,--output", arguments->output, "Write an HTML page; - is standard output")
-      ->type_name("FILE");
+  command.add_file("-o,--output", arguments->output, Values::kFiles,
+                   "Write an HTML page; - is standard output");
   command.add_option("-j,--jobs", arguments->jobs, "Threads that cook; times are of one [all]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_flag("--json", arguments->json, "Print all figures as one JSON document");
-  command.add_option("--json-out", arguments->json_out, "Write the same to a file")
-      ->type_name("FILE");
-  command.add_option("--csv", arguments->csv, "Write a row for each encoding as CSV")
-      ->type_name("FILE")
+  command.add_file("--json-out", arguments->json_out, Values::kFiles, "Write the same to a file");
+  command.add_file("--csv", arguments->csv, Values::kFiles, "Write a row for each encoding as CSV")
       ->excludes(paper);
   command
-      .add_option("--csv-approximate", arguments->approximate_csv,
-                  "Write a row for each allowed error and budget of approximate queries as CSV")
-      ->type_name("FILE")
+      .add_file("--csv-approximate", arguments->approximate_csv, Values::kFiles,
+                "Write a row for each allowed error and budget of approximate queries as CSV")
       ->excludes(paper);
   command.add_flag("--quick", arguments->quick, "Few encodings, queries and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,
                    "Count only: the same figures on every machine");
   command
-      .add_option("--include", arguments->included,
-                  "JSON results of other checks, shown as tables of their own")
-      ->type_name("FILE")
+      .add_file("--include", arguments->included, Values::kFiles,
+                "JSON results of other checks, shown as tables of their own")
       ->excludes(paper);
   command
       .add_option("--peers", arguments->peers,
@@ -331,6 +329,9 @@ void add_report_command(CLI::App& app, int& status) {
                   "(BUILD/tests/bench/boxtree_peers) [none]")
       ->type_name("PROGRAM")
       ->group(kRareOptions);
+  command.example("A page, for a look", "boxtree report bunny.obj -o bunny.html --quick");
+  command.example("Counted figures alone, the same on every machine",
+                  "boxtree report bunny.obj --quick --no-times --csv bunny.csv");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -12,7 +12,10 @@
 
 #include <boxtree/file.h>
 
-#include "cooker/cli/help_format.h"
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/exit_status.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/import/import.h"
@@ -129,21 +132,27 @@ int run(const Arguments& arguments) {
 
 }  // namespace
 
-void add_verify_command(CLI::App& app, int& status) {
+void add_verify_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App& command =
-      *app.add_subcommand("verify", "Prove that a .bxt file holds what it promises");
-  command.add_option("FILE", arguments->files, "Files to verify; - is standard input")
-      ->type_name("FILE")
+  Command& command = program.add_command(
+      "verify",
+      "Prove that a .bxt file holds what it promises\n"
+      "Decodes every node and every face, as cook does before it writes a file.");
+  command
+      .add_file("FILE", arguments->files, Values::kCookedFiles,
+                "Files to verify; - is standard input")
       ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.add_flag("-q,--quiet", arguments->quiet, "Print findings only");
   command.add_option("-j,--jobs", arguments->jobs, "Threads [all]")
       ->type_name("N")
       ->check(CLI::Range(1, 1024).description(""));
-  command.add_option("--mesh", arguments->mesh, "The source mesh of a tree cooked with --external")
-      ->type_name("FILE")
+  command
+      .add_file("--mesh", arguments->mesh, Values::kMeshes,
+                "The source mesh of a tree cooked with --external")
       ->group(kRareOptions);
+  command.example("Several files", "boxtree verify bunny.bxt level.bxt");
+  command.example("By its exit status alone", "boxtree verify -q bunny.bxt && echo valid");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "cooker/cli/output.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/cook.h"
 
 namespace boxtree::cooker {

@@ -10,10 +10,7 @@
 
 namespace boxtree::cooker {
 
-/// Group of options that `--help` leaves to `--help-all`.
-inline constexpr const char* kRareOptions = "Rarely needed";
-
-/// A command's description is a line for the list of commands, and paragraphs for its own help.
+/// For Commands alone.
 class HelpFormatter : public CLI::Formatter {
  public:
   std::string make_help(const CLI::App* app, std::string name,
@@ -27,12 +24,9 @@ class HelpFormatter : public CLI::Formatter {
   std::string make_footer(const CLI::App* app) const override;
 
  private:
-  mutable bool all_ = false;  // make_group is not told the mode
+  // What the functions that make_help calls are not told.
+  mutable bool all_ = false;
+  mutable const CLI::App* app_ = nullptr;
 };
-
-/// Breaks text between words so that no line is longer than `width`, if its words are not; lines
-/// after the first begin with `indent` blanks. `at`: the column where the text begins.
-[[nodiscard]] std::string wrapped(const std::string& text, std::size_t at, std::size_t indent,
-                                  std::size_t width = 79);
 
 }  // namespace boxtree::cooker

@@ -7,10 +7,12 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <vector>
 
 #include <fmt/format.h>
 
+#include "cooker/cli/command.h"
+#include "cooker/cli/commands.h"
+#include "cooker/cli/exit_status.h"
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/usage_message.h"
@@ -26,25 +28,6 @@ namespace {
   std::_Exit(boxtree::cooker::kExitInternal);
 }
 
-// `boxtree help [COMMAND...]`: what `boxtree COMMAND --help` prints.
-void add_help_command(CLI::App& app, int& status) {
-  CLI::App& help = *app.add_subcommand("help", "What a command does and takes");
-  const auto names = std::make_shared<std::vector<std::string>>();
-  help.add_option("command", *names, "A command, and a kind of query")->type_name("COMMAND");
-  help.callback([&app, names, &status] {
-    const CLI::App* at = &app;
-    for (const std::string& word : *names) {
-      const CLI::App* const command = boxtree::cooker::find_command(*at, word);
-      if (command == nullptr) {
-        status = boxtree::cooker::usage(boxtree::cooker::unknown_command(*at, word));
-        return;
-      }
-      at = command;
-    }
-    fmt::print("{}", at->help());
-  });
-}
-
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -56,15 +39,17 @@ int main(int argc, char** argv) {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
 #endif
   try {
-    CLI::App app{"Cooks meshes into small collision trees and queries them.", "boxtree"};
+    cooker::Command app("boxtree",
+                        "Cooks meshes into small collision trees and queries them.\n"
+                        "A file called - is standard input or standard output; one of that name is "
+                        "./-.");
     app.set_version_flag("-V,--version", fmt::format("boxtree {}", cooker::kVersion));
     app.formatter(std::make_shared<cooker::HelpFormatter>());
     app.set_help_flag("-h,--help", "Print the common options");
     app.set_help_all_flag("--help-all", "Print every option of every command");
     app.failure_message(cooker::usage_message);
     app.require_subcommand(1);
-    app.footer(
-        "Exit status: 0 ok, 1 usage, 2 input/output, 3 bad input, 4 internal, 5 unsupported.");
+    app.parse_complete_callback([&app] { cooker::check_needed(app); });
     cooker::add_cook_command(app, status);
     cooker::add_info_command(app, status);
     cooker::add_verify_command(app, status);
@@ -72,7 +57,8 @@ int main(int argc, char** argv) {
     cooker::add_bench_command(app, status);
     cooker::add_report_command(app, status);
     cooker::add_export_command(app, status);
-    add_help_command(app, status);
+    cooker::add_completion_command(app, status);
+    cooker::add_help_command(app, status);
     try {
       app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {

@@ -3,8 +3,10 @@
 #include "cooker/cli/query_request.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <optional>
+#include <span>
 
 #include <fmt/format.h>
 
@@ -251,6 +253,21 @@ class KeyFields {
   std::string error_;
 };
 
+// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
+std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
+  std::size_t count = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (count < numbers.size()) {
+    const auto [next, error] = std::from_chars(at, end, numbers[count++]);
+    if (error != std::errc()) return 0;
+    at = next;
+    if (at == end) return count;
+    if (*at++ != ',') return 0;
+  }
+  return 0;
+}
+
 // "ray, box or point", of all kinds.
 std::string names_of_kinds() {
   std::vector<std::string> names;
@@ -315,25 +332,21 @@ Result<const Tree*> TreeCache::get(const SecondTree& second) {
   return &place->tree;
 }
 
+std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {
+  std::array<double, 3> numbers{};
+  if (parse_numbers(text, numbers) != numbers.size()) return std::nullopt;
+  return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+}
+
 std::optional<Pose> parse_pose(std::string_view text) {
   std::array<double, 12> number{};
-  std::size_t count = 0;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    if (count == number.size()) return std::nullopt;
-    const auto [next, error] = std::from_chars(at, end, number[count++]);
-    if (error != std::errc()) return std::nullopt;
-    at = next;
-    if (at == end) break;
-    if (*at++ != ',') return std::nullopt;
-  }
+  const std::size_t count = parse_numbers(text, number);
   Pose pose = Pose::Identity();
   if (count == 3) {
     pose.translation() = Eigen::Vector3d(number[0], number[1], number[2]);
     return pose;
   }
-  if (count != 12) return std::nullopt;
+  if (count != number.size()) return std::nullopt;
   for (Eigen::Index row = 0; row < 3; ++row) {
     for (Eigen::Index column = 0; column < 4; ++column) {
       pose.matrix()(row, column) = number[static_cast<std::size_t>(4 * row + column)];

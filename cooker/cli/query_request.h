@@ -14,14 +14,20 @@
 
 #include <boxtree/boxtree.h>
 
-#include "cooker/cli/output.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
 
-// A kind of request states its name, a line of help, and what it is made of: describe() tells a
-// reader of options each of them once. There are two such readers, for lines of a batch and for the
-// command line, where key "t_max" is option --t-max. They have
+/// A command line that shows a kind, and what it answers.
+struct KindExample {
+  const char* what;
+  const char* line;
+};
+
+// A kind of request states its name, a line of help, examples, and what it is made of: describe()
+// tells a reader of options each of them once. There are two such readers, for lines of a batch and
+// for the command line, where key "t_max" is option --t-max. They have
 //   required(key, value, help)           a Vector3d or a double
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if it is
 //   there second(tree)                         a SecondTree
@@ -29,6 +35,9 @@ namespace boxtree::cooker {
 struct RayRequest {
   static constexpr const char* kKind = "ray";
   static constexpr const char* kHelp = "Closest hit of a ray";
+  static constexpr KindExample kExamples[] = {
+      {"What a ray from above hits first",
+       "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"}};
 
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   bool any = false;
@@ -58,6 +67,10 @@ struct OverlapOptions {
 struct BoxRequest {
   static constexpr const char* kKind = "box";
   static constexpr const char* kHelp = "Faces that touch an axis-aligned box";
+  static constexpr KindExample kExamples[] = {
+      {"The faces in a box", "boxtree query bunny.bxt box --min=-1,-1,-1 --max 1,1,1"},
+      {"Whether anything is closer to it than 0.1",
+       "boxtree query bunny.bxt box --min=-9,-9,-9 --max=-8,-8,-8 --within 0.1"}};
 
   Eigen::AlignedBox3d box;
   OverlapOptions overlap;
@@ -74,6 +87,8 @@ struct BoxRequest {
 struct SphereRequest {
   static constexpr const char* kKind = "sphere";
   static constexpr const char* kHelp = "Faces within a radius of a point";
+  static constexpr KindExample kExamples[] = {
+      {"The faces within a radius", "boxtree query bunny.bxt sphere --center 0,0,0 --radius 2"}};
 
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   double radius = 0;
@@ -99,6 +114,9 @@ void describe_approximation(Fields& fields, Approximation& options, bool* given 
 struct PointRequest {
   static constexpr const char* kKind = "point";
   static constexpr const char* kHelp = "Closest point of the surface";
+  static constexpr KindExample kExamples[] = {
+      {"The closest point, at most 1 % farther than the closest of all",
+       "boxtree query bunny.bxt point --at 1,2,3 --relative-error 0.01"}};
 
   Eigen::Vector3d at = Eigen::Vector3d::Zero();
   PointOptions options;
@@ -121,6 +139,9 @@ struct SecondTree {
 struct PairRequest {
   static constexpr const char* kKind = "pair";
   static constexpr const char* kHelp = "Pairs of faces of two trees that touch";
+  static constexpr KindExample kExamples[] = {
+      {"The faces that touch a second tree, moved along x",
+       "boxtree query bunny.bxt pair bunny.bxt --pose 0.5,0,0"}};
 
   SecondTree second;
   bool first_only = false;
@@ -135,6 +156,8 @@ struct PairRequest {
 struct DistanceRequest {
   static constexpr const char* kKind = "distance";
   static constexpr const char* kHelp = "Distance of two trees";
+  static constexpr KindExample kExamples[] = {
+      {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"}};
 
   SecondTree second;
   DistanceOptions options;
@@ -149,6 +172,9 @@ struct DistanceRequest {
 struct OverlapRequest {
   static constexpr const char* kKind = "overlap";
   static constexpr const char* kHelp = "Whether two trees overlap";
+  static constexpr KindExample kExamples[] = {
+      {"Whether two trees overlap, within 200 nodes",
+       "boxtree query bunny.bxt overlap bunny.bxt --pose 5,0,0 --budget 200"}};
 
   SecondTree second;
   OverlapOptions options;
@@ -165,6 +191,9 @@ struct ContactsRequest {
   static constexpr const char* kKind = "contacts";
   static constexpr const char* kHelp =
       "Of a scene: pairs of faces of what moves and all else that touch";
+  static constexpr KindExample kExamples[] = {
+      {"What an instance touches that is moved",
+       "boxtree query level.bxt contacts --move Crate=0.8,2.1,-6.8"}};
 
   bool first_only = false;
 
@@ -210,6 +239,9 @@ class TreeCache {
  private:
   std::map<std::pair<std::string, std::string>, std::unique_ptr<OpenedTree>> opened_;
 };
+
+/// "X,Y,Z". Nothing if it is not.
+[[nodiscard]] std::optional<Eigen::Vector3d> parse_vector(std::string_view text);
 
 /// "X,Y,Z", or the 12 numbers of a 3x4 matrix row by row. Nothing if it is neither.
 [[nodiscard]] std::optional<Pose> parse_pose(std::string_view text);

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/output.h"
 #include "cooker/import/mesh_arrays.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"

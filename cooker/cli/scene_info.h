@@ -4,7 +4,7 @@
 
 #include <boxtree/file.h>
 
-#include "cooker/cli/output.h"
+#include "cooker/cli/json_output.h"
 
 namespace boxtree::cooker {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "cooker/cli/output.h"
+#include "cooker/cli/json_output.h"
 #include "cooker/import/surface_edges.h"
 
 namespace boxtree::cooker {

@@ -2,7 +2,6 @@
 #include "cooker/cli/usage_message.h"
 
 #include <algorithm>
-#include <span>
 #include <string_view>
 #include <vector>
 
@@ -13,23 +12,17 @@ namespace boxtree::cooker {
 namespace {
 
 // The command that was being parsed.
-const CLI::App& innermost(const CLI::App& app) {
-  const CLI::App* at = &app;
+const Command& innermost(const CLI::App& program) {
+  const CLI::App* at = &program;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
-  return *at;
-}
-
-// "boxtree query ray".
-std::string full_name(const CLI::App& command) {
-  const CLI::App* parent = command.get_parent();
-  return parent == nullptr ? command.get_name() : full_name(*parent) + " " + command.get_name();
+  return static_cast<const Command&>(*at);
 }
 
 // A command takes the options of those around it, too.
-std::vector<std::string> option_names(const CLI::App& command) {
+std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names;
-  for (const CLI::App* app = &command; app != nullptr; app = app->get_parent()) {
-    for (const CLI::Option* option : app->get_options()) {
+  for (const Command* at = &command; at != nullptr; at = at->parent()) {
+    for (const CLI::Option* option : at->get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
   }
@@ -46,39 +39,31 @@ std::string unexpected(const CLI::App& app) {
 }
 
 // What was misspelt comes before what is missing because of it.
-std::string fault(const CLI::App& app, const CLI::App& command, const CLI::Error& error) {
+std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   const std::string word = is_missing || is_extra ? unexpected(app) : std::string();
   if (word.starts_with('-')) {
     return "'" + word + "' is no option" + suggestion(word, option_names(command));
   }
-  const bool has_kinds = !command.get_subcommands([](const CLI::App*) { return true; }).empty();
-  if (!word.empty() && has_kinds) return unknown_command(command, word);
+  if (!word.empty() && !command.commands().empty()) return unknown_command(command, word);
   if (!word.empty() && is_extra) return "'" + word + "' was not expected";
   return is_missing && app.get_subcommands().empty() ? "a command is required" : error.what();
 }
 
 }  // namespace
 
-const CLI::App* find_command(const CLI::App& app, const std::string& name) {
-  const auto found =
-      app.get_subcommands([&name](const CLI::App* command) { return command->get_name() == name; });
-  return found.empty() ? nullptr : found.front();
-}
-
-std::string unknown_command(const CLI::App& app, const std::string& word) {
+std::string unknown_command(const Command& command, const std::string& word) {
   std::vector<std::string> names;
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
-    names.push_back(command->get_name());
-  }
-  const std::string kind = app.get_parent() == nullptr ? "command" : "kind of " + app.get_name();
+  for (const Command* inner : command.commands()) names.push_back(inner->get_name());
+  const std::string kind =
+      command.parent() == nullptr ? "command" : "kind of " + command.get_name();
   return "'" + word + "' is no " + kind + suggestion(word, names);
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {
-  const CLI::App& command = innermost(*app);
-  const std::string name = full_name(command);
+  const Command& command = innermost(*app);
+  const std::string name = name_of(command);
   // "boxtree: query ray: --origin is required"
   const std::string place = name.size() > app->get_name().size()
                                 ? name.substr(app->get_name().size() + 1) + ": "

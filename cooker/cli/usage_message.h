@@ -4,15 +4,12 @@
 
 #include <string>
 
-#include <CLI/CLI.hpp>
+#include "cooker/cli/command.h"
 
 namespace boxtree::cooker {
 
-/// The command of `app` with that name; null if there is none.
-[[nodiscard]] const CLI::App* find_command(const CLI::App& app, const std::string& name);
-
-/// "'quary' is no command; did you mean 'query'?", of the commands of `app`.
-[[nodiscard]] std::string unknown_command(const CLI::App& app, const std::string& word);
+/// "'quary' is no command; did you mean 'query'?", of the commands of `command`.
+[[nodiscard]] std::string unknown_command(const Command& command, const std::string& word);
 
 /// The message for an error of parsing, with line ends: for CLI::App::failure_message.
 [[nodiscard]] std::string usage_message(const CLI::App* app, const CLI::Error& error);

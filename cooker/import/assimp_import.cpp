@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <new>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -167,6 +168,17 @@ Status import_with_assimp(const fs::path& path, const ImportOptions& options, Im
   if (!hash.ok()) return hash.error();
   std::visit([&](auto& imported) { imported.report.content_hash = hash.value(); }, out);
   return {};
+}
+
+std::vector<std::string> assimp_endings() {
+  aiString list;  // "*.3ds;*.obj;..."
+  Assimp::Importer().GetExtensionList(list);
+  std::vector<std::string> endings;
+  std::istringstream patterns(list.C_Str());
+  for (std::string pattern; std::getline(patterns, pattern, ';');) {
+    endings.push_back(in_lower_case(std::string_view(pattern).substr(pattern.rfind('.') + 1)));
+  }
+  return endings;
 }
 
 }  // namespace boxtree::cooker

@@ -4,6 +4,8 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "cooker/import/import.h"
 #include "cooker/import/source_scene.h"
@@ -16,5 +18,8 @@ enum class ImportWanted : std::uint8_t { kMesh, kScene, kFitting };
 /// Reads `path` into `out`, except the name, as import.h and source_scene.h specify.
 Status import_with_assimp(const std::filesystem::path& path, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out);
+
+/// Endings of the names of files that assimp reads, in lower case.
+[[nodiscard]] std::vector<std::string> assimp_endings();
 
 }  // namespace boxtree::cooker

@@ -118,4 +118,12 @@ Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& opti
   return import_guarded({path, options, ImportWanted::kFitting});
 }
 
+std::vector<std::string> mesh_endings() {
+  std::vector<std::string> endings = assimp_endings();
+  for (const MeshReader& reader : kMeshReaders) endings.emplace_back(reader.extension);
+  std::sort(endings.begin(), endings.end());
+  endings.erase(std::unique(endings.begin(), endings.end()), endings.end());
+  return endings;
+}
+
 }  // namespace boxtree::cooker

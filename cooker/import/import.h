@@ -92,4 +92,7 @@ struct Imported {
 /// of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
+/// Endings of the names of files that are read, in lower case, in order: "3ds", "obj", ...
+[[nodiscard]] std::vector<std::string> mesh_endings();
+
 }  // namespace boxtree::cooker

@@ -135,7 +135,7 @@ expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25 --json
 same "$(jq -c "any(.pairs[]; . == $contact)" out)" true
 for kind in distance overlap; do
   expect 1 "$boxtree" query cube.bxt $kind
-  grep -q 'second file' err
+  grep -q 'FILE2 is required' err
 done
 
 # Same bytes from another folder and with other thread counts.
@@ -199,7 +199,7 @@ help_of() {
   cmp out help
   same "$(awk 'length > 79' help)" ""
 }
-for command in cook info verify query bench report export; do
+for command in cook info verify query bench report export completion help; do
   expect 0 "$boxtree" help $command
   help_of $command
   grep -q "^Usage: boxtree $command " help
@@ -209,6 +209,23 @@ for kind in ray point box sphere pair distance overlap contacts; do
   help_of query cube.bxt $kind
   grep -q "^Usage: boxtree query FILE $kind " help
 done
+
+# A kind without a file has its help; it is not taken for a file, and the file comes before it.
+expect 0 "$boxtree" query ray --help
+grep -q '^Usage: boxtree query FILE ray --origin X,Y,Z --direction X,Y,Z \[OPTION...\]$' out
+expect 0 "$boxtree" query --help
+grep -q '^Usage: boxtree query FILE \[OPTION...\] KIND ...$' out
+cp cube.bxt ray
+expect 0 "$boxtree" query ./ray ray --origin 0.25,0.5,5 --direction 0,0,-1
+misspelt "boxtree: query ray: FILE is required
+See 'boxtree query ray --help'." query ray --origin 0,0,9 --direction 0,0,-1
+expect 1 "$boxtree" query pair cube.bxt cube.bxt
+grep -q 'FILE comes before pair' err
+expect 0 "$boxtree" --help-all # of every command, rare ones too
+grep -q -- '--depfile' out
+expect 1 "$boxtree" help --man query ray
+grep -q 'in that of boxtree query' err
+expect 1 "$boxtree" completion csh
 
 # Several files: a line each, or one document; what is wrong with one keeps none from being looked at.
 cp cube.bxt second.bxt

@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: MIT
+// All commands of the program.
+#pragma once
+
+namespace boxtree::cooker {
+
+class Command;
+
+/// Each adds a command to `program` and stores its exit status in `status` when it has run.
+void add_cook_command(Command& program, int& status);
+void add_info_command(Command& program, int& status);
+void add_verify_command(Command& program, int& status);
+void add_query_command(Command& program, int& status);
+void add_bench_command(Command& program, int& status);
+void add_report_command(Command& program, int& status);
+void add_export_command(Command& program, int& status);
+void add_completion_command(Command& program, int& status);
+void add_help_command(Command& program, int& status);
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: MIT
+// The exit statuses of the program.
+#pragma once
+
+#include <array>
+
+namespace boxtree::cooker {
+
+inline constexpr int kExitUsage = 1;
+inline constexpr int kExitInputOutput = 2;
+inline constexpr int kExitBadInput = 3;
+inline constexpr int kExitInternal = 4;
+inline constexpr int kExitUnsupported = 5;
+
+struct ExitStatus {
+  int number;
+  const char* name;
+  const char* meaning;
+};
+inline constexpr std::array kExitStatuses = {
+    ExitStatus{0, "ok", "Everything was done, or every file is valid."},
+    ExitStatus{kExitUsage, "usage", "The command line or a query is not valid."},
+    ExitStatus{kExitInputOutput, "input/output", "A file cannot be read or written."},
+    ExitStatus{kExitBadInput, "bad input", "A mesh, a profile or a .bxt file is not valid."},
+    ExitStatus{kExitInternal, "internal", "An internal error, or too little memory."},
+    ExitStatus{kExitUnsupported, "unsupported",
+               "The file needs what this program, or what was cooked into it, does not have."},
+};
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: MIT
+// JSON as commands print it.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+namespace boxtree::cooker {
+
+using Json = nlohmann::ordered_json;
+
+/// Prints one JSON document to standard output, behind the number of the schema that all documents
+/// of this program follow: keys may be added under it, none is renamed. Bytes that are no UTF-8
+/// become U+FFFD.
+void print(const Json& document);
+/// What print() prints.
+[[nodiscard]] std::string document_text(const Json& document);
+/// What is said of each of several files: the only one as it is, several as {"files": [...]}.
+void print_files(std::vector<Json> documents);
+/// The same in one line, as text.
+[[nodiscard]] std::string line_of(const Json& value);
+
+/// A vector as three numbers.
+[[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+
+}  // namespace boxtree::cooker
