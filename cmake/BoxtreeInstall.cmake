@@ -1,7 +1,7 @@
 # Installation, for find_package(boxtree CONFIG) and for pkg-config, in three components of install rules:
 # boxtree_runtime (the shared library, if there is one), boxtree_development (headers, archives and what
-# finds them) and boxtree_program (the command line). boxtreeConfig.cmake.in lists the components of
-# find_package.
+# finds them) and boxtree_program (the command line, its man pages and completions).
+# boxtreeConfig.cmake.in lists the components of find_package.
 include(CMakePackageConfigHelpers)
 
 set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
@@ -42,6 +42,16 @@ if(BOXTREE_BUILD_COOKER)
           RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT boxtree_program)
   install(EXPORT boxtreeCliTargets NAMESPACE boxtree:: DESTINATION ${BOXTREE_CONFIG_DIR}
           COMPONENT boxtree_program)
+  get_target_property(manual boxtree_cli BOXTREE_MANUAL_DIR)
+  if(manual)
+    install(DIRECTORY ${manual}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT boxtree_program)
+    install(FILES ${manual}/bash/boxtree COMPONENT boxtree_program
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bash-completion/completions)
+    install(FILES ${manual}/zsh/_boxtree COMPONENT boxtree_program
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/zsh/site-functions)
+    install(FILES ${manual}/fish/boxtree.fish COMPONENT boxtree_program
+            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/fish/vendor_completions.d)
+  endif()
 endif()
 
 set(BOXTREE_NEEDS_HIGHWAY OFF)

@@ -29,8 +29,8 @@ struct KindExample {
 // tells a reader of options each of them once. There are two such readers, for lines of a batch and
 // for the command line, where key "t_max" is option --t-max. They have
 //   required(key, value, help)           a Vector3d or a double
-//   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if it is
-//   there second(tree)                         a SecondTree
+//   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if there
+//   second(tree)                         a SecondTree
 
 struct RayRequest {
   static constexpr const char* kKind = "ray";

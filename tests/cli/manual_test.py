@@ -228,7 +228,7 @@ def check_examples(manual, source, folder):
 
 
 def check_installed(manual, cmake, build, prefix):
-    run([cmake, "--install", build, "--prefix", prefix, "--component", "cli"])
+    run([cmake, "--install", build, "--prefix", prefix, "--component", "boxtree_program"])
     share = prefix / "share"
     expect("installed pages", {path.name for path in (share / "man/man1").iterdir()},
            {"-".join(["boxtree"] + command) + ".1" for command in manual.commands})
