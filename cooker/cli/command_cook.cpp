@@ -129,6 +129,7 @@ int run(Arguments& arguments) {
   if ((is_from_standard || is_to_standard) && !arguments.job.depfile.empty()) {
     return usage("--depfile lists files by their names: - has none");
   }
+  if (is_standard_stream(arguments.job.depfile)) return usage("--depfile needs the name of a file");
   if (is_to_standard && arguments.json)
     return usage("--json and -o - cannot share standard output");
   std::optional<StandardMesh> mesh;

@@ -127,11 +127,14 @@ Json file_json(const File& file) {
 void print_file(const Json& json) {
   fmt::print("format {}, {} bytes\n", json["version"].get<std::string>(),
              json["file_bytes"].get<std::uint64_t>());
-  for (const Json& tree : json["trees"]) {
+  for (std::size_t i = 0; i < json["trees"].size(); ++i) {
+    const Json& tree = json["trees"][i];
+    const auto name = tree["name"].get<std::string>();
     fmt::print("{}: {} triangles, {}, geometry {}, {} nodes, depth {}\n",
-               shown(tree["name"].get<std::string>()), tree["triangles"].get<std::uint32_t>(),
-               tree["codec"].get<std::string>(), tree["geometry"].get<std::string>(),
-               tree["nodes"].get<std::uint32_t>(), tree["depth"].get<std::uint32_t>());
+               name.empty() ? fmt::format("tree {}", i) : shown(name),
+               tree["triangles"].get<std::uint32_t>(), tree["codec"].get<std::string>(),
+               tree["geometry"].get<std::string>(), tree["nodes"].get<std::uint32_t>(),
+               tree["depth"].get<std::uint32_t>());
     if (const auto copies = tree["duplicates"].get<std::uint32_t>(); copies > 0) {
       fmt::print("  {} of {} faces are copies of others\n", copies,
                  tree["faces"].get<std::uint32_t>());

@@ -59,6 +59,10 @@ Json import_json(const ImportReport& report) {
                {"vertices_welded", report.vertices_welded},
                {"degenerate_faces", report.degenerate_faces},
                {"open_end", report.has_open_end}};
+  json["files_missing"] = Json::array();
+  for (const std::filesystem::path& file : report.files_missing) {
+    json["files_missing"].push_back(file.string());
+  }
   json["skipped"] = Json::array();
   for (const SkippedFace& face : report.skipped) {
     json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
@@ -107,6 +111,10 @@ void print_import(const ImportReport& import) {
   if (import.degenerate_faces > 0) {
     notes += fmt::format("{}kept {} faces without area", notes.empty() ? "" : "; ",
                          import.degenerate_faces);
+  }
+  for (const std::filesystem::path& file : import.files_missing) {
+    notes += fmt::format("{}{} is not there: no file of that name can be read",
+                         notes.empty() ? "" : "; ", shown(file.string()));
   }
   if (!notes.empty()) fmt::print("  {}\n", notes);
   if (import.has_open_end) {

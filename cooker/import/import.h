@@ -57,6 +57,8 @@ struct ImportReport {
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   std::vector<std::filesystem::path> files_read;  // the file itself and every file it refers to
+  /// Material libraries that the source names and that cannot be read; it is imported without them.
+  std::vector<std::filesystem::path> files_missing;
   std::uint64_t content_hash = 0;  // XXH3 over the bytes of files_read, in order of first read
 };
 

@@ -196,21 +196,30 @@ std::string_view statements_of(std::string_view text) {
   return text;
 }
 
-// The libraries that exist and can be read, without duplicates.
+// Adds the libraries that can be read to the files read and the others to those that are missing,
+// without duplicates.
 void find_libraries(const fs::path& path, const std::vector<std::string>& names,
-                    std::vector<fs::path>& files) {
+                    ImportReport& report) {
+  const auto path_of = [&](std::string_view name) {
+    return (path.parent_path() / fs::path(name)).lexically_normal();
+  };
+  const auto add_to = [](std::vector<fs::path>& files, const fs::path& library) {
+    if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
+  };
   const auto add = [&](std::string_view name) {
-    const fs::path library = (path.parent_path() / fs::path(name)).lexically_normal();
+    const fs::path library = path_of(name);
     std::error_code ignored;
     if (!fs::is_regular_file(library, ignored) || !SourceStream::open(library).ok()) return false;
-    if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
+    add_to(report.files_read, library);
     return true;
   };
   Tokens words;
   for (const std::string& name : names) {
     if (add(name)) continue;
     split_tokens(name, words);
-    for (const std::string_view word : words) add(word);
+    for (const std::string_view word : words) {
+      if (!add(word)) add_to(report.files_missing, path_of(word));
+    }
   }
 }
 
@@ -228,7 +237,7 @@ Status import_obj(const fs::path& path, const ImportOptions& options, Imported& 
     return status;
   };
   if (Status status = read_text_into(path, options, out, read); !status.ok()) return status;
-  find_libraries(path, libraries, out.report.files_read);
+  find_libraries(path, libraries, out.report);
   if (out.report.files_read.size() == 1) return {};
   const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
   if (!hash.ok()) return hash.error();

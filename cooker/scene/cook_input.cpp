@@ -107,10 +107,12 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
   const bool has_source = is_listed || profile.source.has_value();
   if (has_source == !inputs.empty()) {
     return Error{Errc::kProfileInvalid,
-                 has_source ? profile.path.string() +
-                                  ": says what to cook, so that no other input can be given"
-                            : "nothing to cook: give an input, or a profile that names a source or "
-                              "lists instances"};
+                 has_source
+                     ? profile.path.string() +
+                           ": names what to cook; leave MESH out of the command, or \"source\" and "
+                           "[[instance]] out of the profile"
+                     : "nothing to cook: give an input, or a profile that names a source or "
+                       "lists instances"};
   }
   if (is_listed) return load_listed(profile, options, progress);
   CookInput input;

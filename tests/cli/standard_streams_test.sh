@@ -108,6 +108,12 @@ expect 0 "$boxtree" cook open.obj -o open.bxt --grid-bits 12
 expect 0 "$boxtree" info open.bxt
 grep -qE '^  surface on the grid: [34] open edges$' out
 
+# A material library that is not there is said, and nothing else changes.
+sed 's/crate.mtl/gone.mtl/' crate.obj >no_library.obj
+expect 0 "$boxtree" cook no_library.obj -o no_library.bxt
+grep -q 'gone.mtl is not there' out
+expect 1 "$boxtree" cook crate.obj -o out.bxt --depfile -
+
 # A cook of one mesh prints six lines at most, whatever there is to say.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.7 0\np 1\nl 1 2\nf 1 2 3\nf 1 1 2\nf 1 2 3' >notes.obj
 expect 0 "$boxtree" cook notes.obj -o notes.bxt --grid-bits 10

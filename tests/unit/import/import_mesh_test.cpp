@@ -126,6 +126,17 @@ TEST_F(ImportMeshTest, ReportsTheFilesReadAndHashesTheirBytes) {
   EXPECT_NE(load("a.obj", obj).report.content_hash, got.report.content_hash);
 }
 
+TEST_F(ImportMeshTest, ReportsMaterialLibrariesThatAreMissing) {
+  write("there.mtl", "newmtl m\n");
+  const Imported got = load("a.obj",
+                            "mtllib gone.mtl there.mtl gone.mtl\nmtllib there.mtl\n"
+                            "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  ASSERT_EQ(got.report.files_read.size(), 2u);
+  EXPECT_EQ(got.report.files_read[1], folder_ / "there.mtl");
+  ASSERT_EQ(got.report.files_missing.size(), 1u);
+  EXPECT_EQ(got.report.files_missing[0], folder_ / "gone.mtl");
+}
+
 TEST_F(ImportMeshTest, HashIsXxh3OfTheFile) {
   // printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' | xxhsum -H3
   const Imported got = load("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
