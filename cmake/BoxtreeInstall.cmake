@@ -47,8 +47,11 @@ if(BOXTREE_BUILD_COOKER)
     install(DIRECTORY ${manual}/man1/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT boxtree_program)
     install(FILES ${manual}/bash/boxtree COMPONENT boxtree_program
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/bash-completion/completions)
-    install(FILES ${manual}/zsh/_boxtree COMPONENT boxtree_program
-            DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/zsh/site-functions)
+    # Below /usr, Debian's zsh reads the second one alone.
+    foreach(folder site-functions vendor-completions)
+      install(FILES ${manual}/zsh/_boxtree COMPONENT boxtree_program
+              DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/zsh/${folder})
+    endforeach()
     install(FILES ${manual}/fish/boxtree.fish COMPONENT boxtree_program
             DESTINATION ${CMAKE_INSTALL_DATAROOTDIR}/fish/vendor_completions.d)
   endif()

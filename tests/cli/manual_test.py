@@ -234,6 +234,7 @@ def check_installed(manual, cmake, build, prefix):
            {"-".join(["boxtree"] + command) + ".1" for command in manual.commands})
     for shell, place in (("bash", "bash-completion/completions/boxtree"),
                          ("zsh", "zsh/site-functions/_boxtree"),
+                         ("zsh", "zsh/vendor-completions/_boxtree"),
                          ("fish", "fish/vendor_completions.d/boxtree.fish")):
         if (share / place).read_text() != run([manual.boxtree, "completion", shell]):
             sys.exit(f"{place} is not what boxtree completion {shell} prints")
