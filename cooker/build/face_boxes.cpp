@@ -90,6 +90,10 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   }
   tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,
                                    kMaxScaleExponent);
+  // A place that was moved to zero has small numbers around it, however large its coordinates were.
+  const bool was_moved =
+      std::any_of(tree.origin.begin(), tree.origin.end(), [](double moved) { return moved != 0; });
+  if (halved == 0 && was_moved) tree.scale_exponent = std::min(tree.scale_exponent, 0);
 }
 
 Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
