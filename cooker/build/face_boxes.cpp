@@ -14,6 +14,9 @@ namespace {
 
 // The largest extent is in [2^14, 2^15): f16 cuts then resolve 2^-39 of it.
 constexpr int kExtentExponent = 14;
+// A single point has coordinates of 2^-300 or more in tree space, so that differences of a unit in
+// their last place are above kShortestDirection (runtime/primitive/separation.h).
+constexpr int kPlaceExponent = 300;
 
 float round_down(double value) {
   const auto nearest = static_cast<float>(value);
@@ -62,7 +65,8 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   if (positions.size() == 0) return;
   const Bounds in_object_space = bounds_of(positions);
   Bounds bounds = in_object_space;
-  if (positions.precision == Precision::kF64 && origin == Origin::kByPrecision) {
+  const bool is_centred = positions.precision == Precision::kF64 && origin == Origin::kByPrecision;
+  if (is_centred) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto axis = static_cast<Eigen::Index>(k);
       tree.origin[k] = bounds.low[axis] / 2 + bounds.high[axis] / 2;
@@ -75,6 +79,11 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   if (size == 0) {  // a single point: its coordinates set the scale, wherever it was moved
     size = std::max(in_object_space.low.cwiseAbs().maxCoeff(),
                     in_object_space.high.cwiseAbs().maxCoeff());
+    // Numbers around a point that was moved to zero are small, however large its coordinates were,
+    // but not below a unit in their last place.
+    if (is_centred) {
+      size = std::min(std::ldexp(size, kPlaceExponent), 1.0) * std::ldexp(1.0, kExtentExponent);
+    }
     halved = 0;
   }
   if (size == 0) return;
@@ -90,10 +99,6 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   }
   tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,
                                    kMaxScaleExponent);
-  // A place that was moved to zero has small numbers around it, however large its coordinates were.
-  const bool was_moved =
-      std::any_of(tree.origin.begin(), tree.origin.end(), [](double moved) { return moved != 0; });
-  if (halved == 0 && was_moved) tree.scale_exponent = std::min(tree.scale_exponent, 0);
 }
 
 Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face) {

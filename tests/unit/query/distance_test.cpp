@@ -164,7 +164,7 @@ class Distances : public testing::TestWithParam<test::Encoding> {
   }
 };
 
-TEST_P(Distances, BoundsAreTrueAndAsNearAsAsked) {
+TEST_P(Distances, BoundsAreTrueAndAsCloseAsRequested) {
   int apart = 0;
   std::uint64_t exact_nodes = 0, nodes_within = 0;
   for_each_case(10, [&](const SourceMesh& a, const Tree& first, const Pose& first_pose,
@@ -335,6 +335,37 @@ TEST(Distance, KnownCases) {
     EXPECT_NEAR(found->upper / scale, 2, 1e-12);
     EXPECT_LE(found->lower, 2 * scale);
     EXPECT_GE(found->upper, 2 * scale);
+  }
+}
+
+// A mesh that is one place, at small and large coordinates, and a square beside it: as long as
+// double tells the corners of the square apart there, the coordinates do not matter.
+TEST(Distance, OfAMeshThatIsOnePlace) {
+  SourceMesh square;
+  square.positions.precision = cooker::Precision::kF64;
+  square.positions.f64 = {1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1};  // at x = 1
+  square.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{0, 2, 3, cooker::kNoCorner}}};
+  const test::CookedTree beside = test::cook_tree(square, CodecId::kWide8);
+  for (const int exponent : {-250, -100, -1, 0, 20, 50}) {
+    SCOPED_TRACE(exponent);
+    const Eigen::Vector3d place(std::ldexp(-1.61, exponent), std::ldexp(0.53, exponent),
+                                std::ldexp(-0.91, exponent));
+    SourceMesh mesh;
+    mesh.positions.precision = cooker::Precision::kF64;
+    mesh.positions.f64 = {place[0], place[1], place[2]};
+    mesh.faces = {{{0, 0, 0, cooker::kNoCorner}}};
+    const test::CookedTree one = test::cook_tree(mesh, CodecId::kWide8);
+    Pose pose = Pose::Identity();
+    pose.translation() = place;
+    const auto found = distance(one.tree, Pose::Identity(), beside.tree, pose);
+    const auto swapped = distance(beside.tree, pose, one.tree, Pose::Identity());
+    ASSERT_TRUE(found.ok());
+    ASSERT_TRUE(swapped.ok());
+    for (const Distance& d : {*found, *swapped}) {
+      EXPECT_LE(d.lower, 1);
+      EXPECT_GE(d.upper, 1);
+      EXPECT_LE(d.upper - d.lower, 0x1p-44);
+    }
   }
 }
 
