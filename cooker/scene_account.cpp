@@ -32,8 +32,10 @@ class Account {
 
   void add_left_out() {
     for (const Decision& decision : cooked_.plan.decisions) {
-      // Precision is reported with the chosen encoding.
-      if (decision.kept || decision.aspect == Aspect::kPrecision) continue;
+      // Precision is reported with the chosen encoding; names by the objects and meshes without.
+      if (decision.kept || decision.aspect == Aspect::kPrecision || is_names_of_file(decision)) {
+        continue;
+      }
       const Estimate estimate = bytes_of(decision);
       why_.push_back({aspect_name(decision.aspect), owner_of(decision), false, estimate.bytes,
                       estimate.is_estimate, decision.reason, cited(decision.line)});
@@ -51,6 +53,10 @@ class Account {
   }
 
  private:
+  static bool is_names_of_file(const Decision& decision) {
+    return decision.aspect == Aspect::kNames && decision.owner_kind == OwnerKind::kFile;
+  }
+
   struct Estimate {
     std::uint64_t bytes = 0;
     bool is_estimate = true;
@@ -133,8 +139,8 @@ class Account {
       case SectionKind::kCertificate:
         return "what was proven of the tree";
       case SectionKind::kNames:
-        aspect = Aspect::kNames;
-        return {};
+        return "objects'; those of instances, meshes and materials that keep theirs; reasons of "
+               "parts left out";
       case SectionKind::kCookRecord:
         return "how the file was made; --strip leaves it out";
       case SectionKind::kScene:

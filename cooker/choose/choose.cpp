@@ -95,7 +95,7 @@ Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes
 }
 
 std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,
-                   const Wishes& wishes) {
+                   const Rated& chosen_rated, const Wishes& wishes) {
   if (!candidate.gates.pass()) {
     return fmt::format("fails its gates: {} faces missed, {} boxes escaped", candidate.gates.missed,
                        candidate.gates.escapes);
@@ -107,6 +107,10 @@ std::string reason(const Candidate& candidate, const Rated& rated, const Candida
     return "over the budget of bytes";
   if (rated.slowdown > wishes.max_slowdown.value_or(kNone)) return "over the budget of time";
   if (candidate.geometry != chosen.geometry && rated.score == kNone) return "another geometry";
+  if (candidate.geometry != chosen.geometry && rated.score <= chosen_rated.score) {
+    return fmt::format("no worse alone, but the trees of the file share geometry {}",
+                       geometry_name(chosen.geometry));
+  }
   switch (wishes.goal) {
     case Goal::kMemory:
       return "more bytes";
@@ -224,7 +228,9 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
       Candidate& candidate = trees[t].candidates[i];
       const Candidate& winner = trees[t].candidates[chosen[t]];
-      candidate.rejected = i == chosen[t] ? "" : reason(candidate, rated[t][i], winner, wishes[t]);
+      candidate.rejected = i == chosen[t] ? ""
+                                          : reason(candidate, rated[t][i], winner,
+                                                   rated[t][chosen[t]], wishes[t]);
     }
   }
   return chosen;

@@ -89,7 +89,8 @@ std::string ending_fault(const std::string& text) {
   return !text.empty() && text.size() <= 16 && is_word ? "" : text + " is no ending like obj";
 }
 
-int run(Arguments& arguments) {
+// The options of the cook that names on the command line stand for.
+void set_options(Arguments& arguments) {
   CookOptions& options = arguments.job.options;
   if (arguments.codec == "blob-lzma") options.blob = BlobMethod::kLzma;
   if (arguments.codec == "blob-zstd") options.blob = BlobMethod::kZstd;
@@ -104,44 +105,48 @@ int run(Arguments& arguments) {
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
-  // The grid of 24 bits that is tried by default would cost f64 positions digits that were
-  // requested for.
+  // The grid of 24 bits that is tried by default would cost the digits that --f64 requests.
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
                          !options.blob && is_grid_welcome;
   options.import.try_first = !arguments.trusted;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;
+}
 
-  const auto from_standard =
-      std::find_if(arguments.job.inputs.begin(), arguments.job.inputs.end(), is_standard_stream);
-  const bool is_from_standard = from_standard != arguments.job.inputs.end();
+// Why "-" cannot stand where it does; empty if it can.
+std::string stream_fault(const Arguments& arguments) {
+  const std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
+  const auto count = std::count_if(inputs.begin(), inputs.end(), is_standard_stream);
   const bool is_to_standard = is_standard_stream(arguments.job.output);
-  if (is_from_standard && arguments.format.empty()) {
-    return usage("- (standard input): --format says what it is, as in --format obj");
+  if (count > 0 && arguments.format.empty()) {
+    return "- (standard input): --format says what it is, as in --format obj";
   }
-  if (is_from_standard && std::find_if(from_standard + 1, arguments.job.inputs.end(),
-                                       is_standard_stream) != arguments.job.inputs.end()) {
-    return usage("- (standard input) can be read once");
+  if (count > 1) return "- (standard input) can be read once";
+  if (count == 0 && !arguments.format.empty()) return "--format goes with the input -";
+  if ((count > 0 || is_to_standard) && !arguments.job.depfile.empty()) {
+    return "--depfile lists files by their names: - has none";
   }
-  if (!is_from_standard && !arguments.format.empty())
-    return usage("--format goes with the input -");
-  if ((is_from_standard || is_to_standard) && !arguments.job.depfile.empty()) {
-    return usage("--depfile lists files by their names: - has none");
-  }
-  if (is_standard_stream(arguments.job.depfile)) return usage("--depfile needs the name of a file");
-  if (is_to_standard && arguments.json)
-    return usage("--json and -o - cannot share standard output");
+  if (is_standard_stream(arguments.job.depfile)) return "--depfile needs the name of a file";
+  if (is_to_standard && arguments.json) return "--json and -o - cannot share standard output";
+  return {};
+}
+
+int run(Arguments& arguments) {
+  set_options(arguments);
+  if (const std::string fault = stream_fault(arguments); !fault.empty()) return usage(fault);
+  std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
+  const auto input = std::find_if(inputs.begin(), inputs.end(), is_standard_stream);
   std::optional<StandardMesh> mesh;
-  if (is_from_standard) {
+  if (input != inputs.end()) {
     Result<StandardMesh> read = StandardMesh::read(arguments.format);
     if (!read) return fail(read.error());
-    *from_standard = mesh.emplace(std::move(*read)).path();
+    *input = mesh.emplace(std::move(*read)).path();
   }
   const Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
   if (!output) return fail(output.error());
   arguments.job.output = output->path();
-  arguments.quiet |= is_to_standard;
+  arguments.quiet |= output->is_standard();
   const auto fail_to_cook = [&](const Error& error) {
     return fail(mesh ? mesh->named(error) : error);
   };

@@ -18,6 +18,7 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/query_request.h"
 #include "cooker/cli/scene_query.h"
+#include "cooker/cli/standard_streams.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -46,7 +47,7 @@ class BatchLines {
   static constexpr std::size_t kLongestLine = std::size_t{1} << 20;
 
   explicit BatchLines(const std::filesystem::path& path)
-      : path_(path), file_(path == "-" ? stdin : std::fopen(path.c_str(), "rb")) {
+      : path_(path), file_(is_standard_stream(path) ? stdin : std::fopen(path.c_str(), "rb")) {
     if (file_ == nullptr) error_ = errno;
   }
   BatchLines(const BatchLines&) = delete;
@@ -129,6 +130,9 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
 }
 
 int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request) {
+  if (is_standard_stream(arguments.file) && is_standard_stream(arguments.batch)) {
+    return usage("standard input is the file or the batch, not both");
+  }
   Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
   const File& file = opened->file;
@@ -149,7 +153,7 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
       return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
     }
     return answer_all([&](const QueryRequest& each, TreeCache& others) {
-      return answer(scene->scene, each, others);
+      return answer(*scene, each, others);
     });
   }
   const Result<OpenedTree> tree =

@@ -2,6 +2,7 @@
 // `boxtree report`: which encoding to use for a mesh; with --paper the tables of the paper.
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -42,10 +43,15 @@ struct Arguments {
   int jobs = tbb::task_arena::automatic;
 };
 
-// Whether one of the outputs is standard output, which the summary must leave alone.
-bool has_standard_output(const Arguments& arguments) {
-  return is_standard_stream(arguments.output) || is_standard_stream(arguments.json_out) ||
-         is_standard_stream(arguments.csv) || is_standard_stream(arguments.approximate_csv);
+// Those that were not given are empty.
+std::array<std::filesystem::path, 4> outputs_of(const Arguments& arguments) {
+  return {arguments.output, arguments.json_out, arguments.csv, arguments.approximate_csv};
+}
+
+// How many of the outputs are standard output, which the summary must leave alone.
+std::ptrdiff_t count_standard_outputs(const Arguments& arguments) {
+  const auto outputs = outputs_of(arguments);
+  return std::count_if(outputs.begin(), outputs.end(), is_standard_stream);
 }
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {
@@ -180,7 +186,7 @@ int write_report(const Arguments& arguments, const Page& page, const Json& figur
   }
   if (arguments.json) {
     print(figures);
-  } else if (!arguments.quiet && !has_standard_output(arguments)) {
+  } else if (!arguments.quiet && count_standard_outputs(arguments) == 0) {
     fmt::print("{}", to_text(summary));
   }
   return 0;
@@ -280,11 +286,10 @@ int run_tradeoff(const Arguments& arguments) {
 int run(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs = arguments.meshes;
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
-  const std::array outputs{arguments.output, arguments.json_out, arguments.csv,
-                           arguments.approximate_csv};
-  if (Status status = check_outputs(outputs, inputs); !status) return usage(status.error().detail);
-  if (std::count_if(outputs.begin(), outputs.end(), is_standard_stream) + (arguments.json ? 1 : 0) >
-      1) {
+  if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
+    return usage(status.error().detail);
+  }
+  if (count_standard_outputs(arguments) + (arguments.json ? 1 : 0) > 1) {
     return usage("standard output takes one of the page, --json, --json-out and CSV");
   }
   int status = 0;

@@ -19,24 +19,9 @@
 namespace boxtree::cooker {
 namespace {
 
-Json face_json(const FaceRef& face) {
-  return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
-}
-
 Result<Json> answer(const Tree& tree, const RayRequest& request) {
-  const auto hit = request.any ? any_hit(tree, request.ray) : closest_hit(tree, request.ray);
-  if (!hit.ok()) return hit.error();
-  Json json = {{"hit", hit.has_value()}};
-  if (hit.has_value()) {
-    const RayHit& found = *hit;
-    json["t"] = found.t;
-    json["face"] = face_json(found.face);
-    json["triangle"] = found.triangle;
-    json["point"] = to_json(found.point);
-    json["normal"] = to_json(found.normal);
-    json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
-  }
-  return json;
+  return answer_ray(tree, request,
+                    [](const RayHit& found, Json& json) { json["face"] = face_json(found.face); });
 }
 
 template <class Overlap>

@@ -269,6 +269,27 @@ Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, co
       request);
 }
 
+/// The number of a face in the source; null if the tree has none.
+[[nodiscard]] inline Json face_json(const FaceRef& face) {
+  return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
+}
+
+/// The hit of a ray in a tree or a scene; add_face(hit, json) adds what was hit.
+template <class Target, class AddFace>
+Result<Json> answer_ray(const Target& target, const RayRequest& request, const AddFace& add_face) {
+  const auto hit = request.any ? any_hit(target, request.ray) : closest_hit(target, request.ray);
+  if (!hit.ok()) return hit.error();
+  Json json = {{"hit", hit.has_value()}};
+  if (!hit) return json;
+  json["t"] = hit->t;
+  add_face(*hit, json);
+  json["triangle"] = hit->triangle;
+  json["point"] = to_json(hit->point);
+  json["normal"] = to_json(hit->normal);
+  json["barycentric"] = {1 - hit->u - hit->v, hit->u, hit->v};
+  return json;
+}
+
 /// The answer in the form that `boxtree query --json` prints.
 Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others);
 

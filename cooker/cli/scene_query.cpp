@@ -18,7 +18,7 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
     json["id"] = info->id;
     if (!info->name.empty()) json["name"] = info->name;
   }
-  json["face"] = face.face.id == kNoFaceId ? Json(nullptr) : Json(face.face.id);
+  json["face"] = face_json(face.face);
   const std::uint32_t material = scene.material(face);
   if (material == kNoMaterial) return;
   const std::string_view name = scene.material_name(material);
@@ -26,19 +26,9 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
 }
 
 Result<Json> answer(const Scene& scene, const RayRequest& request) {
-  const auto hit = request.any ? any_hit(scene, request.ray) : closest_hit(scene, request.ray);
-  if (!hit.ok()) return hit.error();
-  Json json = {{"hit", hit.has_value()}};
-  if (hit.has_value()) {
-    const SceneRayHit& found = *hit;
-    json["t"] = found.t;
+  return answer_ray(scene, request, [&scene](const SceneRayHit& found, Json& json) {
     add_face(scene, {found.instance, found.face}, json);
-    json["triangle"] = found.triangle;
-    json["point"] = to_json(found.point);
-    json["normal"] = to_json(found.normal);
-    json["barycentric"] = {1 - found.u - found.v, found.u, found.v};
-  }
-  return json;
+  });
 }
 
 template <class Overlap>
@@ -94,8 +84,7 @@ Result<Json> answer_pairs(const Scene& scene, bool first_only, AnswerRequest que
     Json first, second;
     add_face(scene, pair.first, first);
     if (pair.second.instance == kNoInstance) {
-      const std::uint32_t id = pair.second.face.id;
-      second["face"] = id == kNoFaceId ? Json(nullptr) : Json(id);
+      second["face"] = face_json(pair.second.face);
     } else {
       add_face(scene, pair.second, second);
     }
@@ -121,6 +110,17 @@ Result<Json> answer_pair(const Scene&, const Tree&, const DistanceRequest&) {
 }
 Result<Json> answer_pair(const Scene&, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");
+}
+
+QueryKinds kind_of(const RayRequest&) { return kRayQueries; }
+QueryKinds kind_of(const BoxRequest&) { return kBoxQueries; }
+QueryKinds kind_of(const SphereRequest&) { return kBoxQueries; }
+QueryKinds kind_of(const PointRequest&) { return kPointQueries; }
+QueryKinds kind_of(const ContactsRequest&) { return kPairQueries; }
+template <class AboutTwo>
+  requires requires(const AboutTwo& request) { request.second; }
+QueryKinds kind_of(const AboutTwo&) {
+  return kPairQueries;
 }
 
 struct Move {
@@ -171,10 +171,17 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
   return OpenedScene{std::move(file), std::move(*scene)};
 }
 
-Result<Json> answer(const Scene& scene, const QueryRequest& request, TreeCache& others) {
-  return query_one_or_two(
+Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, TreeCache& others) {
+  const Scene& scene = opened.scene;
+  Result<Json> answered = query_one_or_two(
       request, others, [&](const auto& q) { return answer(scene, q); },
       [&](const Tree& second, const auto& q) { return answer_pair(scene, second, q); });
+  if (answered.code() != Errc::kPartLeftOut) return answered;
+  // A query answers with a code alone; binding says by which line of the profile.
+  SceneOptions needed;
+  needed.queries = std::visit([](const auto& q) { return kind_of(q); }, request);
+  const Result<Scene> bound = Scene::bind(opened.file, needed);
+  return bound ? answered : bound.error();
 }
 
 }  // namespace boxtree::cooker

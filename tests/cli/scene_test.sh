@@ -144,8 +144,15 @@ for name in profiled.obj profiled.glb; do
   done | jq -se 'max - min < 1e-6' >/dev/null
 done
 expect 5 "$boxtree" query profiled.bxt point --at 0,0,0
+grep -q 'part_left_out: .* left out by scene.toml:[0-9]*: queries' err # the line that did it
 expect 0 "$boxtree" info profiled.bxt
 grep -q 'left out: point queries, by scene.toml:[0-9]*: queries' out
+# Names that are left out are counted once.
+sed 's/^face_ids = false.*/names = false/' scene.toml >nameless.toml
+expect 0 "$boxtree" cook --profile nameless.toml -o nameless.bxt --json
+same "$(jq -c '[.why[] | select(.part == "names" and (.kept | not) and .owner == "file")]' out)" '[]'
+same "$(jq '[.why[] | select(.part == "names" and (.kept | not) and (.owner | startswith("object"))) | .bytes] | add' out)" \
+  "$("$boxtree" info level.bxt --json | jq '[.scene.instances[].name | utf8bytelength] | add')"
 expect 1 "$boxtree" cook --profile scene.toml --codec wide8 -o x.bxt
 sed 's/^tolerance = .*/tolerence = 1/' scene.toml >wrong.toml
 expect 3 "$boxtree" cook --profile wrong.toml -o x.bxt

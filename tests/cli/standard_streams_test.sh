@@ -57,6 +57,8 @@ expect 1 "$boxtree" cook crate.obj -o - --json
 expect 1 "$boxtree" cook crate.obj -o - --depfile d
 expect 1 "$boxtree" export crate.bxt -o x.glb --format glb
 expect 1 "$boxtree" report crate.obj -o - --json --quick --no-times
+expect 1 "$boxtree" query - --batch - <crate.bxt
+grep -q 'the file or the batch, not both' err
 printf 'f 1 2 3\n' | expect 3 "$boxtree" cook - --format obj -o out.bxt
 grep -q 'stdin.obj' err
 if grep -q tmp/ err; then echo "a scratch name is shown: $(cat err)"; exit 1; fi

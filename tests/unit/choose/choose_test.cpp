@@ -101,6 +101,9 @@ TEST(Choose, TreesOfAFileShareAGeometryStore) {
                       candidate(CodecId::kWide8, GeometryId::kGrid, 700, 10)};
   std::vector<Contest> trees = {one, other};
   EXPECT_EQ(require(choose(trees, {Goal::kMemory, {}, {}})), (std::vector<std::size_t>{1, 1}));
+  EXPECT_EQ(trees[0].candidates[0].rejected,
+            "no worse alone, but the trees of the file share geometry grid");
+  EXPECT_EQ(trees[1].candidates[0].rejected, "more bytes");
   trees[0].triangles = trees[1].triangles = 100;
   trees[1].candidates[1].gates.missed = 1;
   EXPECT_EQ(require(choose(trees, {Goal::kMemory, {}, {}})), (std::vector<std::size_t>{0, 0}));
