@@ -5,19 +5,14 @@
 include(CMakePackageConfigHelpers)
 
 set(BOXTREE_CONFIG_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/boxtree)
+set(targets ${BOXTREE_LIBRARIES})
 if(BUILD_SHARED_LIBS)
-  set(targets boxtree_shared boxtree_shared_format)
-  if(BOXTREE_PAPER_CODECS)
-    list(APPEND targets boxtree_shared_paper)
-  endif()
-  if(BOXTREE_BLOB)
-    list(APPEND targets boxtree_shared_blob)
-  endif()
+  list(REMOVE_ITEM targets runtime) # which the shared library is known as
+  list(TRANSFORM targets PREPEND boxtree_shared_)
+  list(APPEND targets boxtree_shared)
 else()
-  set(targets boxtree_format boxtree_runtime)
-  if(BOXTREE_PAPER_CODECS)
-    list(APPEND targets boxtree_paper)
-  endif()
+  list(REMOVE_ITEM targets blob)
+  list(TRANSFORM targets PREPEND boxtree_)
   # In a file of its own, because its targets want liblzma and zstd to be found.
   if(BOXTREE_BLOB)
     install(TARGETS boxtree_blob EXPORT boxtreeBlobTargets

@@ -37,6 +37,14 @@ boxtree_choose(BOXTREE_BUILT_CODECS BOXTREE_CODECS "${BOXTREE_CODECS}" ${BOXTREE
 # Those of the paper make a library of their own, boxtree::paper.
 set(BOXTREE_PAPER_CODECS ${BOXTREE_BUILT_CODECS})
 list(FILTER BOXTREE_PAPER_CODECS EXCLUDE REGEX "^wide")
+# The libraries boxtree::NAME of this build.
+set(BOXTREE_LIBRARIES format runtime)
+if(BOXTREE_PAPER_CODECS)
+  list(APPEND BOXTREE_LIBRARIES paper)
+endif()
+if(BOXTREE_BLOB)
+  list(APPEND BOXTREE_LIBRARIES blob)
+endif()
 boxtree_choose(BOXTREE_BUILT_QUERIES BOXTREE_QUERIES "${BOXTREE_QUERIES}" ${BOXTREE_ALL_QUERIES})
 
 # A scene answers all of these, each by querying its trees.

@@ -66,10 +66,10 @@ function(boxtree_compact)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
 endfunction()
 
-# boxtree_precompile(TARGET HEADERS...): compiles once what most sources include of other people's, in a third
-# of the time that it takes to parse it in each. A source must not rely on it; builds without it (presets
-# scalar and asan-ubsan) show where one does. Not for targets whose sources have optimisations of their own: g++
-# compiles them with those of the precompiled headers (the runtime grew from 450 to 494 KB).
+# boxtree_precompile(TARGET HEADERS...): parses the headers of other projects once for all sources of a target. A
+# source must still include what it uses; builds without it (presets scalar and asan-ubsan) fail where one does
+# not. Not for targets with sources that boxtree_small or boxtree_compact lists: g++ compiles those with the
+# optimisations of the precompiled headers (the runtime grew from 450 to 494 KB).
 function(boxtree_precompile target)
   if(BOXTREE_PRECOMPILE_HEADERS)
     target_precompile_headers(${target} PRIVATE
