@@ -28,7 +28,7 @@ std::uint64_t hash_of(const SourceMesh& mesh) {
   return hash;
 }
 
-TEST(GeneratedMesh, ExactlyAsManyTrianglesAsAskedFor) {
+TEST(GeneratedMesh, ExactlyAsManyTrianglesAsRequested) {
   for (const std::size_t count : {1u, 2u, 3u, 7u, 31u, 33u, 1000u, 10'001u, 123'457u}) {
     for (const SourceMesh& mesh : {make_terrain(count, 1), make_city(count, 1)}) {
       ASSERT_EQ(mesh.faces.size(), count) << mesh.name;

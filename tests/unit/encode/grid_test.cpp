@@ -226,7 +226,7 @@ TEST(Grid, AnySizeAndPlace) {
   }
 }
 
-TEST(Grid, HasTheStepThatIsAskedFor) {
+TEST(Grid, HasTheStepThatIsRequested) {
   const Eigen::AlignedBox3d bounds(Eigen::Vector3d::Constant(-3), Eigen::Vector3d::Constant(5));
   for (const int step : {-27, -20, 0, 9}) {
     EXPECT_EQ(test::require(cooker::choose_grid(bounds, {.step_exponent = step})).step_exponent,

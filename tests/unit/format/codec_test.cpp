@@ -58,7 +58,7 @@ void expect_size_matters(const PackedHeader& header) {
             Errc::kSectionSize);
 }
 
-TEST(PackedCodecs, BindOnlyToAsManyBytesAsTheHeaderAsksFor) {
+TEST(PackedCodecs, BindOnlyToAsManyBytesAsTheHeaderStates) {
   expect_size_matters<PackedCut::kF16>(valid_header(16, 0));
   expect_size_matters<PackedCut::kF32>(valid_header(32, 0));
   expect_size_matters<PackedCut::kF64>(valid_header(64, 0));

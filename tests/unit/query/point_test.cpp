@@ -113,7 +113,7 @@ class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
   std::mt19937_64 random_{5};
 };
 
-TEST_P(ApproximatePoints, BoundsAreTrueAndAsNearAsAsked) {
+TEST_P(ApproximatePoints, BoundsAreTrueAndAsCloseAsRequested) {
   std::array<std::uint64_t, 7> nodes{};
   std::uint64_t nodes_within = 0;
   for_each_point(

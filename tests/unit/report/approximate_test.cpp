@@ -84,7 +84,7 @@ std::vector<const TradePoint*> queried_points() {
   return points;
 }
 
-TEST(Approximate, CodecsOfTheListAreAskedWithExactGeometry) {
+TEST(Approximate, CodecsOfTheListAreQueriedWithExactGeometry) {
   std::vector<CodecId> codecs;
   for (const TradePoint* point : queried_points()) {
     EXPECT_EQ(point->geometry, GeometryId::kExact);

@@ -52,7 +52,7 @@ TEST(Placement, RefusesWhatCannotBeUndone) {
   EXPECT_FALSE(Placement::make(Frame(), pose).has_value());
 }
 
-TEST(Placement, HasNoBoundsBeyondReach) {
+TEST(Placement, HasNoBoundsBeyondTheLargestCoordinate) {
   Pose pose = Pose::Identity();
   const auto placed = Placement::make(Frame(), pose);
   ASSERT_TRUE(placed.has_value());

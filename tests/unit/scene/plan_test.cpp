@@ -232,7 +232,7 @@ queries = ["ray", "box"]
   EXPECT_FALSE(has_decision(planned, Aspect::kBox, OwnerKind::kMesh, 0));
 }
 
-TEST_F(PlanTest, PartsAreKeptIfAnyObjectAsks) {
+TEST_F(PlanTest, PartsAreKeptIfAnyObjectNeedsThem) {
   const ScenePlan planned = plan(forest(), R"([scene]
 face_ids = false
 materials = false

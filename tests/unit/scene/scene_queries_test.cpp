@@ -275,7 +275,7 @@ INSTANTIATE_TEST_SUITE_P(Codecs, SceneQueries,
                          test::test_name);
 
 // What an instance answers is decided by its layer.
-TEST(SceneLayers, AreFilteredAndAskedForTheirKindsAlone) {
+TEST(SceneLayers, AreFilteredAndAnswerTheirKindsAlone) {
   cooker::SceneParts parts = test::random_parts(30, 2, 3, 3, 4);
   parts.layers[1].queries = kRayQueries;
   parts.layers[2].collides_with = 0b011;

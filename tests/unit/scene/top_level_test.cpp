@@ -134,7 +134,7 @@ TEST_P(TopLevelWalk, BoxesVisitAllThatOverlap) {
   }
 }
 
-TEST_P(TopLevelWalk, PointsVisitAllWithinReach) {
+TEST_P(TopLevelWalk, PointsVisitAllWithinTheirDistance) {
   for (const std::uint32_t count : {1u, 2u, 9u, 300u}) {
     Level level(count, GetParam(), count + 1);
     Tally tally;

@@ -219,7 +219,7 @@ concept BindsTree = requires(F&& file) {
 static_assert(BindsTree<File&> && BindsTree<const File&>);
 static_assert(!BindsTree<File> && !BindsTree<const File>);
 
-TEST_P(Trees, ExternalGeometryIsAskedForAndRecognised) {
+TEST_P(Trees, ExternalGeometryIsRequiredAndRecognised) {
   const SourceMesh mesh = test::torus(8, 6);
   const std::vector<std::byte> bytes = test::cook_bytes(mesh, GetParam(), external());
   const Result<File> file = File::open(Bytes(bytes));
@@ -246,7 +246,7 @@ TEST_P(Trees, ExternalGeometryIsAskedForAndRecognised) {
             true);
 }
 
-TEST_P(Trees, FaceIdsCanBeLeftOutAndAskedFor) {
+TEST_P(Trees, FaceIdsCanBeLeftOutAndRequested) {
   const SourceMesh mesh = test::torus(8, 6);
   cooker::CookOptions options;
   options.face_ids = false;
