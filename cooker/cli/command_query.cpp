@@ -287,9 +287,11 @@ void add_query_command(Command& program, int& status) {
                   "Which tree, by name or number [the scene of the file, or else tree 0]")
       ->type_name("TREE");
   command
-      .add_option("--move", arguments->moves,
-                  "Of a scene, as often as needed: INSTANCE=POSE, the instance by name or "
-                  "number, the pose as X,Y,Z or 12 numbers")
+      .add_option(
+          "--move", arguments->moves,
+          "Of a scene, as often as needed: INSTANCE=POSE, the instance by name or number. The "
+          "pose replaces its whole pose: X,Y,Z is one without rotation and scale; 12 "
+          "numbers, a 3x4 matrix row by row, keep them")
       ->type_name("INSTANCE=POSE");
   CLI::Option* batch = command.add_file(
       "--batch", arguments->batch, Values::kFiles,

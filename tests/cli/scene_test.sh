@@ -56,6 +56,25 @@ jq -e '.hit and ([.pairs[][0].name] | unique == ["Crate"]) and ([.pairs[][1].nam
 expect 0 "$boxtree" query level.bxt ray --origin 0.5,9,-4.5 --direction 0,-1,0 --move 'Crate=0.5,6,-4.5' --json
 same "$(jq -c '.name' out)" '"Crate"'
 jq -e '(.t - 2.6) | fabs < 1e-6' out >/dev/null
+# A pose replaces the whole pose: three numbers have no rotation and no scale, twelve have them.
+expect 0 "$boxtree" info level.bxt --json
+barrel=$(jq -c '.scene.instances[] | select(.name == "Barrel 8") | .pose' out)
+jq -e '.[1] == [0, .[1][1], 0, 0] and .[1][1] > 1.1' <<<"$barrel" >/dev/null # it is scaled
+ray="--direction 0,-1,0 --origin $(jq -r '"\(.[0][3]),9,\(.[2][3])"' <<<"$barrel")"
+# shellcheck disable=SC2086 # a list of words
+expect 0 "$boxtree" query level.bxt ray $ray --json
+cp out stays
+rows=$(jq -r 'flatten | map(tostring) | join(",")' <<<"$barrel")
+place=$(jq -r '"\(.[0][3]),\(.[1][3]),\(.[2][3])"' <<<"$barrel")
+# shellcheck disable=SC2086
+expect 0 "$boxtree" query level.bxt ray $ray --move "Barrel 8=$rows" --json
+same "$(jq -c '[.name, .t]' out)" "$(jq -c '[.name, .t]' stays)"
+# shellcheck disable=SC2086
+expect 0 "$boxtree" query level.bxt ray $ray --move "Barrel 8=$place" --json
+jq -e --argjson barrel "$barrel" --slurpfile stays stays \
+  '(9 - .t) * $barrel[1][1] - (9 - $stays[0].t) | fabs < 1e-6' out >/dev/null
+expect 0 "$boxtree" query --help
+tr -s ' \n' ' ' <out | grep -q 'X,Y,Z is one without rotation and scale; 12 numbers, .*, keep them'
 expect 1 "$boxtree" query level.bxt contacts --move 'Crate=up'
 grep -q 'expected INSTANCE=X,Y,Z' err
 expect 1 "$boxtree" query level.bxt contacts --move 'Nobody=0,0,0'
