@@ -71,7 +71,7 @@ std::string nearest_of(const Contest& tree, const std::vector<Rated>& rated) {
     if (!fastest || rated[i].slowdown < rated[*fastest].slowdown) fastest = i;
   }
   const auto told = [&](std::size_t i) {
-    return fmt::format("{} with geometry {} takes {:.2f} B/tri and {:.2f} times the least time",
+    return fmt::format("{} with geometry {} takes {:.2f} B/tri, slowdown {:.2f}",
                        codec_name(tree.candidates[i].codec),
                        geometry_name(tree.candidates[i].geometry), rated[i].bytes,
                        rated[i].slowdown);
@@ -88,10 +88,12 @@ Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes
     wanted += fmt::format("at most {} B/tri", *wishes.max_bytes_per_triangle);
   }
   if (wishes.max_slowdown) {
-    wanted += fmt::format("{}at most {} times the least time", wanted.empty() ? "" : " and ",
+    wanted += fmt::format("{}a slowdown of at most {}", wanted.empty() ? "" : " and ",
                           *wishes.max_slowdown);
   }
-  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, rated)};
+  return {Errc::kBudgetUnreachable,
+          "wanted " + wanted + "; " + nearest_of(tree, rated) +
+              " (slowdown is relative to the best time of each kind of query, on average)"};
 }
 
 std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,

@@ -25,7 +25,7 @@ enum class Goal : std::uint8_t { kMemory, kSpeed, kBalance };
 struct Wishes {
   Goal goal = Goal::kBalance;
   std::optional<double> max_bytes_per_triangle;  // nodes and geometry
-  std::optional<double> max_slowdown;            // of the fastest candidate, see slowdowns()
+  std::optional<double> max_slowdown;            // see slowdowns()
   QueryKinds queries = kAllQueries;              // whose time counts; if none, all count
 };
 
@@ -64,8 +64,9 @@ struct Contest {
 /// as when one was requested.
 [[nodiscard]] std::vector<bool> may_be_chosen(std::span<const Candidate> candidates);
 
-/// The time of each candidate relative to the fastest one that may be chosen: the mean, over the
-/// kinds of queries that count, of the ratios of costs to the fastest of that kind.
+/// The time of each candidate relative to the best of those that may be chosen: the mean, over the
+/// kinds of queries that count, of the ratio of its cost to the least cost of that kind. None needs
+/// to have 1: one may be fastest for rays and another one for boxes.
 [[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates,
                                             QueryKinds queries = kAllQueries);
 

@@ -247,8 +247,10 @@ void add_cook_command(Command& program, int& status) {
                             ->check(positive_fault);
   CLI::Option* slowdown =
       command
-          .add_option("--max-slowdown", arguments->job.options.wishes.max_slowdown,
-                      "Choose nothing slower, in times of the fastest candidate")
+          .add_option(
+              "--max-slowdown", arguments->job.options.wishes.max_slowdown,
+              "Choose nothing slower than FACTOR times the best time of each kind of query, on "
+              "average")
           ->type_name("FACTOR")
           ->check(positive_fault);
   CLI::Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,

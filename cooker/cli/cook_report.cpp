@@ -105,8 +105,8 @@ void print_contest(const CookedTree& cooked) {
 void print_import(const ImportReport& import) {
   std::string notes;
   if (import.points_skipped + import.lines_skipped > 0) {
-    notes = fmt::format("skipped {} points and {} lines: they have no surface",
-                        import.points_skipped, import.lines_skipped);
+    notes =
+        fmt::format("skipped {} points and {} lines", import.points_skipped, import.lines_skipped);
   }
   if (import.degenerate_faces > 0) {
     notes += fmt::format("{}kept {} faces without area", notes.empty() ? "" : "; ",
@@ -116,11 +116,10 @@ void print_import(const ImportReport& import) {
     notes += fmt::format("{}{} is not there: no file of that name can be read",
                          notes.empty() ? "" : "; ", shown(file.string()));
   }
-  if (!notes.empty()) fmt::print("  {}\n", notes);
   if (import.has_open_end) {
-    fmt::print(
-        "  the last line of the source has no end: a file that was cut short looks the same\n");
+    notes += fmt::format("{}the last line has no end, as if cut short", notes.empty() ? "" : "; ");
   }
+  if (!notes.empty()) fmt::print("  {}\n", notes);
   for (const SkippedFace& face : import.skipped) {
     fmt::print("  skipped face {}: {}\n", face.face_id, shown(face.reason));
   }
@@ -144,8 +143,8 @@ void print_choice(const CookedTree& cooked) {
     const Candidate& candidate = candidates[i];
     if (!candidate.rejected.empty()) continue;
     fmt::print(
-        "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry; {:.2f} times "
-        "the time of the fastest of {}\n",
+        "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry\n"
+        "  {:.2f} times the best time of each kind of query, on average; {} tried\n",
         codec_name(candidate.codec), geometry_name(candidate.geometry),
         per_triangle(candidate.tree_bytes, cooked.tree),
         per_triangle(candidate.bytes(), cooked.tree), slower[i], candidates.size());

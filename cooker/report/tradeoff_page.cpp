@@ -191,11 +191,10 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   section.conclusions = advice_in_words(mesh);
   const auto advice = advise(mesh);
   if (!advice) return section;
-  PageTable table{
-      {"choice", "encoding", "bytes / triangle", "of source", "surface moved", "ray", "box",
-       "point", mesh.timed ? "first contact" : "all contacts", "times the fastest"},
-      {},
-      2};
+  PageTable table{{"choice", "encoding", "bytes / triangle", "of source", "surface moved", "ray",
+                   "box", "point", mesh.timed ? "first contact" : "all contacts", "slowdown"},
+                  {},
+                  2};
   const std::vector<double> slower = slowdowns_of(mesh);
   for (const auto& [role, place] :
        {std::pair<const char*, std::size_t>{"balanced", advice->balanced},
@@ -224,7 +223,8 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   section.text += fmt::format(
       " Unless told a codec, boxtree cook chooses by counted work, the same on every machine: {}. "
       "The choices below go by the times on this page, by whole files, and by how far a surface "
-      "may move, so that they may differ.",
+      "may move, so that they may differ. Slowdown is the time relative to the best of each kind "
+      "of query, on average.",
       cooks);
   return section;
 }

@@ -96,7 +96,7 @@ struct ProfileInstance {
 struct SceneBudget {
   std::optional<Stated<std::uint64_t>> bytes;
   std::optional<Stated<double>> bytes_per_triangle;  // nodes and geometry
-  std::optional<Stated<double>> slowdown;            // relative to the fastest candidate
+  std::optional<Stated<double>> slowdown;            // see slowdowns() in choose.h
 };
 
 /// The default is a scene without a profile: everything kept, everything static.
