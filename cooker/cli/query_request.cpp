@@ -7,6 +7,7 @@
 #include <charconv>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -238,6 +239,45 @@ class KeyFields {
   std::string error_;
 };
 
+// Shows what a request is made of: what is needed, and what differs from the defaults.
+class FieldTexts {
+ public:
+  // The request in one line, "direction [0,0,0], t_max -1".
+  template <class Kind>
+  static std::string line_of(Kind request) {
+    FieldTexts given, defaults;
+    request.describe(given);
+    Kind().describe(defaults);
+    std::string line;
+    for (std::size_t i = 0; i < given.fields_.size(); ++i) {
+      const auto& [key, text, is_needed] = given.fields_[i];
+      if (!is_needed && text == defaults.fields_[i].text) continue;
+      line += fmt::format("{}{} {}", line.empty() ? "" : ", ", key, text);
+    }
+    return line;
+  }
+
+  void required(const char* key, const Eigen::Vector3d& value, const char* /*help*/) {
+    fields_.push_back({key, fmt::format("[{},{},{}]", value[0], value[1], value[2]), true});
+  }
+  void required(const char* key, double value, const char* /*help*/) {
+    fields_.push_back({key, fmt::format("{}", value), true});
+  }
+  template <class T>
+  void optional(const char* key, const T& value, const char* /*help*/, bool* /*given*/ = nullptr) {
+    fields_.push_back({key, fmt::format("{}", value), false});
+  }
+  void second(const SecondTree& /*tree*/) {}  // has no numbers but a pose, which has its own error
+
+ private:
+  struct Field {
+    std::string key;
+    std::string text;
+    bool is_needed;
+  };
+  std::vector<Field> fields_;
+};
+
 // How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
 std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
   std::size_t count = 0;
@@ -338,6 +378,20 @@ std::optional<Pose> parse_pose(std::string_view text) {
     }
   }
   return pose;
+}
+
+Error explained(const Error& error, const QueryRequest& request) {
+  if (error.code != Errc::kInvalidQuery || !error.detail.empty()) return error;
+  return std::visit(
+      [&]<class Kind>(const Kind& q) -> Error {
+        if constexpr (requires { Kind::kExpected; }) {
+          return invalid(fmt::format("{}: expected {}, found {}", Kind::kKind, Kind::kExpected,
+                                     FieldTexts::line_of(q)));
+        } else {
+          return error;
+        }
+      },
+      request);
 }
 
 Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind) {

@@ -25,9 +25,10 @@ struct KindExample {
   const char* line;
 };
 
-// A kind of request states its name, a line of help, examples, and what it is made of: describe()
-// tells a reader of options each of them once. There are two such readers, for lines of a batch and
-// for the command line, where key "t_max" is option --t-max. They have
+// A kind of request states its name, a line of help, examples, what its numbers have to be, unless
+// any will do, and what it is made of: describe() tells a reader of options each of them once. Such
+// readers are those for lines of a batch and for the command line, where key "t_max" is option
+// --t-max, and one that shows what was given. They have
 //   required(key, value, help)           a Vector3d or a double
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if there
 //   second(tree)                         a SecondTree
@@ -35,6 +36,10 @@ struct KindExample {
 struct RayRequest {
   static constexpr const char* kKind = "ray";
   static constexpr const char* kHelp = "Closest hit of a ray";
+  static constexpr const char* kExpected =
+      "a finite origin, at most 2^185 mesh extents away, a finite direction that is not zero, and "
+      "t_max "
+      "of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"What a ray from above hits first",
        "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"}};
@@ -67,6 +72,8 @@ struct OverlapOptions {
 struct BoxRequest {
   static constexpr const char* kKind = "box";
   static constexpr const char* kHelp = "Faces that touch an axis-aligned box";
+  static constexpr const char* kExpected =
+      "finite corners, min not above max on any axis, and within of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The faces in a box", "boxtree query bunny.bxt box --min=-1,-1,-1 --max 1,1,1"},
       {"Whether anything is closer to it than 0.1",
@@ -87,6 +94,8 @@ struct BoxRequest {
 struct SphereRequest {
   static constexpr const char* kKind = "sphere";
   static constexpr const char* kHelp = "Faces within a radius of a point";
+  static constexpr const char* kExpected =
+      "a finite center, at most 2^185 mesh extents away, and a finite radius of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The faces within a radius", "boxtree query bunny.bxt sphere --center 0,0,0 --radius 2"}};
 
@@ -114,6 +123,8 @@ void describe_approximation(Fields& fields, Approximation& options, bool* given 
 struct PointRequest {
   static constexpr const char* kKind = "point";
   static constexpr const char* kHelp = "Closest point of the surface";
+  static constexpr const char* kExpected =
+      "a finite point, at most 2^185 mesh extents away, and a max_distance and errors of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The closest point, at most 1 % farther than the closest of all",
        "boxtree query bunny.bxt point --at 1,2,3 --relative-error 0.01"}};
@@ -156,6 +167,7 @@ struct PairRequest {
 struct DistanceRequest {
   static constexpr const char* kKind = "distance";
   static constexpr const char* kHelp = "Distance of two trees";
+  static constexpr const char* kExpected = "a max_distance and errors of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"}};
 
@@ -172,6 +184,7 @@ struct DistanceRequest {
 struct OverlapRequest {
   static constexpr const char* kKind = "overlap";
   static constexpr const char* kHelp = "Whether two trees overlap";
+  static constexpr const char* kExpected = "within of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"Whether two trees overlap, within 200 nodes",
        "boxtree query bunny.bxt overlap bunny.bxt --pose 5,0,0 --budget 200"}};
@@ -251,12 +264,16 @@ class TreeCache {
 /// Error: kInvalidQuery with what was expected.
 Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind);
 
+/// The error of a query, which has only a code if its numbers are not valid: then with the kind,
+/// what was expected and what was found.
+[[nodiscard]] Error explained(const Error& error, const QueryRequest& request);
+
 /// Answers queries about one thing by alone(request), those about it and a second tree by
-/// together(second, request).
+/// together(second, request). Errors are explained.
 template <class Alone, class Together>
 Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, const Alone& alone,
                               const Together& together) {
-  return std::visit(
+  Result<Json> answered = std::visit(
       [&](const auto& q) -> Result<Json> {
         if constexpr (requires { q.second; }) {
           const Result<const Tree*> second = others.get(q.second);
@@ -267,6 +284,8 @@ Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, co
         }
       },
       request);
+  if (!answered) return explained(answered.error(), request);
+  return answered;
 }
 
 /// The number of a face in the source; null if the tree has none.

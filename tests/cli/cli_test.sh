@@ -137,6 +137,30 @@ for kind in distance overlap; do
   expect 1 "$boxtree" query cube.bxt $kind
   grep -q 'FILE2 is required' err
 done
+# Numbers that no query can have: the kind, what was expected and what was found.
+rejects() {
+  local said=$1
+  shift
+  expect 1 "$boxtree" query cube.bxt "$@"
+  grep -qF "boxtree: invalid_query: $said" err || { cat err; exit 1; }
+}
+rejects 'ray: expected a finite origin, at most 2^185 mesh extents away, a finite direction that is not zero, and '\
+'t_max of 0 or more, found origin [0.5,0,9], direction [0,0,0]' ray --origin 0.5,0,9 --direction 0,0,0
+rejects 'ray: expected ' ray --origin 0,0,0 --direction 0,0,1 --t-max=-1
+grep -q 'found origin \[0,0,0\], direction \[0,0,1\], t_max -1$' err
+rejects 'box: expected finite corners, min not above max on any axis, and within of 0 or more, found '\
+'min [1,0,0], max [0,1,1]' box --min 1,0,0 --max 0,1,1
+rejects 'box: expected ' box --min 0,0,0 --max 1,1,1 --within=-1
+grep -q ', within -1$' err
+rejects 'sphere: expected a finite center, at most 2^185 mesh extents away, and a finite radius of 0 or more, found '\
+'center [0,0,0], radius -1' sphere --center 0,0,0 --radius=-1
+rejects 'point: expected a finite point, ' point --at nan,0,0
+grep -q ' found at \[nan,0,0\]$' err
+rejects 'point: expected ' point --at 0,0,0 --relative-error=-1
+grep -q ' found at \[0,0,0\], relative_error -1$' err
+rejects 'distance: expected a max_distance and errors of 0 or more, found max_distance -1' \
+  distance cube.bxt --max-distance=-1
+rejects 'overlap: expected within of 0 or more, found within -1' overlap cube.bxt --within=-1
 
 # Same bytes from another folder and with other thread counts.
 mkdir elsewhere
@@ -294,6 +318,8 @@ for bad in 'nonsense' '[1]' '{"kind":"cone"}' '{"kind":"point"}' '{"kind":"point
   same "$(jq -cs '[.[0].distance,.[1].error]' out)" '[2,"invalid_query"]'
   grep -q 'line 2' out
 done
+same "$(jq -sr '.[1].detail' out)" "line 2: ray: expected a finite origin, at most 2^185 mesh extents away, a finite \
+direction that is not zero, and t_max of 0 or more, found origin [0,0,0], direction [0,0,0]"
 expect 1 "$boxtree" query cube.bxt
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
 grep -q -- '--direction is required' err

@@ -84,6 +84,9 @@ grep -q 'no_scene' err
 expect 1 "$boxtree" query level.bxt distance flat.bxt
 grep -q -- '--tree' err
 
+expect 1 "$boxtree" query level.bxt sphere --center 0,0,0 --radius=-1
+grep -q 'invalid_query: sphere: expected .* found center \[0,0,0\], radius -1$' err
+
 # One of its trees alone, in its own coordinates; a body that is no part of the scene.
 expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
 jq -e '(.distance - 1.6) | fabs < 1e-6' out >/dev/null
