@@ -101,7 +101,7 @@ class BatchLines {
 // cannot be answered gets an error in its place; the exit status is that of the first such line.
 using AnswerRequest = std::function<Result<Json>(const QueryRequest& request, TreeCache& others)>;
 int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
-              const std::string& kind) {
+              const RequestDefaults& defaults) {
   BatchLines lines(arguments.batch);
   TreeCache others;
   Json answers = Json::array();
@@ -109,7 +109,7 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   std::string line;
   while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    const Result<QueryRequest> request = parse_request(line, kind);
+    const Result<QueryRequest> request = parse_request(line, defaults);
     Result<Json> answer =
         request ? answer_request(*request, others) : Result<Json>(request.error());
     if (!answer) {
@@ -129,8 +129,21 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   return status;
 }
 
+// Nothing of its file for a query about one tree.
+SecondTree second_of(const QueryRequest& request) {
+  return std::visit(
+      [](const auto& q) {
+        if constexpr (requires { q.second; }) return q.second;
+        return SecondTree();
+      },
+      request);
+}
+
 int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request) {
-  if (is_standard_stream(arguments.file) && is_standard_stream(arguments.batch)) {
+  const RequestDefaults defaults{kind, second_of(request)};
+  const bool is_file =
+      is_standard_stream(arguments.file) || is_standard_stream(defaults.second.file);
+  if (is_file && is_standard_stream(arguments.batch)) {
     return usage("standard input is the file or the batch, not both");
   }
   Result<OpenedFile> opened = open_file(arguments.file);
@@ -140,7 +153,7 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
     return usage("--move is for instances of a scene");
   }
   const auto answer_all = [&](const AnswerRequest& answer_request) {
-    if (!arguments.batch.empty()) return run_batch(arguments, answer_request, kind);
+    if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
     TreeCache others;
     const Result<Json> answer = answer_request(request, others);
     if (!answer) return fail(answer.error());
@@ -208,7 +221,8 @@ class OptionFields {
   }
   void second(SecondTree& tree) {
     command_.is_needed(
-        command_.add_file("FILE2", tree.file, Values::kCookedFiles, "The second .bxt file"),
+        command_.add_file("FILE2", tree.file, Values::kCookedFiles,
+                          "The second .bxt file; in a batch, that of lines without \"file\""),
         batch_);
     command_
         .add_option_function<std::string>(
@@ -296,7 +310,8 @@ void add_query_command(Command& program, int& status) {
   CLI::Option* batch = command.add_file(
       "--batch", arguments->batch, Values::kFiles,
       "Query every line of a file (- for standard input): JSON objects with the names "
-      "of the options as keys, and \"kind\" if no kind of query is given here");
+      "of the options as keys, \"file\", \"tree\" and \"mesh\" for FILE2, --tree2 and --mesh2, and "
+      "\"kind\" if no kind of query is given here");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,

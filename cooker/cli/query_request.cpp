@@ -145,10 +145,35 @@ Error invalid(std::string what) {
   return {Errc::kInvalidQuery, std::move(what)};
 }
 
+// A value in a message, which a long one would fill.
+std::string found_text(const Json& value) {
+  constexpr std::size_t kLongest = 60;
+  const std::string text = line_of(value);
+  return text.size() <= kLongest ? text
+                                 : fmt::format("{} of {} bytes", value.type_name(), text.size());
+}
+
+// X,Y,Z, or a 3x4 matrix row by row. Nothing for another count of numbers.
+std::optional<Pose> pose_of(std::span<const double> numbers) {
+  Pose pose = Pose::Identity();
+  if (numbers.size() == 3) {
+    pose.translation() = Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+    return pose;
+  }
+  if (numbers.size() != 12) return std::nullopt;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      pose.matrix()(row, column) = numbers[static_cast<std::size_t>(4 * row + column)];
+    }
+  }
+  return pose;
+}
+
 // Reads the keys of one request and remembers the first that is missing, wrong or unknown.
 class KeyFields {
  public:
-  explicit KeyFields(const Json& json) : json_(json) {}
+  KeyFields(const Json& json, std::string_view kind, const SecondTree& default_second)
+      : json_(json), kind_(kind), default_second_(default_second) {}
 
   template <class T>
   void required(const char* key, T& out, const char* /*help*/) {
@@ -159,82 +184,107 @@ class KeyFields {
     if (read_if_given(key, out) && given != nullptr) *given = true;
   }
   void second(SecondTree& tree) {
-    std::string file;
-    std::string mesh;
-    std::string pose = "0,0,0";
-    read("file", file);
+    if (!json_.contains("file") && !default_second_.file.empty()) {
+      tree = default_second_;
+      known_.emplace_back("file");
+    } else {
+      read("file", tree.file, "the second .bxt file, here or on the command line");
+    }
     read_if_given("tree", tree.tree);
-    read_if_given("mesh", mesh);
-    read_if_given("pose", pose);
-    tree.file = file;
-    tree.mesh = mesh;
-    const std::optional<Pose> parsed = parse_pose(pose);
-    if (!parsed) fail("pose", "\"X,Y,Z\" or 12 numbers");
-    tree.pose = parsed.value_or(Pose::Identity());
+    read_if_given("mesh", tree.mesh);
+    read_if_given("pose", tree.pose);
   }
 
-  [[nodiscard]] Status finish(std::string_view kind) {
+  [[nodiscard]] Status finish() {
     for (const auto& [key, value] : json_.items()) {
       const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
-      if (!known && key != "kind") fail(key, fmt::format("no such key in \"{}\"", kind));
+      if (!known && key != "kind" && error_.empty()) {
+        error_ = fmt::format("{}: expected the keys {}{}kind, found \"{}\"", kind_,
+                             fmt::join(known_, ", "), known_.empty() ? "" : " or ", key);
+      }
     }
     return error_.empty() ? Status() : Status(invalid(error_));
   }
-  void fail(std::string_view key, std::string_view expected) {
-    if (error_.empty()) error_ = fmt::format("\"{}\": expected {}", key, expected);
-  }
 
  private:
-  void read(const char* key, Eigen::Vector3d& out) {
-    const Json* value = require(key);
-    if (value == nullptr) return;
-    const bool three = value->is_array() && value->size() == 3;
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (!three || !(*value)[k].is_number()) return fail(key, "[X,Y,Z]");
-      out[static_cast<Eigen::Index>(k)] = (*value)[k].get<double>();
+  void fail(std::string_view key, std::string_view expected, const std::string& found) {
+    if (!error_.empty()) return;
+    error_ = fmt::format("{}: \"{}\": expected {}, found {}", kind_, key, expected, found);
+  }
+
+  // The numbers of an array; nothing if it is another value.
+  static std::optional<std::vector<double>> numbers_of(const Json& value) {
+    const auto is_number = [](const Json& each) { return each.is_number(); };
+    if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_number)) {
+      return std::nullopt;
     }
+    return value.get<std::vector<double>>();
   }
-  void read(const char* key, double& out) {
-    const Json* value = require(key);
-    if (value == nullptr) return;
-    if (!value->is_number()) return fail(key, "a number");
-    out = value->get<double>();
+  static bool convert(const Json& value, Eigen::Vector3d& out) {
+    const auto numbers = numbers_of(value);
+    if (!numbers || numbers->size() != 3) return false;
+    out = Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
+    return true;
   }
-  void read(const char* key, std::string& out) {
-    const Json* value = require(key);
-    if (value == nullptr) return;
-    if (!value->is_string()) return fail(key, "a text");
-    out = value->get<std::string>();
+  static bool convert(const Json& value, Pose& out) {
+    const auto numbers = numbers_of(value);
+    const std::optional<Pose> pose = value.is_string() ? parse_pose(value.get<std::string>())
+                                     : numbers         ? pose_of(*numbers)
+                                                       : std::nullopt;
+    out = pose.value_or(Pose::Identity());
+    return pose.has_value();
   }
-  void read(const char* key, bool& out) {
-    const Json* value = require(key);
-    if (value == nullptr) return;
-    if (!value->is_boolean()) return fail(key, "true or false");
-    out = value->get<bool>();
+  static bool convert(const Json& value, double& out) {
+    if (value.is_number()) out = value.get<double>();
+    return value.is_number();
   }
-  void read(const char* key, std::uint64_t& out) {
-    const Json* value = require(key);
-    if (value == nullptr) return;
-    if (!value->is_number_unsigned()) return fail(key, "a whole number, 0 or more");
-    out = value->get<std::uint64_t>();
+  static bool convert(const Json& value, std::string& out) {
+    if (value.is_string()) out = value.get<std::string>();
+    return value.is_string();
+  }
+  static bool convert(const Json& value, std::filesystem::path& out) {
+    if (value.is_string()) out = value.get<std::string>();
+    return value.is_string();
+  }
+  static bool convert(const Json& value, bool& out) {
+    if (value.is_boolean()) out = value.get<bool>();
+    return value.is_boolean();
+  }
+  static bool convert(const Json& value, std::uint64_t& out) {
+    if (value.is_number_unsigned()) out = value.get<std::uint64_t>();
+    return value.is_number_unsigned();
+  }
+  // What convert() takes.
+  static const char* form_of(const Eigen::Vector3d&) { return "[X,Y,Z]"; }
+  static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
+  static const char* form_of(double) { return "a number"; }
+  static const char* form_of(const std::string&) { return "a text"; }
+  static const char* form_of(const std::filesystem::path&) { return "a text"; }
+  static const char* form_of(bool) { return "true or false"; }
+  static const char* form_of(std::uint64_t) { return "a whole number, 0 or more"; }
+
+  template <class T>
+  void read(const char* key, T& out, const char* expected = nullptr) {
+    if (expected == nullptr) expected = form_of(out);
+    known_.emplace_back(key);
+    const auto found = json_.find(key);
+    if (found == json_.end()) return fail(key, expected, "no such key");
+    if (!convert(*found, out)) fail(key, expected, found_text(*found));
   }
   // The same, but the key may be missing.
   template <class T>
   bool read_if_given(const char* key, T& out) {
+    if (json_.contains(key)) {
+      read(key, out);
+      return true;
+    }
     known_.emplace_back(key);
-    const bool given = json_.contains(key);
-    if (given) read(key, out);
-    return given;
-  }
-  const Json* require(const char* key) {
-    known_.emplace_back(key);
-    const auto found = json_.find(key);
-    if (found != json_.end()) return &*found;
-    fail(key, "this key");
-    return nullptr;
+    return false;
   }
 
   const Json& json_;
+  const std::string_view kind_;
+  const SecondTree& default_second_;
   std::vector<std::string> known_;
   std::string error_;
 };
@@ -311,7 +361,7 @@ Result<QueryRequest> request_of(std::string_view kind, KeyFields& fields) {
     result = request;
   });
   if (!result) return invalid(fmt::format("kind \"{}\": expected {}", kind, names_of_kinds()));
-  if (Status status = fields.finish(kind); !status) return status.error();
+  if (Status status = fields.finish(); !status) return status.error();
   return *result;
 }
 
@@ -364,20 +414,9 @@ std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {
 }
 
 std::optional<Pose> parse_pose(std::string_view text) {
-  std::array<double, 12> number{};
-  const std::size_t count = parse_numbers(text, number);
-  Pose pose = Pose::Identity();
-  if (count == 3) {
-    pose.translation() = Eigen::Vector3d(number[0], number[1], number[2]);
-    return pose;
-  }
-  if (count != number.size()) return std::nullopt;
-  for (Eigen::Index row = 0; row < 3; ++row) {
-    for (Eigen::Index column = 0; column < 4; ++column) {
-      pose.matrix()(row, column) = number[static_cast<std::size_t>(4 * row + column)];
-    }
-  }
-  return pose;
+  std::array<double, 12> numbers{};
+  const std::size_t count = parse_numbers(text, numbers);
+  return pose_of(std::span(numbers).first(count));
 }
 
 Error explained(const Error& error, const QueryRequest& request) {
@@ -394,15 +433,16 @@ Error explained(const Error& error, const QueryRequest& request) {
       request);
 }
 
-Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind) {
+Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults& defaults) {
   const Json json = Json::parse(line, nullptr, false);
   if (!json.is_object()) return invalid("expected one JSON object a line");
-  std::string kind(default_kind);
+  std::string kind = defaults.kind;
   if (const auto given = json.find("kind"); given != json.end()) {
-    if (!given->is_string()) return invalid("\"kind\": expected a text");
+    if (!given->is_string())
+      return invalid("\"kind\": expected a text, found " + found_text(*given));
     kind = given->get<std::string>();
   }
-  KeyFields fields(json);
+  KeyFields fields(json, kind, defaults.second);
   return request_of(kind, fields);
 }
 

@@ -152,7 +152,9 @@ struct PairRequest {
   static constexpr const char* kHelp = "Pairs of faces of two trees that touch";
   static constexpr KindExample kExamples[] = {
       {"The faces that touch a second tree, moved along x",
-       "boxtree query bunny.bxt pair bunny.bxt --pose 0.5,0,0"}};
+       "boxtree query bunny.bxt pair bunny.bxt --pose 0.5,0,0"},
+      {"The same for many poses, one per line",
+       "echo '{\"pose\":[0.5,0,0]}' | boxtree query bunny.bxt pair bunny.bxt --batch -"}};
 
   SecondTree second;
   bool first_only = false;
@@ -259,10 +261,17 @@ class TreeCache {
 /// "X,Y,Z", or the 12 numbers of a 3x4 matrix row by row. Nothing if it is neither.
 [[nodiscard]] std::optional<Pose> parse_pose(std::string_view text);
 
+/// What a line of a batch may leave to the command line.
+struct RequestDefaults {
+  std::string kind;
+  SecondTree second;  // taken whole by lines without "file"; its file is empty if there is none
+};
+
 /// A request from one line of a batch: an object with the names of the options as keys, as in
-/// {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}. Without "kind" it is `default_kind`.
-/// Error: kInvalidQuery with what was expected.
-Result<QueryRequest> parse_request(std::string_view line, std::string_view default_kind);
+/// {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}; those of a second tree are "file", "tree",
+/// "mesh" and "pose", which is text or an array of 3 or 12 numbers. Error: kInvalidQuery with kind,
+/// key, what was expected and what was found.
+Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults& defaults);
 
 /// The error of a query, which has only a code if its numbers are not valid: then with the kind,
 /// what was expected and what was found.

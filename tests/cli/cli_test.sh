@@ -320,6 +320,41 @@ for bad in 'nonsense' '[1]' '{"kind":"cone"}' '{"kind":"point"}' '{"kind":"point
 done
 same "$(jq -sr '.[1].detail' out)" "line 2: ray: expected a finite origin, at most 2^185 mesh extents away, a finite \
 direction that is not zero, and t_max of 0 or more, found origin [0,0,0], direction [0,0,0]"
+# What is missing or wrong is named, by kind and key.
+names() {
+  echo "$2" >bad.jsonl
+  expect 1 "$boxtree" query cube.bxt --batch bad.jsonl
+  same "$(jq -r .detail out)" "line 1: $1"
+}
+names 'distance: "file": expected the second .bxt file, here or on the command line, found no such key' \
+  '{"kind":"distance"}'
+names 'point: "at": expected [X,Y,Z], found no such key' '{"kind":"point"}'
+names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
+names 'contacts: expected the keys first or kind, found "hat"' '{"kind":"contacts","hat":1}'
+names '"kind": expected a text, found 3' '{"kind":3}'
+for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
+  names "pair: \"pose\": expected X,Y,Z or 12 numbers, as an array or as text, found $pose" \
+    "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":$pose}"
+done
+names 'pair: "pose": expected X,Y,Z or 12 numbers, as an array or as text, found string of 102 bytes' \
+  "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":\"$(printf 'x%.0s' {1..100})\"}"
+# The second file is that of the line or, with its pose, that of the command line; poses are text or numbers.
+cat >poses.jsonl <<'BATCH'
+{}
+{"pose":"4,0,0"}
+{"pose":[5,0,0]}
+{"pose":[1,0,0,6, 0,1,0,0, 0,0,1,0]}
+{"file":"cube.bxt"}
+{"file":"cube.bxt","pose":[3,0,0]}
+BATCH
+expect 0 "$boxtree" query cube.bxt distance grid.bxt --pose 7,0,0 --batch poses.jsonl
+same "$(jq -cs 'map(.upper * 1000 | round)' out)" '[6000,3000,4000,5000,0,2000]'
+expect 0 "$boxtree" cook cube.obj uneven.obj -o two.bxt -q
+printf '%s\n' '{"pose":[-3,0,0]}' '{"pose":[-3,0,0],"tree":"cube"}' >poses.jsonl
+expect 0 "$boxtree" query cube.bxt distance two.bxt --tree2 uneven --batch poses.jsonl
+same "$(jq -cs 'map(.upper * 1000 | round)' out)" '[1900,2000]'
+expect 1 "$boxtree" query cube.bxt distance - --batch - <cube.bxt
+grep -q 'the file or the batch, not both' err
 expect 1 "$boxtree" query cube.bxt
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0
 grep -q -- '--direction is required' err
