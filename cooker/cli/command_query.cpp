@@ -32,11 +32,14 @@ struct Arguments {
   bool json = false;
 };
 
+// A key a line. Lists of objects or of lists, of which there may be hundreds, have a line for each.
 void print_answer(const Arguments& arguments, const Json& json) {
-  if (arguments.json) {
-    print(json);
-  } else {
-    for (const auto& [key, value] : json.items()) fmt::print("{}: {}\n", key, line_of(value));
+  if (arguments.json) return print(json);
+  for (const auto& [key, value] : json.items()) {
+    const bool is_list = value.is_array() && !value.empty() && value.front().is_structured();
+    fmt::print("{}:{}\n", key, is_list ? "" : " " + line_of(value));
+    if (!is_list) continue;
+    for (const Json& each : value) fmt::print("  {}\n", line_of(each));
   }
 }
 

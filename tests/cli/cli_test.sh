@@ -92,6 +92,18 @@ same "$(jq -c '.hit' out)" true
 expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1.001,0.25,0.25 --json
 same "$(jq -c '.hit' out)" false
 
+# As text, lists of lists have a line for each; other lists are one.
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25
+count=$(sed -n 's/^count: //p' out)
+[ "$count" -gt 1 ]
+grep -q '^pairs:$' out
+same "$(grep -cE '^  \[[0-9]+,[0-9]+\]$' out)" "$count"
+same "$(wc -l <out)" $((count + 3))
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1.001,0.25,0.25
+grep -q '^pairs: \[\]$' out
+expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,0.5 --radius 0.5
+grep -q '^faces: \[[0-5],' out
+
 # Answers with bounds: exact ones, allowed errors, budgets. The cube is one leaf.
 expect 0 "$boxtree" query cube.bxt distance cube.bxt --pose 3,0,0 --json
 same "$(jq -c '[.lower <= 2, .upper >= 2, .upper - .lower < 1e-12, .converged, .found]' out)" \

@@ -53,6 +53,10 @@ expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.25,-7' --json
 same "$(jq -c '[.hit, .count]' out)" '[false,0]'
 expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --json
 jq -e '.hit and ([.pairs[][0].name] | unique == ["Crate"]) and ([.pairs[][1].name] | unique == ["Landing"])' out >/dev/null
+expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8'
+same "$(grep -c '^  \[{.*"name":"Crate".*},{.*"name":"Landing".*}\]$' out)" "$(sed -n 's/^count: //p' out)"
+expect 0 "$boxtree" query level.bxt sphere --center 0,1,-4 --radius 0.5
+same "$(grep -c '^  {.*"name":"Step ' out)" "$(sed -n 's/^count: //p' out)"
 expect 0 "$boxtree" query level.bxt ray --origin 0.5,9,-4.5 --direction 0,-1,0 --move 'Crate=0.5,6,-4.5' --json
 same "$(jq -c '.name' out)" '"Crate"'
 jq -e '(.t - 2.6) | fabs < 1e-6' out >/dev/null
