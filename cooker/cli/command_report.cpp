@@ -162,8 +162,16 @@ Json to_json(const PaperReport& report) {
   return {{"command", report.command}, {"meshes", meshes}, {"stairs", stairs}, {"rows", rows}};
 }
 
-// A path that was not given is empty: then nothing is written. "-" is standard output.
-Status write_text(const std::filesystem::path& path, const std::string& text) {
+// A file that was written.
+struct Written {
+  std::filesystem::path path;
+  std::size_t bytes = 0;
+};
+
+// A path that was not given is empty: then nothing is written. "-" is standard output. What is a
+// file is added to `written`.
+Status write_text(const std::filesystem::path& path, const std::string& text,
+                  std::vector<Written>& written) {
   if (path.empty()) return {};
   if (is_standard_stream(path)) {
     fmt::print("{}", text);
@@ -172,22 +180,28 @@ Status write_text(const std::filesystem::path& path, const std::string& text) {
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;
-  return file->commit();
+  if (Status status = file->commit(); !status) return status;
+  written.push_back({path, text.size()});
+  return {};
 }
 
-// Page and figures, where they are wanted; and what the terminal is shown, with --json the figures.
+// Page and figures, where they are wanted; and what the terminal is shown, with --json the figures,
+// else a summary and what was written, with what is in `written` by then.
 int write_report(const Arguments& arguments, const Page& page, const Json& figures,
-                 const Page& summary) {
-  if (Status status = write_text(arguments.output, to_html(page)); !status) {
+                 const Page& summary, std::vector<Written> written = {}) {
+  if (Status status = write_text(arguments.output, to_html(page), written); !status) {
     return fail(status.error());
   }
-  if (Status status = write_text(arguments.json_out, document_text(figures)); !status) {
+  if (Status status = write_text(arguments.json_out, document_text(figures), written); !status) {
     return fail(status.error());
   }
   if (arguments.json) {
     print(figures);
   } else if (!arguments.quiet && count_standard_outputs(arguments) == 0) {
     fmt::print("{}", to_text(summary));
+    for (const Written& file : written) {
+      fmt::print("wrote {}, {} bytes\n", shown(file.path.string()), file.bytes);
+    }
   }
   return 0;
 }
@@ -274,13 +288,15 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
 int run_tradeoff(const Arguments& arguments) {
   const Result<TradeoffReport> report = measure_all(arguments);
   if (!report) return fail(report.error());
-  if (Status status = write_text(arguments.csv, to_csv(*report)); !status)
+  std::vector<Written> written;
+  if (Status status = write_text(arguments.csv, to_csv(*report), written); !status)
     return fail(status.error());
-  if (Status status = write_text(arguments.approximate_csv, approximate_to_csv(*report)); !status) {
+  if (Status status = write_text(arguments.approximate_csv, approximate_to_csv(*report), written);
+      !status) {
     return fail(status.error());
   }
   return write_report(arguments, tradeoff_page(*report), Json::parse(to_json(*report)),
-                      tradeoff_summary(*report));
+                      tradeoff_summary(*report), std::move(written));
 }
 
 int run(const Arguments& arguments) {
@@ -326,7 +342,8 @@ void add_report_command(Command& program, int& status) {
                    "Count only: the same figures on every machine");
   command
       .add_file("--include", arguments->included, Values::kFiles,
-                "JSON results of other checks, shown as tables of their own")
+                "JSON results of boxtree_stiff or boxtree_robustness (BUILD/tests, with --json), "
+                "shown as tables of their own")
       ->excludes(paper);
   command
       .add_option("--peers", arguments->peers,

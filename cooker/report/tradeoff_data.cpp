@@ -201,8 +201,16 @@ Result<IncludedResults> read_results(const std::filesystem::path& path) {
   const bool has_rows = document.is_object() && document.contains("rows");
   const Json& rows = has_rows ? document["rows"] : document;
   const auto is_row = [](const Json& row) { return row.is_object(); };
-  if (!rows.is_array() || !std::all_of(rows.begin(), rows.end(), is_row)) {
-    return Error{Errc::kFileUnreadable, path.string() + ": no JSON array of rows"};
+  const char* const found = document.is_discarded()            ? "no JSON"
+                            : !rows.is_array() || rows.empty() ? "no rows"
+                            : std::all_of(rows.begin(), rows.end(), is_row)
+                                ? nullptr
+                                : "rows of another kind";
+  if (found != nullptr) {
+    return Error{Errc::kImportFailed,
+                 fmt::format("{}: expected rows of results, as boxtree_stiff and "
+                             "boxtree_robustness write with --json, found {}",
+                             path.string(), found)};
   }
   IncludedResults results;
   results.title = has_rows ? member(document, "title") : "";

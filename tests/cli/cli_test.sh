@@ -454,6 +454,8 @@ done
 expect 0 "$boxtree" report --paper cube.obj layers.obj --no-times -o paper.html --json-out paper.json
 grep -q 'Table A.2' out
 grep -q 'A.6 and A.7' out
+same "$(grep '^wrote' out)" "wrote paper.html, $(stat -c %s paper.html) bytes
+wrote paper.json, $(stat -c %s paper.json) bytes"
 grep -q '<td class="word">cube</td>' paper.html
 same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
 same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[8]'
@@ -482,7 +484,23 @@ expect 0 "$boxtree" report cube.obj --quick --json-out report.json
 same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
 expect 2 "$boxtree" report missing.obj
 expect 2 "$boxtree" report cube.obj --include missing.json
-expect 2 "$boxtree" report cube.obj --include cube.obj
+expect 3 "$boxtree" report cube.obj --include cube.obj
+grep -q 'import_failed: cube.obj: expected rows .* boxtree_stiff and boxtree_robustness .*, found no JSON' err
+expect 0 "$boxtree" report --help
+tr -s ' \n' ' ' <out | grep -q 'results of boxtree_stiff or boxtree_robustness'
+# What was written is told, but not among a document.
+expect 0 "$boxtree" report cube.obj --quick --no-times -o told.html --csv told.csv --json-out told.json \
+  --csv-approximate told-approximate.csv
+for file in told.html told.csv told.json told-approximate.csv; do
+  grep -q "^wrote $file, $(stat -c %s $file) bytes$" out
+done
+expect 0 "$boxtree" report cube.obj --quick --no-times -o told.html -q
+same "$(wc -c <out)" 0
+for document in --json '--csv -'; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" report cube.obj --quick --no-times -o told.html $document
+  same "$(grep -c '^wrote' out)" 0
+done
 expect 1 "$boxtree" report
 expect 2 "$boxtree" report cube.obj --quick --no-times -o no/such/folder/report.html
 

@@ -66,7 +66,7 @@ int run(const Arguments& arguments) {
   }
   if (!arguments.json.empty()) {
     std::ofstream out(arguments.json);
-    out << nlohmann::ordered_json{{"full", arguments.full}, {"cases", rows}}.dump(2) << '\n';
+    out << nlohmann::ordered_json{{"full", arguments.full}, {"rows", rows}}.dump(2) << '\n';
     out.close();
     if (!out) {
       fmt::print(stderr, "cannot write {}\n", arguments.json);

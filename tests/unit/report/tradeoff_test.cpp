@@ -392,8 +392,20 @@ TEST(TradeoffPage, SaysWhatWasLeftOutAndShowsWhatWasIncluded) {
   EXPECT_NE(html.find("<td class=\"word\">0 differ</td><td class=\"word\">yes</td>"),
             std::string::npos);
   EXPECT_EQ(require(read_results(folder.write("rows.json", R"([{"id":"A"}])"))).title, "rows");
-  for (const char* bad : {"{", "3", "[3]", R"({"rows":{}})", ""}) {
-    EXPECT_EQ(read_results(folder.write("bad.json", bad)).code(), Errc::kFileUnreadable) << bad;
+  for (const auto& [bad, found] : {std::pair{"{", "no JSON"},
+                                   {"", "no JSON"},
+                                   {"3", "no rows"},
+                                   {"[]", "no rows"},
+                                   {R"({"rows":{}})", "no rows"},
+                                   {R"({"cases":[{}]})", "no rows"},
+                                   {"[3]", "rows of another kind"}}) {
+    const auto results = read_results(folder.write("bad.json", bad));
+    EXPECT_EQ(results.code(), Errc::kImportFailed) << bad;
+    EXPECT_TRUE(results.error().detail.ends_with(
+        std::string("bad.json: expected rows of results, as boxtree_stiff and boxtree_robustness "
+                    "write with --json, found ") +
+        found))
+        << results.error().detail;
   }
   EXPECT_EQ(read_results(folder.path() / "none").code(), Errc::kFileNotFound);
 }
