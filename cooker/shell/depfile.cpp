@@ -26,6 +26,9 @@ Status write_depfile(const std::filesystem::path& path, const std::filesystem::p
   std::string text = make_name(output) + ":";
   for (const std::filesystem::path& input : inputs) text += " \\\n  " + make_name(input);
   text += "\n";
+  // Without a rule, make stops at an input that is no longer there; with an empty one it cooks
+  // again.
+  for (const std::filesystem::path& input : inputs) text += make_name(input) + ":\n";
   Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return file.error();
   if (Status status = file->write(std::as_bytes(std::span(text))); !status) return status;

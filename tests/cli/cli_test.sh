@@ -180,6 +180,39 @@ cp cube.obj elsewhere/
 (cd elsewhere && "$boxtree" cook cube.obj -o cube.bxt --jobs 1 -q)
 cmp cube.bxt elsewhere/cube.bxt
 
+# The depfile serves make and ninja: what was read and is touched, or is gone, is a reason to cook again.
+mkdir depends
+sed '1i mtllib two\\ words.mtl own.mtl' cube.obj >depends/own.obj
+touch "depends/own.mtl"
+printf 'own.bxt: own.obj\n\t"%s" cook own.obj -o own.bxt --depfile own.d -q\n-include own.d\n' "$boxtree" >depends/Makefile
+cat >depends/build.ninja <<NINJA
+rule cook
+  command = "$boxtree" cook own.obj -o \$out --depfile \$out.d -q
+  depfile = \$out.d
+build ninja.bxt: cook own.obj
+rule cook_log
+  command = "$boxtree" cook own.obj -o \$out --depfile \$out.d -q
+  depfile = \$out.d
+  deps = gcc
+build log.bxt: cook_log own.obj
+NINJA
+for tool in make ninja; do
+  touch depends/own.mtl
+  expect 0 $tool -C depends
+  grep -q ' cook ' out || grep -q '2/2' out
+  expect 0 $tool -C depends
+  grep -qE 'up to date|no work to do' out
+  sleep 1.1 # make compares whole seconds on some file systems
+  touch depends/own.mtl
+  expect 0 $tool -C depends
+  grep -q ' cook ' out || grep -q '2/2' out
+  rm depends/own.mtl
+  expect 0 $tool -C depends
+  grep -q ' cook ' out || grep -q '2/2' out
+  expect 0 $tool -C depends
+  grep -qE 'up to date|no work to do' out
+done
+
 # Errors name the file and the place, and leave the old file alone.
 cp cube.bxt before.bxt
 printf 'v 0 0 0\nv nan 0 0\nv 0 1 0\nf 1 2 3\n' >bad.obj

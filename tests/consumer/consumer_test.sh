@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Installs the project, builds samples/game against it and runs it; touching a mesh, or a file that
-# it refers to, recooks just that one, and a second build does nothing. Ninja and Make.
+# it refers to, recooks just that one, as does removing the latter, and a second build does nothing. Ninja and Make.
 set -euo pipefail
 build=$1 source=$2
 # Libraries with sanitizers want the compiler that made them.
@@ -35,6 +35,10 @@ for generator in Ninja "Unix Makefiles"; do
   cmake --build "$game" >"$work/log"
   grep -q 'Cooking level.bxt' "$work/log" || fail "$generator: a touched mesh did not recook"
   grep -q 'Cooking crate.bxt' "$work/log" && fail "$generator: crate was recooked for nothing"
+  mv "$work/samples/meshes/crate.mtl" "$work/crate.mtl"
+  cmake --build "$game" >"$work/log" || { cat "$work/log"; fail "$generator: a .mtl that is gone stops the build"; }
+  grep -q 'Cooking crate.bxt' "$work/log" || fail "$generator: a .mtl that is gone did not recook"
+  mv "$work/crate.mtl" "$work/samples/meshes/crate.mtl"
 done
 # Nothing but public headers is installed, and each of them is enough by itself: no header that
 # decodes nodes, and none of the slow ones of the standard library.

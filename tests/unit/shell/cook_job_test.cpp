@@ -57,9 +57,10 @@ TEST(CookJob, TheDepfileListsAllThatWasRead) {
   const Summary summary =
       require(cook_job({.output = output, .profile = profile, .depfile = depfile}));
   EXPECT_EQ(summary.files_read, (std::vector{profile, mesh, material}));
-  EXPECT_EQ(test::read_text(depfile), output.string() + ": \\\n  " + profile.string() + " \\\n  " +
-                                          folder.path().string() + "/a\\ mesh.obj \\\n  " +
-                                          material.string() + "\n");
+  EXPECT_EQ(test::read_text(depfile),
+            output.string() + ": \\\n  " + profile.string() + " \\\n  " + folder.path().string() +
+                "/a\\ mesh.obj \\\n  " + material.string() + "\n" + profile.string() + ":\n" +
+                folder.path().string() + "/a\\ mesh.obj:\n" + material.string() + ":\n");
   EXPECT_EQ(summary.file_bytes, fs::file_size(output));
 }
 
