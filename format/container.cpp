@@ -25,10 +25,16 @@ bool is_known(std::uint32_t kind) {
   return section_name(static_cast<SectionKind>(kind)) != "unknown";
 }
 
+// As far as the file goes: what is too short for a header may be no .bxt file at all.
+Status check_magic(Bytes file) {
+  const Bytes magic = std::as_bytes(std::span(kMagic));
+  const Bytes start = file.first(std::min(file.size(), magic.size()));
+  if (std::equal(start.begin(), start.end(), magic.begin())) return {};
+  return error_with(Errc::kBadMagic, {}, "the first # bytes are not a .bxt magic", {start.size()});
+}
+
 Status check_header(const FileHeader& header, std::uint64_t file_size,
                     std::uint64_t known_features) {
-  if (header.magic != kMagic)
-    return Error{Errc::kBadMagic, "the first 8 bytes are not a .bxt magic"};
   if (header.version_major != kVersionMajor) {
     return error_with(Errc::kVersionUnsupported, {},
                       "file has format version #.#, this reader knows #.#",
@@ -180,6 +186,7 @@ FileHeader make_header(std::span<const SectionEntry> sections, std::uint64_t fea
 
 Result<Container> check_container(Bytes file, ChecksumFunction checksum,
                                   std::uint64_t known_features) {
+  if (Status status = check_magic(file); !status) return status.error();
   if (file.size() < sizeof(FileHeader)) {
     return error_with(Errc::kTruncated, {}, "the file has # bytes, a header alone has #",
                       {file.size(), sizeof(FileHeader)});

@@ -63,7 +63,9 @@ printf 'f 1 2 3\n' | expect 3 "$boxtree" cook - --format obj -o out.bxt
 grep -q 'stdin.obj' err
 if grep -q tmp/ err; then echo "a scratch name is shown: $(cat err)"; exit 1; fi
 printf 'x' | expect 3 "$boxtree" info -
-grep -q 'standard input: the file has 1 bytes' err
+grep -q 'bad_magic: standard input: the first 1 bytes are not a .bxt magic' err
+head -c 8 crate.bxt | expect 3 "$boxtree" info -
+grep -q 'truncated: standard input: the file has 8 bytes, a header alone has 64' err
 expect 2 script -qec "'$boxtree' info -" /dev/null </dev/null
 test ! -e out.bxt
 cp crate.bxt ./- # a file of that name

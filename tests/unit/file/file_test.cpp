@@ -31,6 +31,10 @@ TEST(FileOpen, NamesThePathOfWhatItRefuses) {
       {folder.write("short.bxt", whole.substr(0, 63)), Errc::kTruncated},
       {folder.write("cut.bxt", whole.substr(0, whole.size() - 64)), Errc::kTruncated},
       {folder.write("text.bxt", std::string(200, 'x')), Errc::kBadMagic},
+      {folder.write("magic.bxt", whole.substr(0, 5)), Errc::kTruncated},
+      {folder.write("small.obj", "v 0 0 0\nv 1 0 0\n"), Errc::kBadMagic},
+      {folder.write("byte.obj", "v"), Errc::kBadMagic},
+      {folder.write("damaged.bxt", whole.substr(0, 4) + "x"), Errc::kBadMagic},
   };
   for (const Case& c : cases) {
     for (const bool copy : {false, true}) {
