@@ -43,6 +43,7 @@ std::vector<const Command*> parsed_commands(const Command& program) {
 
 Command& Command::add_command(const std::string& name, const std::string& description) {
   const std::shared_ptr<Command> command(new Command(name, description, *this));
+  command->set_help_all_flag(kHelpAllFlag, "Print every option");
   add_subcommand(command);
   return *command;
 }

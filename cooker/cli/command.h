@@ -15,6 +15,9 @@ namespace boxtree::cooker {
 /// Group of options that `--help` leaves to `--help-all`.
 inline constexpr const char* kRareOptions = "Rarely needed";
 
+/// Shows rare options, too. Every command has it.
+inline constexpr const char* kHelpAllFlag = "--help-all";
+
 /// What a value is, where its option does not list all there are: for completions.
 enum class Values : std::uint8_t {
   kOther,

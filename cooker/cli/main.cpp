@@ -46,7 +46,7 @@ int main(int argc, char** argv) {
     app.set_version_flag("-V,--version", fmt::format("boxtree {}", cooker::kVersion));
     app.formatter(std::make_shared<cooker::HelpFormatter>());
     app.set_help_flag("-h,--help", "Print the common options");
-    app.set_help_all_flag("--help-all", "Print every option of every command");
+    app.set_help_all_flag(cooker::kHelpAllFlag, "Print every option of every command");
     app.failure_message(cooker::usage_message);
     app.require_subcommand(1);
     app.parse_complete_callback([&app] { cooker::check_needed(app); });

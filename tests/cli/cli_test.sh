@@ -292,6 +292,13 @@ expect 1 "$boxtree" query pair cube.bxt cube.bxt
 grep -q 'FILE comes before pair' err
 expect 0 "$boxtree" --help-all # of every command, rare ones too
 grep -q -- '--depfile' out
+expect 0 "$boxtree" --help
+grep -q -- '--help-all  *Print every option of every command$' out
+for command in cook 'query ray'; do # of a command, its own
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" $command --help
+  grep -q -- '--help-all  *Print every option$' out
+done
 expect 1 "$boxtree" help --man query ray
 grep -q 'in that of boxtree query' err
 expect 1 "$boxtree" completion csh
