@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/cli/help_format.h"
 
+#include <algorithm>
 #include <sstream>
 #include <utility>
+#include <vector>
 
 #include "cooker/cli/command.h"
 #include "cooker/cli/exit_status.h"
@@ -96,7 +98,12 @@ std::string HelpFormatter::make_footer(const CLI::App* app) const {
   for (const ExitStatus& status : kExitStatuses) {
     statuses += (statuses.empty() ? "" : ", ") + std::to_string(status.number) + " " + status.name;
   }
-  return footer + wrapped("Exit status: " + statuses + ".", 0, 0) + "\n";
+  footer += wrapped("Exit status: " + statuses + ".", 0, 0) + "\n";
+  const std::vector<OptionText> options = options_of(command);
+  const bool has_more = std::any_of(options.begin(), options.end(),
+                                    [](const OptionText& option) { return option.is_rare; });
+  if (has_more && !all_) footer += "More options: " + name_of(command) + " " + kHelpAllFlag + "\n";
+  return footer;
 }
 
 }  // namespace boxtree::cooker

@@ -279,6 +279,20 @@ for kind in ray point box sphere pair distance overlap contacts; do
   grep -q "^Usage: boxtree query FILE $kind " help
 done
 
+# Help says where the options are that it does not show, if there are any, and that command runs.
+for command in cook report query 'query pair'; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" help $command
+  same "$(tail -1 out)" "More options: boxtree $command --help-all"
+  cp out short
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" $command --help-all
+  same "$(grep -c 'More options' out)" 0
+  [ "$(grep -c '^  -' out)" -gt "$(grep -c '^  -' short)" ]
+done
+expect 0 "$boxtree" help query ray
+same "$(grep -c 'More options' out)" 0
+
 # A kind without a file has its help; it is not taken for a file, and the file comes before it.
 expect 0 "$boxtree" query ray --help
 grep -q '^Usage: boxtree query FILE ray --origin X,Y,Z --direction X,Y,Z \[OPTION...\]$' out
