@@ -20,7 +20,9 @@ struct ClosestPoint {
   Eigen::Vector3d point = Eigen::Vector3d::Zero();            ///< Where it is, in object space.
   double distance = std::numeric_limits<double>::infinity();  ///< How far away, in object space.
   FaceRef face;                                               ///< The face that it lies on.
-  std::uint32_t triangle = 0;  ///< 0, or 1 for the second half (0,2,3) of a quad.
+  /// 0, or 1 for the second half (0,2,3) of a quad. Parts of a quad that import split are faces of
+  /// their own, with the same id, and have 0.
+  std::uint32_t triangle = 0;
 };
 
 /// A closest point, nothing, or an error.

@@ -26,9 +26,11 @@ struct Ray {
 struct RayHit {
   double t = std::numeric_limits<double>::infinity();  ///< In units of the ray's direction.
   FaceRef face;                                        ///< The face that was hit.
-  std::uint32_t triangle = 0;  ///< 0, or 1 for the second half (0,2,3) of a quad.
-  double u = 0,                ///< Weight of the triangle's corner 1.
-      v = 0;                   ///< Weight of its corner 2; corner 0 has 1 - u - v.
+  /// 0, or 1 for the second half (0,2,3) of a quad. Parts of a quad that import split are faces of
+  /// their own, with the same id, and have 0.
+  std::uint32_t triangle = 0;
+  double u = 0,  ///< Weight of the triangle's corner 1.
+      v = 0;     ///< Weight of its corner 2; corner 0 has 1 - u - v.
   /// Where the face was hit, on the face by its weights: from far away more exact than
   /// origin + t * direction.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();

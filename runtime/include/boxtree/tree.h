@@ -23,7 +23,8 @@ class BoundTree;
 
 /// A face in an answer.
 struct FaceRef {
-  /// Number in the source mesh; kNoFaceId when the file has no ids.
+  /// Number in the source mesh, the same for all parts of a face that import split; kNoFaceId when
+  /// the file has no ids.
   std::uint32_t id = kNoFaceId;
   /// Number in the tree's own order, from 0: what Tree::triangle() takes.
   std::uint32_t index = kNoFaceId;
