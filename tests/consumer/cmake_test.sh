@@ -97,6 +97,30 @@ for generator in Ninja "Unix Makefiles"; do # another option cooks again, and ju
   [ "$(grep -c Cooking "$work/log")" = 1 ] || fail "$generator: another option recooked all"
 done
 
+# The command of GUIDE.md for a profile that says itself what to cook: once, and again if a mesh of it changes.
+mkdir "$work/listed"
+cp "$work/meshes"/* "$work/assets/game.cpp" "$work/listed"
+printf '[[mesh]]\nname = "crate"\nfile = "crate.obj"\n[[instance]]\nmesh = "crate"\n' >"$work/listed/scene.toml"
+{
+  printf '%s\n' 'find_package(boxtree CONFIG REQUIRED)' 'add_executable(game game.cpp)' \
+    'target_compile_definitions(game PRIVATE BOXTREE_ASSET_DIR="" SMALL_DIR="")'
+  python3 "$source/tests/docs/blocks.py" "$source/docs/GUIDE.md" cmake |
+    sed -n '/^set(scene /,/^target_sources(/p'
+} | project listed CXX
+for generator in Ninja "Unix Makefiles"; do
+  out=$work/listed/build
+  rm -rf "$out"
+  configured listed -G "$generator"
+  quiet cmake --build "$out"
+  [ "$("$work/prefix/bin/boxtree" info "$out/scene.bxt" --json | jq .scene.instance_count)" = 1 ] || fail "no scene"
+  quiet cmake --build "$out"
+  if grep -q Generating "$work/log"; then fail "$generator: a scene was cooked twice"; fi
+  sleep 1.1
+  touch "$work/listed/crate.obj"
+  quiet cmake --build "$out"
+  grep -q Generating "$work/log" || fail "$generator: a mesh of a profile did not recook its scene"
+done
+
 # What is refused when CMake configures, with what to do about it.
 refused 'level.obj is cooked into' <<'CMAKE'
 find_package(boxtree CONFIG REQUIRED)

@@ -11,6 +11,7 @@ a bare Debian.
 import os
 import pathlib
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -96,6 +97,13 @@ class Pages:
         if is_whole:
             self.run(page, "./program\n", line)
 
+    def makefile(self, page, text, line):
+        """Cooks what make is told to, and cooks it again only if a file that the mesh refers to changes."""
+        folder = self.work / "make"
+        shutil.copytree(self.source / "samples/meshes", folder)
+        (folder / "Makefile").write_text(text, encoding="utf-8")
+        self.run(page, "cd make && make crate.bxt && make -q crate.bxt && touch crate.mtl && ! make -q crate.bxt\n", line)
+
     def profile(self, page, text, line):
         """Lines of the sample's profile, in its order."""
         lines = iter([re.sub(r"\s*#.*", "", each)
@@ -109,7 +117,7 @@ class Pages:
             if language == "sh" and BUILDS.match(text):
                 continue
             {"sh": self.run, "text": self.check_output, "cpp": self.program, "toml": self.profile,
-             "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
+             "make": self.makefile, "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
 
 
 def main():
