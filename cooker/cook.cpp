@@ -218,7 +218,8 @@ class Cook {
       return false;
     };
     return !input_.has_top_level ||
-           (may_use_grid_[tree] && has(GeometryId::kExact) && has(GeometryId::kGrid));
+           (may_use_grid_[tree] && has(GeometryId::kGrid) &&
+            (has(GeometryId::kExact) || has(GeometryId::kArrays)));
   }
 
   // In a scene, errors name the mesh; without one, users list the meshes themselves.

@@ -283,7 +283,7 @@ class Account {
     return count * (sizeof(InstanceRecord) + kNumbersOfPose * sizeof(float));
   }
 
-  // Bytes of positions saved by a grid: the difference to the exact candidate of the same codec.
+  // Bytes of positions saved by a grid: the difference to the largest without one.
   void add_rounding() {
     for (std::size_t t = 0; t < cooked_.trees.size(); ++t) {
       const std::vector<Candidate>& candidates = cooked_.contests[t].candidates;
@@ -291,7 +291,7 @@ class Account {
       if (chosen.geometry != GeometryId::kGrid) continue;
       std::uint64_t saved = 0;
       for (const Candidate& other : candidates) {
-        if (other.geometry != GeometryId::kExact || other.geometry_bytes <= chosen.geometry_bytes) {
+        if (!is_lossless(other.geometry) || other.geometry_bytes <= chosen.geometry_bytes) {
           continue;
         }
         saved = std::max(saved, other.geometry_bytes - chosen.geometry_bytes);

@@ -24,8 +24,9 @@ enum class CodecId : std::uint16_t {
 /// How vertices and corners are stored. Numbers are pinned.
 enum class GeometryId : std::uint16_t {
   kExternal = 1,  // not in the file; the application gives its arrays when binding
-  kExact = 2,     // f32 or f64 positions bit for bit, corners as 16 or 32-bit vertex numbers
-  kGrid = 3,      // corners rounded to a grid, in clusters of at most 128 faces (format/grid.h)
+  kArrays = 2,    // f32 or f64 positions bit for bit, corners as 16 or 32-bit vertex numbers
+  kGrid = 3,      // positions rounded to a grid, in clusters (format/cluster.h)
+  kExact = 4,     // f32 or f64 positions bit for bit, in clusters
 };
 
 struct CodecInfo {
@@ -66,14 +67,26 @@ inline constexpr std::array kCodecs = {
   return std::nullopt;
 }
 
+/// Whether positions are those of the source, bit for bit.
+[[nodiscard]] constexpr bool is_lossless(GeometryId id) noexcept {
+  return id == GeometryId::kArrays || id == GeometryId::kExact;
+}
+
+/// Whether faces are stored in clusters.
+[[nodiscard]] constexpr bool has_clusters(GeometryId id) noexcept {
+  return id == GeometryId::kGrid || id == GeometryId::kExact;
+}
+
 [[nodiscard]] constexpr std::string_view geometry_name(GeometryId id) noexcept {
   switch (id) {
     case GeometryId::kExternal:
       return "external";
-    case GeometryId::kExact:
-      return "exact";
+    case GeometryId::kArrays:
+      return "arrays";
     case GeometryId::kGrid:
       return "grid";
+    case GeometryId::kExact:
+      return "exact";
   }
   return "unknown";
 }

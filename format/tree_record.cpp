@@ -74,14 +74,14 @@ bool geometry_fits(const TreeRecord& record) {
     const bool faces_are_named = in_source_order || record.face_id_bytes != 0;
     return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
   }
-  if (record.geometry == GeometryId::kGrid) {
-    return record.corner_bytes == 0 &&
-           (record.corners_per_face == 3 || record.corners_per_face == 4) &&
-           is_within(record.grid_exponent, kMaxScaleExponent) &&
-           is_within(std::int64_t{record.grid_exponent} - record.scale_exponent, kMaxGridShift);
+  if (record.corners_per_face != 3 && record.corners_per_face != 4) return false;
+  if (record.geometry == GeometryId::kArrays) {
+    return record.corner_bytes == 2 || record.corner_bytes == 4;
   }
-  return (record.corner_bytes == 2 || record.corner_bytes == 4) &&
-         (record.corners_per_face == 3 || record.corners_per_face == 4);
+  if (record.corner_bytes != 0) return false;
+  return record.geometry == GeometryId::kExact ||
+         (is_within(record.grid_exponent, kMaxScaleExponent) &&
+          is_within(std::int64_t{record.grid_exponent} - record.scale_exponent, kMaxGridShift));
 }
 
 bool reserve_is_zero(const TreeRecord& record) {

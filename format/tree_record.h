@@ -36,7 +36,7 @@ struct TreeRecord {
   std::uint32_t node_count;
   RootKind root;
   std::uint32_t depth;            // inner nodes on the longest path; at most kMaxDepth
-  std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is exact
+  std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is arrays
   std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
   std::uint8_t face_id_bytes;     // width (format/numbers.h); 0 without a face_ids section
   std::uint8_t duplicate_bytes;   // likewise, of duplicates

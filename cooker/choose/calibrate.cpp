@@ -88,7 +88,9 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
   }
   Calibration out;
   for (const CodecInfo& codec : kCodecs) {
-    for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+    for (const GeometryId geometry :
+         {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
+      if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
       std::vector<Sample> samples;
       for (const SourceMesh& mesh : meshes) {
         if (mesh.faces.empty()) continue;

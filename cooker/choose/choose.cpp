@@ -13,7 +13,16 @@ namespace boxtree::cooker {
 namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr std::array kStores = {GeometryId::kExternal, GeometryId::kExact, GeometryId::kGrid};
+
+// Geometry stores with the same positions: trees with either still touch where their meshes do.
+enum class Positioning : std::uint8_t { kExternal, kLossless, kOnGrid };
+constexpr std::array kPositionings = {Positioning::kExternal, Positioning::kLossless,
+                                      Positioning::kOnGrid};
+
+Positioning positioning_of(GeometryId geometry) {
+  if (geometry == GeometryId::kExternal) return Positioning::kExternal;
+  return is_lossless(geometry) ? Positioning::kLossless : Positioning::kOnGrid;
+}
 
 struct Rated {
   double bytes = 0;  // per triangle
@@ -51,12 +60,13 @@ std::vector<Rated> rate(const Contest& tree, const Wishes& wishes) {
   return rated;
 }
 
-// The best candidate with a geometry store; empty if none may be chosen.
+// The best candidate with such positions; empty if none may be chosen.
 std::optional<std::size_t> best_of(const Contest& tree, const std::vector<Rated>& rated,
-                                   GeometryId store) {
+                                   Positioning positioning) {
   std::optional<std::size_t> best;
   for (std::size_t i = 0; i < rated.size(); ++i) {
-    if (tree.candidates[i].geometry != store || rated[i].score == kNone) continue;
+    const bool fits = positioning_of(tree.candidates[i].geometry) == positioning;
+    if (!fits || rated[i].score == kNone) continue;
     if (!best || rated[i].score < rated[*best].score) best = i;
   }
   return best;
@@ -108,8 +118,10 @@ std::string reason(const Candidate& candidate, const Rated& rated, const Candida
   if (rated.bytes > wishes.max_bytes_per_triangle.value_or(kNone))
     return "over the budget of bytes";
   if (rated.slowdown > wishes.max_slowdown.value_or(kNone)) return "over the budget of time";
-  if (candidate.geometry != chosen.geometry && rated.score == kNone) return "another geometry";
-  if (candidate.geometry != chosen.geometry && rated.score <= chosen_rated.score) {
+  const bool is_placed_otherwise =
+      positioning_of(candidate.geometry) != positioning_of(chosen.geometry);
+  if (is_placed_otherwise && rated.score == kNone) return "another geometry";
+  if (is_placed_otherwise && rated.score <= chosen_rated.score) {
     return fmt::format("no worse alone, but the trees of the file share geometry {}",
                        geometry_name(chosen.geometry));
   }
@@ -197,11 +209,11 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
 
   std::vector<std::size_t> chosen;
   double least = kNone;
-  for (const GeometryId store : kStores) {
+  for (const Positioning positioning : kPositionings) {
     std::vector<std::size_t> of_store;
     double score = 0;
     for (std::size_t t = 0; t < trees.size(); ++t) {
-      const auto best = best_of(trees[t], rated[t], store);
+      const auto best = best_of(trees[t], rated[t], positioning);
       if (!best) break;
       of_store.push_back(*best);
       // At least one, so that trees without faces count, too.
@@ -230,9 +242,9 @@ Result<std::vector<std::size_t>> choose_each(std::span<Contest> trees,
     for (std::size_t i = 0; i < trees[t].candidates.size(); ++i) {
       Candidate& candidate = trees[t].candidates[i];
       const Candidate& winner = trees[t].candidates[chosen[t]];
-      candidate.rejected = i == chosen[t] ? ""
-                                          : reason(candidate, rated[t][i], winner,
-                                                   rated[t][chosen[t]], wishes[t]);
+      candidate.rejected =
+          i == chosen[t] ? ""
+                         : reason(candidate, rated[t][i], winner, rated[t][chosen[t]], wishes[t]);
     }
   }
   return chosen;

@@ -12,7 +12,7 @@ namespace boxtree::cooker {
 
 QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
                   std::span<const CodecCost> costs) {
-  const GeometryId stored = geometry == GeometryId::kGrid ? geometry : GeometryId::kExact;
+  const GeometryId stored = geometry == GeometryId::kExternal ? GeometryId::kArrays : geometry;
   QueryCost cost{};
   for (const CodecCost& known : costs) {
     if (known.codec != codec || known.geometry != stored) continue;

@@ -17,7 +17,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::array kStores = {GeometryId::kExact, GeometryId::kGrid};
+constexpr std::array kStores = {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid};
 constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
 
 Error fault(std::string what) {
@@ -59,7 +59,7 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
   const auto store = std::find_if(kStores.begin(), kStores.end(),
                                   [&](GeometryId s) { return geometry_name(s) == geometry; });
   if (store == kStores.end()) {
-    return fault(fmt::format("row {}: geometry \"{}\": expected exact or grid", number, geometry));
+    return fault(fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
   }
   CodecCost cost{*id, *store, {}};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
@@ -102,6 +102,7 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
   }
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId store : kStores) {
+      if (store == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
       const auto count = std::count_if(costs.begin(), costs.end(), [&](const CodecCost& cost) {
         return cost.codec == codec.id && cost.geometry == store;
       });

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <memory>
 #include <utility>
 
 #include <fmt/format.h>
@@ -95,9 +96,13 @@ Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
 EncodedGeometry encode_geometry(const Source& source, const SearchOptions& options,
                                 std::vector<std::uint32_t> order, LeafOrder leaf_order) {
   const bool has_duplicates = source.duplicates.count > 0;
-  if (source.quantised && has_duplicates && leaf_order == LeafOrder::kFree) {
+  const auto encode_clusters = [&](LeafOrder faces, bool face_ids) {
+    return source.quantised ? encode_grid_geometry(*source.quantised, order, faces, face_ids)
+                            : encode_exact_geometry(source.mesh, order, faces, face_ids);
+  };
+  if (has_clusters(options.geometry) && has_duplicates && leaf_order == LeafOrder::kFree) {
     // The order of the originals decides the order of their duplicates, so clusters come first.
-    static_cast<void>(encode_grid_geometry(*source.quantised, order, leaf_order, false));
+    static_cast<void>(encode_clusters(leaf_order, false));
     leaf_order = LeafOrder::kFixed;
   }
   const std::vector<std::uint32_t> originals =
@@ -105,10 +110,10 @@ EncodedGeometry encode_geometry(const Source& source, const SearchOptions& optio
   EncodedGeometry out;
   if (options.geometry == GeometryId::kExternal) {
     out = encode_external_geometry(source.mesh, order);
-  } else if (source.quantised) {
-    out = encode_grid_geometry(*source.quantised, order, leaf_order, options.face_ids);
+  } else if (options.geometry == GeometryId::kArrays) {
+    out = encode_array_geometry(source.mesh, order, options.face_ids);
   } else {
-    out = encode_exact_geometry(source.mesh, order, options.face_ids);
+    out = encode_clusters(leaf_order, options.face_ids);
   }
   encode_duplicates(originals, out);
   return out;
@@ -156,19 +161,14 @@ Family binary_family(const Source& source, const SearchOptions& options,
 }
 
 // Codecs with full leaves; their layout orders the faces.
-Family wide_family(const Source& source, const SearchOptions& options) {
+Family wide_family(const Source& source, const SearchOptions& options,
+                   const std::shared_ptr<const WideLayout>& layout) {
   Family family{source.known, {}};
-  WideLayout layout =
-      lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates));
   const bool external = options.geometry == GeometryId::kExternal;
   // Leaves refer to the application's faces through face ids. A tree without faces has no ids.
-  family.tree.faces_in_source_order = external && layout.face_order.empty();
-  family.tree.geometry =
-      encode_geometry(source, options, std::move(layout.face_order), LeafOrder::kFree);
-  layout.face_order = {};
-  family.nodes_of = [layout = std::move(layout)](CodecId codec) {
-    return encode_wide(layout, codec);
-  };
+  family.tree.faces_in_source_order = external && layout->face_order.empty();
+  family.tree.geometry = encode_geometry(source, options, layout->face_order, LeafOrder::kFree);
+  family.nodes_of = [layout](CodecId codec) { return encode_wide(*layout, codec); };
   return family;
 }
 
@@ -210,15 +210,14 @@ class Search {
   }
 
   Result<TriedTree> run() {
-    const bool has_choice = options_.geometry == GeometryId::kExact && options_.may_use_grid;
-    if (!has_choice) {
+    if (options_.geometry != GeometryId::kExact) {
       if (Status status = try_store(options_.geometry); !status) return status.error();
       return std::move(out_);
     }
-    const bool for_memory = options_.wishes.goal == Goal::kMemory;
-    // The store that may win is tried first, so that the other can be skipped.
-    const std::array stores = for_memory ? std::array{GeometryId::kGrid, GeometryId::kExact}
-                                         : std::array{GeometryId::kExact, GeometryId::kGrid};
+    std::vector<GeometryId> stores = {GeometryId::kExact};
+    if (options_.may_use_arrays || !options_.codec || !is_wide(*options_.codec))
+      stores.push_back(GeometryId::kArrays);
+    if (options_.may_use_grid) stores.push_back(GeometryId::kGrid);
     for (const GeometryId store : stores) {
       const std::string why = options_.try_all ? "" : why_not(store);
       if (!why.empty()) {
@@ -235,6 +234,7 @@ class Search {
 
  private:
   void leave_out(GeometryId store, const std::string& why) {
+    if (store == GeometryId::kArrays && !options_.may_use_arrays) return;
     for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
       if (options_.codec.value_or(codec) == codec) {
         out_.contest.not_tried.push_back({codec, store, why});
@@ -242,72 +242,107 @@ class Search {
     }
   }
 
+  // Whether the codecs that are wanted have full leaves, some of them at least.
+  [[nodiscard]] bool is_wanted_wide() const { return !options_.codec || is_wide(*options_.codec); }
+
   // Why candidates with this geometry store cannot win; empty when they can.
   [[nodiscard]] std::string why_not(GeometryId store) const {
     const Wishes& wishes = options_.wishes;
-    if (store == GeometryId::kGrid && !may_grid_win(wishes)) {
+    const bool counts_time_alone =
+        wishes.goal == Goal::kSpeed && !wishes.max_bytes_per_triangle.has_value();
+    const bool has_faster = store == GeometryId::kGrid || options_.may_use_arrays;
+    if (counts_time_alone && store != GeometryId::kArrays && is_wanted_wide() && has_faster) {
       return "the same tree, but leaves take longer to read";
     }
-    if (store != GeometryId::kExact || wishes.goal != Goal::kMemory || wishes.max_slowdown) {
-      return "";
-    }
+    const bool counts_bytes_alone = wishes.goal == Goal::kMemory && !wishes.max_slowdown;
+    if (store != GeometryId::kArrays || !counts_bytes_alone || !is_wanted_wide()) return "";
     std::uint64_t least = ~std::uint64_t{0};
     for (const Candidate& candidate : out_.contest.candidates) {
       if (candidate.gates.pass()) least = std::min(least, candidate.bytes());
     }
-    const std::uint64_t positions = exact_geometry_bytes();
-    return positions < least
+    const std::uint64_t arrays = array_bytes();
+    return arrays < least
                ? ""
-               : fmt::format("positions and corners alone take {} bytes, {} in all are enough",
-                             positions, least);
+               : fmt::format("arrays alone take {} bytes, {} in all are enough", arrays, least);
   }
 
-  // Bytes of exact geometry, which do not depend on the order of faces.
-  [[nodiscard]] std::uint64_t exact_geometry_bytes() const {
+  // Bytes of geometry in arrays, which do not depend on the order of faces.
+  [[nodiscard]] std::uint64_t array_bytes() const {
     std::vector<bool> used(mesh_.positions.size());
     std::uint64_t vertices = 0;
+    bool may_have_quads = false;
     for (const Face& face : mesh_.faces) {
+      may_have_quads |= face.is_quad();
       for (std::size_t i = 0; i < (face.is_quad() ? 4u : 3u); ++i) {
         vertices += used[face.corner[i]] ? 0u : 1u;
         used[face.corner[i]] = true;
       }
     }
     const std::uint64_t position = mesh_.positions.precision == Precision::kF64 ? 24 : 12;
-    const std::uint64_t corner = vertices <= 0x10000 ? 2 : 4;
-    return vertices * position + mesh_.faces.size() * 3 * corner;
+    const std::uint64_t corner = mesh_.positions.size() <= 0xffff ? 2 : 4;
+    return vertices * position + mesh_.faces.size() * (may_have_quads ? 4 : 3) * corner;
   }
 
+  // A mesh that is not rounded is built once for all its stores.
+  struct Built {
+    Source source;
+    std::shared_ptr<const WideLayout> layout;  // if a codec with full leaves is wanted
+  };
+
   Status try_store(GeometryId store) {
-    std::optional<QuantisedMesh> quantised;
+    const std::vector<CodecId> wide = wanted_codecs(true, store);
+    const std::vector<CodecId> binary = wanted_codecs(false, store);
+    if (wide.empty() && binary.empty()) return {};
+    std::optional<Built> on_grid;
     if (store == GeometryId::kGrid) {
-      const Result<Grid> grid = scene_ ? *scene_ : choose_grid(bounds_of(mesh_), options_.grid);
-      if (!grid) return grid.error();
-      quantised = quantise(mesh_, *grid);
-      const double tolerance = options_.grid.tolerance.value_or(quantised->max_vertex_error);
-      if (quantised->max_vertex_error > tolerance) {
-        return Error{Errc::kMeshUnsupported,
-                     fmt::format("{}: double precision so far from zero moves a vertex by {}",
-                                 mesh_.name, quantised->max_vertex_error)};
-      }
+      Result<QuantisedMesh> quantised = quantise_mesh();
+      if (!quantised) return quantised.error();
+      on_grid.emplace(Source(mesh_, std::move(*quantised)));
+    } else if (!unrounded_) {
+      unrounded_.emplace(Source(mesh_, {}));
     }
-    const Source source(mesh_, std::move(quantised));
+    Built& built = store == GeometryId::kGrid ? *on_grid : *unrounded_;
+    const Source& source = built.source;
     SearchOptions options = options_;
     options.geometry = store;
-    if (const auto codecs = wanted_codecs(true, store); !codecs.empty()) {
-      if (Status status = try_family(wide_family(source, options), source, codecs); !status) {
+    if (!wide.empty()) {
+      if (built.layout == nullptr) {
+        built.layout = std::make_shared<const WideLayout>(
+            lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates)));
+      }
+      if (Status status = try_family(wide_family(source, options, built.layout), source, wide);
+          !status) {
         return status;
       }
     }
-    if (const auto codecs = wanted_codecs(false, store); !codecs.empty()) {
-      return try_family(binary_family(source, options, codecs), source, codecs);
+    if (binary.empty()) return {};
+    return try_family(binary_family(source, options, binary), source, binary);
+  }
+
+  Result<QuantisedMesh> quantise_mesh() const {
+    const Result<Grid> grid = scene_ ? *scene_ : choose_grid(bounds_of(mesh_), options_.grid);
+    if (!grid) return grid.error();
+    QuantisedMesh quantised = quantise(mesh_, *grid);
+    const double tolerance = options_.grid.tolerance.value_or(quantised.max_vertex_error);
+    if (quantised.max_vertex_error > tolerance) {
+      return Error{Errc::kMeshUnsupported,
+                   fmt::format("{}: double precision so far from zero moves a vertex by {}",
+                               mesh_.name, quantised.max_vertex_error)};
     }
-    return {};
+    return quantised;
   }
 
   std::vector<CodecId> wanted_codecs(bool wide, GeometryId store) {
     std::vector<CodecId> wanted;
     for (const CodecInfo& codec : kCodecs) {
       if (is_wide(codec.id) != wide || options_.codec.value_or(codec.id) != codec.id) continue;
+      // As the paper stores them: a leaf is one triangle, of which a cluster would decode eight.
+      const bool has_arrays = !wide && options_.geometry == GeometryId::kExact;
+      if (has_arrays && store == GeometryId::kExact) continue;
+      if (wide && store == GeometryId::kArrays && options_.geometry == GeometryId::kExact &&
+          !options_.may_use_arrays) {
+        continue;
+      }
       const std::string why = options_.codec || options_.try_all ? "" : why_not(codec.id);
       if (why.empty()) {
         wanted.push_back(codec.id);
@@ -357,6 +392,7 @@ class Search {
   const std::optional<Grid>& scene_;
   const std::span<const CodecCost> costs_;
   const Workload queries_;
+  std::optional<Built> unrounded_;
   TriedTree out_;
 };
 

@@ -22,7 +22,10 @@ struct SearchOptions {
   Builder builder = Builder::kSah;
   FieldWidths widths = FieldWidths::kExact;
   GeometryId geometry = GeometryId::kExact;
-  bool may_use_grid = false;  // with geometry exact: a grid may be chosen, too
+  // With geometry exact, what else may be chosen: a grid, and arrays, which are larger but faster.
+  // Codecs with one triangle per leaf have arrays in any case.
+  bool may_use_grid = false;
+  bool may_use_arrays = false;
   GridChoice grid;            // of geometry grid
   bool try_all = false;       // also encodings that cannot win
   bool face_ids = true;

@@ -109,6 +109,7 @@ void set_options(Arguments& arguments) {
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
                          !options.blob && is_grid_welcome;
+  options.may_use_arrays = options.geometry == GeometryId::kExact;
   options.import.try_first = !arguments.trusted;
   options.face_ids = !arguments.no_face_ids;
   options.cook_record = !arguments.strip;

@@ -57,7 +57,7 @@ enum class FieldWidths : std::uint8_t {
 /// Vertices, corners, ids and duplicates, as bytes of their sections. The first two are empty for
 /// external geometry.
 struct EncodedGeometry {
-  GeometryId geometry = GeometryId::kExact;
+  GeometryId geometry{};
   std::vector<std::byte> vertices;
   std::vector<std::byte> corners;
   std::vector<std::byte> face_ids;
@@ -77,15 +77,18 @@ struct EncodedGeometry {
 [[nodiscard]] std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree);
 
 /// Faces in `order`, vertices in order of first use, positions bit for bit.
-[[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
+[[nodiscard]] EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
                                                     std::span<const std::uint32_t> order,
                                                     bool face_ids);
 
 /// Whether the faces of a leaf may be reordered: kFixed for trees with one triangle per leaf.
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
 
-/// Faces in `order`, as clusters on a grid (see format/grid.h). Faces may be reordered within
-/// groups of kLeafFaces; on return, `order` is the order stored.
+/// Faces in `order`, as clusters (see format/cluster.h), positions on a grid or bit for bit. Faces
+/// may be reordered within groups of kLeafFaces; on return, `order` is the order stored.
+[[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
+                                                    std::vector<std::uint32_t>& order,
+                                                    LeafOrder leaf_order, bool face_ids);
 [[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
                                                    std::vector<std::uint32_t>& order,
                                                    LeafOrder leaf_order, bool face_ids);

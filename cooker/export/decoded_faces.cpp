@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Uses stored arrays directly; decodes a grid leaf by leaf and welds its vertices.
+// Uses stored arrays directly; decodes clusters leaf by leaf and welds their vertices.
 #include "cooker/export/decoded_faces.h"
 
 #include <algorithm>
@@ -68,8 +68,8 @@ Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
   Result<std::vector<std::uint32_t>> stored = stored_order(tree, order);
   if (!stored) return stored.error();
   faces.order_ = std::move(*stored);
-  if (BoundTree::of(tree).leaves().is_grid()) {
-    if (Status status = faces.decode_grid(tree); !status) return status.error();
+  if (BoundTree::of(tree).leaves().has_clusters()) {
+    if (Status status = faces.decode_clusters(tree); !status) return status.error();
   } else {
     faces.arrays_ = BoundTree::of(tree).leaves().mesh();
   }
@@ -79,31 +79,42 @@ Result<DecodedFaces> DecodedFaces::decode(const Tree& tree, ExportOrder order) {
   return faces;
 }
 
-Status DecodedFaces::decode_grid(const Tree& tree) {
-  const std::uint32_t count = tree.face_count();
+Status DecodedFaces::decode_clusters(const Tree& tree) {
+  const LeafReader& leaves = BoundTree::of(tree).leaves();
+  if (leaves.clusters().numbers == ClusterNumbers::kF32) {
+    decoded_.positions.precision = Precision::kF32;
+    return weld_clusters(tree, decoded_.positions.f32);
+  }
   decoded_.positions.precision = Precision::kF64;
+  return weld_clusters(tree, decoded_.positions.f64);
+}
+
+template <class Scalar>
+Status DecodedFaces::weld_clusters(const Tree& tree, std::vector<Scalar>& positions) {
+  const LeafReader& leaves = BoundTree::of(tree).leaves();
+  const std::uint32_t count = tree.face_count();
   decoded_.faces.reserve(count);
-  Welder<double> welder(decoded_.positions.f64, count / 2);  // as many as a closed surface has
-  const auto number_of = [&](const TriangleBatch& batch, std::uint32_t triangle,
-                             std::size_t corner) {
-    const Eigen::Vector3d p =
-        BoundTree::of(tree).frame().to_object(batch.triangle(triangle).corner[corner]);
-    return welder.add({p[0], p[1], p[2]});
-  };
-  TriangleBatch batch;
-  for (std::uint32_t first = 0; first < count; first += kLeafFaces) {
-    const std::uint32_t faces = std::min(kLeafFaces, count - first);
-    if (const Errc error = BoundTree::of(tree).leaves().read(first, faces, batch);
-        error != Errc::kOk) {
-      return Error{error, fmt::format("{}: faces from {} on cannot be read", tree.name(), first)};
+  Welder<Scalar> welder(positions, count / 2);  // as many as a closed surface has
+  ClusterLeaf leaf;
+  for (std::uint32_t i = 0; i < leaves_of(count); ++i) {
+    if (!decode_cluster_leaf(leaves.clusters(), i, leaf)) {
+      return Error{Errc::kVertexOutOfRange,
+                   fmt::format("{}: leaf {} of its clusters cannot be read", tree.name(), i)};
     }
-    for (std::uint32_t i = 0; i < batch.count; ++i) {
-      if (i > 0 && batch.face[i] == batch.face[i - 1]) {
-        decoded_.faces.back().corner[3] = number_of(batch, i, 2);
-        continue;
+    std::array<std::uint32_t, kMaxLeafVertices> number;
+    for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
+      Eigen::Vector3d p(leaf.position[v][0], leaf.position[v][1], leaf.position[v][2]);
+      if (leaves.is_grid()) p = leaves.frame().to_object(p * leaves.grid_step());
+      number[v] = welder.add(
+          {static_cast<Scalar>(p[0]), static_cast<Scalar>(p[1]), static_cast<Scalar>(p[2])});
+    }
+    for (std::uint32_t f = 0; f < leaf.face_count; ++f) {
+      Face face{{kNoCorner, kNoCorner, kNoCorner, kNoCorner}};
+      for (std::size_t c = 0; c < 4; ++c) {
+        const std::uint8_t corner = leaf.corner[f][c];
+        if (corner != ClusterLeaf::kNoCorner) face.corner[c] = number[corner];
       }
-      decoded_.faces.push_back(
-          {{number_of(batch, i, 0), number_of(batch, i, 1), number_of(batch, i, 2), kNoCorner}});
+      decoded_.faces.push_back(face);
     }
   }
   arrays_ = arrays_of(decoded_);

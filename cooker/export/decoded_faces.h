@@ -56,11 +56,13 @@ class DecodedFaces {
 
  private:
   DecodedFaces() = default;
-  Status decode_grid(const Tree& tree);
+  Status decode_clusters(const Tree& tree);
+  template <class Scalar>
+  Status weld_clusters(const Tree& tree, std::vector<Scalar>& positions);
   Status check();
 
   MeshArrays arrays_;
-  SourceMesh decoded_;                // arrays_ points into this for a grid
+  SourceMesh decoded_;                // arrays_ points into this for clusters
   std::vector<std::uint32_t> order_;  // face i is the stored face order_[i]; empty: face i
   std::uint64_t triangle_count_ = 0;
 };

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Checks the reserved bits of each codec and of the grid's clusters.
+// Checks the reserved bits of each codec and of clusters.
 #include "cooker/proof/reserved.h"
 
 #include <algorithm>
 #include <string>
 
 #include "format/bits.h"
+#include "format/cluster_leaf.h"
 #include "format/codec_packed.h"
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
-#include "format/grid_leaf.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
@@ -120,52 +120,47 @@ void check_packed(Bytes nodes, Check& check) {
                "the bits behind it");
 }
 
-// Checks the bits between the starts of leaves, the leaves of cluster n, and its vertices at bit
-// `vertices`. False if a leaf cannot be read.
-bool check_leaves_of_cluster(const GridView& grid, std::uint32_t n, std::uint64_t vertices,
-                             Check& check) {
-  const auto cluster = load<ClusterRecord>(grid.clusters, n);
-  const auto leaves = static_cast<std::uint32_t>(leaves_of(grid.face_count));
-  const std::uint32_t end = std::min(leaves, (n + 1) * kClusterLeaves);
-  const std::uint64_t fields = end - n * kClusterLeaves + 1;
-  std::uint64_t last_bit = cluster.offset * kClusterUnit * 8 + fields * cluster.leaf_bits;
-  for (std::uint32_t leaf = n * kClusterLeaves; leaf < end; ++leaf) {
-    GridLeafFaces faces;
-    GridOffsets offsets;
-    GridLeafBits place;
-    const bool may_be_quad = grid.corners_per_face == 4;
-    if (!read_grid_faces(grid, leaf, may_be_quad, faces, offsets, &place)) return false;
-    check.expect(place.begin >= last_bit && are_zero(grid.bytes, last_bit, place.begin), "leaf ",
-                 leaf, "the bits before it");
-    last_bit = place.end;
+// Checks the bits between the fields of cluster n. False if it or a leaf cannot be read. `end`: the
+// bit after the last cluster, and on return after this one.
+bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& end, Check& check) {
+  Cluster cluster;
+  if (!find_cluster(clusters, n, cluster)) return false;
+  const std::uint64_t start = static_cast<std::uint64_t>(cluster.bytes - clusters.bytes.data()) * 8;
+  check.expect(cluster.header.reserved == 0, "cluster ", n, "the last byte of its header");
+  check.expect(
+      start >= end && start - end < kClusterUnit * 8 && are_zero(clusters.bytes, end, start),
+      "cluster ", n, "the bits between it and the one before");
+  const auto leaves = static_cast<std::uint32_t>(leaves_of(clusters.face_count));
+  const std::uint32_t first = n * kClusterLeaves;
+  const std::uint32_t last = std::min(leaves, first + kClusterLeaves);
+  const std::uint64_t table_end =
+      start + cluster.table + std::uint64_t{last - first} * cluster.entry_bits;
+  const std::uint64_t leaves_at = start + std::uint64_t{cluster.leaves_at} * 8;
+  check.expect(are_zero(clusters.bytes, table_end, leaves_at), "cluster ", n,
+               "the bits after its table");
+  end = leaves_at;
+  for (std::uint32_t i = first; i < last; ++i) {
+    ClusterLeaf leaf;
+    ClusterLeafBits place;
+    if (!decode_cluster_leaf(clusters, i, leaf, &place)) return false;
+    check.expect(place.begin >= end && are_zero(clusters.bytes, end, place.begin), "leaf ", i,
+                 "the bits before it");
+    end = std::max(end, place.end);
   }
-  check.expect(vertices >= last_bit && are_zero(grid.bytes, last_bit, vertices), "cluster ", n,
-               "the bits after its leaves");
   return true;
 }
 
-// Precondition: the sections have been bound. Skips clusters whose leaves cannot be found; the walk
-// reports them.
-void check_grid(const GridView& grid, Check& check) {
-  const std::uint32_t clusters = clusters_of(grid.face_count);
+// Precondition: the sections have been bound. Skips what cannot be found; the walk reports it.
+void check_clusters(const ClusterView& clusters, Check& check) {
+  const std::uint32_t count = clusters_of(clusters.face_count);
   std::uint64_t end = 0;  // of the previous cluster, in bits
-  for (std::uint32_t n = 0; n < clusters; ++n) {
-    const auto cluster = load<ClusterRecord>(grid.clusters, n);
-    check.expect(cluster.reserved == 0, "cluster ", n, "its last byte");
-    std::uint32_t vertices = 0;
-    GridOffsets offsets;
-    std::uint64_t leaf = 0;
-    if (!grid_detail::find_grid_leaf(grid, n * kClusterLeaves, vertices, offsets, leaf)) return;
-    if (!check_leaves_of_cluster(grid, n, offsets.start, check)) return;
-    const std::uint64_t start = cluster.offset * kClusterUnit * 8;
-    check.expect(start >= end && start - end < kClusterUnit * 8 && are_zero(grid.bytes, end, start),
-                 "cluster ", n, "the bits between it and the one before");
-    end = offsets.start + std::uint64_t{vertices} * offsets.stride;
+  for (std::uint32_t n = 0; n < count; ++n) {
+    if (!check_cluster(clusters, n, end, check)) return;
   }
-  if (clusters == 0) return;
-  const std::uint64_t size = std::uint64_t{grid.bytes.size()} * 8;
+  if (count == 0) return;
+  const std::uint64_t size = std::uint64_t{clusters.bytes.size()} * 8;
   const std::uint64_t padding = align_up(end, kClusterUnit * 8) + kClusterPadding * 8;
-  check.expect(size == padding && are_zero(grid.bytes, end, size), "clusters before ", clusters,
+  check.expect(size == padding && are_zero(clusters.bytes, end, size), "clusters before ", count,
                "the bits behind them, or their number,");
 }
 
@@ -199,11 +194,14 @@ Findings check_reserved(const File& opened, std::uint32_t index) {
         break;
     }
   }
-  if (record.geometry == GeometryId::kGrid) {
-    check_grid(
-        {file.section(SectionKind::kCorners, index).data(),
-         file.section(SectionKind::kVertices, index), record.face_count, record.corners_per_face},
-        check);
+  if (has_clusters(record.geometry)) {
+    const ClusterNumbers numbers = record.geometry == GeometryId::kGrid      ? ClusterNumbers::kGrid
+                                   : (record.flags & kTreePositionsF64) != 0 ? ClusterNumbers::kF64
+                                                                             : ClusterNumbers::kF32;
+    check_clusters({file.section(SectionKind::kCorners, index).data(),
+                    file.section(SectionKind::kVertices, index), record.face_count,
+                    record.corners_per_face, numbers},
+                   check);
   }
   return findings;
 }

@@ -146,7 +146,7 @@ class Measurement {
     out_.source.vertices = out_.vertices * 3 * coordinate;
     out_.source.corners = out_.triangles * 3 * 4;
     const std::size_t grids = grid_sweep(options.quick).size();
-    steps_ = kCodecs.size() + kApproximateCodecs.size() + 2 * grids;
+    steps_ = kCodecs.size() + 2 + kApproximateCodecs.size() + 2 * grids;
   }
 
   Result<MeshTradeoff> run() {
@@ -174,6 +174,7 @@ class Measurement {
     SearchOptions search;
     search.try_all = !grid_bits;
     search.geometry = grid_bits ? GeometryId::kGrid : GeometryId::kExact;
+    search.may_use_arrays = true;
     double rms = 0;
     double bound = 0;
     if (grid_bits) {
@@ -274,7 +275,9 @@ class Measurement {
     }
     const bool is_approximated = std::find(kApproximateCodecs.begin(), kApproximateCodecs.end(),
                                            point.codec) != kApproximateCodecs.end();
-    if (point.grid_bits != 0 || !is_approximated) return {};
+    // The errors are those of either store with exact positions.
+    const bool is_second = is_wide(point.codec) && point.geometry == GeometryId::kArrays;
+    if (point.grid_bits != 0 || !is_approximated || is_second) return {};
     ++step_;
     announce("query " + point.name() + ", approximately");
     Result<ApproximateFigures> figures =
@@ -289,7 +292,7 @@ class Measurement {
     for (TradePoint& point : out_.points) {
       const auto reference =
           std::find_if(out_.points.begin(), out_.points.end(), [&](const TradePoint& other) {
-            return other.codec == point.reference && other.geometry == GeometryId::kExact;
+            return other.codec == point.reference && is_lossless(other.geometry);
           });
       const auto extra = [](double work, double of_reference) {
         return of_reference > 0 ? work / of_reference - 1 : 0;
@@ -318,7 +321,7 @@ class Measurement {
 }  // namespace
 
 std::string TradePoint::name() const {
-  return grid_bits == 0 ? fmt::format("{}, exact", codec_name(codec))
+  return grid_bits == 0 ? fmt::format("{}, {}", codec_name(codec), geometry_name(geometry))
                         : fmt::format("{}, grid {}", codec_name(codec), grid_bits);
 }
 

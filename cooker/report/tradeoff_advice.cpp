@@ -111,7 +111,7 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
       least(mesh, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
   const auto fastest = least(mesh, [&](std::size_t i) { return slower[i]; });
   const auto exact = least(mesh, [&](std::size_t i) {
-    return mesh.points[i].geometry == GeometryId::kExact ? bytes(i) : kNone;
+    return is_lossless(mesh.points[i].geometry) ? bytes(i) : kNone;
   });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};

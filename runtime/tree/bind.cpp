@@ -104,7 +104,7 @@ Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
 }
 
 Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
-  if (geometry_ == GeometryId::kGrid) return bind_grid(parts, place);
+  if (has_clusters(geometry_)) return bind_clusters(parts, place);
   const std::size_t stride = 3 * (has_f64_positions_ ? sizeof(double) : sizeof(float));
   const auto positions = sized_section(parts.vertices, SectionKind::kVertices, place,
                                        parts.record.vertex_count, stride);
@@ -119,16 +119,20 @@ Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string
   return {};
 }
 
-Status BoundTree::bind_grid(const TreeParts& parts, const std::string& place) {
-  const auto clusters = sized_section(parts.corners, SectionKind::kCorners, place,
-                                      clusters_of(face_count_), sizeof(ClusterRecord));
-  if (!clusters) return clusters.error();
+Status BoundTree::bind_clusters(const TreeParts& parts, const std::string& place) {
+  const auto offsets = sized_section(parts.corners, SectionKind::kCorners, place,
+                                     clusters_of(face_count_), sizeof(std::uint32_t));
+  if (!offsets) return offsets.error();
   if (face_count_ > 0 && parts.vertices.empty()) {
     return error_with(Errc::kSectionMissing, place,
                       section_text(SectionKind::kVertices) + " is absent");
   }
-  const GridView grid{*clusters, parts.vertices, face_count_, parts.record.corners_per_face};
-  leaves_ = LeafReader(grid, frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
+  const ClusterNumbers numbers = geometry_ == GeometryId::kGrid ? ClusterNumbers::kGrid
+                                 : has_f64_positions_           ? ClusterNumbers::kF64
+                                                                : ClusterNumbers::kF32;
+  leaves_ =
+      LeafReader({*offsets, parts.vertices, face_count_, parts.record.corners_per_face, numbers},
+                 frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
   return {};
 }
 

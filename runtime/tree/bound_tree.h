@@ -148,7 +148,7 @@ class BoundTree {
   void keep(const TreeRecord& record);
   Status bind_nodes(const TreeParts& parts, const std::string& place);
   Status bind_stored_geometry(const TreeParts& parts, const std::string& place);
-  Status bind_grid(const TreeParts& parts, const std::string& place);
+  Status bind_clusters(const TreeParts& parts, const std::string& place);
   Status bind_external_geometry(const TreeParts& parts, const std::string& place,
                                 const BindOptions& options);
   Status bind_face_ids(const TreeParts& parts, const std::string& place,

@@ -40,17 +40,20 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
   // Three times the number of a vertex fits into 32 bits.
   constexpr std::uint32_t kMaxVertices32 = 1u << 30;
   floats_.scale = static_cast<float>(frame_.inverse_scale);
-  const bool is_exact = double{floats_.scale} == frame_.inverse_scale &&
-                        std::isnormal(floats_.scale) && frame_.origin.isZero(0);
-  floats_.is_direct = is_exact && !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
-                      mesh_.position_stride == 3 * sizeof(float) && is_in_tree_order() &&
-                      mesh_.vertex_count > 1 && mesh_.vertex_count <= kMaxVertices32;
+  const bool is_scaled_exactly = double{floats_.scale} == frame_.inverse_scale &&
+                                 std::isnormal(floats_.scale) && frame_.origin.isZero(0);
+  const bool are_readable = has_clusters() ? clusters_.numbers == ClusterNumbers::kF32
+                                           : !mesh_.positions_f64 &&
+                                                 mesh_.position_stride == 3 * sizeof(float) &&
+                                                 is_in_tree_order() && mesh_.vertex_count > 1 &&
+                                                 mesh_.vertex_count <= kMaxVertices32;
+  floats_.is_direct = is_scaled_exactly && are_readable && mesh_.corners_per_face == 3;
 }
 
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
-  if (is_grid()) return read_grid(first, count, out);
+  if (has_clusters()) return read_clusters(first, count, out);
   if (mesh_.positions_f64) {
     return mesh_.corner_bytes == 2 ? read_as<double, std::uint16_t>(first, count, out)
                                    : read_as<double, std::uint32_t>(first, count, out);
@@ -59,26 +62,32 @@ Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& o
                                  : read_as<float, std::uint32_t>(first, count, out);
 }
 
-Errc LeafReader::read_grid(std::uint32_t first, std::uint32_t count,
-                           TriangleBatch& out) const noexcept {
+Errc LeafReader::read_clusters(std::uint32_t first, std::uint32_t count,
+                               TriangleBatch& out) const noexcept {
   constexpr std::uint32_t kNone = 0xffffffffu;
   std::uint32_t decoded = kNone;
-  GridLeaf leaf;
+  ClusterLeaf leaf;
   std::uint32_t triangles = 0;
   for (std::uint32_t f = first; f < first + count; ++f) {
     if (f / kLeafFaces != decoded) {
       decoded = f / kLeafFaces;
-      if (!decode_grid_leaf(grid_, decoded, leaf)) return Errc::kVertexOutOfRange;
+      if (!decode_cluster_leaf(clusters_, decoded, leaf)) return Errc::kVertexOutOfRange;
+      for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
+        std::array<double, 3>& p = leaf.position[v];
+        const Eigen::Vector3d position = is_grid() ? Eigen::Vector3d(p[0], p[1], p[2]) * grid_step_
+                                                   : frame_.to_tree({p[0], p[1], p[2]});
+        if (!is_within_range(position)) return Errc::kVertexNotFinite;
+        p = {position[0], position[1], position[2]};
+      }
     }
     const std::array<std::uint8_t, 4>& corner = leaf.corner[f % kLeafFaces];
-    const std::uint32_t corner_count = corner[3] == GridLeaf::kNoCorner ? 3 : 4;
+    const std::uint32_t corner_count = corner[3] == ClusterLeaf::kNoCorner ? 3 : 4;
     if (triangles + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
     for (std::uint32_t second = 1; second + 1 < corner_count; ++second) {
       const std::array<std::uint32_t, 3> named = {corner[0], corner[second], corner[second + 1]};
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t k = 0; k < 3; ++k) {
-          out.coordinate[c][k][triangles] =
-              static_cast<double>(leaf.position[named[c]][k]) * grid_step_;
+          out.coordinate[c][k][triangles] = leaf.position[named[c]][k];
         }
       }
       out.face[triangles++] = f;

@@ -10,7 +10,7 @@
 #include <boxtree/tree.h>
 
 #include "format/bytes.h"
-#include "format/grid.h"
+#include "format/cluster.h"
 #include "format/limits.h"
 #include "format/numbers.h"
 #include "runtime/primitive/rounding.h"
@@ -59,11 +59,11 @@ class LeafReader {
  public:
   LeafReader() = default;
   LeafReader(const MeshArrays& mesh, const Frame& frame) noexcept : mesh_(mesh), frame_(frame) {}
-  /// Geometry on a grid whose step is `step` in tree space, a power of two.
-  LeafReader(const GridView& grid, const Frame& frame, double step) noexcept
-      : frame_(frame), grid_(grid), grid_step_(step) {
-    mesh_.face_count = grid.face_count;
-    mesh_.corners_per_face = grid.corners_per_face;
+  /// Faces in clusters. `grid_step`: of a grid, in tree space, a power of two.
+  LeafReader(const ClusterView& clusters, const Frame& frame, double grid_step) noexcept
+      : frame_(frame), clusters_(clusters), grid_step_(grid_step) {
+    mesh_.face_count = clusters.face_count;
+    mesh_.corners_per_face = clusters.corners_per_face;
   }
 
   /// From now on face n of the tree is face order[n] of the mesh: for arrays of an application,
@@ -74,10 +74,14 @@ class LeafReader {
   void prepare_floats(double max_abs) noexcept;
   [[nodiscard]] const FloatLeaves& floats() const noexcept { return floats_; }
 
-  /// The arrays; for a grid only their counts.
+  /// The arrays; for clusters only their counts.
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] bool is_grid() const noexcept { return grid_.clusters != nullptr; }
-  [[nodiscard]] const GridView& grid() const noexcept { return grid_; }
+  [[nodiscard]] bool has_clusters() const noexcept { return clusters_.offsets != nullptr; }
+  [[nodiscard]] const ClusterView& clusters() const noexcept { return clusters_; }
+  /// Whether positions are on a grid, and not those of the source.
+  [[nodiscard]] bool is_grid() const noexcept {
+    return has_clusters() && clusters_.numbers == ClusterNumbers::kGrid;
+  }
   [[nodiscard]] double grid_step() const noexcept { return grid_step_; }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   /// Whether face n of the tree is face n of the mesh.
@@ -94,12 +98,12 @@ class LeafReader {
   [[nodiscard]] Errc read_as(std::uint32_t first, std::uint32_t count,
                              TriangleBatch& out) const noexcept;
 
-  [[nodiscard]] Errc read_grid(std::uint32_t first, std::uint32_t count,
-                               TriangleBatch& out) const noexcept;
+  [[nodiscard]] Errc read_clusters(std::uint32_t first, std::uint32_t count,
+                                   TriangleBatch& out) const noexcept;
 
   MeshArrays mesh_;
   Frame frame_;
-  GridView grid_;
+  ClusterView clusters_;
   double grid_step_ = 0;
   NumberView order_;  // none: the mesh is in the order of the tree
   FloatLeaves floats_;

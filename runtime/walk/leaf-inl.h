@@ -7,9 +7,9 @@
 #define BOXTREE_RUNTIME_WALK_LEAF_INL_H
 #endif
 
-#include "format/grid_leaf.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/cluster-inl.h"
 #include "runtime/walk/decode-inl.h"
 #include "runtime/walk/traversal.h"
 
@@ -22,7 +22,15 @@ namespace boxtree::HWY_NAMESPACE {
 class LeafFloats {
  public:
   explicit LeafFloats(const BoundTree& tree)
-      : reader_(tree.leaves()), mesh_(reader_.mesh()), floats_(reader_.floats()) {}
+      : reader_(tree.leaves()),
+        mesh_(reader_.mesh()),
+        floats_(reader_.floats())
+#if BOXTREE_HAS_EIGHT_LANES
+        ,
+        clusters_(reader_.clusters())
+#endif
+  {
+  }
 
   /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
   /// error().
@@ -42,8 +50,12 @@ class LeafFloats {
   }
 
   /// Triangles of the leaf; lanes from there on are unspecified.
-  [[nodiscard]] std::uint32_t count() const { return count_; }
-  [[nodiscard]] std::size_t groups() const { return count_ > kWideChildren ? 2 : 1; }
+  [[nodiscard]] std::uint32_t count() const {
+    return count_;
+  }
+  [[nodiscard]] std::size_t groups() const {
+    return count_ > kWideChildren ? 2 : 1;
+  }
   /// Bit i: lane i of a group is a triangle.
   [[nodiscard]] std::uint32_t lanes(std::size_t group) const {
     return (((1u << count_) - 1) >> (group * kWideChildren)) & 0xffu;
@@ -80,81 +92,69 @@ class LeafFloats {
       return true;
     }
     Triangle triangle;
-    if (reader_.is_grid()) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        const std::int32_t* const p = grid_point_ + grid_start(lane, c);
-        for (std::size_t k = 0; k < 3; ++k) {
-          triangle.corner[c][static_cast<Eigen::Index>(k)] =
-              static_cast<double>(p[k]) * reader_.grid_step();
-        }
-      }
-      visit(triangle, first_ + lane, 0u);
-      return true;
-    }
-    const double scale = reader_.frame().inverse_scale;
+    if (!exact_triangle(lane, triangle)) return false;
+    visit(triangle, first_ + lane, 0u);
+    return true;
+  }
+
+  [[nodiscard]] Errc error() const {
+    return error_;
+  }
+
+ private:
+  static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
+
+  // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
+  HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
+    const bool is_grid = reader_.is_grid();
+    const double scale = is_grid ? reader_.grid_step() : reader_.frame().inverse_scale;
     bool is_finite = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      const auto p = boxtree::load<std::array<float, 3>>(
-          mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
+      const std::array<double, 3> p = position(lane, c);
       triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
-      is_finite &= is_within_range(triangle.corner[c]);
+      is_finite &= is_grid || is_within_range(triangle.corner[c]);
     }
     if (!is_finite) {
       error_ = Errc::kVertexNotFinite;
       return false;
     }
-    visit(triangle, first_ + lane, 0u);
     return true;
   }
 
-  [[nodiscard]] Errc error() const { return error_; }
-
- private:
-  static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
-
   HWY_INLINE bool gather() {
-    if (reader_.is_grid()) return gather_grid();
+    if (reader_.has_clusters()) {
+#if BOXTREE_HAS_EIGHT_LANES
+      return gather_cluster();
+#else
+      return false;
+#endif
+    }
     return mesh_.corner_bytes == 2 ? gather_mesh<std::uint16_t>() : gather_mesh<std::uint32_t>();
   }
 
-  // Floats from one vertex of a decoded leaf to the next.
-  static constexpr std::uint32_t kRow = 4;
-
-  HWY_INLINE bool gather_grid() {
-    GridOffsets offsets;
-    if (first_ % kLeafFaces != 0 ||
-        !read_grid_faces(reader_.grid(), first_ / kLeafFaces, false, grid_faces_, offsets)) {
+#if BOXTREE_HAS_EIGHT_LANES
+  HWY_INLINE bool gather_cluster() {
+    if (first_ % kLeafFaces != 0 || !clusters_.read(first_ / kLeafFaces, floats_.scale)) {
       return false;
     }
-    read_grid_points(offsets);
     for (std::size_t c = 0; c < 3; ++c) {
-      transpose(
-          grid_point_, [&](std::size_t face) { return grid_start(face, c); }, c);
+      FloatVector coordinates[3];
+      clusters_.coordinates(c, coordinates);
+      for (std::size_t k = 0; k < 3; ++k) hn::Store(coordinates[k], Floats(), coordinate_[c][k]);
     }
     return true;
   }
 
-  // Where a corner of a face begins in grid_point_.
-  HWY_INLINE std::size_t grid_start(std::size_t face, std::size_t corner) const {
-    return std::size_t{kRow} * grid_faces_.corner[face][corner];
-  }
+#endif
 
-  HWY_INLINE void read_grid_points(const GridOffsets& offsets) {
-    const std::byte* const bytes = reader_.grid().bytes.data();
-    const auto [x_width, y_width, z_width] = offsets.width;
-    for (std::uint32_t i = 0; i < grid_faces_.vertex_count; ++i) {
-      const std::uint64_t at =
-          offsets.start + std::uint64_t{grid_faces_.vertex[i]} * offsets.stride;
-      const std::uint64_t offset[3] = {read_bits(bytes, at, x_width),
-                                       read_bits(bytes, at + x_width, y_width),
-                                       read_bits(bytes, at + x_width + y_width, z_width)};
-      // Unsigned, so that corrupt sums wrap.
-      for (std::size_t k = 0; k < 3; ++k) {
-        grid_point_[std::size_t{kRow} * i + k] = static_cast<std::int32_t>(
-            static_cast<std::uint32_t>(offsets.origin[k]) + static_cast<std::uint32_t>(offset[k]));
-      }
-      grid_point_[kRow * i + 3] = 0;
-    }
+  [[nodiscard]] HWY_INLINE std::array<double, 3> position(std::uint32_t lane,
+                                                          std::size_t corner) const {
+#if BOXTREE_HAS_EIGHT_LANES
+    if (reader_.has_clusters()) return clusters_.position(lane, corner);
+#endif
+    const auto p = boxtree::load<std::array<float, 3>>(
+        mesh_.positions + start_[std::size_t{3} * lane + corner] * sizeof(float));
+    return {p[0], p[1], p[2]};
   }
 
   // The common case: three corners per face, in floats, in the tree's order, and scaled without
@@ -187,11 +187,10 @@ class LeafFloats {
     }
   }
 
-  // Corner `corner` of all faces; that of face i is start(i) numbers after `rows`: floats, or whole
-  // numbers that become floats here.
-  template <class Number, class Start>
-  HWY_INLINE void transpose(const Number* rows, const Start& start, std::size_t corner) {
-    const hn::Rebind<Number, Floats> d;
+  // Corner `corner` of all faces; that of face i is start(i) floats after `rows`.
+  template <class Start>
+  HWY_INLINE void transpose(const float* rows, const Start& start, std::size_t corner) {
+    const Floats d;
     const FloatVector scale = hn::Set(Floats(), floats_.scale);
     const hn::Repartition<std::uint64_t, Floats> pairs;
     for (std::size_t part = 0; part < kParts; ++part) {
@@ -204,7 +203,7 @@ class LeafFloats {
       const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
       const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
-        hn::Store(hn::Mul(to_floats(hn::BitCast(d, values)), scale), Floats(),
+        hn::Store(hn::Mul(hn::BitCast(d, values), scale), Floats(),
                   &coordinate_[corner][axis][face]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
@@ -212,20 +211,13 @@ class LeafFloats {
       store(2, hn::InterleaveLower(pairs, z01, z23));
     }
   }
-  static HWY_INLINE FloatVector to_floats(FloatVector values) { return values; }
-  static HWY_INLINE FloatVector to_floats(hn::Vec<hn::Rebind<std::int32_t, Floats>> values) {
-    return hn::ConvertTo(Floats(), values);
-  }
-
   // The row of a face and, in the next block, of the one four faces on.
-  template <class Number, class Start>
-  static HWY_INLINE hn::Vec<hn::Rebind<Number, Floats>> blocks(const Number* rows,
-                                                               const Start& start,
-                                                               std::size_t face) {
-    const hn::CappedTag<Number, 4> four;
+  template <class Start>
+  static HWY_INLINE FloatVector blocks(const float* rows, const Start& start, std::size_t face) {
+    const hn::CappedTag<float, 4> four;
     const auto row = hn::LoadU(four, rows + start(face));
 #if HWY_MAX_BYTES >= 32
-    return hn::Combine(hn::Rebind<Number, Floats>(), hn::LoadU(four, rows + start(face + 4)), row);
+    return hn::Combine(Floats(), hn::LoadU(four, rows + start(face + 4)), row);
 #else
     return row;
 #endif
@@ -255,8 +247,9 @@ class LeafFloats {
   HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
   HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
   TriangleBatch batch_;
-  GridLeafFaces grid_faces_;
-  HWY_ALIGN std::int32_t grid_point_[kMaxLeafVertices * kRow];  // x, y, z and padding
+#if BOXTREE_HAS_EIGHT_LANES
+  ClusterReader clusters_;
+#endif
 };
 
 #endif

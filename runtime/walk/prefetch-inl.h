@@ -23,7 +23,7 @@ class Prefetch {
   Prefetch(const BoundTree& tree, const WideCodec<Node>& codec)
       : nodes_(codec.nodes),
         corners_(tree.leaves().mesh().corners),
-        clusters_(tree.leaves().grid().clusters) {
+        clusters_(tree.leaves().clusters()) {
     const MeshArrays& mesh = tree.leaves().mesh();
     if (corners_ != nullptr) {
       face_bytes_ = std::size_t{mesh.corners_per_face} * mesh.corner_bytes;
@@ -43,8 +43,10 @@ class Prefetch {
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
       const std::size_t face = first_face(links, child);
-      if (clusters_ != nullptr) {
-        hwy::Prefetch(clusters_ + face / kClusterFaces * sizeof(ClusterRecord));
+      if (clusters_.offsets != nullptr) {
+        const std::uint64_t start =
+            load<std::uint32_t>(clusters_.offsets, face / kClusterFaces) * kClusterUnit;
+        hwy::Prefetch(clusters_.bytes.data() + std::min(start, clusters_.bytes.size()));
       } else {
         hwy::Prefetch(corners_ + face * face_bytes_);
         hwy::Prefetch(corners_ + face * face_bytes_ + kLine);
@@ -55,7 +57,7 @@ class Prefetch {
  private:
   const std::byte* nodes_;
   const std::byte* corners_;
-  const std::byte* clusters_;  // or null: no grid
+  const ClusterView& clusters_;
   std::size_t face_bytes_ = 0;
 };
 

@@ -162,7 +162,7 @@ class BoxtreeSubject : public Subject {
 
   [[nodiscard]] std::optional<PairWork> pair_work(std::span<const Pose> poses, bool first_only,
                                                   CacheModel& cache) override {
-    if (encoded_.geometry.geometry == GeometryId::kGrid) return {};  // walks arrays only
+    if (has_clusters(encoded_.geometry.geometry)) return {};  // walks arrays only
     PairWork work;
     const BoundTree& tree = BoundTree::of(tree_);
     for (const Pose& pose : poses) {
@@ -234,6 +234,10 @@ void add_boxtree(std::vector<Library>& libraries, cooker::Builder builder) {
     libraries.push_back({"boxtree", name, [method = method, options](const TriangleMesh& mesh) {
                            return std::make_unique<BlobSubject>(mesh, method, options);
                          }});
+  }
+  options.geometry = GeometryId::kArrays;
+  for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+    add("boxtree", std::string(codec_name(codec)) + "-arrays", codec);
   }
   // A separate library: its answers are those of the mesh on the grid.
   options.geometry = GeometryId::kGrid;

@@ -46,6 +46,7 @@ for metric in ray_hits box_tris pair_hits pair_pairs tumble_first_hits; do same 
 
 codecs=$(jq -r '[.rows[] | select(.library == "boxtree" and .metric == "ray_ns")] | length' "$rows")
 [ "$codecs" -ge 6 ] || { echo "expected times of all codecs, found $codecs"; exit 1; }
-[ "$(jq '[.rows[] | select(.metric == "tumble_all_level2_misses" and .value > 0)] | length' "$rows")" -gt "$codecs" ] ||
+# All but the two that have clusters, and the original.
+[ "$(jq '[.rows[] | select(.metric == "tumble_all_level2_misses" and .value > 0)] | length' "$rows")" -gt $((codecs - 2)) ] ||
   { echo "no cache misses"; exit 1; }
 echo "$(jq -r '[.rows[] | .library + " " + .variant] | unique | join(", ")' "$rows")"

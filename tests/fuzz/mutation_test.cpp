@@ -85,6 +85,7 @@ TEST_P(Mutation, EveryFlippedBitWithGoodChecksumsIsAnsweredOrRefused) {
 std::vector<Encoding> encodings() {
   std::vector<Encoding> all;
   for (const CodecId codec : test::all_codecs()) all.push_back({codec, GeometryId::kExact});
+  all.push_back({CodecId::kWide8, GeometryId::kArrays});
   all.push_back({CodecId::kPlainF16, GeometryId::kGrid});
   all.push_back({CodecId::kWide8, GeometryId::kGrid});
   all.push_back({CodecId::kWide8, GeometryId::kExact, true});

@@ -244,109 +244,150 @@ class Wide:
         return children
 
 
-class Grid:
-    """Geometry grid (section 8.1): corners of a face as grid coordinates."""
+class Clusters:
+    """Geometry exact and grid (section 8.1): corners of a face in tree space."""
 
-    CLUSTER_FACES, LEAF_FACES, PADDING = 128, 8, 96
+    LEAVES, LEAF_FACES, PADDING, OTHERS = 64, 8, 96, 7
 
     def __init__(self, tree):
-        clusters = -(-tree.face_count // self.CLUSTER_FACES)
-        expect(len(tree.corners) == 24 * clusters, "size of section corners")
         self.tree = tree
+        self.is_grid = tree.geometry == 3
+        self.bits = 64 if tree.geometry == 4 and tree.flags & 2 else 32
+        self.headers = {}
         self.decoded = {}
-        end = 0
+        leaves = -(-tree.face_count // self.LEAF_FACES)
+        clusters = -(-leaves // self.LEAVES)
+        expect(len(tree.corners) == 4 * clusters, "size of section corners")
+        end = 0  # bit
         for cluster in range(clusters):
-            offset, size = self.extent(cluster)
-            expect(offset == end, "clusters follow each other")
-            end = (offset + size + 3) // 4 * 4
-        padding = self.PADDING if clusters else 0
-        expect(len(tree.vertices) == end + padding and not any(tree.vertices[end:]),
+            at = 32 * struct.unpack_from("<I", tree.corners, 4 * cluster)[0]
+            expect(at == (end + 31) // 32 * 32 and not self.field(end, at - end),
+                   "clusters follow each other")
+            end = self.read_header(cluster, at // 8, min(self.LEAVES, leaves - 64 * cluster))
+            for leaf in range(64 * cluster, min(leaves, 64 * cluster + 64)):
+                first, last = self.read_leaf(leaf)
+                expect(first >= end and not self.field(end, first - end),
+                       "zero bits between leaves")
+                end = last
+        size = (end + 31) // 32 * 4 + (self.PADDING if clusters else 0)
+        expect(len(tree.vertices) == size and not self.field(end, 8 * size - end),
                "padding after the last cluster")
 
-    def record(self, cluster):
-        *origin, offset, count, wx, wy, wz, leaf_bytes, leaf_bits, zero = struct.unpack_from(
-            "<3iIH6B", self.tree.corners, 24 * cluster)
-        expect(zero == 0 and max(wx, wy, wz) <= 32 and leaf_bits <= 16 and 0 < count <= 512,
-               "a cluster's record")
-        leaves = min(16, -(-(self.tree.face_count - self.CLUSTER_FACES * cluster)
-                           // self.LEAF_FACES))
-        fields = -(-(leaves + 1) * leaf_bits // 8)
-        table = int.from_bytes(self.tree.vertices[4 * offset:4 * offset + fields], "little")
-        starts = [fields + leaf_bytes * i + ((table >> (leaf_bits * i)) & ((1 << leaf_bits) - 1))
-                  for i in range(leaves + 1)]
-        expect(starts[0] == fields and starts == sorted(starts), "leaves follow each other")
-        return origin, 4 * offset, count, (wx, wy, wz), starts
+    def field(self, at, width):
+        """The field of `width` bits from bit `at` of section vertices on."""
+        data = self.tree.vertices[at // 8:(at + width + 7) // 8]
+        return int.from_bytes(data, "little") >> (at % 8) & ((1 << width) - 1)
 
-    def extent(self, cluster):
-        _, offset, count, widths, starts = self.record(cluster)
-        return offset, starts[-1] + -(-count * sum(widths) // 8)
+    def read_header(self, cluster, at, leaves):
+        data, most = self.tree.vertices, self.bits - 1
+        fields = struct.unpack_from("<16BHBB", data, at)
+        trailing, base_bits, shift, width, wider_bits = (fields[i:i + 3] for i in range(0, 15, 3))
+        start_bits, leaf_bytes, own_bits, zero = fields[15:]
+        expect(max(trailing) <= most and max(shift) <= most and start_bits <= 16
+               and own_bits <= 5 and zero == 0, "fields of a cluster")
+        for k in range(3):
+            expect(base_bits[k] + wider_bits[k] <= 8, "bits of an axis in an entry")
+            expect(width[k] + (1 << wider_bits[k]) - 1 <= self.bits, "widths of offsets")
+        origin = struct.unpack_from("<3q" if self.bits == 64 else "<3i", data, at + 20)
+        table = 8 * (at + 20 + 3 * self.bits // 8)
+        entry_bits = start_bits + sum(base_bits) + sum(wider_bits)
+        end = (table + leaves * entry_bits + 7) // 8
+        expect(not self.field(table + leaves * entry_bits, 8 * end - table - leaves * entry_bits),
+               "zero bits after the table")
+        places = []
+        for leaf in range(leaves):
+            bit = table + leaf * entry_bits
+            middle = end + leaf * leaf_bytes + self.field(bit, start_bits)
+            bit += start_bits
+            base, widths = [], []
+            for k in range(3):
+                base.append(origin[k] + (self.field(bit, base_bits[k]) << shift[k]))
+                bit += base_bits[k]
+                widths.append(width[k] + self.field(bit, wider_bits[k]))
+                bit += wider_bits[k]
+            places.append((8 * middle, base, widths))
+        self.headers[cluster] = (trailing, own_bits, places)
+        return 8 * end
 
-    def leaf(self, number):
-        """The faces of a leaf as lists of grid points."""
-        origin, offset, count, widths, starts = self.record(number // 16)
-        here = number % 16
-        data = self.tree.vertices
-        bits = int.from_bytes(data[offset + starts[here]:offset + starts[here + 1]], "little")
-        vertices = int.from_bytes(
-            data[offset + starts[-1]:sum(self.extent(number // 16))], "little")
+    def coordinate(self, m, trailing):
+        modulus, half = 1 << self.bits, 1 << (self.bits - 1)
+        m = (m + half) % modulus - half
+        if self.is_grid:
+            n = ((m << trailing) + half) % modulus - half
+            return n * 2.0 ** (self.tree.grid_exponent - self.tree.exponent)
+        bits = (m << trailing) % modulus if m >= 0 else ((-1 - m) << trailing) % modulus | half
+        whole, real = ("<Q", "<d") if self.bits == 64 else ("<I", "<f")
+        return struct.unpack(real, struct.pack(whole, bits))[0]
 
-        def field(width):
-            nonlocal bits
-            value = bits & ((1 << width) - 1)
-            bits >>= width
-            return value
+    def vertex(self, cluster, leaf, k):
+        trailing, _, places = self.headers[cluster]
+        middle, base, widths = places[leaf]
+        at, point = middle - (k + 1) * sum(widths), []
+        for axis in range(3):
+            offset = self.field(at, widths[axis])
+            point.append(self.coordinate(base[axis] + offset, trailing[axis]))
+            at += widths[axis]
+        return tuple(point)
+
+    def read_leaf(self, number):
+        """Decodes a leaf. The bits at which its vertices begin and its faces end."""
+        cluster, here = divmod(number, self.LEAVES)
+        _, own_bits, places = self.headers[cluster]
+        at = middle = places[here][0]
+
+        def take(width):
+            nonlocal at
+            at += width
+            return self.field(at - width, width)
 
         def below(limit):
-            return field(max(0, limit - 1).bit_length())
+            return take(max(0, limit - 1).bit_length())
 
-        def point(vertex):
-            expect(vertex < count, "number of a vertex")
-            word, at = vertices >> (vertex * sum(widths)), []
-            for k in range(3):
-                at.append(origin[k] + (word & ((1 << widths[k]) - 1)))
-                word >>= widths[k]
-            return tuple(at)
-
-        fresh = below(count + 1)
-        named = []
-
-        def reference():
-            nonlocal fresh
-            if field(1):
-                named.append(fresh)
-                fresh += 1
-            elif field(1):
-                named.append(below(fresh))
+        count = min(self.LEAF_FACES, self.tree.face_count - self.LEAF_FACES * number)
+        quads = [self.tree.corners_per_face == 4 and take(1) == 1 for _ in range(count)]
+        steps = [6] + [take(3) for _ in range(count - 1)]
+        expect(max(steps) <= 6, "step of a strip")
+        references = sum((3 if step == 6 else 1) + quad for step, quad in zip(steps, quads))
+        first = [True] + [take(1) == 1 for _ in range(references - 1)]
+        stored = [take(1) == 1 for _ in range(sum(first))]
+        named, fresh = [], 0
+        for is_first in first:
+            named.append(fresh if is_first else below(len(stored)))
+            fresh += is_first
+            expect(named[-1] < len(stored), "a vertex of the leaf")
+        others = []
+        if not all(stored):
+            others = [None] * take(3)
+            expect(others, "other leaves where vertices of others are named")
+            for i in range(len(others)):
+                others[i] = below(here)
+                expect(others[i] < here, "another leaf before this one")
+        points, own = [], 0
+        for is_own in stored:
+            if is_own:
+                points.append(self.vertex(cluster, here, own))
+                own += 1
+                continue
+            other = below(len(others))
+            expect(other < len(others), "one of the other leaves")
+            points.append(self.vertex(cluster, others[other], take(own_bits)))
+        faces, edge, r = [], 0, iter(named)
+        for step, quad in zip(steps, quads):
+            if step == 6:
+                face, edge = [next(r), next(r), next(r)], 0
             else:
-                place = below(len(named))
-                expect(place < len(named), "a vertex that the leaf has named")
-                return named[place]
-            return named[-1]
-
-        faces = []
-        for f in range(min(self.LEAF_FACES, self.tree.face_count - self.LEAF_FACES * number)):
-            is_quad = self.tree.corners_per_face == 4 and field(1)
-            step = field(4) if f else 9
-            expect(step <= 9, "step of a strip")
-            if step == 9:
-                face = [reference(), reference(), reference()]
-            else:
-                edge, turn = divmod(step, 3)
-                face = [None] * 3
-                face[turn] = faces[-1][(edge + 1) % 3]
-                face[(turn + 1) % 3] = faces[-1][edge]
-                face[(turn + 2) % 3] = reference()
-            faces.append(face + [reference()] if is_quad else face)
-        expect(bits == 0, "zero bits after a leaf")
-        return [[point(vertex) for vertex in face] for face in faces]
+                side, turn = divmod(step, 3)
+                e, p, face = edge + 1 + side, faces[-1], [None] * 3
+                face[turn], face[(turn + 1) % 3] = p[(e + 1) % 3], p[e % 3]
+                face[(turn + 2) % 3] = next(r)
+                edge = turn
+            faces.append(face + [next(r)] if quad else face)
+        self.decoded[number] = [[points[v] for v in face] for face in faces]
+        return middle - own * sum(places[here][2]), at
 
     def points(self, face):
-        number = face // self.LEAF_FACES
-        if number not in self.decoded:
-            self.decoded[number] = self.leaf(number)
-        step = 2.0 ** (self.tree.grid_exponent - self.tree.exponent)
-        return [tuple(q * step for q in point) for point in
-                self.decoded[number][face % self.LEAF_FACES]]
+        points = self.decoded[face // self.LEAF_FACES][face % self.LEAF_FACES]
+        return points if self.is_grid else [self.tree.to_tree(point) for point in points]
 
 
 CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Packed),
@@ -371,7 +412,7 @@ class Tree:
                "width of duplicates")
         expect(self.duplicate_count == 0 or self.leaf_faces > 0 and not self.flags & 1,
                "duplicates of faces in tree order")
-        expect(self.codec in CODECS and self.geometry in (1, 2, 3), "codec and geometry")
+        expect(self.codec in CODECS and self.geometry in (1, 2, 3, 4), "codec and geometry")
         expect(self.geometry == 3 or self.grid_exponent == 0, "a step without a grid")
         self.name = file.section(NAMES)[name_offset:name_offset + name_bytes].decode()
         self.nodes = file.section(NODES, index)
@@ -386,14 +427,16 @@ class Tree:
             expect(len(self.vertices) == self.vertex_count * stride, "size of section vertices")
             expect(len(self.corners) == self.face_count * self.corners_per_face
                    * self.corner_bytes, "size of section corners")
-        self.grid = Grid(self) if self.geometry == 3 else None
+        expect(self.corners_per_face in ((0,) if self.geometry == 1 else (3, 4)),
+               "corners of a face")
+        self.clusters = Clusters(self) if self.geometry in (3, 4) else None
         expect(len(self.ids) == self.face_count * self.face_id_bytes, "size of section face_ids")
         expect(len(self.duplicates) == self.duplicate_count * self.duplicate_bytes,
                "size of section duplicates")
 
     def triangles(self, face):
         """Triangles of a face in tree space."""
-        points = self.grid.points(face) if self.grid else self.mesh_points(face)
+        points = self.clusters.points(face) if self.clusters else self.mesh_points(face)
         return [(points[0], points[i], points[i + 1]) for i in range(1, len(points) - 1)]
 
     def mesh_points(self, face):
@@ -409,8 +452,12 @@ class Tree:
         for number in numbers:
             expect(number < self.vertex_count, "a vertex number")
             p = struct.unpack_from("<3" + self.scalar, self.vertices, number * size)
-            points.append(tuple((p[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3)))
+            points.append(self.to_tree(p))
         return points
+
+    def to_tree(self, p):
+        """A position of object space in tree space."""
+        return tuple((p[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3))
 
     def face_id(self, face):
         if self.flags & 1:

@@ -48,7 +48,8 @@ struct Settings {
 };
 
 std::vector<Settings> all_settings() {
-  std::vector<Settings> all = {{"exact", {}}};
+  std::vector<Settings> all = {{"exact", {}}, {"arrays", {}}};
+  all.back().options.geometry = GeometryId::kArrays;
   for (const int bits : {12, 21, 30}) {
     all.push_back({fmt::format("grid-{}", bits), {}});
     all.back().options.geometry = GeometryId::kGrid;
@@ -65,6 +66,8 @@ std::vector<Settings> all_settings() {
 // What a setting would not change, or cannot be had, is left out.
 bool applies(const Settings& settings, const SourceMesh& mesh, CodecId codec) {
   if (settings.options.geometry == GeometryId::kExternal) return mesh.face_ids.empty();
+  // Codecs with one triangle per leaf have arrays in any case.
+  if (settings.options.geometry == GeometryId::kArrays) return is_wide(codec);
   return settings.options.builder != cooker::Builder::kPaper || !is_wide(codec);
 }
 
@@ -113,6 +116,7 @@ std::uint64_t hash_of(const cooker::Contest& contest) {
 bool print_choices(const SourceMesh& mesh) {
   CookOptions options;
   options.may_use_grid = true;
+  options.may_use_arrays = true;
   options.try_all = true;
   Result<cooker::TriedTree> tried = try_encodings(mesh, options);
   if (!tried) return false;

@@ -46,6 +46,7 @@ std::vector<Encoding> all_encodings() {
     all.push_back({codec, GeometryId::kExact});
     all.push_back({codec, GeometryId::kGrid});
   }
+  all.push_back({CodecId::kWide8, GeometryId::kArrays});
   return all;
 }
 

@@ -30,7 +30,7 @@ TEST(CostFile, GivesBackWhatWasWritten) {
   ASSERT_EQ(read.size(), compiled_costs().size());
   const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
   for (const CodecInfo& codec : kCodecs) {
-    for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+    for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
       EXPECT_EQ(cost_of(work, codec.id, geometry, read), cost_of(work, codec.id, geometry));
     }
   }
@@ -53,28 +53,28 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
   EXPECT_EQ(refusal([](Json& j) { j.erase("costs"); }),
             "costs: expected an object with an array \"costs\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].erase(0); }),
-            "costs: plain-f32, exact: expected one row, found 0");
+            "costs: plain-f32, arrays: expected one row, found 0");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].push_back(j["costs"][0]); }),
-            "costs: plain-f32, exact: expected one row, found 2");
+            "costs: plain-f32, arrays: expected one row, found 2");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][1] = 3; }), "costs: row 1: expected an object");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["codec"] = "wide9"; }),
             "costs: row 0: unknown codec \"wide9\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["geometry"] = "external"; }),
-            "costs: row 0: geometry \"external\": expected exact or grid");
+            "costs: row 0: geometry \"external\": expected arrays, exact or grid");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0].erase("box"); }),
-            "costs: plain-f32, exact: expected an object \"box\"");
+            "costs: plain-f32, arrays: expected an object \"box\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["ray"].erase("node_ns"); }),
-            "costs: plain-f32, exact, ray: expected \"node_ns\", nanoseconds, 0 or more, found "
+            "costs: plain-f32, arrays, ray: expected \"node_ns\", nanoseconds, 0 or more, found "
             "nothing");
   for (const Json& value : {Json(-1), Json("7"), Json(nullptr)}) {
     EXPECT_EQ(refusal([&](Json& j) { j["costs"][0]["ray"]["leaf_ns"] = value; }),
-              "costs: plain-f32, exact, ray: expected \"leaf_ns\", nanoseconds, 0 or more, found " +
+              "costs: plain-f32, arrays, ray: expected \"leaf_ns\", nanoseconds, 0 or more, found " +
                   value.dump());
   }
   EXPECT_EQ(refusal([](Json& j) {
               j["costs"][0]["ray"] = {{"query_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
             }),
-            "costs: plain-f32, exact, ray: all steps are 0, but no query is free");
+            "costs: plain-f32, arrays, ray: all steps are 0, but no query is free");
   EXPECT_EQ(parse_costs("{").error().detail, "costs: no JSON");
   // Numbers that double cannot hold.
   EXPECT_FALSE(parse_costs(R"({"costs":[{"codec":"wide8","geometry":"exact","ray":)"

@@ -17,6 +17,7 @@ using test::require;
 SearchOptions options_for(Goal goal) {
   SearchOptions options;
   options.may_use_grid = true;
+  options.may_use_arrays = true;
   options.wishes.goal = goal;
   return options;
 }
@@ -51,7 +52,8 @@ TEST(Search, WhatIsLeftOutWouldNotHaveWon) {
 
 TEST(Search, SmallMeshesAreTriedWithEveryCodec) {
   const TriedTree tried = require(try_encodings(test::torus(12, 8), options_for(Goal::kBalance)));
-  EXPECT_EQ(tried.contest.candidates.size(), 2 * (kCodecs.size() - 1));  // packed-f64 is for f64
+  // Each in two stores, packed-f64 for f64 alone, and those with full leaves in a third.
+  EXPECT_EQ(tried.contest.candidates.size(), 2 * (kCodecs.size() - 1) + 2);
   for (const Candidate& candidate : tried.contest.candidates) {
     EXPECT_TRUE(candidate.gates.pass()) << codec_name(candidate.codec);
     EXPECT_GT(candidate.bytes(), 0u);
@@ -82,13 +84,13 @@ TEST(Search, ABudgetBringsBackWhatItNeeds) {
   options.wishes.max_bytes_per_triangle = 10;
   EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kGrid);
   options.wishes.max_bytes_per_triangle.reset();
-  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kArrays);
   // The smallest is too slow.
   options = options_for(Goal::kMemory);
   EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kGrid);
   options.wishes.max_slowdown = 1.01;
   EXPECT_EQ(winner(large_mesh(), options).codec, CodecId::kWide8);
-  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
+  EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kArrays);
 }
 
 TEST(Search, AToleranceThatNoGridKeepsLeavesExactGeometry) {

@@ -71,11 +71,11 @@ TEST(ExpectedVisits, OfTwoTrianglesAreTheRootAlone) {
   EXPECT_EQ(nodes.visits.pair, 1);
 }
 
-TEST(ExactGeometry, StandsInTreeOrderWithVerticesInOrderOfUse) {
+TEST(ArrayGeometry, StandsInTreeOrderWithVerticesInOrderOfUse) {
   SourceMesh mesh = two_triangles();
   std::swap(mesh.faces[0], mesh.faces[1]);  // source order is not tree order
   const BuildTree build = build_tree(mesh, Builder::kSah);
-  const EncodedGeometry geometry = encode_exact_geometry(mesh, faces_in_tree_order(build), true);
+  const EncodedGeometry geometry = encode_array_geometry(mesh, faces_in_tree_order(build), true);
   EXPECT_EQ(geometry.corner_bytes, 2);
   EXPECT_EQ(geometry.corners_per_face, 3);
   EXPECT_EQ(geometry.face_id_bytes, 1);
@@ -88,7 +88,7 @@ TEST(ExactGeometry, StandsInTreeOrderWithVerticesInOrderOfUse) {
   EXPECT_EQ(geometry.face_ids, (std::vector<std::byte>{std::byte{1}, std::byte{0}}));
 }
 
-TEST(ExactGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
+TEST(ArrayGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
   for (const std::size_t vertices : {0xffffu, 0x10000u}) {
     SourceMesh mesh;
     for (std::size_t i = 0; i < vertices; ++i) {
@@ -98,7 +98,7 @@ TEST(ExactGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
     }
     mesh.faces.push_back({{0, 1, 2, 3}});
     const EncodedGeometry geometry =
-        encode_exact_geometry(mesh, faces_in_tree_order(build_tree(mesh, Builder::kSah)), true);
+        encode_array_geometry(mesh, faces_in_tree_order(build_tree(mesh, Builder::kSah)), true);
     EXPECT_EQ(geometry.corner_bytes, vertices == 0xffff ? 2 : 4);
     EXPECT_EQ(geometry.face_id_bytes, vertices == 0xffff ? 2 : 4);
   }

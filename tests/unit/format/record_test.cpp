@@ -19,7 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 TreeRecord sound_tree() {
   TreeRecord record{};
   record.codec = CodecId::kWide8;
-  record.geometry = GeometryId::kExact;
+  record.geometry = GeometryId::kArrays;
   record.face_count = record.triangle_count = 100;
   record.vertex_count = 60;
   record.node_count = 60;  // enough for so many faces in every codec

@@ -2,6 +2,7 @@
 // Nodes and leaves that contradict themselves: whoever comes to them is told, by every query.
 #include <cmath>
 #include <cstring>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <span>
@@ -12,9 +13,9 @@
 #include <gtest/gtest.h>
 
 #include "format/bits.h"
+#include "format/cluster.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
-#include "format/grid.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
@@ -82,7 +83,11 @@ class Corrupt : public testing::TestWithParam<Corruption> {};
 
 TEST_P(Corrupt, EveryQuerySaysSo) {
   const Corruption& corruption = GetParam();
-  const cooker::SourceMesh mesh = test::soup(300, 3);
+  // Between 64 and 128, where the numbers of floats have the same exponent.
+  cooker::SourceMesh mesh = test::soup(300, 3);
+  float largest = 0;
+  for (const float x : mesh.positions.f32) largest = std::max(largest, std::abs(x));
+  for (float& x : mesh.positions.f32) x = 96 + 31 * x / largest;
   cooker::CookOptions options;
   options.geometry = corruption.geometry;
   options.grid.bits = 12;
@@ -173,21 +178,44 @@ std::vector<Corruption> corruptions() {
   for (const auto& [name, codec] : {std::pair("plain_f32_positions", CodecId::kPlainF32),
                                     {"wide8_positions", CodecId::kWide8},
                                     {"wide4_positions", CodecId::kWide4}}) {
-    all.push_back({name, codec, GeometryId::kExact, SectionKind::kVertices, Errc::kVertexNotFinite,
+    all.push_back({name, codec, GeometryId::kArrays, SectionKind::kVertices, Errc::kVertexNotFinite,
                    [](Section positions) {
                      std::fill(positions.begin(), positions.end(), std::byte{0xff});
                    }});
   }
-  for (const auto& [name, codec] : {std::pair("plain_f32_grid", CodecId::kPlainF32),
-                                    {"wide8_grid", CodecId::kWide8},
-                                    {"wide4_grid", CodecId::kWide4}}) {
-    all.push_back({name, codec, GeometryId::kGrid, SectionKind::kCorners, Errc::kVertexOutOfRange,
-                   [](Section clusters) {
-                     for (std::size_t i = 0; i < clusters.size() / sizeof(ClusterRecord); ++i) {
-                       edit<ClusterRecord>(clusters, i,
-                                           [](ClusterRecord& c) { c.vertex_count = 1; });
-                     }
-                   }});
+  // Numbers that are no float's.
+  for (const auto& [name, codec] :
+       {std::pair("wide8_origin", CodecId::kWide8), {"wide4_origin", CodecId::kWide4}}) {
+    all.push_back(
+        {name, codec, GeometryId::kExact, SectionKind::kVertices, Errc::kVertexNotFinite,
+         [](Section clusters) {
+           const std::array<std::int32_t, 3> origin = {0x7f800001, 0x7f800001, 0x7f800001};
+           ClusterHeader header{};
+           std::memcpy(&header, clusters.data(), sizeof(header));
+           header.trailing = {};
+           std::memcpy(clusters.data(), &header, sizeof(header));
+           std::memcpy(clusters.data() + sizeof(header), origin.data(), sizeof(origin));
+         }});
+  }
+  for (const GeometryId geometry : {GeometryId::kGrid, GeometryId::kExact}) {
+    for (const CodecId codec : {CodecId::kPlainF32, CodecId::kWide8, CodecId::kWide4}) {
+      if (geometry == GeometryId::kExact && !is_wide(codec)) continue;
+      for (const auto& [name, at] : {std::pair("trailing", offsetof(ClusterHeader, trailing)),
+                                     {"base_bits", offsetof(ClusterHeader, base_bits)},
+                                     {"base_shift", offsetof(ClusterHeader, base_shift)},
+                                     {"width", offsetof(ClusterHeader, width)},
+                                     {"wider_bits", offsetof(ClusterHeader, wider_bits)},
+                                     {"start_bits", offsetof(ClusterHeader, start_bits)},
+                                     {"own_bits", offsetof(ClusterHeader, own_bits)}}) {
+        static std::deque<std::string> names;  // that stay in their places
+        names.push_back(std::string(codec_name(codec)) + '_' +
+                        std::string(geometry_name(geometry)) + '_' + name);
+        std::replace(names.back().begin(), names.back().end(), '-', '_');
+        all.push_back({names.back().c_str(), codec, geometry, SectionKind::kVertices,
+                       Errc::kVertexOutOfRange,
+                       [at = at](Section clusters) { clusters[at] = std::byte{0xff}; }});
+      }
+    }
   }
   return all;
 }
@@ -196,21 +224,20 @@ INSTANTIATE_TEST_SUITE_P(All, Corrupt, testing::ValuesIn(corruptions()),
                          [](const auto& test) { return std::string(test.param.name); });
 
 // Two triangles that share nothing. Any change of a bit of their leaf is refused or gives other
-// corners, but for what fills up its last byte: no two codes of a step mean the same.
-TEST(GridLeaf, EveryBitMatters) {
+// corners: no two codes of a step mean the same.
+TEST(ClusterLeaf, EveryBitMatters) {
   cooker::SourceMesh mesh = test::soup(2, 5);
   cooker::CookOptions options;
   options.geometry = GeometryId::kGrid;
   options.grid.bits = 12;
   const test::CookedTree whole = test::cook_tree(mesh, CodecId::kPlainF32, options);
   std::vector<std::byte> bytes = whole.bytes;
-  const auto cluster = load<ClusterRecord>(section_of(bytes, SectionKind::kCorners).data());
   const Section clusters = section_of(bytes, SectionKind::kVertices);
-  // Fields of leaf_bits for one leaf and one more, then the leaf.
-  const std::size_t begin = (std::size_t{2} * cluster.leaf_bits + 7) / 8;
-  const std::size_t end =
-      begin + cluster.leaf_bytes +
-      read_bits(clusters.data(), std::uint64_t{cluster.leaf_bits}, cluster.leaf_bits);
+  ClusterLeaf leaf;
+  ClusterLeafBits place;
+  ASSERT_TRUE(decode_cluster_leaf(BoundTree::of(whole.tree).leaves().clusters(), 0, leaf, &place));
+  const std::size_t begin = place.begin;
+  const std::size_t end = place.end;
   ASSERT_LT(begin, end);
   const auto corners = [](const Tree& tree) {
     std::vector<double> all;
@@ -226,7 +253,7 @@ TEST(GridLeaf, EveryBitMatters) {
   const std::vector<double> expected = corners(whole.tree);
   ASSERT_EQ(expected.size(), 18u);
   std::size_t without_effect = 0;
-  for (std::size_t bit = 8 * begin; bit < 8 * end; ++bit) {
+  for (std::size_t bit = begin; bit < end; ++bit) {
     clusters[bit / 8] ^= std::byte{1} << (bit % 8);
     test::repair_checksums(bytes);
     const Result<File> file = File::open(Bytes(bytes));
@@ -234,7 +261,7 @@ TEST(GridLeaf, EveryBitMatters) {
     without_effect += corners(*Tree::bind(*file)) == expected ? 1u : 0u;
     clusters[bit / 8] ^= std::byte{1} << (bit % 8);
   }
-  EXPECT_LT(without_effect, 8u);
+  EXPECT_EQ(without_effect, 0u);
 }
 
 }  // namespace

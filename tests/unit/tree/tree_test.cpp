@@ -156,7 +156,9 @@ TEST_P(Trees, ExternalArraysOfEveryTypeAreRead) {
     bind.mesh = given;
     bind.verify_mesh = true;
     const test::CookedTree outside = test::cook_tree(source, GetParam(), external(), bind);
-    const test::CookedTree inside = test::cook_tree(source, GetParam());
+    cooker::CookOptions in_arrays;  // whose leaves have the order of the layout, too
+    in_arrays.geometry = GeometryId::kArrays;
+    const test::CookedTree inside = test::cook_tree(source, GetParam(), in_arrays);
     const std::vector<Triangle> read = test::all_triangles(outside.tree);
     const std::vector<Triangle> stored = test::all_triangles(inside.tree);
     ASSERT_EQ(read.size(), stored.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Geometry stores "exact" and "external" (reader: runtime/tree/geometry.h).
+// Geometry stores "arrays" and "external" (reader: runtime/tree/geometry.h).
 #include <algorithm>
 #include <cstring>
 
@@ -68,10 +68,10 @@ std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
   return order;
 }
 
-EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::span<const std::uint32_t> order,
+EncodedGeometry encode_array_geometry(const SourceMesh& mesh, std::span<const std::uint32_t> order,
                                       bool face_ids) {
   EncodedGeometry out;
-  out.geometry = GeometryId::kExact;
+  out.geometry = GeometryId::kArrays;
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;

@@ -1,0 +1,643 @@
+// SPDX-License-Identifier: MIT
+// Encoder of the geometry stores "exact" and "grid" (decoder: format/cluster.cpp).
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <type_traits>
+#include <utility>
+
+#include <oneapi/tbb/blocked_range.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "cooker/encode/encoded.h"
+#include "cooker/encode/face_ids.h"
+#include "format/bits.h"
+#include "format/cluster_leaf.h"
+
+namespace boxtree::cooker {
+namespace {
+
+// A face by the indices of its vertices in the cluster.
+struct ClusterFace {
+  std::array<std::uint16_t, 4> corner;
+  std::uint32_t source;
+  bool is_quad;
+};
+
+// The vertices of one cluster without duplicates. Vertices are compared by their numbers, not by
+// source numbers, so vertices that are equal on the grid or were never welded are stored once.
+template <class Number>
+class ClusterVertices {
+ public:
+  using Point = std::array<Number, 3>;
+
+  ClusterVertices() { slots_.fill(kFree); }
+
+  [[nodiscard]] std::uint16_t number_of(const Point& point) {
+    std::size_t slot = hash(point) % kSlots;
+    while (slots_[slot] != kFree && points_[slots_[slot]] != point) slot = (slot + 1) % kSlots;
+    if (slots_[slot] == kFree) {
+      slots_[slot] = count_;
+      points_[count_++] = point;
+    }
+    return slots_[slot];
+  }
+  [[nodiscard]] std::uint16_t count() const { return count_; }
+  [[nodiscard]] const Point& operator[](std::size_t i) const { return points_[i]; }
+
+  // Takes zero bits off the end of all numbers of an axis, as many as all have, and returns how
+  // many. The bits of floats, not of their numbers, end with them.
+  [[nodiscard]] std::uint8_t take_trailing_zeros(std::size_t axis, bool are_floats) {
+    using Bits = std::make_unsigned_t<Number>;
+    Bits any = 0;
+    for (std::size_t i = 0; i < count_; ++i) {
+      const Number number = points_[i][axis];
+      any |= static_cast<Bits>(are_floats && number < 0 ? ~number : number);
+    }
+    if (any == 0) return 0;
+    const int zeros = std::countr_zero(any);
+    // For a negative float's number this takes zeros off its complement.
+    for (std::size_t i = 0; i < count_; ++i) points_[i][axis] >>= zeros;
+    return static_cast<std::uint8_t>(zeros);
+  }
+
+ private:
+  static constexpr std::size_t kMost = std::size_t{kClusterFaces} * 4;
+  static constexpr std::size_t kSlots = 2 * kMost;  // at most half full, so that searches end
+  static constexpr std::uint16_t kFree = 0xffff;
+
+  static std::size_t hash(const Point& point) {
+    // Fibonacci hashing: 2^64 over the golden ratio.
+    std::uint64_t mixed = 0;
+    for (const Number x : point) {
+      mixed = (mixed ^ static_cast<std::make_unsigned_t<Number>>(x)) * 0x9e3779b97f4a7c15u;
+      mixed ^= mixed >> 32;
+    }
+    return mixed;
+  }
+
+  std::array<std::uint16_t, kSlots> slots_;
+  std::array<Point, kMost> points_;
+  std::uint16_t count_ = 0;
+};
+
+// A step of a strip from one face to the next, and the corner that it adds.
+struct Step {
+  std::uint32_t code = StripStep::kApart;
+  std::uint32_t turn = 0;  // the edge by which the next face is entered
+
+  [[nodiscard]] bool is_apart() const { return code == StripStep::kApart; }
+  [[nodiscard]] std::uint32_t brings() const { return (turn + 2) % 3; }
+};
+
+inline constexpr std::uint8_t kNoTurn = 3;
+
+// The edge of `to` that is edge `edge` of `from`, reversed; kNoTurn if there is none.
+std::uint8_t turn_over(const ClusterFace& from, std::uint32_t edge, const ClusterFace& to) {
+  const std::uint16_t begin = from.corner[(edge + 1) % 3], end = from.corner[edge];
+  for (std::uint8_t turn = 0; turn < 3; ++turn) {
+    if (to.corner[turn] == begin && to.corner[(turn + 1) % 3] == end) return turn;
+  }
+  return kNoTurn;
+}
+
+// The step from a face that is entered by edge `entered`.
+Step step_between(const ClusterFace& from, std::uint32_t entered, const ClusterFace& to) {
+  for (std::uint32_t side = 0; side < 2; ++side) {
+    const std::uint8_t turn = turn_over(from, (entered + 1 + side) % 3, to);
+    if (turn != kNoTurn) return {StripStep::code(side, turn), turn};
+  }
+  return {};
+}
+
+// Orders the faces of a leaf so that many share an edge with the previous one: from each face,
+// walks over shared edges to the neighbour with the fewest others left, and keeps the best walk.
+class StripOrder {
+ public:
+  explicit StripOrder(std::span<ClusterFace> faces) : faces_(faces), count_(faces.size()) {
+    for (std::size_t i = 0; i < count_; ++i) {
+      for (std::size_t j = 0; j < count_; ++j) {
+        for (std::uint32_t edge = 0; i != j && edge < 3; ++edge) {
+          turn_[i][j][edge] = turn_over(faces[i], edge, faces[j]);
+          across_[i][edge] |= (turn_[i][j][edge] != kNoTurn ? 1u : 0u) << j;
+        }
+      }
+    }
+  }
+
+  void apply() {
+    Walk best;
+    for (std::size_t start = 0; start < count_; ++start) {
+      const Walk walk = walk_from(start);
+      if (walk.shared > best.shared) best = walk;
+    }
+    std::array<ClusterFace, kLeafFaces> ordered;
+    for (std::size_t i = 0; i < count_; ++i) ordered[i] = faces_[best.face[i]];
+    std::copy_n(ordered.begin(), count_, faces_.begin());
+  }
+
+ private:
+  struct Walk {
+    std::array<std::size_t, kLeafFaces> face{};
+    int shared = -1;
+  };
+
+  [[nodiscard]] Walk walk_from(std::size_t at) const {
+    Walk walk;
+    walk.shared = 0;
+    std::uint32_t left = (1u << count_) - 1;
+    std::uint32_t entered = 0;
+    for (std::size_t length = 0;; ++length) {
+      walk.face[length] = at;
+      left &= ~(1u << at);
+      if (left == 0) return walk;
+      const std::uint32_t first = (entered + 1) % 3, second = (entered + 2) % 3;
+      const std::uint32_t near = (across_[at][first] | across_[at][second]) & left;
+      const std::size_t next = loneliest(near != 0 ? near : left, left);
+      walk.shared += near != 0 ? 1 : 0;
+      const std::uint8_t turn = turn_[at][next][turn_[at][next][first] != kNoTurn ? first : second];
+      entered = near != 0 ? turn : 0;
+      at = next;
+    }
+  }
+
+  // Of some faces, the one with the fewest neighbours left. Precondition: there is one.
+  [[nodiscard]] std::size_t loneliest(std::uint32_t faces, std::uint32_t left) const {
+    std::size_t best = 0;
+    int fewest = std::numeric_limits<int>::max();
+    for (; faces != 0; faces &= faces - 1) {
+      const auto face = static_cast<std::size_t>(std::countr_zero(faces));
+      const std::uint32_t(&across)[3] = across_[face];
+      const int others = std::popcount((across[0] | across[1] | across[2]) & left);
+      if (others < fewest) {
+        fewest = others;
+        best = face;
+      }
+    }
+    return best;
+  }
+
+  std::span<ClusterFace> faces_;
+  std::size_t count_;
+  std::uint8_t turn_[kLeafFaces][kLeafFaces][3];  // of face j where it follows face i over an edge
+  std::uint32_t across_[kLeafFaces][3] = {};      // bit j: face j can follow face i over an edge
+};
+
+class BitWriter {
+ public:
+  explicit BitWriter(std::vector<std::byte>& out) : out_(out), at_(8 * out.size()) {}
+
+  void put(std::uint64_t value, std::uint32_t width) {
+    out_.resize((at_ + width + 7) / 8);
+    write_bits(out_.data(), at_, width, value);
+    at_ += width;
+  }
+  [[nodiscard]] std::uint64_t position() const { return at_; }
+
+ private:
+  std::vector<std::byte>& out_;
+  std::uint64_t at_;
+};
+
+// How one axis of a cluster is stored.
+struct AxisFields {
+  std::uint8_t base_bits = 0;
+  std::uint8_t base_shift = 0;
+  std::uint8_t width = 0;
+  std::uint8_t wider_bits = 0;
+  std::uint64_t cost = ~std::uint64_t{0};  // bits
+};
+
+// The numbers of the vertices that a leaf stores, on one axis, less the least of the cluster.
+struct AxisRange {
+  std::uint64_t low = 0;
+  std::uint64_t high = 0;
+  std::uint32_t vertices = 0;
+
+  [[nodiscard]] std::uint32_t width(std::uint32_t shift) const {
+    return vertices == 0
+               ? 0
+               : static_cast<std::uint32_t>(std::bit_width(high - (low >> shift << shift)));
+  }
+  [[nodiscard]] std::uint64_t base(std::uint32_t shift) const {
+    return vertices == 0 ? 0 : low >> shift;
+  }
+};
+
+// The fields that take the fewest bits, over all leaves of a cluster.
+AxisFields best_fields(std::span<const AxisRange> leaves) {
+  std::uint64_t largest = 0;
+  for (const AxisRange& leaf : leaves) largest = std::max(largest, leaf.high);
+  AxisFields best;
+  const auto shifts = static_cast<std::uint32_t>(std::bit_width(largest));
+  for (std::uint32_t shift = 0; shift <= std::min(shifts, 63u); ++shift) {
+    std::uint32_t widest = 0;
+    std::uint64_t largest_base = 0;
+    std::array<std::uint32_t, 65> vertices_of{};  // by the width of their leaf
+    for (const AxisRange& leaf : leaves) {
+      widest = std::max(widest, leaf.width(shift));
+      largest_base = std::max(largest_base, leaf.base(shift));
+      vertices_of[leaf.width(shift)] += leaf.vertices;
+    }
+    const auto base_bits = static_cast<std::uint32_t>(std::bit_width(largest_base));
+    for (std::uint32_t bits = 0; base_bits + bits <= ClusterHeader::kMostEntryBits; ++bits) {
+      if ((1u << bits) - 1 > widest) break;
+      const std::uint32_t narrowest = widest - ((1u << bits) - 1);
+      std::uint64_t cost = leaves.size() * (base_bits + bits);
+      for (std::uint32_t width = 0; width <= widest; ++width) {
+        cost += std::uint64_t{vertices_of[width]} * std::max(width, narrowest);
+      }
+      if (cost >= best.cost) continue;
+      best = {static_cast<std::uint8_t>(base_bits), static_cast<std::uint8_t>(shift),
+              static_cast<std::uint8_t>(narrowest), static_cast<std::uint8_t>(bits), cost};
+    }
+  }
+  return best;
+}
+
+// Appends clusters to `out`, one after another.
+template <class Number>
+class ClusterEncoder {
+ public:
+  ClusterEncoder(std::vector<std::byte>& out, bool may_have_quads, bool are_floats)
+      : out_(out), may_have_quads_(may_have_quads), are_floats_(are_floats) {}
+
+  // Appends the bytes of a cluster.
+  void encode(std::span<const ClusterFace> faces, ClusterVertices<Number>& vertices) {
+    vertices_ = &vertices;
+    header_ = {};
+    owner_.assign(vertices.count(), Owner{});
+    leaves_.clear();
+    for (std::size_t first = 0; first < faces.size(); first += kLeafFaces) {
+      name_vertices(faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)));
+    }
+    choose_fields();
+    write_leaves(faces);
+    write_header();
+    write_table();
+    out_.insert(out_.end(), bytes_.begin(), bytes_.end());
+    while (out_.size() % kClusterUnit != 0) out_.push_back(std::byte{0});
+  }
+
+ private:
+  // The leaf that stores a vertex, and its number there.
+  struct Owner {
+    static constexpr std::uint32_t kNone = 0xffffffffu;
+    std::uint32_t leaf = kNone;
+    std::uint32_t number = 0;
+  };
+  // A vertex that a leaf names: its own, or one of the `other`-th other leaf.
+  struct Named {
+    static constexpr std::uint32_t kOwn = 0xffffffffu;
+    std::uint16_t vertex;
+    std::uint32_t other = kOwn;
+    std::uint32_t number = 0;  // in that leaf
+  };
+  struct Leaf {
+    std::vector<Named> vertices;            // in order
+    std::vector<std::uint16_t> owned;       // those that it stores
+    std::vector<std::uint32_t> others;      // leaves
+    std::vector<std::uint32_t> references;  // indices into `vertices`
+    std::vector<Step> steps;                // to each face; the first is apart
+    std::size_t start = 0;                  // where its faces begin
+  };
+
+  void name_vertices(std::span<const ClusterFace> faces) {
+    const auto number = static_cast<std::uint32_t>(leaves_.size());
+    Leaf& leaf = leaves_.emplace_back();
+    std::uint32_t entered = 0;
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      const ClusterFace& face = faces[f];
+      const Step step = f == 0 ? Step{} : step_between(faces[f - 1], entered, face);
+      entered = step.turn;
+      leaf.steps.push_back(step);
+      if (step.is_apart()) {
+        for (std::size_t c = 0; c < 3; ++c) refer(face.corner[c], number, leaf);
+      } else {
+        refer(face.corner[step.brings()], number, leaf);
+      }
+      if (face.is_quad) refer(face.corner[3], number, leaf);
+    }
+  }
+
+  void refer(std::uint16_t vertex, std::uint32_t number, Leaf& leaf) {
+    const auto named = std::find_if(leaf.vertices.begin(), leaf.vertices.end(),
+                                    [&](const Named& each) { return each.vertex == vertex; });
+    leaf.references.push_back(static_cast<std::uint32_t>(named - leaf.vertices.begin()));
+    if (named != leaf.vertices.end()) return;
+    Owner& owner = owner_[vertex];
+    if (owner.leaf != Owner::kNone) {
+      const auto other = std::find(leaf.others.begin(), leaf.others.end(), owner.leaf);
+      const bool is_known = other != leaf.others.end();
+      if (is_known || leaf.others.size() < kMaxOtherLeaves) {
+        const auto place = static_cast<std::uint32_t>(other - leaf.others.begin());
+        if (!is_known) leaf.others.push_back(owner.leaf);
+        leaf.vertices.push_back({vertex, place, owner.number});
+        return;
+      }
+    } else {
+      owner = {number, static_cast<std::uint32_t>(leaf.owned.size())};
+    }
+    leaf.vertices.push_back({vertex});
+    leaf.owned.push_back(vertex);
+  }
+
+  [[nodiscard]] std::uint64_t offset_of(std::uint16_t vertex, std::size_t axis) const {
+    // Unsigned: the difference of two numbers of 64 bits may not fit with a sign.
+    return static_cast<std::uint64_t>((*vertices_)[vertex][axis]) -
+           static_cast<std::uint64_t>(origin_[axis]);
+  }
+
+  void choose_fields() {
+    std::size_t most_owned = 1;
+    for (const Leaf& leaf : leaves_) most_owned = std::max(most_owned, leaf.owned.size());
+    header_.own_bits = static_cast<std::uint8_t>(width_below(most_owned));
+    ranges_.assign(3 * leaves_.size(), {});
+    for (std::size_t k = 0; k < 3; ++k) {
+      header_.trailing[k] = vertices_->take_trailing_zeros(k, are_floats_);
+      origin_[k] = (*vertices_)[0][k];
+      for (std::size_t v = 0; v < vertices_->count(); ++v) {
+        origin_[k] = std::min(origin_[k], (*vertices_)[v][k]);
+      }
+      for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        AxisRange& range = ranges_[k * leaves_.size() + i];
+        range.low = ~std::uint64_t{0};
+        range.vertices = static_cast<std::uint32_t>(leaves_[i].owned.size());
+        for (const std::uint16_t vertex : leaves_[i].owned) {
+          range.low = std::min(range.low, offset_of(vertex, k));
+          range.high = std::max(range.high, offset_of(vertex, k));
+        }
+      }
+      const AxisFields fields =
+          best_fields(std::span(ranges_).subspan(k * leaves_.size(), leaves_.size()));
+      header_.base_bits[k] = fields.base_bits;
+      base_shift_[k] = fields.base_shift;
+      header_.base_shift[k] = fields.base_bits == 0 ? std::uint8_t{0} : fields.base_shift;
+      header_.width[k] = fields.width;
+      header_.wider_bits[k] = fields.wider_bits;
+    }
+  }
+
+  [[nodiscard]] const AxisRange& range(std::size_t leaf, std::size_t axis) const {
+    return ranges_[axis * leaves_.size() + leaf];
+  }
+  // How many bits more than the narrowest leaf.
+  [[nodiscard]] std::uint32_t wider(std::size_t leaf, std::size_t axis) const {
+    const std::uint32_t width = range(leaf, axis).width(base_shift_[axis]);
+    return std::max<std::uint32_t>(width, header_.width[axis]) - header_.width[axis];
+  }
+
+  void write_leaves(std::span<const ClusterFace> faces) {
+    bytes_.clear();
+    std::size_t last_bit = 0;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      Leaf& leaf = leaves_[i];
+      std::array<std::uint32_t, 3> width;
+      std::uint32_t stride = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        width[k] = header_.width[k] + wider(i, k);
+        stride += width[k];
+      }
+      leaf.start = (last_bit + leaf.owned.size() * stride + 7) / 8;
+      bytes_.resize(leaf.start);
+      for (std::size_t v = 0; v < leaf.owned.size(); ++v) {
+        std::size_t at = leaf.start * 8 - (v + 1) * stride;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const std::uint32_t shift = base_shift_[k];
+          const std::uint64_t offset =
+              offset_of(leaf.owned[v], k) - (range(i, k).base(shift) << shift);
+          write_bits(bytes_.data(), at, width[k], offset);
+          at += width[k];
+        }
+      }
+      BitWriter bits(bytes_);
+      write_faces(static_cast<std::uint32_t>(i), faces.subspan(i * kLeafFaces), bits);
+      last_bit = bits.position();
+    }
+  }
+
+  void write_faces(std::uint32_t number, std::span<const ClusterFace> faces, BitWriter& bits) {
+    const Leaf& leaf = leaves_[number];
+    if (may_have_quads_) {
+      for (std::size_t f = 0; f < leaf.steps.size(); ++f) bits.put(faces[f].is_quad ? 1 : 0, 1);
+    }
+    for (std::size_t f = 1; f < leaf.steps.size(); ++f) {
+      bits.put(leaf.steps[f].code, StripStep::kBits);
+    }
+    std::uint32_t named = 1;  // by the first reference
+    for (std::size_t r = 1; r < leaf.references.size(); ++r) {
+      const bool is_first = leaf.references[r] == named;
+      bits.put(is_first ? 1 : 0, 1);
+      named += is_first ? 1 : 0;
+    }
+    for (const Named& vertex : leaf.vertices) bits.put(vertex.other == Named::kOwn ? 1 : 0, 1);
+    named = 1;
+    for (std::size_t r = 1; r < leaf.references.size(); ++r) {
+      if (leaf.references[r] == named) {
+        ++named;
+      } else {
+        bits.put(leaf.references[r], width_below(leaf.vertices.size()));
+      }
+    }
+    if (leaf.others.empty()) return;
+    bits.put(leaf.others.size(), kOtherBits);
+    for (const std::uint32_t other : leaf.others) bits.put(other, width_below(number));
+    for (const Named& vertex : leaf.vertices) {
+      if (vertex.other == Named::kOwn) continue;
+      bits.put(vertex.other, width_below(leaf.others.size()));
+      bits.put(vertex.number, header_.own_bits);
+    }
+  }
+
+  void write_header() {
+    std::size_t least = std::numeric_limits<std::uint16_t>::max();
+    for (std::size_t i = 1; i < leaves_.size(); ++i) least = std::min(least, leaves_[i].start / i);
+    if (leaves_.size() == 1) least = 0;
+    std::size_t most = 0;
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      most = std::max(most, leaves_[i].start - i * least);
+    }
+    header_.leaf_bytes = static_cast<std::uint16_t>(least);
+    header_.start_bits = static_cast<std::uint8_t>(std::bit_width(most));
+    assert(header_.start_bits <= ClusterHeader::kMostStartBits);
+    append(header_);
+    append(origin_);
+  }
+
+  template <class T>
+  void append(const T& value) {
+    const auto bytes = std::as_bytes(std::span(&value, 1));
+    out_.insert(out_.end(), bytes.begin(), bytes.end());
+  }
+
+  void write_table() {
+    BitWriter bits(out_);
+    for (std::size_t i = 0; i < leaves_.size(); ++i) {
+      bits.put(leaves_[i].start - i * header_.leaf_bytes, header_.start_bits);
+      for (std::size_t k = 0; k < 3; ++k) {
+        bits.put(range(i, k).base(base_shift_[k]), header_.base_bits[k]);
+        bits.put(wider(i, k), header_.wider_bits[k]);
+      }
+    }
+  }
+
+  std::vector<std::byte>& out_;
+  bool may_have_quads_;
+  bool are_floats_;
+  ClusterVertices<Number>* vertices_ = nullptr;
+  ClusterHeader header_{};
+  std::array<Number, 3> origin_{};
+  std::array<std::uint32_t, 3> base_shift_{};  // also where no leaf has a base but 0
+  std::vector<Owner> owner_;                   // of each vertex
+  std::vector<Leaf> leaves_;
+  std::vector<AxisRange> ranges_;  // [axis][leaf]
+  std::vector<std::byte> bytes_;   // of leaves
+};
+
+// Clusters encoded by one task.
+struct Block {
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::byte> bytes;
+  std::uint32_t vertex_count = 0;
+};
+
+// The number of a float that keeps the order of floats; see float_of_number.
+template <class Number, class Float>
+Number number_of(Float value) {
+  const auto bits = std::bit_cast<Number>(value);
+  constexpr Number kMagnitude = std::numeric_limits<Number>::max();
+  return bits < 0 ? static_cast<Number>(~(bits & kMagnitude)) : bits;
+}
+
+// The coordinates of source vertices as numbers.
+struct GridNumbers {
+  using Number = std::int32_t;
+  static constexpr bool kAreFloats = false;
+  const Positions& positions;
+
+  [[nodiscard]] std::array<Number, 3> operator[](std::uint32_t vertex) const {
+    const Eigen::Vector3d position = positions[vertex];
+    std::array<Number, 3> point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double q = position[static_cast<Eigen::Index>(k)];
+      assert(q == std::floor(q) && std::abs(q) <= 1 << 30);
+      point[k] = static_cast<Number>(q);
+    }
+    return point;
+  }
+};
+
+template <class Whole, class Float>
+struct FloatNumbers {
+  using Number = Whole;
+  static constexpr bool kAreFloats = true;
+  std::span<const Float> positions;
+
+  [[nodiscard]] std::array<Number, 3> operator[](std::uint32_t vertex) const {
+    std::array<Number, 3> point;
+    for (std::size_t k = 0; k < 3; ++k) {
+      point[k] = number_of<Number>(positions[std::size_t{3} * vertex + k]);
+    }
+    return point;
+  }
+};
+
+template <class Numbers>
+Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std::uint32_t> order,
+                   bool may_have_quads, LeafOrder leaf_order) {
+  using Number = typename Numbers::Number;
+  Block block;
+  ClusterEncoder<Number> encoder(block.bytes, may_have_quads, Numbers::kAreFloats);
+  for (std::size_t first = 0; first < order.size(); first += kClusterFaces) {
+    const std::span<std::uint32_t> of_cluster =
+        order.subspan(first, std::min<std::size_t>(kClusterFaces, order.size() - first));
+    ClusterVertices<Number> vertices;
+    std::vector<ClusterFace> faces;
+    for (const std::uint32_t source : of_cluster) {
+      const Face& face = mesh.faces[source];
+      ClusterFace named{{}, source, face.is_quad()};
+      for (std::size_t c = 0; c < (named.is_quad ? 4u : 3u); ++c) {
+        named.corner[c] = vertices.number_of(numbers[face.corner[c]]);
+      }
+      faces.push_back(named);
+    }
+    for (std::size_t leaf = 0; leaf < faces.size(); leaf += kLeafFaces) {
+      const std::size_t count = std::min<std::size_t>(kLeafFaces, faces.size() - leaf);
+      if (leaf_order == LeafOrder::kFree) StripOrder(std::span(faces).subspan(leaf, count)).apply();
+    }
+    for (std::size_t i = 0; i < faces.size(); ++i) of_cluster[i] = faces[i].source;
+    block.offsets.push_back(static_cast<std::uint32_t>(block.bytes.size() / kClusterUnit));
+    encoder.encode(faces, vertices);
+    block.vertex_count += vertices.count();
+  }
+  return block;
+}
+
+template <class Numbers>
+EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
+                                std::vector<std::uint32_t>& order, LeafOrder leaf_order,
+                                bool face_ids) {
+  const bool may_have_quads = std::any_of(mesh.faces.begin(), mesh.faces.end(),
+                                          [](const Face& face) { return face.is_quad(); });
+  EncodedGeometry out;
+  out.corners_per_face = may_have_quads ? 4 : 3;
+  constexpr std::size_t kBlockFaces = std::size_t{16} * kClusterFaces;
+  std::vector<Block> blocks((order.size() + kBlockFaces - 1) / kBlockFaces);
+  const auto encode = [&](std::size_t i) {
+    const std::size_t first = i * kBlockFaces;
+    const std::size_t count = std::min(kBlockFaces, order.size() - first);
+    blocks[i] = encode_block(mesh, numbers, std::span(order).subspan(first, count), may_have_quads,
+                             leaf_order);
+  };
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks.size(), 1),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) encode(i);
+                    });
+  std::size_t bytes = kClusterPadding;
+  for (const Block& block : blocks) bytes += block.bytes.size();
+  if (!blocks.empty()) out.vertices.reserve(bytes);
+  for (Block& block : blocks) {
+    const auto offset = static_cast<std::uint32_t>(out.vertices.size() / kClusterUnit);
+    for (std::uint32_t& of_cluster : block.offsets) of_cluster += offset;
+    const Bytes offsets = std::as_bytes(std::span(block.offsets));
+    out.corners.insert(out.corners.end(), offsets.begin(), offsets.end());
+    out.vertices.insert(out.vertices.end(), block.bytes.begin(), block.bytes.end());
+    out.vertex_count += block.vertex_count;
+    block = {};
+  }
+  if (!blocks.empty()) out.vertices.resize(out.vertices.size() + kClusterPadding);
+  if (face_ids && !order.empty()) encode_face_ids(mesh, order, out);
+  return out;
+}
+
+}  // namespace
+
+EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
+                                     std::vector<std::uint32_t>& order, LeafOrder leaf_order,
+                                     bool face_ids) {
+  EncodedGeometry out = encode_clusters(quantised.mesh, GridNumbers{quantised.mesh.positions},
+                                        order, leaf_order, face_ids);
+  out.geometry = GeometryId::kGrid;
+  out.grid_exponent = quantised.step_exponent;
+  out.max_vertex_error = quantised.max_vertex_error;
+  return out;
+}
+
+EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::vector<std::uint32_t>& order,
+                                      LeafOrder leaf_order, bool face_ids) {
+  const Positions& positions = mesh.positions;
+  EncodedGeometry out =
+      positions.precision == Precision::kF64
+          ? encode_clusters(mesh, FloatNumbers<std::int64_t, double>{positions.f64}, order,
+                            leaf_order, face_ids)
+          : encode_clusters(mesh, FloatNumbers<std::int32_t, float>{positions.f32}, order,
+                            leaf_order, face_ids);
+  out.geometry = GeometryId::kExact;
+  return out;
+}
+
+}  // namespace boxtree::cooker

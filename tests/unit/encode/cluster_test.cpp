@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Geometry exact: every bit of every position of the source comes back, face by face and corner by
+// corner, whatever the numbers; and leaves that name vertices of many others.
+#include "format/cluster.h"
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "format/cluster_leaf.h"
+#include "runtime/tree/bound_tree.h"
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::kNoCorner;
+using cooker::SourceMesh;
+
+using Bits = std::array<std::uint64_t, 3>;
+
+Bits bits_of(const std::array<double, 3>& position) {
+  return {std::bit_cast<std::uint64_t>(position[0]), std::bit_cast<std::uint64_t>(position[1]),
+          std::bit_cast<std::uint64_t>(position[2])};
+}
+
+// Corners of the faces, as doubles, by source number.
+std::map<std::uint32_t, std::vector<Bits>> decoded(const Tree& tree) {
+  const ClusterView& clusters = BoundTree::of(tree).leaves().clusters();
+  std::map<std::uint32_t, std::vector<Bits>> faces;
+  ClusterLeaf leaf;
+  for (std::uint32_t i = 0; i < leaves_of(clusters.face_count); ++i) {
+    if (!decode_cluster_leaf(clusters, i, leaf)) {
+      ADD_FAILURE() << "leaf " << i;
+      return faces;
+    }
+    for (std::uint32_t f = 0; f < leaf.face_count; ++f) {
+      std::vector<Bits>& corners = faces[BoundTree::of(tree).face_id(i * kLeafFaces + f)];
+      for (const std::uint8_t corner : leaf.corner[f]) {
+        if (corner != ClusterLeaf::kNoCorner) corners.push_back(bits_of(leaf.position[corner]));
+      }
+    }
+  }
+  return faces;
+}
+
+std::map<std::uint32_t, std::vector<Bits>> source(const SourceMesh& mesh) {
+  std::map<std::uint32_t, std::vector<Bits>> faces;
+  for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
+    std::vector<Bits>& corners = faces[mesh.face_id(f)];
+    for (const std::uint32_t corner : mesh.faces[f].corner) {
+      if (corner == kNoCorner) continue;
+      const Eigen::Vector3d p = mesh.positions[corner];
+      corners.push_back(bits_of({p[0], p[1], p[2]}));
+    }
+  }
+  return faces;
+}
+
+// The same mesh with positions of f64 that f32 does not have.
+SourceMesh in_f64(const SourceMesh& mesh) {
+  SourceMesh wide = mesh;
+  wide.positions = {cooker::Precision::kF64, {}, {}};
+  for (const float x : mesh.positions.f32) wide.positions.f64.push_back(double{x} * 1.1);
+  return wide;
+}
+
+class ExactStore : public testing::TestWithParam<CodecId> {};
+
+TEST_P(ExactStore, HoldsEveryBitOfEveryPosition) {
+  for (const SourceMesh& mesh : test::all_kinds()) {
+    for (const SourceMesh& each : {mesh, in_f64(mesh)}) {
+      const test::CookedTree cooked = test::cook_tree(each, GetParam());
+      ASSERT_EQ(BoundTree::of(cooked.tree).geometry(), GeometryId::kExact);
+      EXPECT_EQ(decoded(cooked.tree), source(each)) << mesh.name;
+    }
+  }
+}
+
+// Any finite float: both zeros, subnormals, the largest, in one cluster.
+TEST_P(ExactStore, HoldsFloatsOfEveryExponent) {
+  std::mt19937_64 random(7);
+  SourceMesh mesh = test::soup(700, 4);
+  SourceMesh wide = in_f64(mesh);
+  for (float& x : mesh.positions.f32) {
+    do x = std::bit_cast<float>(static_cast<std::uint32_t>(random()));
+    while (!std::isfinite(x) || std::abs(x) > 0x1p100f);
+  }
+  mesh.positions.f32[0] = -0.0f;
+  mesh.positions.f32[1] = 0.0f;
+  mesh.positions.f32[2] = std::numeric_limits<float>::denorm_min();
+  mesh.positions.f32[3] = -std::numeric_limits<float>::denorm_min();
+  for (double& x : wide.positions.f64) {
+    do x = std::bit_cast<double>(random());
+    while (!std::isfinite(x) || std::abs(x) > 0x1p300);
+  }
+  wide.positions.f64[0] = -0.0;
+  wide.positions.f64[1] = std::numeric_limits<double>::denorm_min();
+  for (const SourceMesh& each : {mesh, wide}) {
+    const test::CookedTree cooked = test::cook_tree(each, GetParam());
+    EXPECT_EQ(decoded(cooked.tree), source(each));
+  }
+}
+
+// Triangles around one vertex and others that are far apart in the tree's order: leaves name
+// vertices of more than seven others, and store some again.
+TEST_P(ExactStore, NamesVerticesOfManyLeaves) {
+  std::mt19937 random(3);
+  SourceMesh mesh = test::soup(1, 1);
+  mesh.positions.f32.clear();
+  mesh.faces.clear();
+  for (int i = 0; i < 3 * 200; ++i) {
+    mesh.positions.f32.push_back(static_cast<float>(random() % 1000));
+  }
+  for (int i = 0; i < 500; ++i) {
+    const auto vertex = [&] { return static_cast<std::uint32_t>(random() % 200); };
+    mesh.faces.push_back({{vertex(), vertex(), vertex(), kNoCorner}});
+  }
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  EXPECT_EQ(decoded(cooked.tree), source(mesh));
+}
+
+INSTANTIATE_TEST_SUITE_P(WideCodecs, ExactStore, testing::Values(CodecId::kWide8, CodecId::kWide4),
+                         [](const auto& test) { return std::string(codec_name(test.param)); });
+
+TEST(NumbersOfFloats, KeepTheOrderOfFloatsAndTellZerosApart) {
+  const float rising[] = {
+      -std::numeric_limits<float>::max(), -1.0f, -0x1p-149f, -0.0f, 0.0f, 0x1p-149f, 1.0f,
+      std::numeric_limits<float>::max()};
+  const std::int32_t numbers[] = {-1 - 0x7f7fffff, -1 - 0x3f800000, -2, -1, 0, 1,
+                                  0x3f800000,      0x7f7fffff};
+  for (std::size_t i = 0; i < std::size(rising); ++i) {
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(float_of_number(numbers[i], 0)),
+              std::bit_cast<std::uint32_t>(rising[i]));
+  }
+  EXPECT_EQ(float_of_number(0x3f8000, 8), 1.0f);
+  EXPECT_EQ(float_of_number(-1 - 0x3f8000, 8), -1.0f);
+  EXPECT_EQ(double_of_number(-1 - 0x3ff00000, 32), -1.0);
+}
+
+}  // namespace
+}  // namespace boxtree
