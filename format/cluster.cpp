@@ -19,7 +19,7 @@ class LeafDecoder {
  public:
   LeafDecoder(const ClusterView& view, ClusterLeaf& out) : view_(view), out_(out) {}
 
-  bool run(std::uint32_t leaf, ClusterLeafBits* place) {
+  bool run(std::uint32_t leaf, ClusterLeafFields* fields) {
     if (!find_cluster(view_, leaf / kClusterLeaves, cluster_)) return false;
     self_ = leaf % kClusterLeaves;
     if (!find_leaf(cluster_, self_, own_)) return false;
@@ -27,7 +27,7 @@ class LeafDecoder {
     out_.face_count = std::min(kLeafFaces, view_.face_count - leaf * kLeafFaces);
     quads_ = view_.corners_per_face == 4 ? take(out_.face_count) : 0;
     steps_ = take(StripStep::kBits * (out_.face_count - 1));
-    return read_references() && read_vertices() && read_faces(place);
+    return read_references() && read_vertices() && read_faces(fields);
   }
 
  private:
@@ -68,6 +68,7 @@ class LeafDecoder {
     for (std::uint32_t i = 0; i < other_count; ++i) {
       const std::uint32_t leaf = take(width_below(self_));
       if (leaf >= self_ || !find_leaf(cluster_, leaf, others[i])) return false;
+      named_.others[i].leaf = leaf;
     }
     std::uint32_t next_own = 0;
     for (std::uint32_t v = 0; v < out_.vertex_count; ++v) {
@@ -80,8 +81,11 @@ class LeafDecoder {
       if (other >= other_count || !read_vertex(others[other], number, out_.position[v])) {
         return false;
       }
+      named_.others[other].largest = std::max(named_.others[other].largest, number);
     }
-    first_bit_ = own_.middle - std::uint64_t{next_own} * own_.stride;
+    named_.stored = stored;
+    named_.other_count = other_count;
+    named_.begin = own_.middle - std::uint64_t{next_own} * own_.stride;
     return true;
   }
 
@@ -112,7 +116,7 @@ class LeafDecoder {
     return double_of_number(static_cast<std::int64_t>(number), trailing);
   }
 
-  bool read_faces(ClusterLeafBits* place) {
+  bool read_faces(ClusterLeafFields* fields) {
     std::uint32_t r = 0;
     std::array<std::uint8_t, 3>
         face{};  // from the corner at which the edge begins that it is entered by
@@ -131,9 +135,11 @@ class LeafDecoder {
       for (std::uint32_t i = 0; i < 3; ++i) out_.corner[f][(turn + i) % 3] = face[i];
       out_.corner[f][3] = ((quads_ >> f) & 1u) != 0 ? reference_[r++] : ClusterLeaf::kNoCorner;
     }
-    if (place != nullptr) {
+    if (fields != nullptr) {
       const auto start = static_cast<std::uint64_t>(cluster_.bytes - view_.bytes.data()) * 8;
-      *place = {start + first_bit_, start + at_};
+      *fields = named_;
+      fields->begin += start;
+      fields->end = start + at_;
     }
     return true;
   }
@@ -144,7 +150,7 @@ class LeafDecoder {
   ClusterLeafPlace own_;
   std::uint32_t self_ = 0;  // number of the leaf in the cluster
   std::uint64_t at_ = 0;    // bit of the next field
-  std::uint64_t first_bit_ = 0;
+  ClusterLeafFields named_;
   std::uint32_t quads_ = 0;  // bit f: face f has a fourth corner
   std::uint32_t steps_ = 0;
   std::uint32_t own_vertices_ = 0;  // bit v: vertex v is stored with this leaf
@@ -154,8 +160,8 @@ class LeafDecoder {
 }  // namespace
 
 bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, ClusterLeaf& out,
-                         ClusterLeafBits* place) noexcept {
-  return LeafDecoder(clusters, out).run(leaf, place);
+                         ClusterLeafFields* fields) noexcept {
+  return LeafDecoder(clusters, out).run(leaf, fields);
 }
 
 }  // namespace boxtree

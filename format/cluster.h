@@ -108,16 +108,25 @@ struct ClusterLeaf {
   std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;    // indices into `position`
 };
 
-/// The bits that a leaf takes, counted from the start of `bytes`.
-struct ClusterLeafBits {
-  std::uint64_t begin = 0;  // of its vertices
-  std::uint64_t end = 0;    // of its faces
+/// What a leaf takes and names, for those who check it: decoders do not look at what other leaves
+/// store.
+struct ClusterLeafFields {
+  struct Other {
+    std::uint32_t leaf = 0;     // of the cluster
+    std::uint32_t largest = 0;  // number of a vertex there that is named
+  };
+  std::uint64_t begin = 0;   // bit of `bytes` where its vertices begin
+  std::uint64_t end = 0;     // bit where its faces end
+  std::uint32_t stored = 0;  // vertices
+  std::uint32_t other_count = 0;
+  std::array<Other, kMaxOtherLeaves> others;
 };
 
 /// Decodes leaf `leaf`: faces 8 leaf to 8 leaf + 7, or up to the last. False when its bytes are
-/// corrupt. Reads nothing outside `clusters`, whatever the bytes. `place` may be null.
+/// corrupt. Reads nothing outside `clusters`, whatever the bytes. `fields` may be null.
 /// Precondition: the leaf exists, and there are clusters_of(face_count) offsets.
 [[nodiscard]] bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf,
-                                       ClusterLeaf& out, ClusterLeafBits* place = nullptr) noexcept;
+                                       ClusterLeaf& out,
+                                       ClusterLeafFields* fields = nullptr) noexcept;
 
 }  // namespace boxtree

@@ -3,6 +3,7 @@
 #include "cooker/proof/reserved.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 
 #include "format/bits.h"
@@ -24,6 +25,13 @@ class Check {
     if (holds || findings_.size() >= kMaxFindings) return;
     findings_.push_back(
         {Errc::kPaddingNotZero, what + std::to_string(number) + ": " + where + " are not zero"});
+  }
+
+  void missing_vertex(std::uint32_t leaf, std::uint32_t other) {
+    if (findings_.size() >= kMaxFindings) return;
+    findings_.push_back(
+        {Errc::kVertexOutOfRange, "leaf " + std::to_string(leaf) + " names a vertex of leaf " +
+                                      std::to_string(other) + " that is not stored there"});
   }
 
  private:
@@ -120,8 +128,9 @@ void check_packed(Bytes nodes, Check& check) {
                "the bits behind it");
 }
 
-// Checks the bits between the fields of cluster n. False if it or a leaf cannot be read. `end`: the
-// bit after the last cluster, and on return after this one.
+// Checks the bits between the fields of cluster n, and that the vertices it names are stored. False
+// if it or a leaf cannot be read. `end`: the bit after the last cluster, and on return after this
+// one.
 bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& end, Check& check) {
   Cluster cluster;
   if (!find_cluster(clusters, n, cluster)) return false;
@@ -139,13 +148,19 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
   check.expect(are_zero(clusters.bytes, table_end, leaves_at), "cluster ", n,
                "the bits after its table");
   end = leaves_at;
+  std::array<std::uint32_t, kClusterLeaves> stored{};  // vertices, by leaf
   for (std::uint32_t i = first; i < last; ++i) {
     ClusterLeaf leaf;
-    ClusterLeafBits place;
-    if (!decode_cluster_leaf(clusters, i, leaf, &place)) return false;
-    check.expect(place.begin >= end && are_zero(clusters.bytes, end, place.begin), "leaf ", i,
+    ClusterLeafFields fields;
+    if (!decode_cluster_leaf(clusters, i, leaf, &fields)) return false;
+    check.expect(fields.begin >= end && are_zero(clusters.bytes, end, fields.begin), "leaf ", i,
                  "the bits before it");
-    end = std::max(end, place.end);
+    for (std::uint32_t k = 0; k < fields.other_count; ++k) {
+      const ClusterLeafFields::Other& other = fields.others[k];
+      if (other.largest >= stored[other.leaf]) check.missing_vertex(i, first + other.leaf);
+    }
+    stored[i - first] = fields.stored;
+    end = std::max(end, fields.end);
   }
   return true;
 }

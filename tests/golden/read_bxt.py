@@ -15,6 +15,7 @@ import xxhash
 NO_OWNER = 0xFFFFFFFF
 NODES, VERTICES, CORNERS, FACE_IDS, CERTIFICATE, NAMES, DUPLICATES = 2, 3, 4, 5, 6, 7, 19
 EMPTY, LEAF, SUBTREE = 0, 1, 2
+EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
 
 class Broken(Exception):
@@ -244,150 +245,141 @@ class Wide:
         return children
 
 
-class Clusters:
-    """Geometry exact and grid (section 8.1): corners of a face in tree space."""
+class Bits:
+    """Fields of bits behind each other, counted from the least significant."""
 
-    LEAVES, LEAF_FACES, PADDING, OTHERS = 64, 8, 96, 7
+    def __init__(self, data, at):
+        self.data, self.at = data, at
+
+    def take(self, width):
+        first, self.at = self.at, self.at + width
+        expect(self.at <= 8 * len(self.data), "a field inside its cluster")
+        piece = int.from_bytes(self.data[first // 8:(self.at + 7) // 8], "little")
+        return (piece >> (first % 8)) & ((1 << width) - 1)
+
+    def below(self, limit):
+        return self.take(max(0, limit - 1).bit_length())
+
+    def zeros(self, end):
+        expect(end >= self.at, "fields do not overlap")
+        expect(self.take(end - self.at) == 0, "zero bits between fields")
+
+
+class Clusters:
+    """Geometry exact and grid (section 8.1): faces as lists of corners, which are floats of object
+    space, or places on the grid."""
+
+    CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 20, 96
 
     def __init__(self, tree):
-        self.tree = tree
-        self.is_grid = tree.geometry == 3
-        self.bits = 64 if tree.geometry == 4 and tree.flags & 2 else 32
-        self.headers = {}
-        self.decoded = {}
-        leaves = -(-tree.face_count // self.LEAF_FACES)
-        clusters = -(-leaves // self.LEAVES)
-        expect(len(tree.corners) == 4 * clusters, "size of section corners")
-        end = 0  # bit
-        for cluster in range(clusters):
-            at = 32 * struct.unpack_from("<I", tree.corners, 4 * cluster)[0]
-            expect(at == (end + 31) // 32 * 32 and not self.field(end, at - end),
-                   "clusters follow each other")
-            end = self.read_header(cluster, at // 8, min(self.LEAVES, leaves - 64 * cluster))
-            for leaf in range(64 * cluster, min(leaves, 64 * cluster + 64)):
-                first, last = self.read_leaf(leaf)
-                expect(first >= end and not self.field(end, first - end),
-                       "zero bits between leaves")
-                end = last
-        size = (end + 31) // 32 * 4 + (self.PADDING if clusters else 0)
-        expect(len(tree.vertices) == size and not self.field(end, 8 * size - end),
+        self.exact = tree.geometry == EXACT
+        self.bits = 64 if self.exact and tree.flags & 2 else 32
+        self.has_quads = tree.corners_per_face == 4
+        self.faces = []
+        count = -(-tree.face_count // self.CLUSTER_FACES)
+        expect(len(tree.corners) == 4 * count, "size of section corners")
+        padding = self.PADDING if count else 0
+        end = len(tree.vertices) - padding
+        expect(end >= 0 and end % 4 == 0 and not any(tree.vertices[end:]),
                "padding after the last cluster")
+        starts = [4 * start for start in struct.unpack(f"<{count}I", tree.corners)] + [end]
+        expect(starts[0] == 0 and starts == sorted(starts), "clusters follow each other")
+        for start, end in zip(starts, starts[1:]):
+            left = tree.face_count - len(self.faces)
+            self.cluster(tree.vertices[start:end], min(self.CLUSTER_FACES, left))
 
-    def field(self, at, width):
-        """The field of `width` bits from bit `at` of section vertices on."""
-        data = self.tree.vertices[at // 8:(at + width + 7) // 8]
-        return int.from_bytes(data, "little") >> (at % 8) & ((1 << width) - 1)
-
-    def read_header(self, cluster, at, leaves):
-        data, most = self.tree.vertices, self.bits - 1
-        fields = struct.unpack_from("<16BHBB", data, at)
-        trailing, base_bits, shift, width, wider_bits = (fields[i:i + 3] for i in range(0, 15, 3))
-        start_bits, leaf_bytes, own_bits, zero = fields[15:]
-        expect(max(trailing) <= most and max(shift) <= most and start_bits <= 16
-               and own_bits <= 5 and zero == 0, "fields of a cluster")
+    def cluster(self, data, faces):
+        """Appends the faces of a cluster."""
+        axes, start_bits, leaf_bytes, own_bits, zero = struct.unpack_from("<15sBHBB", data)
+        trailing, base_bits, shift, width, wider_bits = (axes[i:i + 3] for i in range(0, 15, 3))
         for k in range(3):
-            expect(base_bits[k] + wider_bits[k] <= 8, "bits of an axis in an entry")
-            expect(width[k] + (1 << wider_bits[k]) - 1 <= self.bits, "widths of offsets")
-        origin = struct.unpack_from("<3q" if self.bits == 64 else "<3i", data, at + 20)
-        table = 8 * (at + 20 + 3 * self.bits // 8)
-        entry_bits = start_bits + sum(base_bits) + sum(wider_bits)
-        end = (table + leaves * entry_bits + 7) // 8
-        expect(not self.field(table + leaves * entry_bits, 8 * end - table - leaves * entry_bits),
-               "zero bits after the table")
-        places = []
-        for leaf in range(leaves):
-            bit = table + leaf * entry_bits
-            middle = end + leaf * leaf_bytes + self.field(bit, start_bits)
-            bit += start_bits
-            base, widths = [], []
-            for k in range(3):
-                base.append(origin[k] + (self.field(bit, base_bits[k]) << shift[k]))
-                bit += base_bits[k]
-                widths.append(width[k] + self.field(bit, wider_bits[k]))
-                bit += wider_bits[k]
-            places.append((8 * middle, base, widths))
-        self.headers[cluster] = (trailing, own_bits, places)
-        return 8 * end
+            expect(max(trailing[k], shift[k]) < self.bits and base_bits[k] + wider_bits[k] <= 8
+                   and width[k] + 2 ** wider_bits[k] - 1 <= self.bits, "header of a cluster")
+        expect(start_bits <= 16 and own_bits <= 5 and zero == 0, "header of a cluster")
+        bits = Bits(data, 8 * self.HEADER)
+        origin = [bits.take(self.bits) for _ in range(3)]
+        table = [(bits.take(start_bits),
+                  [(bits.take(base_bits[k]), bits.take(wider_bits[k])) for k in range(3)])
+                 for _ in range(-(-faces // self.LEAF_FACES))]
+        bits.zeros((bits.at + 7) // 8 * 8)
 
-    def coordinate(self, m, trailing):
-        modulus, half = 1 << self.bits, 1 << (self.bits - 1)
-        m = (m + half) % modulus - half
-        if self.is_grid:
-            n = ((m << trailing) + half) % modulus - half
-            return n * 2.0 ** (self.tree.grid_exponent - self.tree.exponent)
-        bits = (m << trailing) % modulus if m >= 0 else ((-1 - m) << trailing) % modulus | half
-        whole, real = ("<Q", "<d") if self.bits == 64 else ("<I", "<f")
-        return struct.unpack(real, struct.pack(whole, bits))[0]
+        def coordinate(k, base, field):
+            m = self.signed(origin[k] + (base << shift[k]) + field)
+            if not self.exact:
+                return self.signed(m << trailing[k])
+            return -self.real((-1 - m) << trailing[k]) if m < 0 else self.real(m << trailing[k])
 
-    def vertex(self, cluster, leaf, k):
-        trailing, _, places = self.headers[cluster]
-        middle, base, widths = places[leaf]
-        at, point = middle - (k + 1) * sum(widths), []
-        for axis in range(3):
-            offset = self.field(at, widths[axis])
-            point.append(self.coordinate(base[axis] + offset, trailing[axis]))
-            at += widths[axis]
-        return tuple(point)
+        table_end, stored = bits.at // 8, []
+        for i, (start, fields) in enumerate(table):
+            widths = [width[k] + fields[k][1] for k in range(3)]
+            middle = 8 * (table_end + i * leaf_bytes + start)
+            leaf = Bits(data, middle)
+            count = min(self.LEAF_FACES, faces - self.LEAF_FACES * i)
+            corners, own, named = self.strip(leaf, count, i, own_bits)
+            bits.zeros(middle - own * sum(widths))
+            points = [tuple(coordinate(k, fields[k][0], bits.take(widths[k])) for k in range(3))
+                      for _ in range(own)]
+            stored.append(points[::-1])
+            bits = leaf  # the next vertices come behind these faces
+            for other, place in named:
+                expect(place < len(stored[other]), "a vertex that exists")
+            points = [stored[other][place] for other, place in named]
+            self.faces += [[points[vertex] for vertex in face] for face in corners]
+        end = (bits.at + 31) // 32 * 32
+        bits.zeros(end)
+        expect(end == 8 * len(data), "clusters follow each other")
 
-    def read_leaf(self, number):
-        """Decodes a leaf. The bits at which its vertices begin and its faces end."""
-        cluster, here = divmod(number, self.LEAVES)
-        _, own_bits, places = self.headers[cluster]
-        at = middle = places[here][0]
-
-        def take(width):
-            nonlocal at
-            at += width
-            return self.field(at - width, width)
-
-        def below(limit):
-            return take(max(0, limit - 1).bit_length())
-
-        count = min(self.LEAF_FACES, self.tree.face_count - self.LEAF_FACES * number)
-        quads = [self.tree.corners_per_face == 4 and take(1) == 1 for _ in range(count)]
-        steps = [6] + [take(3) for _ in range(count - 1)]
-        expect(max(steps) <= 6, "step of a strip")
-        references = sum((3 if step == 6 else 1) + quad for step, quad in zip(steps, quads))
-        first = [True] + [take(1) == 1 for _ in range(references - 1)]
-        stored = [take(1) == 1 for _ in range(sum(first))]
-        named, fresh = [], 0
-        for is_first in first:
-            named.append(fresh if is_first else below(len(stored)))
-            fresh += is_first
-            expect(named[-1] < len(stored), "a vertex of the leaf")
+    def strip(self, bits, count, leaf, own_bits):
+        """The fields of a leaf: its faces as numbers of vertices, how many vertices it stores,
+        and of each vertex the leaf that stores it and the number there."""
+        is_quad = [self.has_quads and bits.take(1) for _ in range(count)]
+        steps = [6] + [bits.take(3) for _ in range(count - 1)]
+        expect(7 not in steps, "step of a strip")
+        references = sum(is_quad) + sum(3 if step == 6 else 1 for step in steps)
+        is_first = [1] + [bits.take(1) for _ in range(references - 1)]
+        is_own = [bits.take(1) for _ in range(sum(is_first))]
+        numbers, fresh = [], 0
+        for first in is_first:
+            numbers.append(fresh if first else bits.below(len(is_own)))
+            expect(numbers[-1] < len(is_own), "a vertex of the leaf")
+            fresh += first
         others = []
-        if not all(stored):
-            others = [None] * take(3)
-            expect(others, "other leaves where vertices of others are named")
-            for i in range(len(others)):
-                others[i] = below(here)
-                expect(others[i] < here, "another leaf before this one")
-        points, own = [], 0
-        for is_own in stored:
-            if is_own:
-                points.append(self.vertex(cluster, here, own))
+        if not all(is_own):
+            other_count = bits.take(3)
+            expect(other_count > 0, "leaves that store the other vertices")
+            others = [bits.below(leaf) for _ in range(other_count)]
+            expect(all(other < leaf for other in others), "a leaf before this one")
+        named, own = [], 0
+        for owned in is_own:
+            if owned:
+                named.append((leaf, own))
                 own += 1
-                continue
-            other = below(len(others))
-            expect(other < len(others), "one of the other leaves")
-            points.append(self.vertex(cluster, others[other], take(own_bits)))
-        faces, edge, r = [], 0, iter(named)
-        for step, quad in zip(steps, quads):
+            else:
+                other = bits.below(len(others))
+                expect(other < len(others), "one of the leaves that are named")
+                named.append((others[other], bits.take(own_bits)))
+        references = iter(numbers)
+        faces, entered = [], 0
+        for step, quad in zip(steps, is_quad):
             if step == 6:
-                face, edge = [next(r), next(r), next(r)], 0
+                face, entered = [next(references) for _ in range(3)], 0
             else:
                 side, turn = divmod(step, 3)
-                e, p, face = edge + 1 + side, faces[-1], [None] * 3
-                face[turn], face[(turn + 1) % 3] = p[(e + 1) % 3], p[e % 3]
-                face[(turn + 2) % 3] = next(r)
-                edge = turn
-            faces.append(face + [next(r)] if quad else face)
-        self.decoded[number] = [[points[v] for v in face] for face in faces]
-        return middle - own * sum(places[here][2]), at
+                edge, face = entered + 1 + side, [None] * 3
+                face[turn] = faces[-1][(edge + 1) % 3]
+                face[(turn + 1) % 3] = faces[-1][edge % 3]
+                face[(turn + 2) % 3] = next(references)
+                entered = turn
+            faces.append(face + [next(references)] if quad else face)
+        return faces, own, named
 
-    def points(self, face):
-        points = self.decoded[face // self.LEAF_FACES][face % self.LEAF_FACES]
-        return points if self.is_grid else [self.tree.to_tree(point) for point in points]
+    def signed(self, value):
+        value &= (1 << self.bits) - 1
+        return value - (value >> (self.bits - 1) << self.bits)
+
+    def real(self, value):
+        whole, real = ("<q", "<d") if self.bits == 64 else ("<i", "<f")
+        return struct.unpack(real, struct.pack(whole, self.signed(value)))[0]
 
 
 CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Packed),
@@ -412,8 +404,18 @@ class Tree:
                "width of duplicates")
         expect(self.duplicate_count == 0 or self.leaf_faces > 0 and not self.flags & 1,
                "duplicates of faces in tree order")
-        expect(self.codec in CODECS and self.geometry in (1, 2, 3, 4), "codec and geometry")
-        expect(self.geometry == 3 or self.grid_exponent == 0, "a step without a grid")
+        expect(self.codec in CODECS and EXTERNAL <= self.geometry <= EXACT,
+               "codec and geometry")
+        expect(abs(self.exponent) <= 1010, "scale exponent")
+        if self.geometry == GRID:
+            expect(abs(self.grid_exponent) <= 1010
+                   and abs(self.grid_exponent - self.exponent) <= 64, "step of the grid")
+        else:
+            expect(self.grid_exponent == 0, "a step without a grid")
+        expect(self.corner_bytes in ((2, 4) if self.geometry == ARRAYS else (0,)),
+               "width of corners")
+        expect(self.corners_per_face in ((0,) if self.geometry == EXTERNAL else (3, 4)),
+               "corners of a face")
         self.name = file.section(NAMES)[name_offset:name_offset + name_bytes].decode()
         self.nodes = file.section(NODES, index)
         self.vertices = file.section(VERTICES, index)
@@ -422,24 +424,37 @@ class Tree:
         self.duplicates = file.section(DUPLICATES, index)
         self.certificate = file.section(CERTIFICATE, index)
         self.scalar = "d" if self.flags & 2 else "f"
-        if self.geometry == 2:
+        if self.geometry == EXTERNAL:
+            expect(not self.vertices and not self.corners, "no arrays")
+            expect(self.flags & 1 or self.ids or not self.face_count,
+                   "numbers of the application's faces")
+        if self.geometry == ARRAYS:
             stride = 3 * struct.calcsize(self.scalar)
             expect(len(self.vertices) == self.vertex_count * stride, "size of section vertices")
             expect(len(self.corners) == self.face_count * self.corners_per_face
                    * self.corner_bytes, "size of section corners")
-        expect(self.corners_per_face in ((0,) if self.geometry == 1 else (3, 4)),
-               "corners of a face")
-        self.clusters = Clusters(self) if self.geometry in (3, 4) else None
+        self.clusters = Clusters(self) if self.geometry in (GRID, EXACT) else None
         expect(len(self.ids) == self.face_count * self.face_id_bytes, "size of section face_ids")
         expect(len(self.duplicates) == self.duplicate_count * self.duplicate_bytes,
                "size of section duplicates")
 
     def triangles(self, face):
         """Triangles of a face in tree space."""
-        points = self.clusters.points(face) if self.clusters else self.mesh_points(face)
+        if self.geometry == GRID:
+            step = 2.0 ** (self.grid_exponent - self.exponent)
+            points = [tuple(n * step for n in point) for point in self.stored(face)]
+        else:
+            points = [tuple((point[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3))
+                      for point in self.stored(face)]
         return [(points[0], points[i], points[i + 1]) for i in range(1, len(points) - 1)]
 
-    def mesh_points(self, face):
+    def stored(self, face):
+        """Corners of a face as the file holds them: places on the grid, or in object space."""
+        if self.geometry == ARRAYS:
+            return self.array_points(face)
+        return self.clusters.faces[face]
+
+    def array_points(self, face):
         width = "<H" if self.corner_bytes == 2 else "<I"
         missing = (1 << (8 * self.corner_bytes)) - 1
         numbers = [struct.unpack_from(width, self.corners,
@@ -447,17 +462,10 @@ class Tree:
                    for i in range(self.corners_per_face)]
         if len(numbers) == 4 and numbers[3] == missing:
             numbers.pop()
+        expect(all(number < self.vertex_count for number in numbers), "a vertex number")
         size = 3 * struct.calcsize(self.scalar)
-        points = []
-        for number in numbers:
-            expect(number < self.vertex_count, "a vertex number")
-            p = struct.unpack_from("<3" + self.scalar, self.vertices, number * size)
-            points.append(self.to_tree(p))
-        return points
-
-    def to_tree(self, p):
-        """A position of object space in tree space."""
-        return tuple((p[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3))
+        return [struct.unpack_from("<3" + self.scalar, self.vertices, number * size)
+                for number in numbers]
 
     def face_id(self, face):
         if self.flags & 1:
@@ -498,7 +506,7 @@ class Tree:
         for face in range(faces[0], faces[0] + faces[1]):
             expect(face < self.leaf_faces and face not in found["faces"], "each face in one leaf")
             found["faces"][face] = self.face_id(face)
-            if self.geometry == 1:
+            if self.geometry == EXTERNAL:
                 continue
             for triangle in self.triangles(face):
                 found["triangles"] += 1
@@ -519,17 +527,19 @@ class Tree:
             found["faces"][face] = self.face_id(face)
             if self.face_id(face) is not None:
                 expect(self.face_id(original) <= self.face_id(face), "originals have smaller ids")
-            if self.geometry == 1:
+            if self.geometry == EXTERNAL:
                 continue
-            triangles = self.triangles(face)
-            found["triangles"] += len(triangles)
+            found["triangles"] += len(self.triangles(face))
             # repr tells -0 from 0
-            expect(repr(triangles) == repr(self.triangles(original)), "a duplicate is the same")
+            expect(repr(self.stored(face)) == repr(self.stored(original)),
+                   "a duplicate is the same")
 
     def check(self):
         found = self.walk()
         self.copies(found)
         expect(len(found["faces"]) == self.face_count, "every face is reached")
+        if self.geometry != EXTERNAL:
+            expect(found["triangles"] == self.triangle_count, "every quad has two triangles")
         expect(found["nodes"] == self.node_count and found["depth"] == self.depth, "counts")
         error, depth, nodes, leaves, faces, shrink, _degenerate, *zeros = struct.unpack(
             "<d6I4Q", self.certificate)
@@ -537,7 +547,8 @@ class Tree:
                (found["depth"], found["nodes"], found["leaves"], self.face_count, found["shrink"])
                and error >= 0 and not any(zeros), "certificate")
         return {"name": self.name, "codec": CODECS[self.codec][0], "faces": self.face_count,
-                "duplicates": self.duplicate_count, "triangles": self.triangle_count, "nodes": self.node_count, "depth": self.depth,
+                "duplicates": self.duplicate_count, "triangles": self.triangle_count,
+                "nodes": self.node_count, "depth": self.depth,
                 "face_ids": [found["faces"][face] for face in sorted(found["faces"])]}
 
 

@@ -180,7 +180,7 @@ TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
       std::size_t gaps = 0;
       for (std::uint32_t leaf = 0; leaf < leaves_of(clusters.face_count); ++leaf) {
         ClusterLeaf decoded;
-        ClusterLeafBits place;
+        ClusterLeafFields place;
         ASSERT_TRUE(decode_cluster_leaf(clusters, leaf, decoded, &place));
         for (std::uint64_t bit = end; leaf % kClusterLeaves != 0 && bit < place.begin; ++bit) {
           ++gaps;
@@ -192,6 +192,38 @@ TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
       EXPECT_GT(gaps, 0u);
     }
   }
+}
+
+// Found by the second reader: a leaf that names a vertex of another which does not store so many.
+// Readers decode some bits of the cluster there.
+TEST(ReservedBits, AVertexThatAnotherLeafDoesNotStoreIsFound) {
+  const test::CookedTree cooked = test::cook_tree(test::torus(24, 12), CodecId::kWide8);
+  const ClusterView& clusters = BoundTree::of(cooked.tree).leaves().clusters();
+  const SectionEntry vertices = test::entry_of(cooked.bytes, SectionKind::kVertices);
+  std::size_t found = 0;
+  for (std::uint32_t i = 1; i < kClusterLeaves; ++i) {
+    ClusterLeaf leaf;
+    ClusterLeafFields fields;
+    ASSERT_TRUE(decode_cluster_leaf(clusters, i, leaf, &fields));
+    if (fields.other_count == 0) continue;
+    // The last field of a leaf is a number of a vertex of another one.
+    FileBytes bytes = cooked.bytes;
+    const std::uint64_t bit = fields.end - 1;
+    const std::uint32_t own_bits = load<ClusterHeader>(clusters.bytes.data()).own_bits;
+    for (std::uint64_t b = bit + 1 - own_bits; b <= bit; ++b) {
+      bytes[vertices.offset + b / 8] |= std::byte{1} << (b % 8);
+    }
+    test::repair_checksums(bytes);
+    const cooker::Findings findings = cooker::verify_file(test::require(File::open(Bytes(bytes))));
+    found +=
+        std::any_of(findings.begin(), findings.end(),
+                    [](const Error& finding) {
+                      return finding.detail.find("that is not stored there") != std::string::npos;
+                    })
+            ? 1u
+            : 0u;
+  }
+  EXPECT_GT(found, 0u);
 }
 
 // Found by the second reader: bytes behind the last cluster that are no one's.

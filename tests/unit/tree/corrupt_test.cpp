@@ -234,7 +234,7 @@ TEST(ClusterLeaf, EveryBitMatters) {
   std::vector<std::byte> bytes = whole.bytes;
   const Section clusters = section_of(bytes, SectionKind::kVertices);
   ClusterLeaf leaf;
-  ClusterLeafBits place;
+  ClusterLeafFields place;
   ASSERT_TRUE(decode_cluster_leaf(BoundTree::of(whole.tree).leaves().clusters(), 0, leaf, &place));
   const std::size_t begin = place.begin;
   const std::size_t end = place.end;
