@@ -297,6 +297,7 @@ class Search {
     if (store == GeometryId::kGrid) {
       Result<QuantisedMesh> quantised = quantise_mesh();
       if (!quantised) return quantised.error();
+      unrounded_.reset();  // a grid is tried last
       on_grid.emplace(Source(mesh_, std::move(*quantised)));
     } else if (!unrounded_) {
       unrounded_.emplace(Source(mesh_, {}));
