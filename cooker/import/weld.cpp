@@ -95,7 +95,7 @@ void Welder<T>::rehash(std::size_t slots) {
 template <class T>
 void weld_in_place(std::vector<T>& positions, std::span<std::uint32_t> numbers,
                    std::size_t expected) {
-  // Far enough for a line of memory to arrive, near enough for it to stay.
+  // So far ahead that a line of memory has arrived, and not so far that it is gone again.
   constexpr std::size_t kAhead = 16;
   Welder<T> welder(positions, expected);
   const auto position = [&positions](std::size_t vertex) -> std::array<T, 3> {
