@@ -118,8 +118,8 @@ class LeafDecoder {
 
   bool read_faces(ClusterLeafFields* fields) {
     std::uint32_t r = 0;
-    std::array<std::uint8_t, 3>
-        face{};  // from the corner at which the edge begins that it is entered by
+    // From the corner at which the edge begins that the face is entered by.
+    std::array<std::uint8_t, 3> face{};
     for (std::uint32_t f = 0; f < out_.face_count; ++f) {
       const std::uint32_t code = f == 0 ? StripStep::kApart : step(f);
       const bool is_apart = code == StripStep::kApart;

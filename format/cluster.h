@@ -14,6 +14,7 @@
 #include <type_traits>
 
 #include "format/bytes.h"
+#include "format/codec.h"
 #include "format/limits.h"
 
 namespace boxtree {
@@ -36,8 +37,11 @@ enum class ClusterNumbers : std::uint8_t {
   kF64,   // 64 bits: doubles likewise
 };
 
-[[nodiscard]] constexpr std::size_t number_bytes_of(ClusterNumbers numbers) noexcept {
-  return numbers == ClusterNumbers::kF64 ? 8 : 4;
+/// What the numbers of a store with clusters stand for. `is_f64`: whether positions of the source
+/// are.
+[[nodiscard]] constexpr ClusterNumbers numbers_of(GeometryId geometry, bool is_f64) noexcept {
+  if (geometry == GeometryId::kGrid) return ClusterNumbers::kGrid;
+  return is_f64 ? ClusterNumbers::kF64 : ClusterNumbers::kF32;
 }
 
 /// The first bytes of a cluster. The low corner follows, a number of ClusterNumbers for each axis;

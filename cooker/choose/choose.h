@@ -70,10 +70,10 @@ struct Contest {
 [[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates,
                                             QueryKinds queries = kAllQueries);
 
-/// Chooses one candidate for each of the trees that share a file, all with positions of
-/// the source or all on the grid, so that surfaces that touch still touch. Fills Candidate::rejected of the others; ties go to the
-/// earlier candidate. Returns the index of each tree's choice. Errors: kInternal if nothing may be
-/// chosen; kBudgetUnreachable with the nearest possible values.
+/// Chooses one candidate for each of the trees that share a file, all with positions of the source
+/// or all on the grid, so that surfaces that touch still touch. Fills Candidate::rejected of the
+/// others; ties go to the earlier candidate. Returns the index of each tree's choice. Errors:
+/// kInternal if nothing may be chosen; kBudgetUnreachable with the nearest possible values.
 Result<std::vector<std::size_t>> choose(std::span<Contest> trees, const Wishes& wishes);
 
 /// The same with separate wishes for each tree. The common store is the one with the least total

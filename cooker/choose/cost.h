@@ -31,7 +31,7 @@ struct CodecCost {
 /// in, so that the choice is the same on every machine.
 [[nodiscard]] std::span<const CodecCost> compiled_costs() noexcept;
 
-/// The cost of `work`. External geometry costs as much as exact geometry.
+/// The cost of `work`. External geometry costs as much as arrays.
 [[nodiscard]] QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
                                 std::span<const CodecCost> costs = compiled_costs());
 

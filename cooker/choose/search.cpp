@@ -214,11 +214,8 @@ class Search {
       if (Status status = try_store(options_.geometry); !status) return status.error();
       return std::move(out_);
     }
-    std::vector<GeometryId> stores = {GeometryId::kExact};
-    if (options_.may_use_arrays || !options_.codec || !is_wide(*options_.codec))
-      stores.push_back(GeometryId::kArrays);
-    if (options_.may_use_grid) stores.push_back(GeometryId::kGrid);
-    for (const GeometryId store : stores) {
+    for (const GeometryId store : {GeometryId::kExact, GeometryId::kArrays, GeometryId::kGrid}) {
+      if (store == GeometryId::kGrid && !options_.may_use_grid) continue;
       const std::string why = options_.try_all ? "" : why_not(store);
       if (!why.empty()) {
         leave_out(store, why);
@@ -333,17 +330,20 @@ class Search {
     return quantised;
   }
 
+  // Whether a codec is tried with a store that was requested, or with one of those for exact
+  // positions. Codecs with one triangle per leaf have arrays, as in the paper: a cluster would
+  // decode eight triangles for one.
+  [[nodiscard]] bool has_store(CodecId codec, GeometryId store) const {
+    if (options_.geometry != GeometryId::kExact) return true;
+    if (store == GeometryId::kArrays) return !is_wide(codec) || options_.may_use_arrays;
+    return store != GeometryId::kExact || is_wide(codec);
+  }
+
   std::vector<CodecId> wanted_codecs(bool wide, GeometryId store) {
     std::vector<CodecId> wanted;
     for (const CodecInfo& codec : kCodecs) {
       if (is_wide(codec.id) != wide || options_.codec.value_or(codec.id) != codec.id) continue;
-      // As the paper stores them: a leaf is one triangle, of which a cluster would decode eight.
-      const bool has_arrays = !wide && options_.geometry == GeometryId::kExact;
-      if (has_arrays && store == GeometryId::kExact) continue;
-      if (wide && store == GeometryId::kArrays && options_.geometry == GeometryId::kExact &&
-          !options_.may_use_arrays) {
-        continue;
-      }
+      if (!has_store(codec.id, store)) continue;
       const std::string why = options_.codec || options_.try_all ? "" : why_not(codec.id);
       if (why.empty()) {
         wanted.push_back(codec.id);

@@ -210,12 +210,10 @@ Findings check_reserved(const File& opened, std::uint32_t index) {
     }
   }
   if (has_clusters(record.geometry)) {
-    const ClusterNumbers numbers = record.geometry == GeometryId::kGrid      ? ClusterNumbers::kGrid
-                                   : (record.flags & kTreePositionsF64) != 0 ? ClusterNumbers::kF64
-                                                                             : ClusterNumbers::kF32;
+    const bool is_f64 = (record.flags & kTreePositionsF64) != 0;
     check_clusters({file.section(SectionKind::kCorners, index).data(),
                     file.section(SectionKind::kVertices, index), record.face_count,
-                    record.corners_per_face, numbers},
+                    record.corners_per_face, numbers_of(record.geometry, is_f64)},
                    check);
   }
   return findings;

@@ -127,12 +127,9 @@ Status BoundTree::bind_clusters(const TreeParts& parts, const std::string& place
     return error_with(Errc::kSectionMissing, place,
                       section_text(SectionKind::kVertices) + " is absent");
   }
-  const ClusterNumbers numbers = geometry_ == GeometryId::kGrid ? ClusterNumbers::kGrid
-                                 : has_f64_positions_           ? ClusterNumbers::kF64
-                                                                : ClusterNumbers::kF32;
-  leaves_ =
-      LeafReader({*offsets, parts.vertices, face_count_, parts.record.corners_per_face, numbers},
-                 frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
+  leaves_ = LeafReader({*offsets, parts.vertices, face_count_, parts.record.corners_per_face,
+                        numbers_of(geometry_, has_f64_positions_)},
+                       frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
   return {};
 }
 

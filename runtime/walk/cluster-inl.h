@@ -326,11 +326,6 @@ class ClusterReader {
     }
   }
 
-  static HWY_INLINE WordVector low_bits_of(WordVector width) {
-    const auto one = hn::Set(Words(), 1u);
-    return hn::Sub(hn::Shl(one, width), one);
-  }
-
   // The vertices that the leaf names. `at`: the first bit of the places of those of other leaves.
   HWY_INLINE bool read_vertices(std::uint64_t at, float scale) {
     if (!find_leaves(at)) return false;
