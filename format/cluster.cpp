@@ -10,10 +10,9 @@ namespace {
 
 // Reads the fields of a leaf in order. No read leaves the section: a leaf begins where
 // kClusterPadding bytes and more follow, and has at most 8 faces with a bit for a fourth corner, 7
-// steps, 32 references of two bits each, 7 other leaves of 6 bits after their number, and 8 bits
-// for each vertex of theirs: 394 bits. References to vertices that were named before have 5 bits,
-// but are then the fewer vertices.
-static_assert(kClusterPadding >= 394 / 8 + 1 + kBitPadding);
+// steps, 32 references of one bit each, 7 other leaves of 6 bits after their number, and 8 bits for
+// each reference: 362 bits, after which 16 bytes are read at once.
+static_assert(kClusterPadding >= 362 / 8 + 2 * kBitPadding);
 
 class LeafDecoder {
  public:
@@ -27,7 +26,21 @@ class LeafDecoder {
     out_.face_count = std::min(kLeafFaces, view_.face_count - leaf * kLeafFaces);
     quads_ = view_.corners_per_face == 4 ? take(out_.face_count) : 0;
     steps_ = take(StripStep::kBits * (out_.face_count - 1));
-    return read_references() && read_vertices() && read_faces(fields);
+    std::uint32_t count = out_.face_count + 2 + static_cast<std::uint32_t>(std::popcount(quads_));
+    for (std::uint32_t f = 1; f < out_.face_count; ++f) {
+      if (step(f) > StripStep::kApart) return false;
+      count += step(f) == StripStep::kApart ? 2u : 0u;
+    }
+    out_.vertex_count = count;
+    if (!read_references()) return false;
+    join_faces();
+    if (fields != nullptr) {
+      const auto start = static_cast<std::uint64_t>(cluster_.bytes - view_.bytes.data()) * 8;
+      *fields = named_;
+      fields->begin += start;
+      fields->end = start + at_;
+    }
+    return true;
   }
 
  private:
@@ -39,53 +52,39 @@ class LeafDecoder {
   }
 
   [[nodiscard]] std::uint32_t step(std::uint32_t face) const {  // from the face before
+    if (face == 0) return StripStep::kApart;
     return (steps_ >> (StripStep::kBits * (face - 1))) & ((1u << StripStep::kBits) - 1);
   }
 
-  // Which references are the first to a vertex in the leaf, and where the others lead.
+  // The vertices that references lead to: the next that the leaf stores, or one that it or another
+  // leaf stores.
   bool read_references() {
-    std::uint32_t count = 3 + static_cast<std::uint32_t>(std::popcount(quads_));
-    for (std::uint32_t f = 1; f < out_.face_count; ++f) {
-      if (step(f) > StripStep::kApart) return false;
-      count += step(f) == StripStep::kApart ? 3u : 1u;
-    }
-    const std::uint32_t firsts = (take(count - 1) << 1) | 1u;
-    out_.vertex_count = static_cast<std::uint32_t>(std::popcount(firsts));
-    own_vertices_ = take(out_.vertex_count);
-    const std::uint32_t width = width_below(out_.vertex_count);
-    std::uint8_t next = 0;
-    for (std::uint32_t r = 0; r < count; ++r) {
-      reference_[r] = ((firsts >> r) & 1u) != 0 ? next++ : static_cast<std::uint8_t>(take(width));
-      if (reference_[r] >= out_.vertex_count) return false;
-    }
-    return true;
-  }
-
-  bool read_vertices() {
-    const auto stored = static_cast<std::uint32_t>(std::popcount(own_vertices_));
-    std::array<ClusterLeafPlace, kMaxOtherLeaves> others;
-    const std::uint32_t other_count = stored < out_.vertex_count ? take(kOtherBits) : 0;
-    for (std::uint32_t i = 0; i < other_count; ++i) {
+    std::uint32_t is_new = take(out_.face_count);
+    named_.other_count = take(kOtherBits);
+    std::array<ClusterLeafPlace, 1 + kMaxOtherLeaves> places;
+    places[0] = own_;
+    for (std::uint32_t i = 1; i <= named_.other_count; ++i) {
       const std::uint32_t leaf = take(width_below(self_));
-      if (leaf >= self_ || !find_leaf(cluster_, leaf, others[i])) return false;
-      named_.others[i].leaf = leaf;
+      if (leaf >= self_ || !find_leaf(cluster_, leaf, places[i])) return false;
+      named_.others[i - 1].leaf = leaf;
     }
-    std::uint32_t next_own = 0;
-    for (std::uint32_t v = 0; v < out_.vertex_count; ++v) {
-      if (((own_vertices_ >> v) & 1u) != 0) {
-        if (!read_vertex(own_, next_own++, out_.position[v])) return false;
+    is_new |= take(out_.vertex_count - out_.face_count) << out_.face_count;
+    const std::uint32_t slot_bits = width_below(named_.other_count + 1);
+    for (std::uint32_t r = 0; r < out_.vertex_count; ++r) {
+      if (((is_new >> r) & 1u) != 0) {
+        if (!read_vertex(own_, named_.stored++, out_.position[r])) return false;
         continue;
       }
-      const std::uint32_t other = take(width_below(other_count));
+      const std::uint32_t slot = take(slot_bits);
       const std::uint32_t number = take(cluster_.header.own_bits);
-      if (other >= other_count || !read_vertex(others[other], number, out_.position[v])) {
+      if (slot > named_.other_count || !read_vertex(places[slot], number, out_.position[r])) {
         return false;
       }
-      named_.others[other].largest = std::max(named_.others[other].largest, number);
+      ClusterLeafFields::Other& other = slot == 0 ? named_.self : named_.others[slot - 1];
+      other.named = std::max(other.named, number + 1);
     }
-    named_.stored = stored;
-    named_.other_count = other_count;
-    named_.begin = own_.middle - std::uint64_t{next_own} * own_.stride;
+    named_.self.leaf = self_;
+    named_.begin = own_.middle - std::uint64_t{named_.stored} * own_.stride;
     return true;
   }
 
@@ -116,32 +115,27 @@ class LeafDecoder {
     return double_of_number(static_cast<std::int64_t>(number), trailing);
   }
 
-  bool read_faces(ClusterLeafFields* fields) {
-    std::uint32_t r = 0;
+  // References lead to the third corners of all faces, then to the other two of those that are
+  // apart, then to the fourth corners of quads.
+  void join_faces() {
+    auto apart = static_cast<std::uint8_t>(out_.face_count);
+    auto fourth = static_cast<std::uint8_t>(out_.vertex_count -
+                                            static_cast<std::uint32_t>(std::popcount(quads_)));
     // From the corner at which the edge begins that the face is entered by.
     std::array<std::uint8_t, 3> face{};
-    for (std::uint32_t f = 0; f < out_.face_count; ++f) {
-      const std::uint32_t code = f == 0 ? StripStep::kApart : step(f);
-      const bool is_apart = code == StripStep::kApart;
+    for (std::uint8_t f = 0; f < out_.face_count; ++f) {
+      const bool is_apart = step(f) == StripStep::kApart;
       if (is_apart) {
-        face = {reference_[r], reference_[r + 1], reference_[r + 2]};
-        r += 3;
+        face = {apart, static_cast<std::uint8_t>(apart + 1), f};
+        apart += 2;
       } else {
-        const bool is_second_side = code >= StripStep::code(1, 0);
-        face = {is_second_side ? face[0] : face[2], is_second_side ? face[2] : face[1],
-                reference_[r++]};
+        const bool is_second_side = step(f) >= StripStep::code(1, 0);
+        face = {is_second_side ? face[0] : face[2], is_second_side ? face[2] : face[1], f};
       }
-      const std::uint32_t turn = is_apart ? 0 : code % 3;
+      const std::uint32_t turn = is_apart ? 0 : step(f) % 3;
       for (std::uint32_t i = 0; i < 3; ++i) out_.corner[f][(turn + i) % 3] = face[i];
-      out_.corner[f][3] = ((quads_ >> f) & 1u) != 0 ? reference_[r++] : ClusterLeaf::kNoCorner;
+      out_.corner[f][3] = ((quads_ >> f) & 1u) != 0 ? fourth++ : ClusterLeaf::kNoCorner;
     }
-    if (fields != nullptr) {
-      const auto start = static_cast<std::uint64_t>(cluster_.bytes - view_.bytes.data()) * 8;
-      *fields = named_;
-      fields->begin += start;
-      fields->end = start + at_;
-    }
-    return true;
   }
 
   const ClusterView& view_;
@@ -153,8 +147,6 @@ class LeafDecoder {
   ClusterLeafFields named_;
   std::uint32_t quads_ = 0;  // bit f: face f has a fourth corner
   std::uint32_t steps_ = 0;
-  std::uint32_t own_vertices_ = 0;  // bit v: vertex v is stored with this leaf
-  std::array<std::uint8_t, kMaxLeafVertices> reference_{};
 };
 
 }  // namespace

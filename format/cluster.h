@@ -28,7 +28,7 @@ inline constexpr std::uint64_t kClusterUnit = 4;
 
 /// Zero bytes after the last cluster: the longest leaf (see format/cluster_leaf.h) and the width of
 /// one read, so that fields are read without a check each.
-inline constexpr std::size_t kClusterPadding = 96;
+inline constexpr std::size_t kClusterPadding = 64;
 
 /// What the numbers of a store stand for.
 enum class ClusterNumbers : std::uint8_t {
@@ -99,29 +99,30 @@ struct ClusterView {
 /// further ones it stores vertices again.
 inline constexpr std::uint32_t kMaxOtherLeaves = 7;
 
-/// Most vertices of a leaf: every face is a quad and shares none.
-inline constexpr std::size_t kMaxLeafVertices = std::size_t{4} * kLeafFaces;
+/// Most references of a leaf to vertices: every face is a quad and apart.
+inline constexpr std::size_t kMostLeafReferences = std::size_t{4} * kLeafFaces;
 
 /// A decoded leaf. Corrupt bytes may give any positions, NaN and infinities included.
 struct ClusterLeaf {
   static constexpr std::uint8_t kNoCorner = 0xff;
 
-  std::uint32_t vertex_count = 0;
+  std::uint32_t vertex_count = 0;  // one for each reference, so that some are the same
   std::uint32_t face_count = 0;
-  std::array<std::array<double, 3>, kMaxLeafVertices> position;  // steps of the grid, or floats
-  std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;    // indices into `position`
+  std::array<std::array<double, 3>, kMostLeafReferences> position;  // steps of the grid, or floats
+  std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;       // indices into `position`
 };
 
 /// What a leaf takes and names, for those who check it: decoders do not look at what other leaves
 /// store.
 struct ClusterLeafFields {
   struct Other {
-    std::uint32_t leaf = 0;     // of the cluster
-    std::uint32_t largest = 0;  // number of a vertex there that is named
+    std::uint32_t leaf = 0;   // of the cluster
+    std::uint32_t named = 0;  // it must store so many vertices, or more
   };
   std::uint64_t begin = 0;   // bit of `bytes` where its vertices begin
   std::uint64_t end = 0;     // bit where its faces end
   std::uint32_t stored = 0;  // vertices
+  Other self;                // what it names of those that it stores
   std::uint32_t other_count = 0;
   std::array<Other, kMaxOtherLeaves> others;
 };

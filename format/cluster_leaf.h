@@ -58,6 +58,17 @@ struct ClusterLeafPlace {
 inline constexpr std::uint32_t kOtherBits = 3;
 static_assert(kMaxOtherLeaves < 1u << kOtherBits);
 
+/// Byte i of word n: how many of bits 0 to i of n are set.
+inline constexpr std::array<std::uint64_t, 256> kRanksOfBits = [] {
+  std::array<std::uint64_t, 256> words{};
+  for (std::size_t bits = 0; bits < words.size(); ++bits) {
+    for (std::uint32_t i = 0; i < 8; ++i) {
+      words[bits] |= std::uint64_t(std::popcount(bits & low_bits(i + 1))) << (8 * i);
+    }
+  }
+  return words;
+}();
+
 namespace cluster_detail {
 
 // Bits of a word of eight fields of a byte each whose field is above that of `most`. All fields and
@@ -67,25 +78,42 @@ BOXTREE_ALWAYS_INLINE std::uint64_t above(std::uint64_t fields, std::uint64_t mo
   return (fields | ((fields & ~kHighBits) + (kHighBits - 0x0101010101010101u - most))) & kHighBits;
 }
 
-// Whether all shifts and widths are such that no shift of a number is by its own width or more, and
-// the fields of an axis in an entry have at most kMostEntryBits.
-BOXTREE_ALWAYS_INLINE bool are_valid(const ClusterHeader& header, bool is_64) {
-  const auto fields = std::bit_cast<std::array<std::byte, sizeof(ClusterHeader)>>(header);
-  const auto first = load<std::uint64_t>(fields.data(), 0);
-  const auto second = load<std::uint64_t>(fields.data(), 1);
-  // trailing, base_bits, two of base_shift; the third, width, wider_bits, start_bits.
-  const std::uint64_t most_first = is_64 ? 0x3f3f0808083f3f3fu : 0x1f1f0808081f1f1fu;
-  const std::uint64_t most_second = is_64 ? 0x100808084040403fu : 0x100808082020201fu;
-  constexpr std::uint64_t kThree = 0xffffffu;
-  const std::uint64_t entry = ((first >> 24) & kThree) + ((second >> 32) & kThree);
-  bool fits =
-      (above(first, most_first) | above(second, most_second) | above(entry, 0x080808u)) == 0 &&
-      header.own_bits <= ClusterHeader::kMostOwnBits;
-  for (std::size_t k = 0; k < 3; ++k) {
-    fits &= header.width[k] + low_bits(header.wider_bits[k] & 0xfu) <= (is_64 ? 64u : 32u);
+// The fields of a header that are checked and added up, a byte each.
+struct HeaderBytes {
+  std::uint64_t first;   // trailing, base_bits, two of base_shift
+  std::uint64_t second;  // the third, width, wider_bits, start_bits
+  static constexpr std::uint64_t kAxes = 0xffffffu;
+
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t base_bits() const {
+    return (first >> 24) & kAxes;
   }
-  return fits;
-}
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t width() const { return (second >> 8) & kAxes; }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t wider_bits() const {
+    return (second >> 32) & kAxes;
+  }
+  // Bits of an entry. Precondition: those of an axis are below 86.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t entry_bits() const {
+    const std::uint64_t of_axes = (base_bits() + wider_bits()) * 0x010101u;
+    return static_cast<std::uint32_t>(((of_axes >> 16) & 0xffu) + (second >> 56));
+  }
+
+  // Whether all shifts and widths are such that no shift of a number is by its own width or more,
+  // and the fields of an axis in an entry have at most kMostEntryBits.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE bool are_valid(bool is_64) const {
+    const std::uint64_t most_first = is_64 ? 0x3f3f0808083f3f3fu : 0x1f1f0808081f1f1fu;
+    // A width of 2^6 - 1 bits more fits into 64 bits, but one of 2^7 - 1 does not.
+    const std::uint64_t most_second = is_64 ? 0x100606064040403fu : 0x100505052020201fu;
+    const std::uint64_t of_wider = wider_bits();
+    const std::uint64_t widest_more = (std::uint64_t{1} << (of_wider & 0x3fu)) +
+                                      (std::uint64_t{0x100} << ((of_wider >> 8) & 0x1fu)) +
+                                      (std::uint64_t{0x10000} << ((of_wider >> 16) & 0x1fu)) -
+                                      0x010101u;
+    const std::uint64_t widest = (width() + widest_more) & kAxes;
+    return (above(first, most_first) | above(second, most_second) |
+            above(base_bits() + of_wider, 0x080808u) |
+            above(widest, is_64 ? 0x404040u : 0x202020u)) == 0;
+  }
+};
 
 }  // namespace cluster_detail
 
@@ -93,28 +121,30 @@ BOXTREE_ALWAYS_INLINE bool are_valid(const ClusterHeader& header, bool is_64) {
 BOXTREE_ALWAYS_INLINE bool find_cluster(const ClusterView& view, std::uint32_t number,
                                         Cluster& out) noexcept {
   const bool is_64 = view.numbers == ClusterNumbers::kF64;
-  const std::uint32_t origin_bytes = 3 * (is_64 ? sizeof(std::int64_t) : sizeof(std::int32_t));
+  const std::uint32_t fixed =
+      sizeof(ClusterHeader) + 3 * (is_64 ? sizeof(std::int64_t) : sizeof(std::int32_t));
   const std::uint64_t start = load<std::uint32_t>(view.offsets, number) * kClusterUnit;
-  const std::uint64_t fixed = sizeof(ClusterHeader) + origin_bytes;
   if (!in_range(start, fixed + kClusterPadding, view.bytes.size())) return false;
   out.bytes = view.bytes.data() + start;
   out.size = view.bytes.size() - start - kClusterPadding;
   out.header = load<ClusterHeader>(out.bytes);
-  const ClusterHeader& header = out.header;
+  const cluster_detail::HeaderBytes fields{load<std::uint64_t>(out.bytes, 0),
+                                           load<std::uint64_t>(out.bytes, 1)};
   const std::byte* const origin = out.bytes + sizeof(ClusterHeader);
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.origin[k] = static_cast<std::uint64_t>(is_64 ? load<std::int64_t>(origin, k)
-                                                     : load<std::int32_t>(origin, k));
+  if (is_64) {
+    out.origin = load<std::array<std::uint64_t, 3>>(origin);
+  } else {
+    const auto of_32 = load<std::array<std::int32_t, 3>>(origin);
+    out.origin = {static_cast<std::uint64_t>(of_32[0]), static_cast<std::uint64_t>(of_32[1]),
+                  static_cast<std::uint64_t>(of_32[2])};
   }
   const std::uint32_t faces = std::min(view.face_count - number * kClusterFaces, kClusterFaces);
   const auto leaves = static_cast<std::uint32_t>(leaves_of(faces));
-  out.table = static_cast<std::uint32_t>(fixed) * 8;
-  out.entry_bits = header.start_bits;
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.entry_bits += std::uint32_t{header.base_bits[k]} + header.wider_bits[k];
-  }
-  out.leaves_at = static_cast<std::uint32_t>(fixed) + (leaves * out.entry_bits + 7) / 8;
-  return cluster_detail::are_valid(header, is_64) && out.leaves_at <= out.size;
+  out.table = fixed * 8;
+  out.entry_bits = fields.entry_bits();
+  out.leaves_at = fixed + (leaves * out.entry_bits + 7) / 8;
+  return fields.are_valid(is_64) && out.header.own_bits <= ClusterHeader::kMostOwnBits &&
+         out.leaves_at <= out.size;
 }
 
 /// Finds leaf `leaf` of a cluster. False if its place is corrupt. Precondition: the cluster has it.

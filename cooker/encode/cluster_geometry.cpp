@@ -100,7 +100,7 @@ inline constexpr std::uint8_t kNoTurn = 3;
 std::uint8_t turn_over(const ClusterFace& from, std::uint32_t edge, const ClusterFace& to) {
   const std::uint16_t begin = from.corner[(edge + 1) % 3], end = from.corner[edge];
   for (std::uint8_t turn = 0; turn < 3; ++turn) {
-    if (to.corner[turn] == begin && to.corner[(turn + 1) % 3] == end) return turn;
+    if (to.corner[turn] == begin && to.corner[(turn + 1u) % 3] == end) return turn;
   }
   return kNoTurn;
 }
@@ -270,13 +270,11 @@ class ClusterEncoder {
   void encode(std::span<const ClusterFace> faces, ClusterVertices<Number>& vertices) {
     vertices_ = &vertices;
     header_ = {};
-    owner_.assign(vertices.count(), Owner{});
-    leaves_.clear();
-    for (std::size_t first = 0; first < faces.size(); first += kLeafFaces) {
-      name_vertices(faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)));
-    }
+    name_vertices(faces, kMostLeafReferences);
+    choose_own_bits();
+    if (1u << header_.own_bits < most_owned()) name_vertices(faces, 1u << header_.own_bits);
     choose_fields();
-    write_leaves(faces);
+    write_leaves();
     write_header();
     write_table();
     out_.insert(out_.end(), bytes_.begin(), bytes_.end());
@@ -284,66 +282,119 @@ class ClusterEncoder {
   }
 
  private:
-  // The leaf that stores a vertex, and its number there.
+  // The leaf that stores a vertex for others, and its number there.
   struct Owner {
     static constexpr std::uint32_t kNone = 0xffffffffu;
     std::uint32_t leaf = kNone;
     std::uint32_t number = 0;
   };
-  // A vertex that a leaf names: its own, or one of the `other`-th other leaf.
-  struct Named {
-    static constexpr std::uint32_t kOwn = 0xffffffffu;
-    std::uint16_t vertex;
-    std::uint32_t other = kOwn;
+  // Leads to the next vertex that the leaf stores, or to one of leaf `slot`: 0 for itself, i for
+  // the i-th other.
+  struct Reference {
+    bool is_new = false;
+    std::uint16_t vertex = 0;
+    std::uint32_t slot = 0;
     std::uint32_t number = 0;  // in that leaf
   };
   struct Leaf {
-    std::vector<Named> vertices;            // in order
-    std::vector<std::uint16_t> owned;       // those that it stores
-    std::vector<std::uint32_t> others;      // leaves
-    std::vector<std::uint32_t> references;  // indices into `vertices`
-    std::vector<Step> steps;                // to each face; the first is apart
-    std::size_t start = 0;                  // where its faces begin
+    std::array<Step, kLeafFaces> steps;  // to each face; the first is apart
+    std::uint32_t faces = 0;
+    std::uint32_t quads = 0;            // bit f: face f is one
+    std::vector<Reference> references;  // in the order that they are stored
+    std::vector<std::uint32_t> others;  // leaves
+    std::uint32_t owned = 0;            // vertices that it stores
+    std::size_t start = 0;              // where its faces begin
+
+    template <class Visitor>
+    void for_owned(Visitor&& visit) const {
+      for (const Reference& each : references) {
+        if (each.is_new) visit(each.vertex);
+      }
+    }
   };
 
-  void name_vertices(std::span<const ClusterFace> faces) {
-    const auto number = static_cast<std::uint32_t>(leaves_.size());
-    Leaf& leaf = leaves_.emplace_back();
-    std::uint32_t entered = 0;
-    for (std::size_t f = 0; f < faces.size(); ++f) {
-      const ClusterFace& face = faces[f];
-      const Step step = f == 0 ? Step{} : step_between(faces[f - 1], entered, face);
-      entered = step.turn;
-      leaf.steps.push_back(step);
-      if (step.is_apart()) {
-        for (std::size_t c = 0; c < 3; ++c) refer(face.corner[c], number, leaf);
-      } else {
-        refer(face.corner[step.brings()], number, leaf);
-      }
-      if (face.is_quad) refer(face.corner[3], number, leaf);
+  [[nodiscard]] std::uint32_t most_owned() const {
+    std::uint32_t most = 1;
+    for (const Leaf& leaf : leaves_) most = std::max(most, leaf.owned);
+    return most;
+  }
+
+  // Vertices from number `limit` on of a leaf are not named by others, which store them again.
+  void name_vertices(std::span<const ClusterFace> faces, std::uint32_t limit) {
+    owner_.assign(vertices_->count(), Owner{});
+    leaves_.clear();
+    for (std::size_t first = 0; first < faces.size(); first += kLeafFaces) {
+      name_vertices_of_leaf(
+          faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)), limit);
     }
   }
 
-  void refer(std::uint16_t vertex, std::uint32_t number, Leaf& leaf) {
-    const auto named = std::find_if(leaf.vertices.begin(), leaf.vertices.end(),
-                                    [&](const Named& each) { return each.vertex == vertex; });
-    leaf.references.push_back(static_cast<std::uint32_t>(named - leaf.vertices.begin()));
-    if (named != leaf.vertices.end()) return;
+  void name_vertices_of_leaf(std::span<const ClusterFace> faces, std::uint32_t limit) {
+    const auto number = static_cast<std::uint32_t>(leaves_.size());
+    Leaf& leaf = leaves_.emplace_back();
+    leaf.faces = static_cast<std::uint32_t>(faces.size());
+    leaf.references.reserve(2 * kLeafFaces);
+    const auto refer = [&](std::uint16_t vertex) { this->refer(vertex, number, limit, leaf); };
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (f != 0) leaf.steps[f] = step_between(faces[f - 1], leaf.steps[f - 1].turn, faces[f]);
+      leaf.quads |= (faces[f].is_quad ? 1u : 0u) << f;
+      refer(faces[f].corner[leaf.steps[f].brings()]);
+    }
+    for (std::size_t f = 0; f < faces.size(); ++f) {
+      if (!leaf.steps[f].is_apart()) continue;
+      refer(faces[f].corner[0]);
+      refer(faces[f].corner[1]);
+    }
+    for (const ClusterFace& face : faces) {
+      if (face.is_quad) refer(face.corner[3]);
+    }
+  }
+
+  void refer(std::uint16_t vertex, std::uint32_t number, std::uint32_t limit, Leaf& leaf) {
     Owner& owner = owner_[vertex];
+    if (owner.leaf == number) {
+      leaf.references.push_back({false, vertex, 0, owner.number});
+      return;
+    }
     if (owner.leaf != Owner::kNone) {
       const auto other = std::find(leaf.others.begin(), leaf.others.end(), owner.leaf);
       const bool is_known = other != leaf.others.end();
-      if (is_known || leaf.others.size() < kMaxOtherLeaves) {
-        const auto place = static_cast<std::uint32_t>(other - leaf.others.begin());
-        if (!is_known) leaf.others.push_back(owner.leaf);
-        leaf.vertices.push_back({vertex, place, owner.number});
+      const auto slot = static_cast<std::uint32_t>(other - leaf.others.begin()) + 1;
+      if (!is_known && slot <= kMaxOtherLeaves) leaf.others.push_back(owner.leaf);
+      if (slot <= kMaxOtherLeaves) {
+        leaf.references.push_back({false, vertex, slot, owner.number});
         return;
       }
-    } else {
-      owner = {number, static_cast<std::uint32_t>(leaf.owned.size())};
     }
-    leaf.vertices.push_back({vertex});
-    leaf.owned.push_back(vertex);
+    if (leaf.owned < limit) owner = {number, leaf.owned};
+    leaf.references.push_back({true, vertex, 0, leaf.owned++});
+  }
+
+  // Narrower numbers of vertices in a leaf save a bit for each that is named again, and cost a
+  // vertex that is stored again for each that has no number any more.
+  void choose_own_bits() {
+    std::array<std::uint32_t, kMostLeafReferences> named{};  // vertices, by their largest number
+    std::uint32_t places = 0;
+    is_named_.assign(vertices_->count(), false);
+    for (const Leaf& leaf : leaves_) {
+      for (const Reference& each : leaf.references) {
+        if (each.is_new) continue;
+        ++places;
+        if (is_named_[each.vertex]) continue;
+        is_named_[each.vertex] = true;
+        ++named[each.number];
+      }
+    }
+    std::uint32_t again = 0;
+    std::uint64_t least = ~std::uint64_t{0};
+    std::uint32_t number = most_owned();
+    for (std::uint32_t bits = width_below(number) + 1; bits-- > 0;) {
+      while (number > 1u << bits) again += named[--number];
+      const std::uint64_t cost = std::uint64_t{places} * bits + std::uint64_t{again} * stride_;
+      if (cost > least) break;
+      least = cost;
+      header_.own_bits = static_cast<std::uint8_t>(bits);
+    }
   }
 
   [[nodiscard]] std::uint64_t offset_of(std::uint16_t vertex, std::size_t axis) const {
@@ -353,9 +404,6 @@ class ClusterEncoder {
   }
 
   void choose_fields() {
-    std::size_t most_owned = 1;
-    for (const Leaf& leaf : leaves_) most_owned = std::max(most_owned, leaf.owned.size());
-    header_.own_bits = static_cast<std::uint8_t>(width_below(most_owned));
     ranges_.assign(3 * leaves_.size(), {});
     for (std::size_t k = 0; k < 3; ++k) {
       header_.trailing[k] = vertices_->take_trailing_zeros(k, are_floats_);
@@ -366,11 +414,11 @@ class ClusterEncoder {
       for (std::size_t i = 0; i < leaves_.size(); ++i) {
         AxisRange& range = ranges_[k * leaves_.size() + i];
         range.low = ~std::uint64_t{0};
-        range.vertices = static_cast<std::uint32_t>(leaves_[i].owned.size());
-        for (const std::uint16_t vertex : leaves_[i].owned) {
+        range.vertices = leaves_[i].owned;
+        leaves_[i].for_owned([&](std::uint16_t vertex) {
           range.low = std::min(range.low, offset_of(vertex, k));
           range.high = std::max(range.high, offset_of(vertex, k));
-        }
+        });
       }
       const AxisFields fields =
           best_fields(std::span(ranges_).subspan(k * leaves_.size(), leaves_.size()));
@@ -391,9 +439,10 @@ class ClusterEncoder {
     return std::max<std::uint32_t>(width, header_.width[axis]) - header_.width[axis];
   }
 
-  void write_leaves(std::span<const ClusterFace> faces) {
+  void write_leaves() {
     bytes_.clear();
     std::size_t last_bit = 0;
+    std::uint64_t vertex_bits = 0, vertices = 0;
     for (std::size_t i = 0; i < leaves_.size(); ++i) {
       Leaf& leaf = leaves_[i];
       std::array<std::uint32_t, 3> width;
@@ -402,54 +451,43 @@ class ClusterEncoder {
         width[k] = header_.width[k] + wider(i, k);
         stride += width[k];
       }
-      leaf.start = (last_bit + leaf.owned.size() * stride + 7) / 8;
+      const std::size_t bits_of_vertices = std::size_t{leaf.owned} * stride;
+      vertex_bits += bits_of_vertices;
+      vertices += leaf.owned;
+      leaf.start = (last_bit + bits_of_vertices + 7) / 8;
       bytes_.resize(leaf.start);
-      for (std::size_t v = 0; v < leaf.owned.size(); ++v) {
-        std::size_t at = leaf.start * 8 - (v + 1) * stride;
+      std::size_t end = leaf.start * 8;
+      leaf.for_owned([&](std::uint16_t vertex) {
+        end -= stride;
+        std::size_t at = end;
         for (std::size_t k = 0; k < 3; ++k) {
           const std::uint32_t shift = base_shift_[k];
-          const std::uint64_t offset =
-              offset_of(leaf.owned[v], k) - (range(i, k).base(shift) << shift);
+          const std::uint64_t offset = offset_of(vertex, k) - (range(i, k).base(shift) << shift);
           write_bits(bytes_.data(), at, width[k], offset);
           at += width[k];
         }
-      }
+      });
       BitWriter bits(bytes_);
-      write_faces(static_cast<std::uint32_t>(i), faces.subspan(i * kLeafFaces), bits);
+      write_faces(static_cast<std::uint32_t>(i), bits);
       last_bit = bits.position();
     }
+    if (vertices != 0) stride_ = vertex_bits / vertices;
   }
 
-  void write_faces(std::uint32_t number, std::span<const ClusterFace> faces, BitWriter& bits) {
+  void write_faces(std::uint32_t number, BitWriter& bits) {
     const Leaf& leaf = leaves_[number];
-    if (may_have_quads_) {
-      for (std::size_t f = 0; f < leaf.steps.size(); ++f) bits.put(faces[f].is_quad ? 1 : 0, 1);
-    }
-    for (std::size_t f = 1; f < leaf.steps.size(); ++f) {
-      bits.put(leaf.steps[f].code, StripStep::kBits);
-    }
-    std::uint32_t named = 1;  // by the first reference
-    for (std::size_t r = 1; r < leaf.references.size(); ++r) {
-      const bool is_first = leaf.references[r] == named;
-      bits.put(is_first ? 1 : 0, 1);
-      named += is_first ? 1 : 0;
-    }
-    for (const Named& vertex : leaf.vertices) bits.put(vertex.other == Named::kOwn ? 1 : 0, 1);
-    named = 1;
-    for (std::size_t r = 1; r < leaf.references.size(); ++r) {
-      if (leaf.references[r] == named) {
-        ++named;
-      } else {
-        bits.put(leaf.references[r], width_below(leaf.vertices.size()));
-      }
-    }
-    if (leaf.others.empty()) return;
+    if (may_have_quads_) bits.put(leaf.quads, leaf.faces);
+    for (std::size_t f = 1; f < leaf.faces; ++f) bits.put(leaf.steps[f].code, StripStep::kBits);
+    for (std::size_t r = 0; r < leaf.faces; ++r) bits.put(leaf.references[r].is_new ? 1 : 0, 1);
     bits.put(leaf.others.size(), kOtherBits);
     for (const std::uint32_t other : leaf.others) bits.put(other, width_below(number));
-    for (const Named& vertex : leaf.vertices) {
-      if (vertex.other == Named::kOwn) continue;
-      bits.put(vertex.other, width_below(leaf.others.size()));
-      bits.put(vertex.number, header_.own_bits);
+    for (std::size_t r = leaf.faces; r < leaf.references.size(); ++r) {
+      bits.put(leaf.references[r].is_new ? 1 : 0, 1);
+    }
+    for (const Reference& each : leaf.references) {
+      if (each.is_new) continue;
+      bits.put(each.slot, width_below(leaf.others.size() + 1));
+      bits.put(each.number, header_.own_bits);
     }
   }
 
@@ -493,6 +531,8 @@ class ClusterEncoder {
   std::array<Number, 3> origin_{};
   std::array<std::uint32_t, 3> base_shift_{};  // also where no leaf has a base but 0
   std::vector<Owner> owner_;                   // of each vertex
+  std::vector<bool> is_named_;                 // by vertex
+  std::uint64_t stride_ = 32;                  // mean bits of a vertex in the cluster before
   std::vector<Leaf> leaves_;
   std::vector<AxisRange> ranges_;  // [axis][leaf]
   std::vector<std::byte> bytes_;   // of leaves

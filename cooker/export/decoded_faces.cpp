@@ -101,7 +101,7 @@ Status DecodedFaces::weld_clusters(const Tree& tree, std::vector<Scalar>& positi
       return Error{Errc::kVertexOutOfRange,
                    fmt::format("{}: leaf {} of its clusters cannot be read", tree.name(), i)};
     }
-    std::array<std::uint32_t, kMaxLeafVertices> number;
+    std::array<std::uint32_t, kMostLeafReferences> number;
     for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
       Eigen::Vector3d p(leaf.position[v][0], leaf.position[v][1], leaf.position[v][2]);
       if (leaves.is_grid()) p = leaves.frame().to_object(p * leaves.grid_step());

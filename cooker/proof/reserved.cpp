@@ -157,8 +157,9 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
                  "the bits before it");
     for (std::uint32_t k = 0; k < fields.other_count; ++k) {
       const ClusterLeafFields::Other& other = fields.others[k];
-      if (other.largest >= stored[other.leaf]) check.missing_vertex(i, first + other.leaf);
+      if (other.named > stored[other.leaf]) check.missing_vertex(i, first + other.leaf);
     }
+    if (fields.self.named > fields.stored) check.missing_vertex(i, i);
     stored[i - first] = fields.stored;
     end = std::max(end, fields.end);
   }

@@ -32,7 +32,11 @@ Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexce
 void LeafReader::prepare_floats(double max_abs) noexcept {
   floats_.rounding =
       float_above(max_abs * 2 * kRoundoffF32 + double{std::numeric_limits<float>::min()});
+  // By underflow alone, where the numbers are floats or whole numbers that a float has.
+  floats_.direct_rounding = std::numeric_limits<float>::min();
   if (is_grid()) {
+    constexpr double kMostWhole = 1u << std::numeric_limits<float>::digits;
+    if (max_abs > kMostWhole * grid_step_) floats_.direct_rounding = floats_.rounding;
     floats_.scale = static_cast<float>(grid_step_);
     floats_.is_direct = mesh_.corners_per_face == 3;
     return;

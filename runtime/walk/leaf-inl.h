@@ -42,11 +42,10 @@ class LeafFloats {
     return is_direct_ || convert();
   }
 
-  /// Bounds how far the coordinates of a leaf are off: by underflow alone when they were gathered,
-  /// by half an ulp of the largest otherwise.
+  /// Bounds how far the coordinates of a leaf are off: mostly by underflow alone when they were
+  /// gathered, by half an ulp of the largest otherwise.
   [[nodiscard]] float corner_error() const {
-    const bool is_exact = is_direct_ && !reader_.is_grid();
-    return is_exact ? std::numeric_limits<float>::min() : floats_.rounding;
+    return is_direct_ ? floats_.direct_rounding : floats_.rounding;
   }
 
   /// Triangles of the leaf; lanes from there on are unspecified.
@@ -134,15 +133,8 @@ class LeafFloats {
 
 #if BOXTREE_HAS_EIGHT_LANES
   HWY_INLINE bool gather_cluster() {
-    if (first_ % kLeafFaces != 0 || !clusters_.read(first_ / kLeafFaces, floats_.scale)) {
-      return false;
-    }
-    for (std::size_t c = 0; c < 3; ++c) {
-      FloatVector coordinates[3];
-      clusters_.coordinates(c, coordinates);
-      for (std::size_t k = 0; k < 3; ++k) hn::Store(coordinates[k], Floats(), coordinate_[c][k]);
-    }
-    return true;
+    return first_ % kLeafFaces == 0 &&
+           clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_);
   }
 
 #endif

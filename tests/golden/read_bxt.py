@@ -269,7 +269,7 @@ class Clusters:
     """Geometry exact and grid (section 8.1): faces as lists of corners, which are floats of object
     space, or places on the grid."""
 
-    CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 20, 96
+    CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 20, 64
 
     def __init__(self, tree):
         self.exact = tree.geometry == EXACT
@@ -335,42 +335,35 @@ class Clusters:
         is_quad = [self.has_quads and bits.take(1) for _ in range(count)]
         steps = [6] + [bits.take(3) for _ in range(count - 1)]
         expect(7 not in steps, "step of a strip")
-        references = sum(is_quad) + sum(3 if step == 6 else 1 for step in steps)
-        is_first = [1] + [bits.take(1) for _ in range(references - 1)]
-        is_own = [bits.take(1) for _ in range(sum(is_first))]
-        numbers, fresh = [], 0
-        for first in is_first:
-            numbers.append(fresh if first else bits.below(len(is_own)))
-            expect(numbers[-1] < len(is_own), "a vertex of the leaf")
-            fresh += first
-        others = []
-        if not all(is_own):
-            other_count = bits.take(3)
-            expect(other_count > 0, "leaves that store the other vertices")
-            others = [bits.below(leaf) for _ in range(other_count)]
-            expect(all(other < leaf for other in others), "a leaf before this one")
+        aparts = steps.count(6)
+        is_new = [bits.take(1) for _ in range(count)]
+        others = [bits.below(leaf) for _ in range(bits.take(3))]
+        expect(all(other < leaf for other in others), "a leaf before this one")
+        is_new += [bits.take(1) for _ in range(2 * aparts + sum(is_quad))]
         named, own = [], 0
-        for owned in is_own:
-            if owned:
+        for new in is_new:
+            if new:
                 named.append((leaf, own))
                 own += 1
             else:
-                other = bits.below(len(others))
-                expect(other < len(others), "one of the leaves that are named")
-                named.append((others[other], bits.take(own_bits)))
-        references = iter(numbers)
+                slot = bits.below(len(others) + 1)
+                expect(slot <= len(others), "one of the leaves that are named")
+                named.append((others[slot - 1] if slot else leaf, bits.take(own_bits)))
+        thirds = iter(range(count))
+        apart = iter(range(count, count + 2 * aparts))
+        fourths = iter(range(count + 2 * aparts, len(named)))
         faces, entered = [], 0
         for step, quad in zip(steps, is_quad):
             if step == 6:
-                face, entered = [next(references) for _ in range(3)], 0
+                face, entered = [next(apart), next(apart), next(thirds)], 0
             else:
                 side, turn = divmod(step, 3)
                 edge, face = entered + 1 + side, [None] * 3
                 face[turn] = faces[-1][(edge + 1) % 3]
                 face[(turn + 1) % 3] = faces[-1][edge % 3]
-                face[(turn + 2) % 3] = next(references)
+                face[(turn + 2) % 3] = next(thirds)
                 entered = turn
-            faces.append(face + [next(references)] if quad else face)
+            faces.append(face + [next(fourths)] if quad else face)
         return faces, own, named
 
     def signed(self, value):

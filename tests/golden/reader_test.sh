@@ -13,12 +13,25 @@ fail() { echo "$*"; exit 1; }
 
 for file in "$golden"/v*.hex; do read_bxt "$file" >"$work/said" || fail "$file"; done
 
+# A sheet of quads and triangles that takes more than one cluster.
+sheet=$work/sheet.obj
+awk 'BEGIN {
+  for (y = 0; y <= 20; ++y) for (x = 0; x <= 60; ++x) print "v", x / 7, y / 9, sin(x / 5) * cos(y / 3)
+  for (y = 0; y < 20; ++y) for (x = 1; x <= 60; ++x) {
+    a = 61 * y + x
+    if (x == 5 && y % 2) print "f", a, a + 1, a + 62, a + 61
+    else { print "f", a, a + 1, a + 62; print "f", a, a + 62, a + 61 }
+  }
+}' >"$sheet"
+awk 'NF < 5' "$sheet" >"$work/triangles.obj"
+
 codecs=$("$boxtree" cook --help | tr -s '\n ' ' ' | sed -n 's/.*(auto, \([^)]*\)).*/\1/p' | tr -d ',')
 [ -n "$codecs" ] || fail "no list of codecs in the help of cook"
 for codec in ${codecs//blob-*/}; do # blobs come last
-  for geometry in --exact --grid-bits=10 --grid-bits=28; do
-    for mesh in "$@"; do
-      "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --codec "$codec" "$geometry" -q
+  for geometry in "--exact --for speed" "--exact --for memory" --grid-bits=10 --grid-bits=28; do
+    for mesh in "$@" "$sheet" "$work/triangles.obj"; do
+      # shellcheck disable=SC2086 # several words
+      "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --codec "$codec" $geometry -q
       read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $codec, $geometry"
       "$boxtree" info "$work/mesh.bxt" --json >"$work/ours"
       keys='[.trees[] | {name,codec,faces,duplicates,triangles,nodes,depth}]'
@@ -34,7 +47,7 @@ import glob, struct, sys
 sys.path.insert(0, sys.argv[1])
 import read_bxt
 paths = sorted(glob.glob(sys.argv[1] + "/v*.hex"))
-for path in paths[:1] + [path for path in paths if "grid" in path]:
+for path in paths[:1] + [path for path in paths if "grid" in path or "wide" in path]:
     data = bytes.fromhex(open(path).read())
     for i in range(len(data)):
         if 10 <= i < 12 or 32 <= i < 40:

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/walk/lane_constants.h"
+
+namespace boxtree {
+
+const LaneConstants kLaneConstants = [] {
+  LaneConstants constants{};
+  for (std::size_t row = 0; row < constants.lanes.size(); ++row) {
+    constants.lanes[row].fill(LaneConstants::kInLanes[row]);
+  }
+  for (std::uint32_t i = 0; i < constants.number.size(); ++i) constants.number[i] = i;
+  return constants;
+}();
+
+}  // namespace boxtree

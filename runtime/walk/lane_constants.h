@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: MIT
+// Constants of vectors that lie in memory, and are not constants to compilers: those would put them
+// into instructions, and make each vector of them by two more that need the one port of a processor
+// that moves lanes, which is the busiest where leaves are decoded.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace boxtree {
+
+struct LaneConstants {
+  /// The largest number that is in `number`.
+  static constexpr std::uint32_t kMost = 0x101;
+  /// Numbers of `lanes`, in order.
+  static constexpr std::array<std::uint32_t, 11> kInLanes = {0, 1, 2,   3,     4,    5,
+                                                             6, 7, 127, 0x100, 0x101};
+
+  /// Row i: number kInLanes[i] in each lane.
+  alignas(32) std::array<std::array<std::uint32_t, 8>, kInLanes.size()> lanes;
+  /// Element i: i.
+  std::array<std::uint32_t, kMost + 1> number;
+};
+
+extern const LaneConstants kLaneConstants;
+
+}  // namespace boxtree
