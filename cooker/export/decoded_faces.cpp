@@ -101,18 +101,21 @@ Status DecodedFaces::weld_clusters(const Tree& tree, std::vector<Scalar>& positi
       return Error{Errc::kVertexOutOfRange,
                    fmt::format("{}: leaf {} of its clusters cannot be read", tree.name(), i)};
     }
+    // Numbered in the order of faces and of their corners.
     std::array<std::uint32_t, kMostLeafReferences> number;
-    for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
+    number.fill(kNoCorner);
+    const auto vertex = [&](std::uint8_t v) {
+      if (number[v] != kNoCorner) return number[v];
       Eigen::Vector3d p(leaf.position[v][0], leaf.position[v][1], leaf.position[v][2]);
       if (leaves.is_grid()) p = leaves.frame().to_object(p * leaves.grid_step());
-      number[v] = welder.add(
-          {static_cast<Scalar>(p[0]), static_cast<Scalar>(p[1]), static_cast<Scalar>(p[2])});
-    }
+      return number[v] = welder.add(
+                 {static_cast<Scalar>(p[0]), static_cast<Scalar>(p[1]), static_cast<Scalar>(p[2])});
+    };
     for (std::uint32_t f = 0; f < leaf.face_count; ++f) {
       Face face{{kNoCorner, kNoCorner, kNoCorner, kNoCorner}};
       for (std::size_t c = 0; c < 4; ++c) {
         const std::uint8_t corner = leaf.corner[f][c];
-        if (corner != ClusterLeaf::kNoCorner) face.corner[c] = number[corner];
+        if (corner != ClusterLeaf::kNoCorner) face.corner[c] = vertex(corner);
       }
       decoded_.faces.push_back(face);
     }
