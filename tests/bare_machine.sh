@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
 # Shows that every command of the README works on a bare Debian 12: makes one with debootstrap (a
-# shell, git and apt), clones the committed state into it and runs them there, in their order.
+# shell, git and apt), clones the committed state into it and runs them there, in their order. The builds print no
+# warning.
 #   tests/bare_machine.sh DIRECTORY     needs root, debootstrap, a network, 3 GB and some 20 minutes
 set -euo pipefail
 root=${1:?usage: tests/bare_machine.sh DIRECTORY}
@@ -21,5 +22,9 @@ run() {
   chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C "$@"
 }
 python3 "$source/tests/docs/blocks.py" "$source/README.md" sh >"$root/readme.sh"
-run bash -c 'cd /boxtree; sudo() { "$@"; }; set -euo pipefail; . /readme.sh'
+run bash -c 'cd /boxtree; sudo() { "$@"; }; set -euo pipefail; . /readme.sh' 2>&1 | tee "$root/readme.log"
+if grep 'warning: .*\[-W' "$root/readme.log"; then
+  echo "the compiler warns" >&2
+  exit 1
+fi
 echo "the commands of the README work on a bare Debian 12"

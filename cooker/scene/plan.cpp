@@ -64,11 +64,10 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
     const auto dropped = line_that_drops(object);
     if (count[o] > 0) {
       const char* why = object.leave_out.value ? "left out" : "no query reaches them";
-      plan.decisions.push_back(
-          {Aspect::kInstances, OwnerKind::kObject, o, !dropped,
-           fmt::format("{} {}{}{}", count[o], object.moves.value ? "moving" : "static",
-                       dropped ? ": " : "", dropped ? why : ""),
-           dropped ? *dropped : object.name.line});
+      plan.decide(Aspect::kInstances, OwnerKind::kObject, o, !dropped,
+                  fmt::format("{} {}{}{}", count[o], object.moves.value ? "moving" : "static",
+                              dropped ? ": " : "", dropped ? why : ""),
+                  dropped ? *dropped : object.name.line);
     } else if (!object.match.empty()) {
       plan.notices.push_back(fmt::format("{}: no instance is of object \"{}\"",
                                          profile.cite(object.match.front().line),
@@ -113,10 +112,9 @@ void plan_contacts(const Profile& profile, ScenePlan& plan) {
   }
   for (const PlannedLayer& layer : plan.layers) {
     for (const Stated<std::uint32_t>& name : profile.objects[layer.object].never_collides_with) {
-      plan.decisions.push_back(
-          {Aspect::kContacts, OwnerKind::kObject, layer.object, false,
-           fmt::format("never collides with \"{}\"", profile.objects[name.value].name.value),
-           name.line});
+      plan.decide(Aspect::kContacts, OwnerKind::kObject, layer.object, false,
+                  fmt::format("never collides with \"{}\"", profile.objects[name.value].name.value),
+                  name.line);
     }
   }
 }
@@ -135,16 +133,16 @@ void decide_queries(const Profile& profile, ScenePlan& plan) {
     for (const PlannedLayer& layer : plan.layers) {
       if (!of_scene || (layer.queries & bit) != 0) continue;
       const ProfileObject& object = profile.objects[layer.object];
-      plan.decisions.push_back({kKinds[kind], OwnerKind::kObject, layer.object, false,
-                                "its instances do not answer them", object.needs.queries.line});
+      plan.decide(kKinds[kind], OwnerKind::kObject, layer.object, false,
+                  "its instances do not answer them", object.needs.queries.line);
       if ((plan.queries & bit) == 0) line = object.needs.queries.line;
     }
     const bool kept = (plan.queries & bit) != 0;
-    plan.decisions.push_back({kKinds[kind], OwnerKind::kFile, 0, kept,
-                              kept       ? "requested"
-                              : of_scene ? "no object answers them"
-                                         : "the scene never answers them",
-                              line});
+    plan.decide(kKinds[kind], OwnerKind::kFile, 0, kept,
+                kept       ? "requested"
+                : of_scene ? "no object answers them"
+                           : "the scene never answers them",
+                line);
   }
 }
 
@@ -156,12 +154,11 @@ void decide_names(const Profile& profile, ScenePlan& plan) {
     any = any || names.value;
     line = std::max(line, names.line);
     if (names.value) continue;
-    plan.decisions.push_back({Aspect::kNames, OwnerKind::kObject, layer.object, false,
-                              "no object needs names of its instances", names.line});
+    plan.decide(Aspect::kNames, OwnerKind::kObject, layer.object, false,
+                "no object needs names of its instances", names.line);
   }
   if (any) return;
-  plan.decisions.push_back(
-      {Aspect::kNames, OwnerKind::kFile, 0, false, "no object needs them", line});
+  plan.decide(Aspect::kNames, OwnerKind::kFile, 0, false, "no object needs them", line);
 }
 
 }  // namespace
@@ -219,6 +216,18 @@ std::optional<Part> part_of(Aspect aspect) noexcept {
     default:
       return std::nullopt;
   }
+}
+
+// Member by member: g++ 12 warns of the bounds of a temporary Decision made around a short reason.
+void ScenePlan::decide(Aspect aspect, OwnerKind owner_kind, std::uint32_t owner, bool kept,
+                       std::string reason, std::uint32_t line) {
+  Decision& decision = decisions.emplace_back();
+  decision.aspect = aspect;
+  decision.owner_kind = owner_kind;
+  decision.owner = owner;
+  decision.kept = kept;
+  decision.reason = std::move(reason);
+  decision.line = line;
 }
 
 Result<ScenePlan> plan_scene(const SourceScene& scene, const Profile& profile) {

@@ -104,6 +104,9 @@ struct ScenePlan {
   std::vector<PlannedLayer> layers;        // those that have or may get instances; at least one
   std::vector<Decision> decisions;
   std::vector<std::string> notices;  // statements of the profile without effect, with their lines
+
+  void decide(Aspect aspect, OwnerKind owner_kind, std::uint32_t owner, bool kept,
+              std::string reason, std::uint32_t line);
 };
 
 /// Plans a scene. Deterministic. An instance belongs to the object that the profile names for it

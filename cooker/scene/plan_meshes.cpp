@@ -78,7 +78,7 @@ class MeshPlanner {
   Status decide_hidden_faces(std::uint32_t mesh);
   void decide(std::uint32_t mesh, Aspect aspect, bool kept, std::string reason,
               std::uint32_t line) {
-    plan_.decisions.push_back({aspect, OwnerKind::kMesh, mesh, kept, std::move(reason), line});
+    plan_.decide(aspect, OwnerKind::kMesh, mesh, kept, std::move(reason), line);
   }
   [[nodiscard]] const ProfileObject& object_of(const Use& use) const {
     return profile_.objects[use.object];

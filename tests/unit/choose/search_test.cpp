@@ -64,7 +64,7 @@ TEST(Search, SmallMeshesAreTriedWithEveryCodec) {
 // boxtree::runtime alone could not read them.
 TEST(Search, WhatTheRuntimeAloneReadsIsChosen) {
   for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
-    for (const std::size_t triangles : {1u, 2u, 3u, 10u, 40u}) {
+    for (const unsigned triangles : {1u, 2u, 3u, 10u, 40u}) {
       for (const bool try_all : {false, true}) {
         SearchOptions options = options_for(goal);
         options.try_all = try_all;

@@ -334,7 +334,7 @@ TEST(PolygonNormal, AgainstLongIntegers) {
     for (Vector3d& corner : polygon) {
       corner = along * static_cast<double>(random() % 15);
       corner[static_cast<int>(random() % 3)] +=
-          (random() % 3 - 1.0) * (i % 2 == 0 ? 0x1p-20 : 0x1p20);
+          (static_cast<double>(random() % 3) - 1) * (i % 2 == 0 ? 0x1p-20 : 0x1p20);
     }
     std::array<double, 3> exact{};
     Vector3d plain = Vector3d::Zero();
