@@ -2,16 +2,17 @@
 #include "cooker/cli/command.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <utility>
 
+#include "cooker/cli/command_app.h"
+#include "cooker/cli/exit_status.h"
+#include "cooker/cli/help_format.h"
+#include "cooker/cli/usage_message.h"
+
 namespace boxtree::cooker {
 namespace {
-
-// All are Commands, as Command::add_command alone adds them.
-const Command& as_command(const CLI::App& app) {
-  return static_cast<const Command&>(app);
-}
 
 std::vector<std::string> split_list(const std::string& text) {
   std::vector<std::string> words(1);
@@ -33,72 +34,16 @@ std::string shown_name(const CLI::Option& option) {
 // The program and the commands that were parsed, from the outermost to the innermost.
 std::vector<const Command*> parsed_commands(const Command& program) {
   std::vector<const Command*> chain{&program};
-  while (!chain.back()->get_subcommands().empty()) {
-    chain.push_back(&as_command(*chain.back()->get_subcommands().front()));
+  while (chain.back()->has_parsed_command()) {
+    chain.push_back(&command_of(*chain.back()->app().get_subcommands().front()));
   }
   return chain;
 }
 
-}  // namespace
-
-Command& Command::add_command(const std::string& name, const std::string& description) {
-  const std::shared_ptr<Command> command(new Command(name, description, *this));
-  command->set_help_all_flag(kHelpAllFlag, "Print every option");
-  add_subcommand(command);
-  return *command;
-}
-
-const Command* Command::parent() const {
-  return get_parent() == nullptr ? nullptr : &as_command(*get_parent());
-}
-
-std::vector<const Command*> Command::commands() const {
-  std::vector<const Command*> commands;
-  for (const CLI::App* app : get_subcommands([](const CLI::App*) { return true; })) {
-    commands.push_back(&as_command(*app));
-  }
-  return commands;
-}
-
-const Command* Command::find(const std::string& name) const {
-  for (const Command* command : commands()) {
-    if (command->get_name() == name) return command;
-  }
-  return nullptr;
-}
-
-std::string Command::summary() const {
-  const std::string description = get_description();
-  return description.substr(0, description.find('\n'));
-}
-
-std::vector<std::string> Command::details() const {
-  std::istringstream lines(get_description());
-  std::vector<std::string> paragraphs;
-  for (std::string line; std::getline(lines, line);) paragraphs.push_back(line);
-  if (!paragraphs.empty()) paragraphs.erase(paragraphs.begin());
-  return paragraphs;
-}
-
-CLI::Option* Command::takes(CLI::Option* option, Values values) {
-  facts_[option].values = values;
-  return option;
-}
-
-CLI::Option* Command::is_needed(CLI::Option* option, const CLI::Option* unless) {
-  facts_[option].is_needed = true;
-  facts_[option].unless = unless;
-  return option;
-}
-
-OptionFacts Command::facts(const CLI::Option* option) const {
-  const auto found = facts_.find(option);
-  return found == facts_.end() ? OptionFacts() : found->second;
-}
-
+// Whether the commands that were parsed have all that they need.
 void check_needed(const Command& program) {
   for (const Command* command : parsed_commands(program)) {
-    for (const CLI::Option* option : command->get_options()) {
+    for (const CLI::Option* option : command->app().get_options()) {
       const OptionFacts facts = command->facts(option);
       const bool is_excused = facts.unless != nullptr && facts.unless->count() > 0;
       if (facts.is_needed && option->count() == 0 && !is_excused) {
@@ -106,6 +51,214 @@ void check_needed(const Command& program) {
       }
     }
   }
+}
+
+}  // namespace
+
+Option* Option::type_name(const std::string& name) {
+  parsed_->type_name(name);
+  return this;
+}
+
+Option* Option::group(const std::string& name) {
+  parsed_->group(name);
+  return this;
+}
+
+Option* Option::shows_default() {
+  parsed_->capture_default_str();
+  return this;
+}
+
+Option* Option::takes(Values values) {
+  facts_.values = values;
+  return this;
+}
+
+Option* Option::required() {
+  parsed_->required();
+  return this;
+}
+
+Option* Option::needed(const Option* unless) {
+  facts_.is_needed = true;
+  facts_.unless = unless;
+  return this;
+}
+
+Option* Option::excludes(Option* other) {
+  parsed_->excludes(other->parsed_);
+  return this;
+}
+
+Option* Option::one_of(const std::vector<std::string>& values) {
+  parsed_->check(CLI::IsMember(values));
+  return this;
+}
+
+Option* Option::between(int low, int high, const std::string& shown) {
+  parsed_->check(CLI::Range(low, high).description(shown));
+  return this;
+}
+
+Option* Option::not_negative() {
+  parsed_->check(CLI::Validator(CLI::NonNegativeNumber).description(""));
+  return this;
+}
+
+Option* Option::check(const std::function<std::string(const std::string& value)>& fault,
+                      const std::string& shown) {
+  parsed_->check(fault, shown);
+  return this;
+}
+
+Option* Option::each(const std::function<void()>& then) {
+  parsed_->each([then](const std::string& /*value*/) { then(); });
+  return this;
+}
+
+std::size_t Option::count() const {
+  return parsed_->count();
+}
+
+CommandApp::CommandApp(const Command& made_by, const std::string& description, CLI::App* parent)
+    : CLI::App(description, made_by.name(), parent), command(made_by) {}
+
+CommandApp::~CommandApp() = default;
+
+Command::Command(const std::string& name, const std::string& description,
+                 const std::string& version)
+    : name_(name),
+      description_(description),
+      parent_(nullptr),
+      app_(std::make_shared<CommandApp>(*this, description, nullptr)) {
+  app_->set_version_flag("-V,--version", version);
+  app_->formatter(std::make_shared<HelpFormatter>());
+  app_->set_help_flag("-h,--help", "Print the common options");
+  app_->set_help_all_flag(kHelpAllFlag, "Print every option of every command");
+  app_->failure_message(usage_message);
+  app_->require_subcommand(1);
+  app_->parse_complete_callback([this] { check_needed(*this); });
+}
+
+Command::Command(const std::string& name, const std::string& description, Command& parent)
+    : name_(name),
+      description_(description),
+      parent_(&parent),
+      app_(std::make_shared<CommandApp>(*this, description, parent.app_.get())) {
+  app_->set_help_all_flag(kHelpAllFlag, "Print every option");
+}
+
+Command::~Command() = default;
+
+std::optional<int> Command::run(int argc, char** argv) {
+  try {
+    app_->parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app_->exit(error) == 0 ? 0 : kExitUsage;
+  }
+  return std::nullopt;
+}
+
+Command& Command::add_command(const std::string& name, const std::string& description) {
+  commands_.emplace_back(new Command(name, description, *this));
+  app_->add_subcommand(commands_.back()->app_);
+  return *commands_.back();
+}
+
+std::vector<const Command*> Command::commands() const {
+  std::vector<const Command*> commands;
+  for (const auto& command : commands_) commands.push_back(command.get());
+  return commands;
+}
+
+const Command* Command::find(const std::string& name) const {
+  for (const auto& command : commands_) {
+    if (command->name() == name) return command.get();
+  }
+  return nullptr;
+}
+
+std::string Command::summary() const {
+  return description_.substr(0, description_.find('\n'));
+}
+
+std::vector<std::string> Command::details() const {
+  std::istringstream lines(description_);
+  std::vector<std::string> paragraphs;
+  for (std::string line; std::getline(lines, line);) paragraphs.push_back(line);
+  if (!paragraphs.empty()) paragraphs.erase(paragraphs.begin());
+  return paragraphs;
+}
+
+std::string Command::help() const {
+  return app_->help();
+}
+
+Option* Command::add(CLI::Option* parsed) {
+  return options_.emplace_back(std::make_unique<Option>(parsed)).get();
+}
+
+template <class T>
+Option* Command::add_option(const std::string& name, T& out, const std::string& help) {
+  return add(app_->add_option(name, out, help));
+}
+
+// What values of options may be.
+template Option* Command::add_option(const std::string&, std::string&, const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<std::string>&,
+                                     const std::string&);
+template Option* Command::add_option(const std::string&, std::filesystem::path&,
+                                     const std::string&);
+template Option* Command::add_option(const std::string&, std::vector<std::filesystem::path>&,
+                                     const std::string&);
+template Option* Command::add_option(const std::string&, int&, const std::string&);
+template Option* Command::add_option(const std::string&, std::uint64_t&, const std::string&);
+template Option* Command::add_option(const std::string&, double&, const std::string&);
+template Option* Command::add_option(const std::string&, std::optional<double>&,
+                                     const std::string&);
+
+Option* Command::add_parsed_option(
+    const std::string& name, const std::function<std::string(const std::string& value)>& parse,
+    const std::string& help) {
+  return add(app_->add_option_function<std::string>(
+      name,
+      [name, parse](const std::string& value) {
+        const std::string fault = parse(value);
+        if (!fault.empty()) throw CLI::ValidationError(name, fault);
+      },
+      help));
+}
+
+Option* Command::add_flag(const std::string& name, bool& out, const std::string& help) {
+  return add(app_->add_flag(name, out, help));
+}
+
+void Command::takes_kinds() {
+  app_->require_subcommand(0, 1);
+  app_->fallthrough();
+}
+
+void Command::before_parsing(const std::function<void()>& then) {
+  app_->preparse_callback([then](std::size_t /*arguments*/) { then(); });
+}
+
+void Command::callback(const std::function<void()>& then) {
+  app_->callback(then);
+}
+
+bool Command::has_parsed_command() const {
+  return !app_->get_subcommands().empty();
+}
+
+OptionFacts Command::facts(const CLI::Option* option) const {
+  const auto found = std::find_if(options_.begin(), options_.end(),
+                                  [&](const auto& own) { return own->parsed() == option; });
+  return found == options_.end() ? OptionFacts() : (*found)->facts();
+}
+
+void refuse_without(const std::string& what) {
+  throw CLI::RequiredError(what);
 }
 
 OptionText text_of(const Command& command, const CLI::Option& option) {
@@ -139,7 +292,7 @@ OptionText text_of(const Command& command, const CLI::Option& option) {
 
 std::vector<OptionText> positionals_of(const Command& command) {
   std::vector<OptionText> texts;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : command.app().get_options()) {
     if (option->get_positional()) texts.push_back(text_of(command, *option));
   }
   return texts;
@@ -147,7 +300,7 @@ std::vector<OptionText> positionals_of(const Command& command) {
 
 std::vector<OptionText> options_of(const Command& command) {
   std::vector<OptionText> texts;
-  for (const CLI::Option* option : command.get_options()) {
+  for (const CLI::Option* option : command.app().get_options()) {
     if (option->nonpositional()) texts.push_back(text_of(command, *option));
   }
   std::stable_partition(texts.begin(), texts.end(),
@@ -157,10 +310,10 @@ std::vector<OptionText> options_of(const Command& command) {
 
 std::string call_of(const Command& command) {
   const Command* const parent = command.parent();
-  if (parent == nullptr) return command.get_name();
+  if (parent == nullptr) return command.name();
   std::string call = call_of(*parent);
   for (const OptionText& positional : positionals_of(*parent)) call += " " + positional.metavar;
-  return call + " " + command.get_name();
+  return call + " " + command.name();
 }
 
 // Options that must be given are named, so that the line can be taken as it is.
@@ -187,7 +340,7 @@ std::string arguments_of(const Command& command) {
 
 std::string name_of(const Command& command) {
   const Command* const parent = command.parent();
-  return parent == nullptr ? command.get_name() : name_of(*parent) + " " + command.get_name();
+  return parent == nullptr ? command.name() : name_of(*parent) + " " + command.name();
 }
 
 }  // namespace boxtree::cooker

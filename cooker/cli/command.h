@@ -1,14 +1,19 @@
 // SPDX-License-Identifier: MIT
-// What a command declares of itself, once: help, man pages and completions are made of it.
+// What a command declares of itself, once: help, man pages and completions are made of it. Commands
+// do not see CLI11, which parses: its templates take three seconds of each source that does.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
-#include <map>
+#include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+namespace CLI {
+class Option;
+}  // namespace CLI
 
 namespace boxtree::cooker {
 
@@ -37,23 +42,74 @@ struct Example {
   std::string line;
 };
 
+class Option;
+
 /// What CLI11 does not know of an option.
 struct OptionFacts {
   Values values = Values::kOther;
-  bool is_needed = false;               // it has to be given ...
-  const CLI::Option* unless = nullptr;  // ... but where this one is
+  bool is_needed = false;          // it has to be given ...
+  const Option* unless = nullptr;  // ... but where this one is
 };
 
-/// A command, a kind of query, or the program itself.
-class Command : public CLI::App {
+/// An option or a positional. Functions without a result of their own return the option.
+class Option {
  public:
-  Command(const std::string& name, const std::string& description) : CLI::App(description, name) {}
+  explicit Option(CLI::Option* parsed) : parsed_(parsed) {}
+  Option(const Option&) = delete;
+  Option& operator=(const Option&) = delete;
+
+  Option* type_name(const std::string& name);
+  Option* group(const std::string& name);
+  /// Help shows the value that it has now as the default.
+  Option* shows_default();
+  /// Says what the value is.
+  Option* takes(Values values);
+  Option* required();
+  /// Checked by CLI11 after all was parsed, whose required positionals swallow the names of kinds.
+  Option* needed(const Option* unless = nullptr);
+  Option* excludes(Option* other);
+  Option* one_of(const std::vector<std::string>& values);
+  /// Whole numbers from `low` to `high`, which help shows as `shown`.
+  Option* between(int low, int high, const std::string& shown = "");
+  Option* not_negative();
+  /// `fault` says what is wrong with a value, or nothing.
+  Option* check(const std::function<std::string(const std::string& value)>& fault,
+                const std::string& shown = "");
+  /// Called when it is given.
+  Option* each(const std::function<void()>& then);
+
+  /// How often it was given.
+  [[nodiscard]] std::size_t count() const;
+  [[nodiscard]] const OptionFacts& facts() const { return facts_; }
+  [[nodiscard]] const CLI::Option* parsed() const { return parsed_; }
+
+ private:
+  CLI::Option* const parsed_;
+  OptionFacts facts_;
+};
+
+/// The command as CLI11 has it: cooker/cli/command_app.h.
+class CommandApp;
+
+/// A command, a kind of query, or the program itself.
+class Command {
+ public:
+  /// The program.
+  Command(const std::string& name, const std::string& description, const std::string& version);
+  Command(const Command&) = delete;
+  Command& operator=(const Command&) = delete;
+  ~Command();
+
+  /// Parses a command line and runs what it calls. The exit status if there was nothing to run:
+  /// that of help, which was printed, or of an error.
+  std::optional<int> run(int argc, char** argv);
 
   /// `description`: the summary and, after line feeds, paragraphs.
   Command& add_command(const std::string& name, const std::string& description);
 
+  [[nodiscard]] const std::string& name() const { return name_; }
   /// The command that contains this one; null for the program.
-  [[nodiscard]] const Command* parent() const;
+  [[nodiscard]] const Command* parent() const { return parent_; }
   [[nodiscard]] std::vector<const Command*> commands() const;
   /// Null if there is none of that name.
   [[nodiscard]] const Command* find(const std::string& name) const;
@@ -62,34 +118,56 @@ class Command : public CLI::App {
   [[nodiscard]] std::string summary() const;
   /// The paragraphs below it.
   [[nodiscard]] std::vector<std::string> details() const;
+  /// What --help prints.
+  [[nodiscard]] std::string help() const;
 
   void example(std::string what, std::string line) {
     examples_.push_back({std::move(what), std::move(line)});
   }
   [[nodiscard]] const std::vector<Example>& examples() const { return examples_; }
 
+  /// `out` gets the value and has to live until the command has run. command.cpp lists the types.
+  template <class T>
+  Option* add_option(const std::string& name, T& out, const std::string& help);
+  /// `parse` takes the value and says what is wrong with it, or nothing.
+  Option* add_parsed_option(const std::string& name,
+                            const std::function<std::string(const std::string& value)>& parse,
+                            const std::string& help);
+  Option* add_flag(const std::string& name, bool& out, const std::string& help);
   /// An option or a positional that names files.
   template <class T>
-  CLI::Option* add_file(const std::string& name, T& out, Values values, const std::string& help) {
-    return takes(add_option(name, out, help)->type_name("FILE"), values);
+  Option* add_file(const std::string& name, T& out, Values values, const std::string& help) {
+    return add_option(name, out, help)->type_name("FILE")->takes(values);
   }
-  /// Says what the value of an option is. Returns `option`, as does is_needed.
-  CLI::Option* takes(CLI::Option* option, Values values);
-  /// Checked by check_needed, not by CLI11, whose required positionals swallow the names of kinds.
-  CLI::Option* is_needed(CLI::Option* option, const CLI::Option* unless = nullptr);
 
+  /// At most one of its commands is given, and takes the options of this one, too.
+  void takes_kinds();
+  /// Before its own words are parsed.
+  void before_parsing(const std::function<void()>& then);
+  /// When all was parsed.
+  void callback(const std::function<void()>& then);
+  /// Whether one of its commands was given.
+  [[nodiscard]] bool has_parsed_command() const;
+
+  [[nodiscard]] const CommandApp& app() const { return *app_; }
+  /// Of an option of CLI11.
   [[nodiscard]] OptionFacts facts(const CLI::Option* option) const;
 
  private:
-  Command(const std::string& name, const std::string& description, Command& parent)
-      : CLI::App(description, name, &parent) {}
+  Command(const std::string& name, const std::string& description, Command& parent);
+  Option* add(CLI::Option* parsed);
 
+  const std::string name_;
+  const std::string description_;
+  Command* const parent_;
+  std::shared_ptr<CommandApp> app_;
+  std::vector<std::unique_ptr<Command>> commands_;
+  std::vector<std::unique_ptr<Option>> options_;
   std::vector<Example> examples_;
-  std::map<const CLI::Option*, OptionFacts> facts_;
 };
 
-/// Whether the commands that were parsed have all that they need. Throws CLI::RequiredError.
-void check_needed(const Command& program);
+/// Of a callback: `what` is required and was not given.
+[[noreturn]] void refuse_without(const std::string& what);
 
 /// An option as help, man pages and completions show it.
 struct OptionText {
@@ -103,7 +181,6 @@ struct OptionText {
   OptionFacts facts;
 };
 
-[[nodiscard]] OptionText text_of(const Command& command, const CLI::Option& option);
 [[nodiscard]] std::vector<OptionText> positionals_of(const Command& command);
 /// Options of the command alone, common ones first.
 [[nodiscard]] std::vector<OptionText> options_of(const Command& command);

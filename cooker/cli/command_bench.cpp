@@ -232,8 +232,8 @@ void add_bench_command(Command& program, int& status) {
       ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->type_name("N")
-      ->check(CLI::Range(1, 1000))
-      ->capture_default_str();
+      ->between(1, 1000, "1 to 1000")
+      ->shows_default();
   command.add_flag("--pages", arguments->pages,
                    "Count the pages of a cold file that queries read, in place of times");
   command.add_flag("--quick", arguments->quick, "A tenth of the queries");

@@ -191,7 +191,7 @@ void add_cook_command(Command& program, int& status) {
   for (const CodecInfo& codec : kCodecs) codecs.emplace_back(codec.name);
 
   codecs.insert(codecs.end(), {"blob-lzma", "blob-zstd"});
-  CLI::Option* inputs = command.add_file(
+  Option* inputs = command.add_file(
       "MESH", arguments->job.inputs, Values::kMeshes,
       "Mesh files, one tree each; one file with a node graph that places several is a scene; - is "
       "standard input");
@@ -199,17 +199,15 @@ void add_cook_command(Command& program, int& status) {
       .add_file("-o,--output", arguments->job.output, Values::kCookedFiles,
                 "The file to write; - is standard output")
       ->required();
-  command
-      .takes(command.add_option("--format", arguments->format,
-                                "Of the input -: the ending of its files, obj"),
-             Values::kMeshEndings)
+  command.add_option("--format", arguments->format, "Of the input -: the ending of its files, obj")
+      ->takes(Values::kMeshEndings)
       ->type_name("ENDING")
       ->check(ending_fault);
-  CLI::Option* profile =
+  Option* profile =
       command.add_file("--profile", arguments->job.profile, Values::kProfiles,
                        "A scene.toml: what the scene is queried for, and so what may be left out");
-  CLI::Option* scene = command.add_flag("--scene", arguments->job.as_scene,
-                                        "Make all inputs one scene of placed trees");
+  Option* scene = command.add_flag("--scene", arguments->job.as_scene,
+                                   "Make all inputs one scene of placed trees");
   command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
       ->excludes(profile)
       ->excludes(scene);
@@ -217,36 +215,35 @@ void add_cook_command(Command& program, int& status) {
                    "Of a scene: print each part, its bytes, and what decided that it is there");
   command.add_flag("--candidates", arguments->candidates,
                    "Print all that was tried for each tree, not only what was chosen");
-  CLI::Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")
-                           ->type_name("NAME")
-                           ->check(CLI::IsMember(codecs))
-                           ->capture_default_str();
-  CLI::Option* goal = command.add_option("--for", arguments->goal, "What auto minimises")
-                          ->type_name("GOAL")
-                          ->check(CLI::IsMember({"memory", "speed", "balance"}))
-                          ->capture_default_str();
-  CLI::Option* exact =
+  Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")
+                      ->type_name("NAME")
+                      ->one_of(codecs)
+                      ->shows_default();
+  Option* goal = command.add_option("--for", arguments->goal, "What auto minimises")
+                     ->type_name("GOAL")
+                     ->one_of({"memory", "speed", "balance"})
+                     ->shows_default();
+  Option* exact =
       command.add_flag("--exact", arguments->exact,
                        "Keep every bit of every position [else auto may choose a grid of 24 bits]");
-  CLI::Option* tolerance = command.add_option(
+  Option* tolerance = command.add_option(
       "--tolerance", arguments->job.options.grid.tolerance,
       "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
   tolerance->type_name("LENGTH")->check(positive_fault)->excludes(exact);
-  CLI::Option* grid_bits = command.add_option(
+  Option* grid_bits = command.add_option(
       "--grid-bits", arguments->job.options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
   grid_bits->type_name("N")
-      ->check(CLI::Range(kMinGridBits, kMaxGridBits)
-                  .description(fmt::format("{} to {}", kMinGridBits, kMaxGridBits)))
+      ->between(kMinGridBits, kMaxGridBits, fmt::format("{} to {}", kMinGridBits, kMaxGridBits))
       ->excludes(exact)
       ->excludes(tolerance);
-  CLI::Option* budget = command
-                            .add_option("--max-bytes-per-triangle",
-                                        arguments->job.options.wishes.max_bytes_per_triangle,
-                                        "Choose nothing larger, nodes and geometry together")
-                            ->type_name("BYTES")
-                            ->check(positive_fault);
-  CLI::Option* slowdown =
+  Option* budget = command
+                       .add_option("--max-bytes-per-triangle",
+                                   arguments->job.options.wishes.max_bytes_per_triangle,
+                                   "Choose nothing larger, nodes and geometry together")
+                       ->type_name("BYTES")
+                       ->check(positive_fault);
+  Option* slowdown =
       command
           .add_option(
               "--max-slowdown", arguments->job.options.wishes.max_slowdown,
@@ -254,33 +251,33 @@ void add_cook_command(Command& program, int& status) {
               "average")
           ->type_name("FACTOR")
           ->check(positive_fault);
-  CLI::Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
-                                              "Leave the source face numbers out");
+  Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
+                                         "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
   command.add_option("-j,--jobs", arguments->jobs, "Threads; the bytes do not depend on it [all]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024).description(""));
-  const auto rare = [](CLI::Option* option) { return option->group(kRareOptions); };
+      ->between(1, 1024);
+  const auto rare = [](Option* option) { return option->group(kRareOptions); };
   rare(command.add_option("--builder", arguments->builder, "Split rule"))
       ->type_name("NAME")
-      ->check(CLI::IsMember({"sah", "paper"}))
-      ->capture_default_str();
+      ->one_of({"sah", "paper"})
+      ->shows_default();
   rare(command.add_option("--widths", arguments->widths, "Widths of bit-packed fields"))
       ->type_name("NAME")
-      ->check(CLI::IsMember({"exact", "estimated"}))
-      ->capture_default_str();
+      ->one_of({"exact", "estimated"})
+      ->shows_default();
   rare(command.add_option(
            "--shrink-share", arguments->job.options.shrink_share,
            "Codecs with one triangle per leaf cut off empty slabs from this share of a box "
            "on; 1: never"))
       ->type_name("SHARE")
       ->check(share_fault, "0.01 to 1")
-      ->capture_default_str();
+      ->shows_default();
   rare(command.add_file("--costs", arguments->job.costs, Values::kFiles,
                         "Choose by the constants of your own machine, as `bench --calibrate "
                         "--json` prints them: the choice may then differ from other machines'"));
-  CLI::Option* external =
+  Option* external =
       rare(command.add_flag("--external", arguments->external,
                             "Leave positions and corners to the application, which binds its own "
                             "arrays"))
@@ -300,7 +297,7 @@ void add_cook_command(Command& program, int& status) {
   rare(command.add_flag("--try-all", arguments->job.options.try_all,
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
-  for (CLI::Option* option :
+  for (Option* option :
        {codec, goal, exact, tolerance, grid_bits, budget, slowdown, no_face_ids, external}) {
     profile->excludes(option);
   }
@@ -313,7 +310,7 @@ void add_cook_command(Command& program, int& status) {
   command.example("Through a pipe", "boxtree cook - --format obj -o - < bunny.obj > piped.bxt");
   command.callback([arguments, inputs, profile, grid_bits, &status] {
     if (inputs->count() == 0 && profile->count() == 0) {
-      throw CLI::RequiredError("MESH, or --profile with a source");
+      refuse_without("MESH, or --profile with a source");
     }
     if (grid_bits->count() > 0) arguments->job.options.geometry = GeometryId::kGrid;
     status = run(*arguments);

@@ -294,7 +294,7 @@ void add_export_command(Command& program, int& status) {
       ->required();
   command.add_option("--format", arguments->format, "Of the output - [glb]")
       ->type_name("FORMAT")
-      ->check(CLI::IsMember({"glb", "obj"}));
+      ->one_of({"glb", "obj"});
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command
       .add_option("--tree", arguments->tree,
@@ -314,7 +314,7 @@ void add_export_command(Command& program, int& status) {
       ->group(kRareOptions);
   command.add_option("--order", arguments->order, "Of faces [source, if face ids tell it]")
       ->type_name("ORDER")
-      ->check(CLI::IsMember({"source", "tree"}))
+      ->one_of({"source", "tree"})
       ->group(kRareOptions);
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,

@@ -67,9 +67,9 @@ void add_completion_command(Command& program, int& status) {
       "a file that is sourced or, in zsh, called _boxtree in a folder of fpath; fish from "
       "~/.config/fish/completions/boxtree.fish.");
   const auto shell = std::make_shared<std::string>();
-  command.is_needed(
-      command.add_option("SHELL", *shell, "The shell")
-          ->check(CLI::IsMember(std::vector<std::string>(kShells.begin(), kShells.end()))));
+  command.add_option("SHELL", *shell, "The shell")
+      ->one_of({kShells.begin(), kShells.end()})
+      ->needed();
   command.example("Completion in this bash", "source <(boxtree completion bash)");
   command.callback([&program, shell, &status] {
     fmt::print("{}", completion_script(program, *shell));
@@ -80,14 +80,11 @@ void add_completion_command(Command& program, int& status) {
 void add_help_command(Command& program, int& status) {
   Command& command = program.add_command("help", "Show what a command does and takes");
   const auto arguments = std::make_shared<Arguments>();
-  CLI::Option* names = command.takes(
-      command.add_option("COMMAND", arguments->names, "A command, and a kind of query"),
-      Values::kCommands);
+  Option* names = command.add_option("COMMAND", arguments->names, "A command, and a kind of query")
+                      ->takes(Values::kCommands);
   command.add_flag("--man", arguments->man, "Print the man page, in troff");
-  command
-      .takes(
-          command.add_option("--man-pages", arguments->folder, "Write all man pages into a folder"),
-          Values::kFolders)
+  command.add_option("--man-pages", arguments->folder, "Write all man pages into a folder")
+      ->takes(Values::kFolders)
       ->type_name("FOLDER")
       ->group(kRareOptions)
       ->excludes(names);

@@ -168,9 +168,8 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
     if (!scene) {
       return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
     }
-    return answer_all([&](const QueryRequest& each, TreeCache& others) {
-      return answer(*scene, each, others);
-    });
+    return answer_all(
+        [&](const QueryRequest& each, TreeCache& others) { return answer(*scene, each, others); });
   }
   const Result<OpenedTree> tree =
       bind_tree(std::move(opened->file), arguments.file, arguments.tree, arguments.mesh);
@@ -181,17 +180,16 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
 }
 
 // A value like "1,-2.5,3e4". `out` has to live until the command line has been parsed.
-CLI::Option* add_vector_option(Command& command, const std::string& option, Eigen::Vector3d& out,
-                               const char* help) {
+Option* add_vector_option(Command& command, const std::string& option, Eigen::Vector3d& out,
+                          const char* help) {
   return command
-      .add_option_function<std::string>(
+      .add_parsed_option(
           option,
-          [option, &out](const std::string& text) {
+          [&out](const std::string& text) {
             const std::optional<Eigen::Vector3d> vector = parse_vector(text);
-            if (!vector) {
-              throw CLI::ValidationError(option, "expected X,Y,Z, found \"" + text + "\"");
-            }
+            if (!vector) return "expected X,Y,Z, found \"" + text + "\"";
             out = *vector;
+            return std::string();
           },
           help)
       ->type_name("X,Y,Z");
@@ -201,42 +199,37 @@ CLI::Option* add_vector_option(Command& command, const std::string& option, Eige
 // `batch` is given.
 class OptionFields {
  public:
-  OptionFields(Command& command, const CLI::Option* batch) : command_(command), batch_(batch) {}
+  OptionFields(Command& command, const Option* batch) : command_(command), batch_(batch) {}
 
   void required(const char* key, Eigen::Vector3d& out, const char* help) {
-    command_.is_needed(add_vector_option(command_, option_name(key), out, help), batch_);
+    add_vector_option(command_, option_name(key), out, help)->needed(batch_);
   }
   void required(const char* key, double& out, const char* help) {
-    command_.is_needed(command_.add_option(option_name(key), out, help)->type_name("N"), batch_);
+    command_.add_option(option_name(key), out, help)->type_name("N")->needed(batch_);
   }
   void optional(const char* key, double& out, const char* help, bool* given = nullptr) {
     note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
   }
   void optional(const char* key, std::uint64_t& out, const char* help, bool* given = nullptr) {
     // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
-    note(command_.add_option(option_name(key), out, help)
-             ->type_name("N")
-             ->check(CLI::NonNegativeNumber.description("")),
-         given);
+    note(command_.add_option(option_name(key), out, help)->type_name("N")->not_negative(), given);
   }
   void optional(const char* key, bool& out, const char* help) {
     command_.add_flag(option_name(key), out, help);
   }
   void second(SecondTree& tree) {
-    command_.is_needed(
-        command_.add_file("FILE2", tree.file, Values::kCookedFiles,
-                          "The second .bxt file; in a batch, that of lines without \"file\""),
-        batch_);
     command_
-        .add_option_function<std::string>(
+        .add_file("FILE2", tree.file, Values::kCookedFiles,
+                  "The second .bxt file; in a batch, that of lines without \"file\"")
+        ->needed(batch_);
+    command_
+        .add_parsed_option(
             "--pose",
             [&tree](const std::string& text) {
               const std::optional<Pose> pose = parse_pose(text);
-              if (!pose) {
-                throw CLI::ValidationError("--pose",
-                                           "expected X,Y,Z or 12 numbers, found \"" + text + "\"");
-              }
+              if (!pose) return "expected X,Y,Z or 12 numbers, found \"" + text + "\"";
               tree.pose = *pose;
+              return std::string();
             },
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
@@ -254,19 +247,19 @@ class OptionFields {
     std::replace(key.begin(), key.end(), '_', '-');
     return "--" + key;
   }
-  static void note(CLI::Option* option, bool* given) {
-    if (given != nullptr) option->each([given](const std::string&) { *given = true; });
+  static void note(Option* option, bool* given) {
+    if (given != nullptr) option->each([given] { *given = true; });
   }
 
   Command& command_;
-  const CLI::Option* batch_;
+  const Option* batch_;
 };
 
 // What a kind needs of the command around it.
 struct Around {
   Command& query;
-  const CLI::Option* file;
-  const CLI::Option* batch;
+  const Option* file;
+  const Option* batch;
   std::shared_ptr<Arguments> arguments;
 };
 
@@ -279,9 +272,8 @@ void add_kind(const Around& around, int& status) {
   for (const KindExample& example : Kind::kExamples) command.example(example.what, example.line);
   // `query pair A B` would leave B for the first file.
   const auto is_file_first = std::make_shared<bool>(false);
-  command.preparse_callback([is_file_first, file = around.file](std::size_t /*arguments*/) {
-    *is_file_first = file->count() > 0;
-  });
+  command.before_parsing(
+      [is_file_first, file = around.file] { *is_file_first = file->count() > 0; });
   command.callback([is_file_first, request, arguments = around.arguments, &status] {
     status = *is_file_first ? run(*arguments, Kind::kKind, *request)
                             : usage(fmt::format("query: FILE comes before {}", Kind::kKind));
@@ -297,8 +289,10 @@ void add_query_command(Command& program, int& status) {
                                          "Queries one tree or a scene, or two trees against each "
                                          "other. The options of query may also stand "
                                          "behind the kind.");
-  CLI::Option* file = command.is_needed(command.add_file(
-      "FILE", arguments->file, Values::kCookedFiles, "The file to query; - is standard input"));
+  Option* file = command
+                     .add_file("FILE", arguments->file, Values::kCookedFiles,
+                               "The file to query; - is standard input")
+                     ->needed();
   command
       .add_option("--tree", arguments->tree,
                   "Which tree, by name or number [the scene of the file, or else tree 0]")
@@ -310,7 +304,7 @@ void add_query_command(Command& program, int& status) {
           "pose replaces its whole pose: X,Y,Z is one without rotation and scale; 12 "
           "numbers, a 3x4 matrix row by row, keep them")
       ->type_name("INSTANCE=POSE");
-  CLI::Option* batch = command.add_file(
+  Option* batch = command.add_file(
       "--batch", arguments->batch, Values::kFiles,
       "Query every line of a file (- for standard input): JSON objects with the names "
       "of the options as keys, \"file\", \"tree\" and \"mesh\" for FILE2, --tree2 and --mesh2, and "
@@ -320,14 +314,13 @@ void add_query_command(Command& program, int& status) {
       .add_file("--mesh", arguments->mesh, Values::kMeshes,
                 "The source mesh of a tree cooked with --external")
       ->group(kRareOptions);
-  command.require_subcommand(0, 1);
-  command.fallthrough();
+  command.takes_kinds();
   const Around around{command, file, batch, arguments};
   for_each_kind([&]<class Kind>() { add_kind<Kind>(around, status); });
   command.example("Many queries, one per line, from standard input",
                   "echo '{\"kind\":\"point\",\"at\":[1,2,3]}' | boxtree query bunny.bxt --batch -");
   command.callback([&command, arguments, &status] {
-    if (!command.get_subcommands().empty()) return;
+    if (command.has_parsed_command()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
                                       : run(*arguments, "", RayRequest());
   });

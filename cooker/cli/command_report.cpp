@@ -321,13 +321,12 @@ void add_report_command(Command& program, int& status) {
   Command& command = program.add_command(
       "report", "Show which encoding to use for meshes: bytes, times and errors");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
-  CLI::Option* paper =
-      command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
+  Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,
                    "Write an HTML page; - is standard output");
   command.add_option("-j,--jobs", arguments->jobs, "Threads that cook; times are of one [all]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024).description(""));
+      ->between(1, 1024);
   command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_flag("--json", arguments->json, "Print all figures as one JSON document");
   command.add_file("--json-out", arguments->json_out, Values::kFiles, "Write the same to a file");

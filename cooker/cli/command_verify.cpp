@@ -146,7 +146,7 @@ void add_verify_command(Command& program, int& status) {
   command.add_flag("-q,--quiet", arguments->quiet, "Print findings only");
   command.add_option("-j,--jobs", arguments->jobs, "Threads [all]")
       ->type_name("N")
-      ->check(CLI::Range(1, 1024).description(""));
+      ->between(1, 1024);
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,
                 "The source mesh of a tree cooked with --external")

@@ -32,7 +32,7 @@ void add_places(const Command& command, const std::string& path,
   places.push_back(std::move(place));
   const bool is_program = command.parent() == nullptr;
   for (const Command* inner : command.commands()) {
-    add_places(*inner, path + (path.empty() ? "" : " ") + inner->get_name(),
+    add_places(*inner, path + (path.empty() ? "" : " ") + inner->name(),
                is_program ? std::vector<OptionText>() : own, places);
   }
 }
@@ -64,7 +64,7 @@ constexpr const char* kFishQuote = "\\'";
 
 std::vector<std::string> command_names(const Place& place) {
   std::vector<std::string> names;
-  for (const Command* inner : place.command->commands()) names.push_back(inner->get_name());
+  for (const Command* inner : place.command->commands()) names.push_back(inner->name());
   return names;
 }
 
@@ -82,8 +82,8 @@ std::vector<std::string> names_with_values(const Place& place) {
 std::vector<std::string> all_names(const Command& program) {
   std::vector<std::string> names, kinds;
   for (const Command* command : program.commands()) {
-    names.push_back(command->get_name());
-    for (const Command* kind : command->commands()) kinds.push_back(kind->get_name());
+    names.push_back(command->name());
+    for (const Command* kind : command->commands()) kinds.push_back(kind->name());
   }
   names.insert(names.end(), kinds.begin(), kinds.end());
   return names;
@@ -264,7 +264,7 @@ std::string zsh_script(const Command& program) {
                          quoted(joined(command_names(place)), kPosixQuote),
                          quoted(joined(names_with_values(place)), kPosixQuote));
     for (const Command* inner : place.command->commands()) {
-      table += "\n        " + described(inner->get_name(), inner->summary());
+      table += "\n        " + described(inner->name(), inner->summary());
     }
     table += ")\n      options=(";
     for (const OptionText& option : place.options) {
@@ -333,7 +333,7 @@ std::string fish_script(const Command& program) {
         "complete -c boxtree -n " +
         quoted("__boxtree_is_at " + quoted(place.path, kFishQuote), kFishQuote);
     for (const Command* inner : place.command->commands()) {
-      rules += fmt::format("{} -a {} -d {}\n", here, inner->get_name(),
+      rules += fmt::format("{} -a {} -d {}\n", here, inner->name(),
                            quoted(inner->summary(), kFishQuote));
     }
     for (const OptionText& option : place.options) {

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "cooker/cli/command.h"
 #include "cooker/cli/exit_status.h"
 
 namespace boxtree::cooker {
@@ -57,7 +56,7 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
 }
 
 std::string HelpFormatter::make_usage(const CLI::App* app, std::string /*name*/) const {
-  const auto& command = static_cast<const Command&>(*app);
+  const auto& command = command_of(*app);
   const std::string start = "Usage: " + call_of(command);
   return start + " " + wrapped(arguments_of(command), start.size() + 1, start.size() + 1) + "\n";
 }
@@ -69,7 +68,7 @@ std::string HelpFormatter::make_group(std::string group, bool is_positional,
 }
 
 std::string HelpFormatter::make_option(const CLI::Option* option, bool /*is_positional*/) const {
-  const OptionText text = text_of(static_cast<const Command&>(*app_), *option);
+  const OptionText text = text_of(command_of(*app_), *option);
   std::string name;
   for (const std::string& each : text.names) name += (name.empty() ? "" : ", ") + each;
   if (!text.metavar.empty()) name += (name.empty() ? "" : " ") + text.metavar;
@@ -78,18 +77,18 @@ std::string HelpFormatter::make_option(const CLI::Option* option, bool /*is_posi
 }
 
 std::string HelpFormatter::make_subcommand(const CLI::App* command) const {
-  return row(command->get_name(), static_cast<const Command*>(command)->summary());
+  return row(command->get_name(), command_of(*command).summary());
 }
 
 std::string HelpFormatter::make_description(const CLI::App* app) const {
-  const auto& command = static_cast<const Command&>(*app);
+  const auto& command = command_of(*app);
   std::string text = wrapped(command.summary(), 0, 0) + "\n";
   for (const std::string& paragraph : command.details()) text += wrapped(paragraph, 0, 0) + "\n";
   return text;
 }
 
 std::string HelpFormatter::make_footer(const CLI::App* app) const {
-  const auto& command = static_cast<const Command&>(*app);
+  const auto& command = command_of(*app);
   std::string footer;
   if (!command.examples().empty()) footer += "Examples:\n";
   for (const Example& example : command.examples()) footer += "  " + example.line + "\n";

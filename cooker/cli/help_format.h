@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include <CLI/CLI.hpp>
+#include "cooker/cli/command_app.h"
 
 namespace boxtree::cooker {
 

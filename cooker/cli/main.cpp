@@ -4,8 +4,8 @@
 #include <cstdio>
 #include <cstdlib>
 #include <exception>
-#include <memory>
 #include <new>
+#include <optional>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,9 +13,7 @@
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
 #include "cooker/cli/exit_status.h"
-#include "cooker/cli/help_format.h"
 #include "cooker/cli/output.h"
-#include "cooker/cli/usage_message.h"
 #include "cooker/version.h"
 
 namespace {
@@ -42,14 +40,8 @@ int main(int argc, char** argv) {
     cooker::Command app("boxtree",
                         "Cooks meshes into small collision trees and queries them.\n"
                         "A file called - is standard input or standard output; one of that name is "
-                        "./-.");
-    app.set_version_flag("-V,--version", fmt::format("boxtree {}", cooker::kVersion));
-    app.formatter(std::make_shared<cooker::HelpFormatter>());
-    app.set_help_flag("-h,--help", "Print the common options");
-    app.set_help_all_flag(cooker::kHelpAllFlag, "Print every option of every command");
-    app.failure_message(cooker::usage_message);
-    app.require_subcommand(1);
-    app.parse_complete_callback([&app] { cooker::check_needed(app); });
+                        "./-.",
+                        fmt::format("boxtree {}", cooker::kVersion));
     cooker::add_cook_command(app, status);
     cooker::add_info_command(app, status);
     cooker::add_verify_command(app, status);
@@ -59,11 +51,7 @@ int main(int argc, char** argv) {
     cooker::add_export_command(app, status);
     cooker::add_completion_command(app, status);
     cooker::add_help_command(app, status);
-    try {
-      app.parse(argc, argv);
-    } catch (const CLI::ParseError& error) {
-      return app.exit(error) == 0 ? 0 : cooker::kExitUsage;
-    }
+    if (const std::optional<int> ended = app.run(argc, argv); ended) return *ended;
   } catch (const std::bad_alloc&) {
     static_cast<void>(std::fputs("boxtree: out of memory\n", stderr));
     return cooker::kExitInternal;

@@ -86,7 +86,7 @@ std::string paragraphs(const Command& command) {
 
 // "ray" of `boxtree query`: its summary, how it is called, what it takes.
 std::string kind_section(const Command& kind) {
-  return ".SS " + literal(kind.get_name()) + "\n" + line_of_text(kind.summary() + ".") + ".PP\n" +
+  return ".SS " + literal(kind.name()) + "\n" + line_of_text(kind.summary() + ".") + ".PP\n" +
          call(kind) + paragraphs(kind) + list(positionals_of(kind)) + list(options_of(kind));
 }
 

@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cooker/cli/command_app.h"
 #include "cooker/cli/output.h"
 #include "cooker/text/nearest_name.h"
 
@@ -15,14 +16,14 @@ namespace {
 const Command& innermost(const CLI::App& program) {
   const CLI::App* at = &program;
   while (!at->get_subcommands().empty()) at = at->get_subcommands().front();
-  return static_cast<const Command&>(*at);
+  return command_of(*at);
 }
 
 // A command takes the options of those around it, too.
 std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names;
   for (const Command* at = &command; at != nullptr; at = at->parent()) {
-    for (const CLI::Option* option : at->get_options()) {
+    for (const CLI::Option* option : at->app().get_options()) {
       for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
     }
   }
@@ -55,9 +56,8 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
 
 std::string unknown_command(const Command& command, const std::string& word) {
   std::vector<std::string> names;
-  for (const Command* inner : command.commands()) names.push_back(inner->get_name());
-  const std::string kind =
-      command.parent() == nullptr ? "command" : "kind of " + command.get_name();
+  for (const Command* inner : command.commands()) names.push_back(inner->name());
+  const std::string kind = command.parent() == nullptr ? "command" : "kind of " + command.name();
   return "'" + word + "' is no " + kind + suggestion(word, names);
 }
 

@@ -6,6 +6,11 @@
 
 #include "cooker/cli/command.h"
 
+namespace CLI {
+class App;
+class Error;
+}  // namespace CLI
+
 namespace boxtree::cooker {
 
 /// "'quary' is no command; did you mean 'query'?", of the commands of `command`.

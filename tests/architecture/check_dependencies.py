@@ -25,6 +25,8 @@ LIBRARIES = {
     "runtime": ("Eigen/", "hwy/", "xxhash.h", "lzma.h", "zstd.h", "xmmintrin.h",
                 "sys/", "fcntl.h", "unistd.h"),
 }
+# What takes seconds of every source that sees it, and the one header of the project that may include it.
+SLOW_HEADERS = {"CLI/": "cooker/cli/command_app.h"}
 PRINTS = ("iostream", "cstdio", "stdio.h", "print")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PUBLIC = "boxtree/"
@@ -67,6 +69,9 @@ def fault_of(source, folder, name, quoted):
     if part in LIBRARIES and ("/" in name or name.endswith(".h")):
         if not name.startswith(LIBRARIES[part]):
             return f"{part} does not use {name}"
+    for start, header in SLOW_HEADERS.items():
+        if name.startswith(start) and source != header:
+            return f"{header} alone includes {name}"
     if part in LIBRARIES and name in PRINTS:
         return f"{part} prints nothing"
     return None
