@@ -112,13 +112,25 @@ Result<Json> answer_pair(const Scene&, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");
 }
 
-QueryKinds kind_of(const RayRequest&) { return kRayQueries; }
-QueryKinds kind_of(const BoxRequest&) { return kBoxQueries; }
-QueryKinds kind_of(const SphereRequest&) { return kBoxQueries; }
-QueryKinds kind_of(const PointRequest&) { return kPointQueries; }
-QueryKinds kind_of(const ContactsRequest&) { return kPairQueries; }
+QueryKinds kind_of(const RayRequest&) {
+  return kRayQueries;
+}
+QueryKinds kind_of(const BoxRequest&) {
+  return kBoxQueries;
+}
+QueryKinds kind_of(const SphereRequest&) {
+  return kBoxQueries;
+}
+QueryKinds kind_of(const PointRequest&) {
+  return kPointQueries;
+}
+QueryKinds kind_of(const ContactsRequest&) {
+  return kPairQueries;
+}
 template <class AboutTwo>
-  requires requires(const AboutTwo& request) { request.second; }
+requires requires(const AboutTwo& request) {
+  request.second;
+}
 QueryKinds kind_of(const AboutTwo&) {
   return kPairQueries;
 }

@@ -22,8 +22,8 @@ struct OpenedScene {
 Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
 
 /// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.
-/// Errors: kInvalidQuery for kinds that only trees answer; kPartLeftOut with the line of the profile
-/// that left it out.
+/// Errors: kInvalidQuery for kinds that only trees answer; kPartLeftOut with the line of the
+/// profile that left it out.
 Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, TreeCache& others);
 
 }  // namespace boxtree::cooker
