@@ -77,3 +77,10 @@ function(boxtree_precompile target)
       <string_view> <unordered_map> <utility> <variant> <vector> <Eigen/Geometry> ${ARGN})
   endif()
 endfunction()
+
+# boxtree_precompile_as(TARGET OTHER): the headers that OTHER has precompiled, which has the same compile options.
+function(boxtree_precompile_as target other)
+  if(BOXTREE_PRECOMPILE_HEADERS)
+    target_precompile_headers(${target} REUSE_FROM ${other})
+  endif()
+endfunction()
