@@ -9,7 +9,7 @@ namespace boxtree {
 namespace {
 
 // Exit statuses of the command line (docs/GUIDE.md): 1 invalid query, 2 input/output, 3 bad input,
-// 4 internal, 5 unsupported.
+// 4 internal or out of memory, 5 unsupported.
 constexpr std::array kTable = {
     ErrcInfo{Errc::kOk, "ok", "no error", 0},
     ErrcInfo{Errc::kBadMagic, "bad_magic", "not a .bxt file", 3},
@@ -70,6 +70,7 @@ constexpr std::array kTable = {
     ErrcInfo{Errc::kFileUnreadable, "file_unreadable", "the file cannot be read", 2},
     ErrcInfo{Errc::kMapFailed, "map_failed", "the file cannot be mapped", 2},
     ErrcInfo{Errc::kWriteFailed, "write_failed", "the file cannot be written", 2},
+    ErrcInfo{Errc::kOutOfMemory, "out_of_memory", "there is too little memory", 4},
     ErrcInfo{Errc::kImportFailed, "import_failed", "the mesh cannot be read", 3},
     ErrcInfo{Errc::kNoFaces, "no_faces", "the mesh has no faces", 3},
     ErrcInfo{Errc::kMeshNotFinite, "mesh_not_finite", "a vertex is NaN or infinite", 3},
@@ -83,6 +84,8 @@ constexpr std::array kTable = {
              "no encoding keeps to the bytes and the time requested", 1},
     ErrcInfo{Errc::kProfileInvalid, "profile_invalid",
              "a profile says what it must not, or of nothing that is there", 3},
+    ErrcInfo{Errc::kDocumentInvalid, "document_invalid",
+             "a JSON document is not what it should be", 3},
     ErrcInfo{Errc::kInternal, "internal", "an internal error; please report it", 4},
 };
 

@@ -21,7 +21,7 @@ constexpr std::array kStores = {GeometryId::kArrays, GeometryId::kExact, Geometr
 constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
 
 Error fault(std::string what) {
-  return {Errc::kFileUnreadable, "costs: " + std::move(what)};
+  return {Errc::kDocumentInvalid, "costs: " + std::move(what)};
 }
 
 std::string member(const Json& row, const char* key) {

@@ -18,7 +18,7 @@ namespace boxtree::cooker {
 
 /// The constants in a JSON text. Every codec needs exactly one row for each of exact and grid, and
 /// every kind of query three steps that are finite, not negative and not all zero, because a
-/// missing step would count as free. Error: kFileUnreadable with the place and what was expected.
+/// missing step would count as free. Error: kDocumentInvalid with the place and what was expected.
 Result<std::vector<CodecCost>> parse_costs(std::string_view text);
 
 /// The same from a file; errors include its path.

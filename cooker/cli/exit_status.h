@@ -21,10 +21,12 @@ inline constexpr std::array kExitStatuses = {
     ExitStatus{0, "ok", "Everything was done, or every file is valid."},
     ExitStatus{kExitUsage, "usage", "The command line or a query is not valid."},
     ExitStatus{kExitInputOutput, "input/output", "A file cannot be read or written."},
-    ExitStatus{kExitBadInput, "bad input", "A mesh, a profile or a .bxt file is not valid."},
+    ExitStatus{kExitBadInput, "bad input",
+               "A mesh, a profile, a .bxt or another input file is not valid."},
     ExitStatus{kExitInternal, "internal", "An internal error, or too little memory."},
-    ExitStatus{kExitUnsupported, "unsupported",
-               "The file needs what this program, or what was cooked into it, does not have."},
+    ExitStatus{
+        kExitUnsupported, "unsupported",
+        "The file needs what this program, the format, or what was cooked into it, does not have."},
 };
 
 }  // namespace boxtree::cooker

@@ -53,7 +53,7 @@ int main(int argc, char** argv) {
     cooker::add_help_command(app, status);
     if (const std::optional<int> ended = app.run(argc, argv); ended) return *ended;
   } catch (const std::bad_alloc&) {
-    static_cast<void>(std::fputs("boxtree: out of memory\n", stderr));
+    static_cast<void>(std::fputs("boxtree: out_of_memory: there is too little memory\n", stderr));
     return cooker::kExitInternal;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return boxtree::cooker::fail_to_print();

@@ -52,7 +52,8 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
   while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    return Error{Errc::kInternal, command[0] + ": ended with status " + std::to_string(status)};
+    return Error{Errc::kFileUnreadable,
+                 command[0] + ": ended with status " + std::to_string(status)};
   }
   return text;
 }
@@ -74,7 +75,7 @@ Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
                       row.at("value"), row.at("unit")});
     }
   } catch (const nlohmann::json::exception& error) {
-    return Error{Errc::kInternal, program.string() + ": " + error.what()};
+    return Error{Errc::kDocumentInvalid, program.string() + ": " + error.what()};
   }
   return rows;
 }

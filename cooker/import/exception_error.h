@@ -14,7 +14,7 @@ namespace boxtree::cooker {
   try {
     throw;
   } catch (const std::bad_alloc&) {
-    return {Errc::kMeshTooLarge, "not enough memory to import it"};
+    return {Errc::kOutOfMemory, "not enough memory to import it"};
   } catch (const std::exception& error) {
     return {Errc::kImportFailed, error.what()};
   } catch (...) {

@@ -78,8 +78,8 @@ struct Imported {
 ///
 /// Errors name the file and the face or vertex: kFileNotFound, kFileUnreadable (a directory, a
 /// pipe, no permission), kImportFailed (empty or malformed file; often assimp's own message),
-/// kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1 faces, or out of
-/// memory). Throws nothing, prints nothing and uses no global state: safe to call from several
+/// kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1 faces),
+/// kOutOfMemory. Throws nothing, prints nothing and uses no global state: safe to call from several
 /// threads, in any locale.
 ///
 /// Decimals of OBJ, OFF, PLY and text STL are rounded once, to the nearest f32 or f64 (STL: f32).

@@ -88,8 +88,9 @@ std::string read_all(int from) {
 }
 
 Error no_child(const char* what, int error) {
-  return {Errc::kImportFailed, fmt::format("no process to try it in: {}: {}", what,
-                                           std::generic_category().message(error))};
+  return {
+      error == ENOMEM ? Errc::kOutOfMemory : Errc::kImportFailed,
+      fmt::format("no process to try it in: {}: {}", what, std::generic_category().message(error))};
 }
 
 Error crashed(int signal, const TrialLimits& limits) {

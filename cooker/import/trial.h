@@ -30,10 +30,10 @@ inline constexpr bool kLimitsMemory = true;
 [[nodiscard]] TrialLimits trial_limits(std::uint64_t file_bytes);
 
 /// Runs `work` in a copy of this process and returns its result; other effects are lost, including
-/// what the copy prints. kImportFailed with the reason if the copy crashes, exceeds a limit, sleeps
-/// for ten times the limit of seconds, or cannot be started. The copy has one thread. It starts
-/// with the same memory, so work that succeeds in it succeeds here, unless it depends on clocks or
-/// other threads.
+/// what the copy prints. kOutOfMemory if the copy needs more than `limits.bytes`, kImportFailed
+/// with the reason if it crashes, takes more seconds than its limit, sleeps for ten times as long,
+/// or cannot be started. The copy has one thread. It starts with the same memory, so work that
+/// succeeds in it succeeds here, unless it depends on clocks or other threads.
 Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work);
 
 }  // namespace boxtree::cooker

@@ -17,7 +17,9 @@ namespace {
 constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
 Error unreadable(const std::filesystem::path& path, int error) {
-  const Errc code = error == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable;
+  const Errc code = error == ENOENT   ? Errc::kFileNotFound
+                    : error == ENOMEM ? Errc::kOutOfMemory
+                                      : Errc::kFileUnreadable;
   return {code, path.string() + ": " + std::generic_category().message(error)};
 }
 

@@ -207,7 +207,7 @@ Result<IncludedResults> read_results(const std::filesystem::path& path) {
                                 ? nullptr
                                 : "rows of another kind";
   if (found != nullptr) {
-    return Error{Errc::kImportFailed,
+    return Error{Errc::kDocumentInvalid,
                  fmt::format("{}: expected rows of results, as boxtree_stiff and "
                              "boxtree_robustness write with --json, found {}",
                              path.string(), found)};

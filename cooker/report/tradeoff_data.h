@@ -52,7 +52,7 @@ struct TradeoffReport {
 
 /// Reads {"title": ..., "text": ..., "rows": [{"id", "what", "figure", "limit", "pass"}, ...]} or
 /// only the array of rows. Numbers and booleans become text; missing values are empty. Errors:
-/// kFileNotFound; kFileUnreadable; kImportFailed for another document, or one without rows.
+/// kFileNotFound; kFileUnreadable; kDocumentInvalid for another document, or one without rows.
 Result<IncludedResults> read_results(const std::filesystem::path& path);
 
 [[nodiscard]] std::string to_json(const TradeoffReport& report);

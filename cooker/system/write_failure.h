@@ -11,10 +11,11 @@
 
 namespace boxtree::cooker {
 
-/// kWriteFailed with the path, the failed operation, and the reason in errno.
+/// kWriteFailed with the path, the failed operation, and the reason in errno; kOutOfMemory if it is
+/// that.
 [[nodiscard]] inline Error write_failure(const std::filesystem::path& path, const char* what) {
   const int reason = errno;  // before another call changes it
-  return {Errc::kWriteFailed,
+  return {reason == ENOMEM ? Errc::kOutOfMemory : Errc::kWriteFailed,
           path.string() + ": " + what + ": " + std::generic_category().message(reason)};
 }
 

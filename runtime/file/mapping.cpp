@@ -31,7 +31,7 @@ class Descriptor {
 };
 
 Error system_error(Errc code, const std::string& path, int number) {
-  return Error{code, path + ": " + std::generic_category().message(number)};
+  return Error{number == ENOMEM ? Errc::kOutOfMemory : code, path + ": " + std::generic_category().message(number)};
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
@@ -99,7 +99,7 @@ Result<WritableMapping> WritableMapping::allocate(std::size_t size) {
   if (size == 0) return WritableMapping(nullptr, 0);
   void* data = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
   if (data == MAP_FAILED) {
-    return Error{Errc::kMapFailed, "no memory for " + std::to_string(size) + " bytes"};
+    return Error{Errc::kOutOfMemory, "no memory for " + std::to_string(size) + " bytes"};
   }
   return WritableMapping(static_cast<std::byte*>(data), size);
 }

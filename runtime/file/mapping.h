@@ -23,7 +23,7 @@ class Mapping {
   ~Mapping();
 
   /// Maps `path`; size and bytes come from one open descriptor, so a rename cannot mix two files.
-  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed. An empty file gives empty bytes.
+  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory. An empty file gives empty bytes.
   ///
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does. Use copy() for files that others may modify.
@@ -48,7 +48,7 @@ class Mapping {
 /// Memory that is filled once and then becomes a Mapping. Move-only.
 class WritableMapping {
  public:
-  /// Zeroed memory. Error: kMapFailed when there is not enough of it.
+  /// Zeroed memory. Error: kOutOfMemory when there is not enough of it.
   static Result<WritableMapping> allocate(std::size_t size);
 
   [[nodiscard]] std::span<std::byte> bytes() noexcept { return {data_, mapping_.size_}; }

@@ -443,8 +443,8 @@ expect 0 "$boxtree" cook cube.obj -o own.bxt --costs slower.json --json
 jq -e --slurpfile before before.json '[.trees[0].candidates, $before[0].trees[0].candidates] | transpose |
   all(.[0].codec == .[1].codec and (.[0].cost.ray / .[1].cost.ray - 8 | fabs) < 1e-9)' out >/dev/null
 jq '.costs |= .[1:]' costs.json >short.json
-expect 2 "$boxtree" cook cube.obj -o refused.bxt --costs short.json
-grep -q 'short.json: costs: .*: expected one row, found 0' err
+expect 3 "$boxtree" cook cube.obj -o refused.bxt --costs short.json
+grep -q 'document_invalid: short.json: costs: .*: expected one row, found 0' err
 expect 2 "$boxtree" cook cube.obj -o refused.bxt --costs missing.json
 [ ! -e refused.bxt ]
 
@@ -538,8 +538,12 @@ expect 0 "$boxtree" report cube.obj --quick --json-out report.json
 same "$(jq -c '[.meshes[].points[].times | .ray.median_ns <= .ray.p99_ns] | unique' report.json)" '[true]'
 expect 2 "$boxtree" report missing.obj
 expect 2 "$boxtree" report cube.obj --include missing.json
+expect 2 "$boxtree" report cube.obj --quick --peers missing
+expect 2 "$boxtree" report cube.obj --quick --peers /bin/false
+expect 3 "$boxtree" report cube.obj --quick --peers /bin/true
+grep -q 'document_invalid: /bin/true' err
 expect 3 "$boxtree" report cube.obj --include cube.obj
-grep -q 'import_failed: cube.obj: expected rows .* boxtree_stiff and boxtree_robustness .*, found no JSON' err
+grep -q 'document_invalid: cube.obj: expected rows .* boxtree_stiff and boxtree_robustness .*, found no JSON' err
 expect 0 "$boxtree" report --help
 tr -s ' \n' ' ' <out | grep -q 'results of boxtree_stiff or boxtree_robustness'
 # What was written is told, but not among a document.
@@ -654,6 +658,29 @@ got=0
 (ulimit -f 0; exec "$boxtree" cook missing.obj -o no-room.bxt >/dev/null 2>nowhere) || got=$?
 same "$got" 2 # standard error takes nothing either
 if [ -e no-room.bxt ]; then echo "no-room.bxt was written"; exit 1; fi
+# Too little memory has one status, wherever it runs out: from what the program cannot be loaded with to what is enough.
+# Not under sanitizers, which reserve terabytes of address space.
+if (ulimit -v 4000000; exec "$boxtree" --version) >/dev/null 2>&1; then
+  awk 'BEGIN { for (y = 0; y <= 150; ++y) for (x = 0; x <= 150; ++x) print "v", x, y, x * y % 7
+    for (y = 0; y < 150; ++y) for (x = 1; x <= 150; ++x) { a = 151 * y + x; print "f", a, a + 1, a + 152 "\nf", a, a + 152, a + 151 } }' >many.obj
+  expect 0 "$boxtree" cook many.obj -o many.bxt --exact --for speed -q
+  for command in "cook many.obj -o own.bxt -q -j 1" "verify many.bxt -q -j 1" "query many.bxt point --at 0,0,0"; do
+    refused=0
+    for kilobytes in $(seq 12000 1000 400000); do
+      got=0
+      # shellcheck disable=SC2086
+      (ulimit -v "$kilobytes"; exec "$boxtree" $command) >out 2>err || got=$?
+      case $got in
+        0) break ;;
+        4) refused=$((refused + 1)) ;;
+        127) ;; # not even loaded
+        *) echo "expected exit 0, 4 or 127, got $got with $kilobytes KB: $command"; cat err; exit 1 ;;
+      esac
+    done
+    same "$got" 0
+    [ "$refused" -gt 0 ] || { echo "memory never ran out: $command"; exit 1; }
+  done
+fi
 # More inputs than a file can hold are told before any is read.
 yes cube.obj | head -4097 | xargs -n 5000 timeout 20 "$boxtree" cook -o many.bxt >out 2>err && exit 1
 grep -q 'mesh_too_large: 4097 inputs, each a tree: a file holds 4096 at most' err

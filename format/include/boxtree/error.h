@@ -73,6 +73,7 @@ enum class Errc : std::uint16_t {
   kFileUnreadable = 61,  ///< The file cannot be read.
   kMapFailed = 62,       ///< The file cannot be mapped.
   kWriteFailed = 63,     ///< The file cannot be written.
+  kOutOfMemory = 64,     ///< There is too little memory.
 
   // 70..79: meshes.
   kImportFailed = 70,         ///< The mesh cannot be read.
@@ -83,6 +84,7 @@ enum class Errc : std::uint16_t {
   kMeshUnsupported = 75,      ///< The mesh cannot be stored in the way requested.
   kBudgetUnreachable = 76,    ///< No encoding keeps to the bytes and the time requested.
   kProfileInvalid = 77,       ///< A profile says what it must not, or of nothing that is there.
+  kDocumentInvalid = 78,      ///< A JSON document is not what it should be.
 
   // 90: our own bug; please report.
   kInternal = 90,  ///< An internal error; please report it.

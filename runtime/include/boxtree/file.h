@@ -33,7 +33,7 @@ class BOXTREE_API File {
   /// touched, so the cost does not depend on the size of the file. Safe for untrusted bytes.
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does, or open them with OpenOptions::copy.
-  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed and the codes 10..29.
+  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory and the codes 10..29.
   static Result<File> open(const std::string& path, const OpenOptions& options = {});
 
   /// The same over memory of the caller, which must stay unchanged while the File or a Tree bound

@@ -44,7 +44,7 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
     spoil(bad);
     const auto parsed = parse_costs(bad.dump());
     if (parsed) return std::string("accepted");
-    EXPECT_EQ(parsed.code(), Errc::kFileUnreadable);
+    EXPECT_EQ(parsed.code(), Errc::kDocumentInvalid);
     return parsed.error().detail;
   };
   EXPECT_EQ(refusal([](Json&) {}), "accepted");

@@ -59,6 +59,7 @@ constexpr Row kPinned[] = {
     {61, "file_unreadable", 2},
     {62, "map_failed", 2},
     {63, "write_failed", 2},
+    {64, "out_of_memory", 4},
     {70, "import_failed", 3},
     {71, "no_faces", 3},
     {72, "mesh_not_finite", 3},
@@ -67,6 +68,7 @@ constexpr Row kPinned[] = {
     {75, "mesh_unsupported", 5},
     {76, "budget_unreachable", 1},
     {77, "profile_invalid", 3},
+    {78, "document_invalid", 3},
     {90, "internal", 4},
 };
 

@@ -67,7 +67,7 @@ TEST(Trial, MemoryHasALimit) {
     };
   };
   EXPECT_TRUE(try_in_child(kLimits, take(kLimits.bytes / 2)).ok());
-  EXPECT_EQ(try_in_child(kLimits, take(2 * kLimits.bytes)).code(), Errc::kMeshTooLarge);
+  EXPECT_EQ(try_in_child(kLimits, take(2 * kLimits.bytes)).code(), Errc::kOutOfMemory);
 }
 
 // Objects below each other, deeper than the stack of the reader that goes down by recursion.

@@ -402,7 +402,7 @@ TEST(TradeoffPage, SaysWhatWasLeftOutAndShowsWhatWasIncluded) {
                                    {R"({"cases":[{}]})", "no rows"},
                                    {"[3]", "rows of another kind"}}) {
     const auto results = read_results(folder.write("bad.json", bad));
-    EXPECT_EQ(results.code(), Errc::kImportFailed) << bad;
+    EXPECT_EQ(results.code(), Errc::kDocumentInvalid) << bad;
     EXPECT_TRUE(results.error().detail.ends_with(
         std::string("bad.json: expected rows of results, as boxtree_stiff and boxtree_robustness "
                     "write with --json, found ") +
