@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -132,20 +133,20 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   return status;
 }
 
-// Nothing of its file for a query about one tree.
-SecondTree second_of(const QueryRequest& request) {
+// Empty for a query about one tree.
+std::filesystem::path second_file(const QueryRequest& request) {
   return std::visit(
       [](const auto& q) {
-        if constexpr (requires { q.second; }) return q.second;
-        return SecondTree();
+        if constexpr (requires { q.second; }) return q.second.file;
+        return std::filesystem::path();
       },
       request);
 }
 
-int run(const Arguments& arguments, const std::string& kind, const QueryRequest& request) {
-  const RequestDefaults defaults{kind, second_of(request)};
+// Without a batch, `defaults` is the query.
+int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
-      is_standard_stream(arguments.file) || is_standard_stream(defaults.second.file);
+      is_standard_stream(arguments.file) || is_standard_stream(second_file(defaults.request));
   if (is_file && is_standard_stream(arguments.batch)) {
     return usage("standard input is the file or the batch, not both");
   }
@@ -158,7 +159,7 @@ int run(const Arguments& arguments, const std::string& kind, const QueryRequest&
   const auto answer_all = [&](const AnswerRequest& answer_request) {
     if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
     TreeCache others;
-    const Result<Json> answer = answer_request(request, others);
+    const Result<Json> answer = answer_request(defaults.request, others);
     if (!answer) return fail(answer.error());
     print_answer(arguments, *answer);
     return 0;
@@ -202,10 +203,10 @@ class OptionFields {
   OptionFields(Command& command, const Option* batch) : command_(command), batch_(batch) {}
 
   void required(const char* key, Eigen::Vector3d& out, const char* help) {
-    add_vector_option(command_, option_name(key), out, help)->needed(batch_);
+    need(key, add_vector_option(command_, option_name(key), out, help));
   }
   void required(const char* key, double& out, const char* help) {
-    command_.add_option(option_name(key), out, help)->type_name("N")->needed(batch_);
+    need(key, command_.add_option(option_name(key), out, help)->type_name("N"));
   }
   void optional(const char* key, double& out, const char* help, bool* given = nullptr) {
     note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
@@ -242,7 +243,13 @@ class OptionFields {
         ->group(kRareOptions);
   }
 
+  // The keys that have to be given, and their options.
+  [[nodiscard]] const std::vector<std::pair<std::string, const Option*>>& needed() const {
+    return needed_;
+  }
+
  private:
+  void need(const char* key, Option* option) { needed_.emplace_back(key, option->needed(batch_)); }
   static std::string option_name(std::string key) {
     std::replace(key.begin(), key.end(), '_', '-');
     return "--" + key;
@@ -253,6 +260,7 @@ class OptionFields {
 
   Command& command_;
   const Option* batch_;
+  std::vector<std::pair<std::string, const Option*>> needed_;
 };
 
 // What a kind needs of the command around it.
@@ -274,10 +282,18 @@ void add_kind(const Around& around, int& status) {
   const auto is_file_first = std::make_shared<bool>(false);
   command.before_parsing(
       [is_file_first, file = around.file] { *is_file_first = file->count() > 0; });
-  command.callback([is_file_first, request, arguments = around.arguments, &status] {
-    status = *is_file_first ? run(*arguments, Kind::kKind, *request)
-                            : usage(fmt::format("query: FILE comes before {}", Kind::kKind));
-  });
+  command.callback(
+      [is_file_first, request, needed = options.needed(), arguments = around.arguments, &status] {
+        if (!*is_file_first) {
+          status = usage(fmt::format("query: FILE comes before {}", Kind::kKind));
+          return;
+        }
+        RequestDefaults defaults{Kind::kKind, *request, {}};
+        for (const auto& [key, option] : needed) {
+          if (option->count() > 0) defaults.given.push_back(key);
+        }
+        status = run(*arguments, defaults);
+      });
 }
 
 }  // namespace
@@ -308,7 +324,9 @@ void add_query_command(Command& program, int& status) {
       "--batch", arguments->batch, Values::kFiles,
       "Query every line of a file (- for standard input): JSON objects with the names "
       "of the options as keys, \"file\", \"tree\" and \"mesh\" for FILE2, --tree2 and --mesh2, and "
-      "\"kind\" if no kind of query is given here");
+      "\"kind\" if no kind of query is given here. What lines of a kind that is given here do not "
+      "say "
+      "is taken from its options");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,
@@ -322,7 +340,7 @@ void add_query_command(Command& program, int& status) {
   command.callback([&command, arguments, &status] {
     if (command.has_parsed_command()) return;
     status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
-                                      : run(*arguments, "", RayRequest());
+                                      : run(*arguments, RequestDefaults());
   });
 }
 

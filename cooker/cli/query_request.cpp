@@ -169,25 +169,28 @@ std::optional<Pose> pose_of(std::span<const double> numbers) {
   return pose;
 }
 
-// Reads the keys of one request and remembers the first that is missing, wrong or unknown.
+// Reads the keys of one request, which has the values of the command line, and remembers the first
+// that is missing, wrong or unknown.
 class KeyFields {
  public:
-  KeyFields(const Json& json, std::string_view kind, const SecondTree& default_second)
-      : json_(json), kind_(kind), default_second_(default_second) {}
+  // `given`: keys that may be missing, though they are needed.
+  KeyFields(const Json& json, std::string_view kind, std::span<const std::string> given)
+      : json_(json), kind_(kind), given_(given) {}
 
   template <class T>
   void required(const char* key, T& out, const char* /*help*/) {
-    read(key, out);
+    const bool is_given = std::find(given_.begin(), given_.end(), key) != given_.end();
+    is_given ? static_cast<void>(read_if_given(key, out)) : read(key, out);
   }
   template <class T>
   void optional(const char* key, T& out, const char* /*help*/, bool* given = nullptr) {
     if (read_if_given(key, out) && given != nullptr) *given = true;
   }
   void second(SecondTree& tree) {
-    if (!json_.contains("file") && !default_second_.file.empty()) {
-      tree = default_second_;
+    if (!json_.contains("file") && !tree.file.empty()) {
       known_.emplace_back("file");
     } else {
+      if (!tree.file.empty()) tree = SecondTree();
       read("file", tree.file, "the second .bxt file, here or on the command line");
     }
     read_if_given("tree", tree.tree);
@@ -284,7 +287,7 @@ class KeyFields {
 
   const Json& json_;
   const std::string_view kind_;
-  const SecondTree& default_second_;
+  const std::span<const std::string> given_;
   std::vector<std::string> known_;
   std::string error_;
 };
@@ -352,11 +355,16 @@ std::string names_of_kinds() {
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
 }
 
-Result<QueryRequest> request_of(std::string_view kind, KeyFields& fields) {
+Result<QueryRequest> request_of(std::string_view kind, const Json& json,
+                                const RequestDefaults& defaults) {
+  const bool is_default = kind == defaults.kind;
+  KeyFields fields(json, kind,
+                   is_default ? std::span(defaults.given) : std::span<const std::string>());
   std::optional<QueryRequest> result;
   for_each_kind([&]<class Kind>() {
     if (kind != Kind::kKind) return;
-    Kind request;
+    const Kind* const given = is_default ? std::get_if<Kind>(&defaults.request) : nullptr;
+    Kind request = given == nullptr ? Kind() : *given;
     request.describe(fields);
     result = request;
   });
@@ -442,8 +450,7 @@ Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults&
       return invalid("\"kind\": expected a text, found " + found_text(*given));
     kind = given->get<std::string>();
   }
-  KeyFields fields(json, kind, defaults.second);
-  return request_of(kind, fields);
+  return request_of(kind, json, defaults);
 }
 
 Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others) {

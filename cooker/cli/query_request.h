@@ -11,6 +11,7 @@
 #include <string_view>
 #include <utility>
 #include <variant>
+#include <vector>
 
 #include <boxtree/boxtree.h>
 
@@ -264,13 +265,15 @@ class TreeCache {
 /// What a line of a batch may leave to the command line.
 struct RequestDefaults {
   std::string kind;
-  SecondTree second;  // taken whole by lines without "file"; its file is empty if there is none
+  QueryRequest request;            // what lines of its kind do not say is as it is here ...
+  std::vector<std::string> given;  // ... but of keys that are needed only these
 };
 
 /// A request from one line of a batch: an object with the names of the options as keys, as in
 /// {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}; those of a second tree are "file", "tree",
-/// "mesh" and "pose", which is text or an array of 3 or 12 numbers. Error: kInvalidQuery with kind,
-/// key, what was expected and what was found.
+/// "mesh" and "pose", which is text or an array of 3 or 12 numbers. A line with "file" takes
+/// nothing of the second tree of the command line if that names a file, too. Error: kInvalidQuery
+/// with kind, key, what was expected and what was found.
 Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults& defaults);
 
 /// The error of a query, which has only a code if its numbers are not valid: then with the kind,

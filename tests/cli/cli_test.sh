@@ -419,6 +419,26 @@ expect 0 "$boxtree" cook cube.obj uneven.obj -o two.bxt -q
 printf '%s\n' '{"pose":[-3,0,0]}' '{"pose":[-3,0,0],"tree":"cube"}' >poses.jsonl
 expect 0 "$boxtree" query cube.bxt distance two.bxt --tree2 uneven --batch poses.jsonl
 same "$(jq -cs 'map(.upper * 1000 | round)' out)" '[1900,2000]'
+# What a line does not say is taken from the options of its kind.
+cat >rays.jsonl <<'BATCH'
+{"origin":[0.25,0.5,5]}
+{"origin":[0.25,0.5,5],"t_max":9}
+{"origin":[0.25,0.5,5],"direction":[0,0,-2],"t_max":9}
+{}
+{"kind":"ray","origin":[0.25,0.5,-5],"direction":[0,0,1],"t_max":5}
+{"kind":"point","at":[0.5,0.5,3]}
+BATCH
+expect 1 "$boxtree" query cube.bxt ray --direction 0,0,-1 --t-max 3 --batch rays.jsonl
+same "$(jq -cs 'map([.hit, .t, .error])' out)" \
+  '[[false,null,null],[true,4,null],[true,2,null],[null,null,"invalid_query"],[true,5,null],[null,null,null]]'
+same "$(jq -sr '.[3].detail' out)" 'line 4: ray: "origin": expected [X,Y,Z], found no such key'
+printf '%s\n' '{}' '{"kind":"point","at":[0.5,0.5,3],"relative_error":0}' '{"budget":0}' >points.jsonl
+expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,4 --absolute-error 0 --batch points.jsonl
+same "$(jq -cs 'map([(.upper | if . then . * 1000 | round else . end), .nodes > 0])' out)" \
+  '[[3000,true],[2000,true],[null,false]]'
+printf '%s\n' '{"file":"cube.bxt"}' '{"file":"cube.bxt","first":false}' '{"file":"cube.bxt","pose":[9,0,0]}' >pairs.jsonl
+expect 0 "$boxtree" query cube.bxt pair --first --pose 1,0.25,0.25 --batch pairs.jsonl
+same "$(jq -cs 'map(.count | if . > 1 then 2 else . end)' out)" '[1,2,0]'
 expect 1 "$boxtree" query cube.bxt distance - --batch - <cube.bxt
 grep -q 'the file or the batch, not both' err
 expect 1 "$boxtree" query cube.bxt

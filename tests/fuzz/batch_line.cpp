@@ -12,7 +12,7 @@ namespace boxtree::fuzz {
 void run(Bytes input) {
   static const test::CookedTree cooked = test::cook_tree(test::city(2, 1), CodecId::kWide8);
   const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-  const auto query = cooker::parse_request(text, {"ray", {}});
+  const auto query = cooker::parse_request(text, {"ray", {}, {}});
   if (!query) {
     if (query.code() != Errc::kInvalidQuery) finding("an error of another kind");
     return;
