@@ -65,15 +65,16 @@ Json report_json(const Arguments& arguments, const Summary& summary, double seco
   return json;
 }
 
-void print_report(const Arguments& arguments, const Summary& summary, double seconds) {
-  if (summary.scene) {
-    print_scene(summary, arguments.candidates);
-    if (arguments.why) print_why(*summary.scene);
-  } else {
-    print_trees(summary, arguments.candidates);
-  }
-  fmt::print("wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every box above it\n",
-             shown(arguments.job.output.string()), summary.file_bytes, seconds);
+// `output`: the name of what was written.
+std::string report_text(const Arguments& arguments, const std::string& output,
+                        const Summary& summary, double seconds) {
+  std::string text = summary.scene ? scene_text(summary, arguments.candidates)
+                                   : trees_text(summary, arguments.candidates);
+  if (summary.scene && arguments.why) text += why_text(*summary.scene);
+  return text + fmt::format(
+                    "wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every "
+                    "box above it\n",
+                    shown(output), summary.file_bytes, seconds);
 }
 
 // The same of a share, for which CLI11's Range lets NaN pass.
@@ -147,7 +148,6 @@ int run(Arguments& arguments) {
   const Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
   if (!output) return fail(output.error());
   arguments.job.output = output->path();
-  arguments.quiet |= output->is_standard();
   const auto fail_to_cook = [&](const Error& error) {
     return fail(mesh ? mesh->named(error) : error);
   };
@@ -173,7 +173,7 @@ int run(Arguments& arguments) {
   if (arguments.json) {
     print(report_json(arguments, *cooked, seconds));
   } else if (!arguments.quiet) {
-    print_report(arguments, *cooked, seconds);
+    output->report(report_text(arguments, output->name(), *cooked, seconds));
   }
   return 0;
 }

@@ -220,22 +220,25 @@ std::string counted(std::uint64_t count, const char* one, const char* several) {
   return fmt::format("{} {}", count, count == 1 ? one : several);
 }
 
-void print_report(const Arguments& arguments, const ExportReport& report) {
-  fmt::print("{}: {} bytes\n", shown(arguments.output.string()), report.bytes);
+// `output`: the name of what was written.
+std::string report_text(const std::string& output, const ExportReport& report) {
+  std::string text = fmt::format("{}: {} bytes\n", shown(output), report.bytes);
   if (report.instances) {
-    fmt::print("scene: {}, {} triangles placed\n",
-               counted(*report.instances, "instance", "instances"), report.placed_triangles);
+    text +=
+        fmt::format("scene: {}, {} triangles placed\n",
+                    counted(*report.instances, "instance", "instances"), report.placed_triangles);
   }
   for (const ExportedTree& tree : report.trees) {
-    fmt::print("{}: {} triangles", shown(tree.name), tree.triangles);
+    text += fmt::format("{}: {} triangles", shown(tree.name), tree.triangles);
     for (const BoxGroup& group : tree.boxes) {
-      fmt::print(", {}: {}", group.name(), counted(group.count, "box", "boxes"));
+      text += fmt::format(", {}: {}", group.name(), counted(group.count, "box", "boxes"));
     }
     if (report.instances) {
-      fmt::print(", {}", counted(tree.instances, "instance", "instances"));
+      text += fmt::format(", {}", counted(tree.instances, "instance", "instances"));
     }
-    fmt::print("\n");
+    text += fmt::format("\n");
   }
+  return text;
 }
 
 int run(Arguments& arguments) {
@@ -270,8 +273,8 @@ int run(Arguments& arguments) {
   if (const Status sent = output->send(); !sent) return fail(sent.error());
   if (arguments.json) {
     print(report_json(arguments, *exported));
-  } else if (!arguments.quiet && !output->is_standard()) {
-    print_report(arguments, *exported);
+  } else if (!arguments.quiet) {
+    output->report(report_text(output->name(), *exported));
   }
   return 0;
 }

@@ -71,15 +71,15 @@ Json import_json(const ImportReport& report) {
 }
 
 // What was tried and what was not, with the reasons.
-void print_contest(const CookedTree& cooked) {
+void add_contest(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
-  fmt::print("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>8}  {:>9}\n", "codec",
-             "geometry", "tree B/tri", "with geom.", "slowdown", "ray ns", "box ns", "point ns",
-             "pairs us", "error");
+  text += fmt::format("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>8}  {:>9}\n",
+                      "codec", "geometry", "tree B/tri", "with geom.", "slowdown", "ray ns",
+                      "box ns", "point ns", "pairs us", "error");
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
-    fmt::print(
+    text += fmt::format(
         "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
         "  {:>9.2g}{}{}\n",
         candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
@@ -97,12 +97,12 @@ void print_contest(const CookedTree& cooked) {
       if (others[i].geometry != first.geometry) break;
       names += fmt::format("{}{}", names.empty() ? "" : ", ", codec_name(others[i].codec));
     }
-    fmt::print("    not tried, geometry {}: {}: {}\n", geometry_name(first.geometry), names,
-               first.why);
+    text += fmt::format("    not tried, geometry {}: {}: {}\n", geometry_name(first.geometry),
+                        names, first.why);
   }
 }
 
-void print_import(const ImportReport& import) {
+void add_import(const ImportReport& import, std::string& text) {
   std::string notes;
   if (import.points_skipped + import.lines_skipped > 0) {
     notes =
@@ -119,58 +119,58 @@ void print_import(const ImportReport& import) {
   if (import.has_open_end) {
     notes += fmt::format("{}the last line has no end, as if cut short", notes.empty() ? "" : "; ");
   }
-  if (!notes.empty()) fmt::print("  {}\n", notes);
+  if (!notes.empty()) text += fmt::format("  {}\n", notes);
   for (const SkippedFace& face : import.skipped) {
-    fmt::print("  skipped face {}: {}\n", face.face_id, shown(face.reason));
+    text += fmt::format("  skipped face {}: {}\n", face.face_id, shown(face.reason));
   }
 }
 
-void print_grid(const CookedTree& cooked) {
+void add_grid(const CookedTree& cooked, std::string& text) {
   if (cooked.tree.geometry.geometry != GeometryId::kGrid) return;
-  fmt::print(
+  text += fmt::format(
       "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
       "area and are kept\n",
       cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error, cooked.collapsed);
 }
 
 // What was chosen for the only tree.
-void print_choice(const CookedTree& cooked) {
+void add_choice(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
-  fmt::print("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
-             surface_text(cooked.edges));
+  text += fmt::format("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
+                      surface_text(cooked.edges));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     if (!candidate.rejected.empty()) continue;
-    fmt::print(
+    text += fmt::format(
         "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry\n"
         "  {:.2f} times the best time of each kind of query, on average; {} tried\n",
         codec_name(candidate.codec), geometry_name(candidate.geometry),
         per_triangle(candidate.tree_bytes, cooked.tree),
         per_triangle(candidate.bytes(), cooked.tree), slower[i], candidates.size());
   }
-  print_grid(cooked);
+  add_grid(cooked, text);
 }
 
 // What was chosen for each tree, a line each.
-void print_choices(const Summary& summary) {
+void add_choices(const Summary& summary, std::string& text) {
   std::size_t width = 4;
   for (const CookedTree& cooked : summary.trees) width = std::max(width, cooked.tree.name.size());
-  fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>8}  {:>9}  {}\n", "tree", width,
-             "triangles", "codec", "geometry", "tree B/tri", "with geom.", "slowdown", "error",
-             "surface");
+  text += fmt::format("  {:<{}}  {:>9}  {:<10} {:<8} {:>10} {:>10}  {:>8}  {:>9}  {}\n", "tree",
+                      width, "triangles", "codec", "geometry", "tree B/tri", "with geom.",
+                      "slowdown", "error", "surface");
   for (const CookedTree& cooked : summary.trees) {
     const std::vector<Candidate>& candidates = cooked.contest.candidates;
     const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
       if (!candidate.rejected.empty()) continue;
-      fmt::print("  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f}  {:>9.2g}  {}\n",
-                 shown(cooked.tree.name), width, cooked.tree.triangle_count,
-                 codec_name(candidate.codec), geometry_name(candidate.geometry),
-                 per_triangle(candidate.tree_bytes, cooked.tree),
-                 per_triangle(candidate.bytes(), cooked.tree), slower[i],
-                 candidate.max_vertex_error, surface_text(cooked.edges));
+      text += fmt::format(
+          "  {:<{}}  {:>9}  {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f}  {:>9.2g}  {}\n",
+          shown(cooked.tree.name), width, cooked.tree.triangle_count, codec_name(candidate.codec),
+          geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
+          per_triangle(candidate.bytes(), cooked.tree), slower[i], candidate.max_vertex_error,
+          surface_text(cooked.edges));
     }
   }
 }
@@ -257,36 +257,41 @@ Json summary_json(const Summary& summary) {
   return json;
 }
 
-void print_trees(const Summary& summary, bool candidates) {
+std::string trees_text(const Summary& summary, bool candidates) {
+  std::string text;
   if (candidates) {
     for (const CookedTree& cooked : summary.trees) {
-      fmt::print("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
-                 surface_text(cooked.edges));
-      print_contest(cooked);
-      print_grid(cooked);
+      text += fmt::format("{}: {} triangles, {}\n", shown(cooked.tree.name),
+                          cooked.tree.triangle_count, surface_text(cooked.edges));
+      add_contest(cooked, text);
+      add_grid(cooked, text);
     }
   } else if (summary.trees.size() == 1 && !summary.scene) {
-    print_choice(summary.trees.front());
+    add_choice(summary.trees.front(), text);
   } else {
-    print_choices(summary);
+    add_choices(summary, text);
   }
-  for (const ImportReport& import : summary.imports) print_import(import);
+  for (const ImportReport& import : summary.imports) add_import(import, text);
+  return text;
 }
 
-void print_scene(const Summary& summary, bool candidates) {
+std::string scene_text(const Summary& summary, bool candidates) {
   const SceneSummary& scene = *summary.scene;
-  print_trees(summary, candidates);
-  fmt::print("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
-             scene.instances, scene.moving, summary.trees.size(), scene.placed_triangles,
-             summary.file_bytes);
+  std::string text = trees_text(summary, candidates);
+  text +=
+      fmt::format("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
+                  scene.instances, scene.moving, summary.trees.size(), scene.placed_triangles,
+                  summary.file_bytes);
   if (scene.instances_left_out > 0 || scene.meshes > summary.trees.size()) {
-    fmt::print("  left out: {} instances, {} meshes\n", scene.instances_left_out,
-               scene.meshes - summary.trees.size());
+    text += fmt::format("  left out: {} instances, {} meshes\n", scene.instances_left_out,
+                        scene.meshes - summary.trees.size());
   }
-  for (const std::string& notice : scene.notices) fmt::print("  {}\n", shown(notice));
+  for (const std::string& notice : scene.notices) text += fmt::format("  {}\n", shown(notice));
+  return text;
 }
 
-void print_why(const SceneSummary& scene) {
+std::string why_text(const SceneSummary& scene) {
+  std::string text;
   std::size_t part_width = 4, owner_width = 5;
   for (const WhyLine& line : scene.why) {
     part_width = std::max(part_width, line.part.size());
@@ -294,18 +299,21 @@ void print_why(const SceneSummary& scene) {
   }
   std::uint64_t kept = 0;
   for (const bool wanted : {true, false}) {
-    fmt::print("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
+    text +=
+        fmt::format("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
     for (const WhyLine& line : scene.why) {
       if (line.kept != wanted) continue;
       if (wanted) kept += line.bytes;
       const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)
                                                             : fmt::format("~{}", line.bytes);
-      fmt::print("  {:<{}}  {:<{}}  {:>12}  {}{}{}\n", line.part, part_width, shown(line.owner),
-                 owner_width, bytes, shown(line.reason), line.line.empty() ? "" : "  <- ",
-                 shown(line.line));
+      text += fmt::format("  {:<{}}  {:<{}}  {:>12}  {}{}{}\n", line.part, part_width,
+                          shown(line.owner), owner_width, bytes, shown(line.reason),
+                          line.line.empty() ? "" : "  <- ", shown(line.line));
     }
-    if (wanted) fmt::print("  {:<{}}  {:<{}}  {:>12}\n", "sum", part_width, "", owner_width, kept);
+    if (wanted)
+      text += fmt::format("  {:<{}}  {:<{}}  {:>12}\n", "sum", part_width, "", owner_width, kept);
   }
+  return text;
 }
 
 }  // namespace boxtree::cooker

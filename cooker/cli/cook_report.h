@@ -2,6 +2,7 @@
 // What `boxtree cook` says of what it did: tables for people, JSON for tools.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "cooker/cli/json_output.h"
@@ -17,10 +18,10 @@ namespace boxtree::cooker {
 [[nodiscard]] Json summary_json(const Summary& summary);
 
 /// What was chosen for each tree, or the table of its `candidates`; and what import found.
-void print_trees(const Summary& summary, bool candidates);
+[[nodiscard]] std::string trees_text(const Summary& summary, bool candidates);
 /// The same, and what the scene has.
-void print_scene(const Summary& summary, bool candidates);
+[[nodiscard]] std::string scene_text(const Summary& summary, bool candidates);
 /// Each part, its bytes, and who decided.
-void print_why(const SceneSummary& scene);
+[[nodiscard]] std::string why_text(const SceneSummary& scene);
 
 }  // namespace boxtree::cooker

@@ -102,6 +102,11 @@ Result<OutputFile> OutputFile::make(const std::filesystem::path& requested,
   return OutputFile(std::move(*folder), std::move(path));
 }
 
+// Nothing of standard error is checked: what was cooked is whole. main checks standard output.
+void OutputFile::report(const std::string& text) const {
+  static_cast<void>(std::fputs(text.c_str(), folder_ ? stderr : stdout));
+}
+
 Status OutputFile::send() const {
   if (!folder_) return {};
   const FileHandle file(std::fopen(path_.c_str(), "rb"));

@@ -67,7 +67,10 @@ class OutputFile {
   static Result<OutputFile> make(const std::filesystem::path& requested, const std::string& format);
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] bool is_standard() const { return folder_.has_value(); }
+  /// As people are told: "standard output" for "-".
+  [[nodiscard]] std::string name() const { return folder_ ? "standard output" : path_.string(); }
+  /// Prints text for people to standard output, or to standard error where that is the file.
+  void report(const std::string& text) const;
   /// Error: kWriteFailed. Nothing to do for a named file.
   [[nodiscard]] Status send() const;
 

@@ -14,7 +14,17 @@ export TMPDIR=$work/tmp # where scratch files are to be seen
 # A pipe from mesh to answer gives what named files give, and the bytes are the same.
 cp "$meshes/crate.obj" "$meshes/crate.mtl" .
 expect 0 "$boxtree" cook crate.obj -o crate.bxt --strip
-"$boxtree" cook crate.obj -o - --strip >piped.bxt
+mv out said
+"$boxtree" cook crate.obj -o - --strip >piped.bxt 2>err
+cmp crate.bxt piped.bxt
+# What is said of a file that is standard output is on standard error, unless it is not wanted.
+told() { sed -E 's/(wrote )?(crate.bxt|named.glb|standard output)/NAME/; s/in [0-9.]+ s;/in S;/' "$1"; }
+same "$(told err)" "$(told said)"
+grep -q '^wrote standard output, [0-9]* bytes, in ' err
+"$boxtree" cook crate.obj -o - --strip -q >piped.bxt 2>err
+cmp crate.bxt piped.bxt
+same "$(wc -c <err)" 0
+"$boxtree" cook crate.obj -o - --strip 2>/dev/full >piped.bxt
 cmp crate.bxt piped.bxt
 for query in "ray --origin 0,0,9 --direction 0,0,-1" "point --at 3,0,0"; do
   # shellcheck disable=SC2086 # a list of words
@@ -38,8 +48,12 @@ for format in obj glb; do
   "$boxtree" export - -o - --format "$format" <crate.bxt >piped
   cmp piped "named.$format"
 done
-"$boxtree" export crate.bxt -o - >piped # glb unless told otherwise
+"$boxtree" export crate.bxt -o named.glb >said
+"$boxtree" export crate.bxt -o - >piped 2>err # glb unless told otherwise
 cmp piped named.glb
+same "$(told err)" "$(told said)"
+"$boxtree" export crate.bxt -o - -q >piped 2>err
+same "$(wc -c <err)" 0
 "$boxtree" report crate.obj -o - --quick --no-times --quiet >page.html
 head -1 page.html | grep -q DOCTYPE
 tail -1 page.html | grep -q '</html>'
