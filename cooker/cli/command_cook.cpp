@@ -145,7 +145,7 @@ int run(Arguments& arguments) {
     if (!read) return fail(read.error());
     *input = mesh.emplace(std::move(*read)).path();
   }
-  const Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
+  Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
   if (!output) return fail(output.error());
   arguments.job.output = output->path();
   const auto fail_to_cook = [&](const Error& error) {

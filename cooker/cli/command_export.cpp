@@ -253,7 +253,7 @@ int run(Arguments& arguments) {
   if (is_standard_stream(arguments.output) && arguments.json) {
     return usage("--json and -o - cannot share standard output");
   }
-  const Result<OutputFile> output =
+  Result<OutputFile> output =
       OutputFile::make(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
   if (!output) return fail(output.error());
   arguments.output = output->path();

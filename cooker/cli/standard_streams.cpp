@@ -2,10 +2,14 @@
 #include "cooker/cli/standard_streams.h"
 
 #include <cerrno>
+#include <csignal>
 #include <cstddef>
 #include <cstdlib>
+#include <mutex>
+#include <pthread.h>
 #include <span>
 #include <system_error>
+#include <thread>
 #include <unistd.h>
 #include <utility>
 #include <vector>
@@ -42,6 +46,65 @@ Result<std::vector<std::byte>> read_standard_input() {
   return bytes;
 }
 
+// The scratch folders there are, and a thread that removes them when a signal is to end the
+// process.
+class FoldersToRemove {
+ public:
+  static FoldersToRemove& instance() {
+    static auto* const folders = new FoldersToRemove;  // for ever: the thread may outlive statics
+    return *folders;
+  }
+
+  // Makes a folder by mkdtemp.
+  Result<std::filesystem::path> make(std::string name) {
+    const std::lock_guard lock(mutex_);
+    if (!is_watched_) watch();
+    if (::mkdtemp(name.data()) == nullptr) return write_failure(name, "cannot be made");
+    folders_.emplace_back(name);
+    return folders_.back();
+  }
+
+  void remove(const std::filesystem::path& folder) {
+    const std::lock_guard lock(mutex_);
+    std::error_code ignored;  // what is left is the system's to clear
+    std::filesystem::remove_all(folder, ignored);
+    std::erase(folders_, folder);
+  }
+
+ private:
+  // Signals that are ignored, as by nohup, stay so.
+  void watch() {
+    is_watched_ = true;
+    ::sigemptyset(&signals_);
+    bool has_any = false;
+    for (const int number : {SIGHUP, SIGINT, SIGTERM}) {
+      struct sigaction now {};
+      if (::sigaction(number, nullptr, &now) != 0 || now.sa_handler != SIG_DFL) continue;
+      ::sigaddset(&signals_, number);
+      has_any = true;
+    }
+    if (!has_any) return;
+    ::pthread_sigmask(SIG_BLOCK, &signals_, nullptr);
+    std::thread([this] { wait(); }).detach();
+  }
+
+  void wait() {
+    int number = 0;
+    if (::sigwait(&signals_, &number) != 0) return;
+    mutex_.lock();  // and never unlocked: no more folders
+    std::error_code ignored;
+    for (const auto& folder : folders_) std::filesystem::remove_all(folder, ignored);
+    // The process ends as it would have without this thread.
+    ::pthread_sigmask(SIG_UNBLOCK, &signals_, nullptr);
+    static_cast<void>(::kill(::getpid(), number));
+  }
+
+  std::mutex mutex_;
+  bool is_watched_ = false;
+  sigset_t signals_{};
+  std::vector<std::filesystem::path> folders_;
+};
+
 }  // namespace
 
 Result<Bytes> standard_input() {
@@ -56,17 +119,21 @@ Result<ScratchFolder> ScratchFolder::make() {
   if (error) {
     return Error{Errc::kWriteFailed, "no folder for temporary files: " + error.message()};
   }
-  std::string name = (folder / "boxtree-XXXXXX").string();
-  if (::mkdtemp(name.data()) == nullptr) return write_failure(name, "cannot be made");
-  return ScratchFolder(name);
+  Result<std::filesystem::path> made =
+      FoldersToRemove::instance().make((folder / "boxtree-XXXXXX").string());
+  if (!made) return made.error();
+  return ScratchFolder(std::move(*made));
 }
 
 ScratchFolder::ScratchFolder(ScratchFolder&& other) noexcept
     : path_(std::exchange(other.path_, std::filesystem::path())) {}
 
 ScratchFolder::~ScratchFolder() {
-  std::error_code ignored;  // what is left is the system's to clear
-  if (!path_.empty()) std::filesystem::remove_all(path_, ignored);
+  remove();
+}
+
+void ScratchFolder::remove() {
+  if (!path_.empty()) FoldersToRemove::instance().remove(std::exchange(path_, {}));
 }
 
 Result<StandardMesh> StandardMesh::read(const std::string& format) {
@@ -107,10 +174,11 @@ void OutputFile::report(const std::string& text) const {
   static_cast<void>(std::fputs(text.c_str(), folder_ ? stderr : stdout));
 }
 
-Status OutputFile::send() const {
+Status OutputFile::send() {
   if (!folder_) return {};
   const FileHandle file(std::fopen(path_.c_str(), "rb"));
   if (!file) return write_failure(path_, "cannot be read again");
+  folder_->remove();
   std::vector<std::byte> block(std::size_t{1} << 18);
   while (const std::size_t read = std::fread(block.data(), 1, block.size(), file.get())) {
     if (!write_all(STDOUT_FILENO, std::span(block).first(read))) {

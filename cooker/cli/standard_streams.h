@@ -25,7 +25,9 @@ inline constexpr std::uint64_t kMaxStandardInput = std::uint64_t{1} << 34;
 /// kMaxStandardInput.
 Result<Bytes> standard_input();
 
-/// A folder for this process alone, removed with all that is in it. Move-only.
+/// A folder for this process alone, removed with all that is in it; also where SIGHUP, SIGINT or
+/// SIGTERM ends the process. The thread that makes the first one, and those that it starts later,
+/// block these signals from then on: a thread of their own waits for them. Move-only.
 class ScratchFolder {
  public:
   /// In the system's folder for temporary files. Error: kWriteFailed.
@@ -35,6 +37,8 @@ class ScratchFolder {
   ~ScratchFolder();
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  /// Before the end of its life. What is open in it can still be read.
+  void remove();
 
  private:
   explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
@@ -71,8 +75,9 @@ class OutputFile {
   [[nodiscard]] std::string name() const { return folder_ ? "standard output" : path_.string(); }
   /// Prints text for people to standard output, or to standard error where that is the file.
   void report(const std::string& text) const;
-  /// Error: kWriteFailed. Nothing to do for a named file.
-  [[nodiscard]] Status send() const;
+  /// Error: kWriteFailed. Nothing to do for a named file. A reader that goes away ends the process
+  /// by SIGPIPE, as it ends others; nothing is left then.
+  [[nodiscard]] Status send();
 
  private:
   OutputFile(std::optional<ScratchFolder> folder, std::filesystem::path path)

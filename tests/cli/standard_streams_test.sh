@@ -61,6 +61,26 @@ tail -1 page.html | grep -q '</html>'
 head -1 out | grep -q ','
 same "$(ls tmp)" ""
 
+# A cook that is ended leaves nothing, whether by a signal or because nobody reads on.
+awk 'BEGIN { for (y = 0; y <= 400; ++y) for (x = 0; x <= 400; ++x) print "v", x, y, x * y % 7
+  for (y = 0; y < 400; ++y) for (x = 1; x <= 400; ++x) { a = 401 * y + x; print "f", a, a + 1, a + 402 "\nf", a, a + 402, a + 401 } }' >many.obj
+for signal in HUP INT TERM; do # background jobs of scripts ignore INT
+  env --default-signal=$signal "$boxtree" cook - --format obj -o - --try-all -q <many.obj >piped.bxt &
+  while [ -z "$(ls tmp)" ]; do kill -0 $!; sleep 0.01; done
+  kill -s $signal $!
+  got=0
+  wait $! || got=$?
+  same "$(kill -l "$got")" $signal
+  same "$(ls tmp)" ""
+done
+env --ignore-signal=TERM "$boxtree" cook - --format obj -o ignored.bxt -q <many.obj & # as by nohup
+while [ -z "$(ls tmp)" ]; do kill -0 $!; sleep 0.01; done
+kill -s TERM $!
+wait $!
+expect 0 "$boxtree" verify ignored.bxt -q
+(set +o pipefail; "$boxtree" cook many.obj -o - -q | head -c 1 >piped.bxt)
+same "$(ls tmp)" ""
+
 # What cannot be is refused, by its name.
 expect 1 "$boxtree" cook - -o out.bxt
 grep -q -- '--format' err
