@@ -168,6 +168,11 @@ int run(Arguments& arguments) {
          cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
   }
   if (!cooked) return fail_to_cook(cooked.error());
+  for (ImportReport& import : cooked->imports) {
+    for (std::filesystem::path& file : import.files_missing) {
+      if (mesh) file = mesh->named(file);
+    }
+  }
   if (const Status sent = output->send(); !sent) return fail(sent.error());
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {

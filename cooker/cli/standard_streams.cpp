@@ -157,6 +157,10 @@ Error StandardMesh::named(Error error) const {
   return error;
 }
 
+std::filesystem::path StandardMesh::named(const std::filesystem::path& file) const {
+  return file.parent_path() == folder_.path() ? file.filename() : file;
+}
+
 Result<OutputFile> OutputFile::make(const std::filesystem::path& requested,
                                     const std::string& format) {
   if (!is_standard_stream(requested)) return OutputFile(std::nullopt, requested);

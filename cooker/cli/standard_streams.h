@@ -54,6 +54,8 @@ class StandardMesh {
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// An error of reading it, about "stdin.FORMAT".
   [[nodiscard]] Error named(Error error) const;
+  /// A file that it refers to, as it names it.
+  [[nodiscard]] std::filesystem::path named(const std::filesystem::path& file) const;
 
  private:
   StandardMesh(ScratchFolder folder, std::filesystem::path path)

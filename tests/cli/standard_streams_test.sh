@@ -93,6 +93,9 @@ expect 1 "$boxtree" export crate.bxt -o x.glb --format glb
 expect 1 "$boxtree" report crate.obj -o - --json --quick --no-times
 expect 1 "$boxtree" query - --batch - <crate.bxt
 grep -q 'the file or the batch, not both' err
+expect 0 "$boxtree" cook - --format obj -o out.bxt <crate.obj
+grep -q '^  crate.mtl is not there' out
+rm out.bxt
 printf 'f 1 2 3\n' | expect 3 "$boxtree" cook - --format obj -o out.bxt
 grep -q 'stdin.obj' err
 if grep -q tmp/ err; then echo "a scratch name is shown: $(cat err)"; exit 1; fi
