@@ -167,7 +167,10 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   if (file.has_scene() && arguments.tree.empty()) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
     if (!scene) {
-      return fail({scene.code(), arguments.file.string() + ": " + scene.error().detail});
+      const std::string& detail = scene.error().detail;
+      return fail({scene.code(),
+                   arguments.file.string() + ": " +
+                       (detail.empty() ? std::string(error_info(scene.code()).meaning) : detail)});
     }
     return answer_all(
         [&](const QueryRequest& each, TreeCache& others) { return answer(*scene, each, others); });

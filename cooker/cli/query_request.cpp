@@ -14,6 +14,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
+#include "cooker/text/pose_fault.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
@@ -427,8 +428,30 @@ std::optional<Pose> parse_pose(std::string_view text) {
   return pose_of(std::span(numbers).first(count));
 }
 
+Error explained_pose(std::string_view whose, const Pose& pose) {
+  std::vector<double> numbers;
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    for (Eigen::Index column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
+  }
+  return {Errc::kInvalidPose,
+          fmt::format("{} pose {}; expected finite numbers of an invertible map, found [{}]", whose,
+                      pose_fault(pose), fmt::join(numbers, ","))};
+}
+
 Error explained(const Error& error, const QueryRequest& request) {
-  if (error.code != Errc::kInvalidQuery || !error.detail.empty()) return error;
+  if (!error.detail.empty()) return error;
+  if (error.code == Errc::kInvalidPose) {
+    return std::visit(
+        [&]<class Kind>(const Kind& q) -> Error {
+          if constexpr (requires { q.second; }) {
+            return explained_pose(std::string(Kind::kKind) + ": the second tree's", q.second.pose);
+          } else {
+            return error;
+          }
+        },
+        request);
+  }
+  if (error.code != Errc::kInvalidQuery) return error;
   return std::visit(
       [&]<class Kind>(const Kind& q) -> Error {
         if constexpr (requires { Kind::kExpected; }) {

@@ -136,6 +136,7 @@ QueryKinds kind_of(const AboutTwo&) {
 }
 
 struct Move {
+  std::string name;
   std::uint32_t instance;
   Pose pose;
 };
@@ -152,10 +153,10 @@ Result<Move> parse_move(const Scene& scene, const std::string& text) {
   }
   const std::string name = text.substr(0, at);
   const Result<std::uint32_t> found = scene.find_instance(name);
-  if (found) return Move{*found, *pose};
+  if (found) return Move{name, *found, *pose};
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && end == name.data() + name.size()) return Move{number, *pose};
+  if (error == std::errc() && end == name.data() + name.size()) return Move{name, number, *pose};
   return found.error();
 }
 
@@ -178,7 +179,11 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
   scene = Scene::bind(file, options);
   if (!scene) return scene.error();
   for (const Move& move : parsed) {
-    if (Status status = scene->update(move.instance, move.pose); !status) return status.error();
+    const Status status = scene->update(move.instance, move.pose);
+    if (status.code() == Errc::kInvalidPose) {
+      return explained_pose(fmt::format("--move {}: the", move.name), move.pose);
+    }
+    if (!status) return status.error();
   }
   return OpenedScene{std::move(file), std::move(*scene)};
 }

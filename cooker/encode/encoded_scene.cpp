@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/text/pose_fault.h"
 #include "cooker/text/utf8.h"
 #include "format/container.h"
 #include "runtime/primitive/float_state.h"
@@ -57,10 +58,9 @@ class SceneEncoder {
       const std::optional<Placement> placed = Placement::make(frame, instance.pose);
       const auto bounds = placed ? placed->bounds(tree.nodes.root_box) : std::nullopt;
       if (!bounds) {
-        return Error{
-            Errc::kInvalidPose,
-            fmt::format("instance {} '{}': its transform is not finite, or cannot be undone",
-                        instance.id, instance.name)};
+        return Error{Errc::kInvalidPose,
+                     fmt::format("instance {} '{}': its transform {}", instance.id, instance.name,
+                                 pose_fault(instance.pose))};
       }
       if (instance.moves) {
         order_.push_back(i);

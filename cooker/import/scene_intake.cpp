@@ -15,7 +15,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
-#include "runtime/primitive/vector3.h"
+#include "cooker/text/pose_fault.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -88,19 +88,6 @@ Pose pose_of(const Transform& transform) {
   return pose;
 }
 
-// The fault of a pose, or nullptr. These are the tests of RelativePose, with its arithmetic, for a
-// body relative to itself: the inverse must be finite, and so must the product of both (a
-// determinant beyond the range of doubles makes the inverse zero).
-const char* pose_fault(const Pose& pose) {
-  if (!pose.matrix().allFinite()) return "is not finite";
-  const Eigen::Matrix3d linear = pose.linear();
-  const Eigen::Matrix3d inverse = inverse_of(linear);
-  const Eigen::Matrix3d product = matrix_product(inverse, linear);
-  const Eigen::Matrix3d back = inverse_of(product);
-  if (!inverse.allFinite() || !product.allFinite() || !back.allFinite()) return "is not invertible";
-  return nullptr;
-}
-
 // Assimp's reader of glTF numbers the primitives of a mesh: wheel-0, wheel-1.
 std::string name_of(const aiScene& scene, const Placement& placement) {
   constexpr std::string_view kFirst = "-0";
@@ -155,9 +142,9 @@ Status SceneIntake::take(const Placements& placements) {
     }
     if (*mesh == kNoMesh) continue;
     const Pose pose = pose_of(placement.transform);
-    if (const char* fault = pose_fault(pose)) {
+    if (!pose.matrix().allFinite() || !is_invertible(pose)) {
       return Error{Errc::kInvalidPose, fmt::format("{}: node '{}': its transform {}", context_.file,
-                                                   placement.name, fault)};
+                                                   placement.name, pose_fault(pose))};
     }
     const auto id = static_cast<std::uint32_t>(out_.instances.size());
     out_.instances.push_back({placement.name, *mesh, id, pose});

@@ -173,6 +173,17 @@ grep -q ' found at \[0,0,0\], relative_error -1$' err
 rejects 'distance: expected a max_distance and errors of 0 or more, found max_distance -1' \
   distance cube.bxt --max-distance=-1
 rejects 'overlap: expected within of 0 or more, found within -1' overlap cube.bxt --within=-1
+# A pose that no query can have: whose it is, and what is wrong with it.
+poses() {
+  local said=$1
+  shift
+  expect 1 "$boxtree" query cube.bxt "$@"
+  grep -qF "boxtree: invalid_pose: $said" err || { cat err; exit 1; }
+}
+poses "pair: the second tree's pose is not invertible: it flattens what it places; expected finite numbers of an invertible "\
+'map, found [1,0,0,0,0,1,0,0,0,0,0,0]' pair cube.bxt --pose 1,0,0,0,0,1,0,0,0,0,0,0
+poses "distance: the second tree's pose is not finite: row 2, column 4 is nan; " distance cube.bxt --pose 0,nan,0
+poses "overlap: the second tree's pose leads too far away: " overlap cube.bxt --pose 0,0,1e300
 
 # Same bytes from another folder and with other thread counts.
 mkdir elsewhere

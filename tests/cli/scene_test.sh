@@ -82,6 +82,10 @@ expect 0 "$boxtree" query --help
 tr -s ' \n' ' ' <out | grep -q 'X,Y,Z is one without rotation and scale; 12 numbers, .*, keep them'
 expect 1 "$boxtree" query level.bxt contacts --move 'Crate=up'
 grep -q 'expected INSTANCE=X,Y,Z' err
+expect 1 "$boxtree" query level.bxt contacts --move 'Crate=1,0,0,0,0,0,0,0,0,0,1,0'
+grep -q 'invalid_pose: level.bxt: --move Crate: the pose is not invertible: it flattens what it places; expected ' err
+expect 1 "$boxtree" query level.bxt pair level.bxt --pose inf,0,0
+grep -q "invalid_pose: pair: the second tree's pose is not finite: row 1, column 4 is inf; " err
 expect 1 "$boxtree" query level.bxt contacts --move 'Nobody=0,0,0'
 grep -q 'Nobody' err
 expect 1 "$boxtree" query flat.bxt contacts
