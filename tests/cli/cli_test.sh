@@ -223,6 +223,32 @@ for tool in make ninja; do
   expect 0 $tool -C depends
   grep -qE 'up to date|no work to do' out
 done
+# Whatever make and ninja can read; what they cannot is an error, and nothing is written.
+mkdir names
+printf 'exec "%s" cook "$(cat name)" -o "$1" --depfile "$1.d" -q\n' "$boxtree" >names/cook.sh
+printf 'make.bxt:\n\tsh cook.sh make.bxt\n-include make.bxt.d\n' >names/Makefile
+printf 'rule cook\n  command = sh cook.sh $out\n  depfile = $out.d\nbuild ninja.bxt: cook\n' >names/build.ninja
+for name in a:b :b 'a b' 'a#b' 'a$b' 'a\b' 'a,(b)~'; do
+  rm -f names/*.bxt names/*.d
+  cp cube.obj "names/$name.obj"
+  echo "$name.obj" >names/name
+  for tool in make ninja; do
+    touch -d '2 hours ago' "names/$name.obj"
+    expect 0 $tool -C names
+    expect 0 $tool -C names
+    grep -qE 'up to date|no work to do' out || { echo "$tool cooks again for nothing: $name"; exit 1; }
+    touch -d '1 hour ago' names/$tool.bxt
+    touch "names/$name.obj"
+    expect 0 $tool -C names
+    grep -q 'cook.sh' out || grep -q '1/1' out
+  done
+done
+for name in 'a;b' 'a=b' 'a|b' $'a\tb' 'a\:b'; do
+  cp cube.obj "names/$name.obj"
+  expect 2 "$boxtree" cook "names/$name.obj" -o names/none.bxt --depfile names/none.d
+  grep -qF 'write_failed: names/none.d: make cannot read the name "' err
+  if [ -e names/none.bxt ] || [ -e names/none.d ]; then echo "written: $name"; exit 1; fi
+done
 
 # Errors name the file and the place, and leave the old file alone.
 cp cube.bxt before.bxt
