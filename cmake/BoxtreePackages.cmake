@@ -21,8 +21,10 @@ set(CPACK_INSTALL_DEFAULT_DIRECTORY_PERMISSIONS
     OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
 
 file(REAL_PATH ${PROJECT_SOURCE_DIR}/CHANGELOG.md changelog) # sources may be links
-file(ARCHIVE_CREATE OUTPUT ${PROJECT_BINARY_DIR}/changelog.gz PATHS ${changelog}
-     FORMAT raw COMPRESSION GZip COMPRESSION_LEVEL 9)
+find_program(BOXTREE_GZIP gzip)
+if(BOXTREE_GZIP) # else no dpkg either
+  execute_process(COMMAND ${BOXTREE_GZIP} -9nc ${changelog} OUTPUT_FILE ${PROJECT_BINARY_DIR}/changelog.gz)
+endif()
 
 # boxtree_add_package(COMPONENT NAME SECTION DEPENDS DESCRIPTION): a package of one component of install
 # rules. Debian wants licence and changes in each.

@@ -5,6 +5,7 @@ command and kind; pages are clean troff, completions are tried in the shells, an
 
     manual_test.py BOXTREE SOURCE_DIR CMAKE BUILD_DIR
 """
+import gzip
 import os
 import pathlib
 import re
@@ -18,6 +19,9 @@ SHELLS = ("bash", "zsh", "fish")
 SECTIONS = ["NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "COMMANDS", "KINDS", "EXIT STATUS", "EXAMPLES",
             "SEE ALSO"]
 ALWAYS = {"NAME", "SYNOPSIS", "DESCRIPTION", "OPTIONS", "EXIT STATUS", "EXAMPLES", "SEE ALSO"}
+
+# How files begin that gzip -9n has written, as Debian wants them: no name, no time, the best compression.
+GZIP_9N = b"\x1f\x8b\x08" + 5 * b"\0" + b"\2"
 
 # Words before the cursor, and what is offered there among others, and what is not. Folders are.
 OFFERS = [
@@ -230,8 +234,17 @@ def check_examples(manual, source, folder):
 def check_installed(manual, cmake, build, prefix):
     run([cmake, "--install", build, "--prefix", prefix, "--component", "boxtree_program"])
     share = prefix / "share"
+    changes = (pathlib.Path(build) / "changelog.gz").read_bytes()
+    if changes[:9] != GZIP_9N:
+        sys.exit(f"the changelog of packages is not as gzip -9n writes it: {changes[:10]}")
     expect("installed pages", {path.name for path in (share / "man/man1").iterdir()},
-           {"-".join(["boxtree"] + command) + ".1" for command in manual.commands})
+           {"-".join(["boxtree"] + command) + ".1.gz" for command in manual.commands})
+    for command in manual.commands:
+        page = (share / "man/man1" / ("-".join(["boxtree"] + command) + ".1.gz")).read_bytes()
+        if gzip.decompress(page).decode() != manual.page(command):
+            sys.exit(f"the installed page of {command} is not what boxtree help --man prints")
+        if page[:9] != GZIP_9N:
+            sys.exit(f"the installed page of {command} is not as gzip -9n writes it: {page[:10]}")
     for shell, place in (("bash", "bash-completion/completions/boxtree"),
                          ("zsh", "zsh/site-functions/_boxtree"),
                          ("zsh", "zsh/vendor-completions/_boxtree"),
