@@ -95,6 +95,21 @@ SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind) {
   throw std::runtime_error("no such section");
 }
 
+std::span<std::byte> section_of(std::vector<std::byte>& file, SectionKind kind) {
+  const SectionEntry entry = entry_of(file, kind);
+  return std::span(file).subspan(entry.offset, entry.size);
+}
+
+void edit_entry(std::vector<std::byte>& file, SectionKind kind,
+                const std::function<void(SectionEntry&)>& change) {
+  SectionEntry entry = entry_of(file, kind);
+  std::byte* at = file.data() + sizeof(FileHeader);
+  while (std::memcmp(at, &entry, sizeof(entry)) != 0) at += sizeof(entry);
+  change(entry);
+  std::memcpy(at, &entry, sizeof(entry));
+  repair_checksums(file);
+}
+
 void repair_checksums(std::vector<std::byte>& bytes) {
   if (bytes.size() < sizeof(FileHeader)) return;
   const auto count = load<FileHeader>(bytes.data()).section_count;

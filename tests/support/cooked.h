@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -57,6 +58,13 @@ struct Encoding {
 /// The section table entry of the file's section of a kind. Precondition: there is one.
 [[nodiscard]] SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind);
 
+/// The bytes of that section.
+[[nodiscard]] std::span<std::byte> section_of(std::vector<std::byte>& file, SectionKind kind);
+
+/// Changes that entry and repairs the checksums.
+void edit_entry(std::vector<std::byte>& file, SectionKind kind,
+                const std::function<void(SectionEntry&)>& change);
+
 /// Calls `change` for each record of a section, with its index and the number of records, and
 /// repairs the checksums, to make corrupt files with valid checksums.
 template <class Record>
@@ -69,10 +77,10 @@ void repair_checksums(std::vector<std::byte>& bytes);
 template <class Record>
 void edit_records(std::vector<std::byte>& file, SectionKind kind,
                   const std::function<void(Record&, std::uint32_t, std::uint32_t)>& change) {
-  const SectionEntry entry = entry_of(file, kind);
-  const auto count = static_cast<std::uint32_t>(entry.size / sizeof(Record));
+  const std::span<std::byte> section = section_of(file, kind);
+  const auto count = static_cast<std::uint32_t>(section.size() / sizeof(Record));
   for (std::uint32_t i = 0; i < count; ++i) {
-    std::byte* const at = file.data() + entry.offset + i * sizeof(Record);
+    std::byte* const at = section.data() + i * sizeof(Record);
     auto record = load<Record>(at);
     change(record, i, count);
     std::memcpy(at, &record, sizeof(record));

@@ -238,14 +238,8 @@ TEST(ReservedBits, MoreBytesThanThePaddingAreFound) {
     // There is room before the next section.
     if (align_up(vertices.size, kSectionAlignment) - vertices.size < kClusterUnit) continue;
     ++tried;
-    const auto count = load<FileHeader>(bytes.data()).section_count;
-    for (std::size_t i = 0; i < count; ++i) {
-      std::byte* const at = bytes.data() + sizeof(FileHeader) + i * sizeof(SectionEntry);
-      auto entry = load<SectionEntry>(at);
-      if (entry.offset == vertices.offset) entry.size += kClusterUnit;
-      std::memcpy(at, &entry, sizeof(entry));
-    }
-    test::repair_checksums(bytes);
+    test::edit_entry(bytes, SectionKind::kVertices,
+                     [](SectionEntry& entry) { entry.size += kClusterUnit; });
     EXPECT_TRUE(is_found(bytes));
   }
   EXPECT_GT(tried, 0u);

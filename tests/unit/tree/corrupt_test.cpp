@@ -16,7 +16,6 @@
 #include "format/cluster.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
-#include "runtime/file/open_file.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
@@ -26,16 +25,6 @@ namespace boxtree {
 namespace {
 
 using Section = std::span<std::byte>;
-
-Section section_of(std::vector<std::byte>& bytes, SectionKind kind) {
-  const Result<File> file = File::open(Bytes(bytes));
-  for (const SectionEntry& entry : OpenFile::of(*file).container().sections) {
-    if (entry.kind == static_cast<std::uint32_t>(kind)) {
-      return Section(bytes).subspan(entry.offset, entry.size);
-    }
-  }
-  throw std::runtime_error("no such section");
-}
 
 template <class Record>
 void edit(Section bytes, std::size_t index, const std::function<void(Record&)>& change) {
@@ -93,7 +82,7 @@ TEST_P(Corrupt, EveryQuerySaysSo) {
   options.grid.bits = 12;
   const test::CookedTree whole = test::cook_tree(mesh, corruption.codec, options);
   std::vector<std::byte> bytes = whole.bytes;
-  corruption.change(section_of(bytes, corruption.section));
+  corruption.change(test::section_of(bytes, corruption.section));
   test::repair_checksums(bytes);
   const Result<File> file = File::open(Bytes(bytes));
   ASSERT_TRUE(file.ok()) << file.error().message();
@@ -232,7 +221,7 @@ TEST(ClusterLeaf, EveryBitMatters) {
   options.grid.bits = 12;
   const test::CookedTree whole = test::cook_tree(mesh, CodecId::kPlainF32, options);
   std::vector<std::byte> bytes = whole.bytes;
-  const Section clusters = section_of(bytes, SectionKind::kVertices);
+  const Section clusters = test::section_of(bytes, SectionKind::kVertices);
   ClusterLeaf leaf;
   ClusterLeafFields place;
   ASSERT_TRUE(decode_cluster_leaf(BoundTree::of(whole.tree).leaves().clusters(), 0, leaf, &place));
