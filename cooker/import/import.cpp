@@ -118,6 +118,10 @@ Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& opti
   return import_guarded({path, options, ImportWanted::kFitting});
 }
 
+bool has_node_graph(const fs::path& path) {
+  return find_extension(kMeshReaders, path) == nullptr;
+}
+
 std::vector<std::string> mesh_endings() {
   std::vector<std::string> endings = assimp_endings();
   for (const MeshReader& reader : kMeshReaders) endings.emplace_back(reader.extension);

@@ -94,6 +94,10 @@ struct Imported {
 /// of range.
 Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOptions& options = {});
 
+/// Whether files of such a name have a node graph, as all have that assimp reads: then import_mesh
+/// flattens them.
+[[nodiscard]] bool has_node_graph(const std::filesystem::path& path);
+
 /// Endings of the names of files that are read, in lower case, in order: "3ds", "obj", ...
 [[nodiscard]] std::vector<std::string> mesh_endings();
 

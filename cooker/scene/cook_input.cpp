@@ -16,21 +16,59 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Joins the materials of several scenes into those of one.
+class MaterialJoin {
+ public:
+  explicit MaterialJoin(std::vector<std::string>& materials) : all_(materials) {
+    for (std::uint32_t i = 0; i < all_.size(); ++i) {
+      if (all_[i] != unnamed_material(i)) by_name_.emplace(all_[i], i);
+    }
+  }
+
+  // The numbers here of the materials of another scene.
+  std::vector<std::uint32_t> add(const std::vector<std::string>& materials) {
+    std::vector<std::uint32_t> numbers;
+    for (std::uint32_t i = 0; i < materials.size(); ++i) {
+      const bool has_name = materials[i] != unnamed_material(i);
+      numbers.push_back(has_name ? add_named(materials[i]) : add_unnamed());
+    }
+    return numbers;
+  }
+
+ private:
+  std::uint32_t add_named(const std::string& name) {
+    const auto number = static_cast<std::uint32_t>(all_.size());
+    const auto [known, is_new] = by_name_.emplace(name, number);
+    if (is_new) all_.push_back(name);
+    return known->second;
+  }
+
+  // Materials without a name are never merged, because they may differ.
+  std::uint32_t add_unnamed() {
+    const auto number = static_cast<std::uint32_t>(all_.size());
+    all_.push_back(unnamed_material(number));
+    return number;
+  }
+
+  std::vector<std::string>& all_;
+  std::map<std::string, std::uint32_t> by_name_;
+};
+
+void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers) {
+  for (MaterialRun& run : runs) run.material = numbers[run.material];
+}
+
 // Joins several scenes into one; equal meshes are stored once, as in the scene of one file.
 class SceneJoin {
  public:
-  explicit SceneJoin(SourceScene& scene) : scene_(scene), meshes_(scene.meshes) {
-    for (std::uint32_t i = 0; i < scene.materials.size(); ++i) note_material(i);
-  }
+  explicit SceneJoin(SourceScene& scene)
+      : scene_(scene), meshes_(scene.meshes), materials_(scene.materials) {}
 
   void add(SourceScene from) {
-    std::vector<std::uint32_t> materials, meshes;  // their numbers here
-    for (std::uint32_t i = 0; i < from.materials.size(); ++i) {
-      const bool has_name = from.materials[i] != unnamed_material(i);
-      materials.push_back(has_name ? add_material(from.materials[i]) : add_unnamed());
-    }
+    const std::vector<std::uint32_t> materials = materials_.add(from.materials);
+    std::vector<std::uint32_t> meshes;  // their numbers here
     for (SceneMesh& mesh : from.meshes) {
-      for (MaterialRun& run : mesh.materials) run.material = materials[run.material];
+      renumber(mesh.materials, materials);
       meshes.push_back(meshes_.add(std::move(mesh)));
     }
     const auto instances = static_cast<std::uint32_t>(scene_.instances.size());
@@ -42,35 +80,25 @@ class SceneJoin {
   }
 
  private:
-  void note_material(std::uint32_t number) {
-    const std::string& name = scene_.materials[number];
-    if (name != unnamed_material(number)) by_name_.emplace(name, number);
-  }
-
-  std::uint32_t add_material(const std::string& name) {
-    const auto known = by_name_.find(name);
-    if (known != by_name_.end()) return known->second;
-    const auto number = static_cast<std::uint32_t>(scene_.materials.size());
-    scene_.materials.push_back(name);
-    by_name_.emplace(name, number);
-    return number;
-  }
-
-  // Materials without a name are never merged, because they may differ.
-  std::uint32_t add_unnamed() {
-    const auto number = static_cast<std::uint32_t>(scene_.materials.size());
-    scene_.materials.push_back(unnamed_material(number));
-    return number;
-  }
-
   SourceScene& scene_;
   MeshMerger meshes_;
-  std::map<std::string, std::uint32_t> by_name_;  // numbers of materials
+  MaterialJoin materials_;
 };
 
 void note_import(CookInput& input, ImportReport&& report, std::string name) {
   input.imports.push_back(std::move(report));
   input.import_names.push_back(std::move(name));
+}
+
+// What a profile lists, as one mesh; with its materials, unless nodes are flattened.
+Result<SourceScene> import_listed(const fs::path& path, const ImportOptions& options) {
+  if (!has_node_graph(path)) return import_scene(path, options);
+  Result<Imported> imported = import_mesh(path, options);
+  if (!imported) return imported.error();
+  SourceScene scene;
+  scene.report = std::move(imported->report);
+  scene.meshes.push_back({std::move(imported->mesh), {}});
+  return scene;
 }
 
 // Each mesh of a profile becomes a mesh of the scene. A file that several name is read once for
@@ -79,16 +107,19 @@ Result<CookInput> load_listed(const Profile& profile, const ImportOptions& optio
                               const Progress& progress) {
   CookInput input;
   input.scene.name = profile.path.stem().string();
+  MaterialJoin materials(input.scene.materials);
   std::vector<std::uint32_t> numbers;  // the scene's numbers of the profile's meshes
   for (const ProfileMesh& listed : profile.meshes) {
     numbers.push_back(static_cast<std::uint32_t>(input.scene.meshes.size()));
     if (!listed.file) continue;
     const std::string name = listed.file->value.filename().string();
     announce(progress, "import " + name);
-    Result<Imported> imported = import_mesh(listed.file->value, options);
+    Result<SourceScene> imported = import_listed(listed.file->value, options);
     if (!imported) return imported.error();
-    imported->mesh.name = listed.name.value;
-    input.scene.meshes.push_back({std::move(imported->mesh), {}});
+    SceneMesh& mesh = imported->meshes.front();
+    mesh.mesh.name = listed.name.value;
+    renumber(mesh.materials, materials.add(imported->materials));
+    input.scene.meshes.push_back(std::move(mesh));
     note_import(input, std::move(imported->report), name);
   }
   for (const ProfileInstance& placed : profile.instances) {

@@ -546,6 +546,22 @@ translation = [1, 0, 0]
   EXPECT_EQ(border[0], border[1]);
 }
 
+// The materials of each instance's faces, by id.
+std::vector<std::vector<std::string>> materials_of_faces(const Scene& scene) {
+  std::vector<std::vector<std::string>> names(scene.instance_count());
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const InstanceInfo info = require(scene.info(i));
+    const Tree& tree = scene.trees()[info.tree];
+    std::vector<std::string>& of_faces = names[info.id];
+    of_faces.resize(tree.face_count());
+    for (std::uint32_t face = 0; face < of_faces.size(); ++face) {
+      const std::uint32_t id = BoundTree::of(tree).face_id(face);
+      of_faces[id] = scene.material_name(scene.material({i, {id, face}}));
+    }
+  }
+  return names;
+}
+
 // Two files of one content are one tree placed twice; a material of one name is one.
 TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
   test::TempFolder folder;
@@ -563,20 +579,26 @@ TEST(CookScene, WhatSeveralFilesShareIsThereOnce) {
   EXPECT_EQ(scene.instance_count(), 4u);
   EXPECT_EQ(scene.trees().size(), 3u);
   EXPECT_EQ(scene.material_count(), 2u);
-  std::vector<std::vector<std::string>> names(4);  // of each instance's faces, by id
-  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
-    const InstanceInfo info = require(scene.info(i));
-    const Tree& tree = scene.trees()[info.tree];
-    std::vector<std::string>& of_faces = names[info.id];
-    of_faces.resize(tree.face_count());
-    for (std::uint32_t face = 0; face < of_faces.size(); ++face) {
-      const std::uint32_t id = BoundTree::of(tree).face_id(face);
-      of_faces[id] = scene.material_name(scene.material({i, {id, face}}));
-    }
-  }
   const std::vector<std::vector<std::string>> expected{
       {"wood"}, {"wood"}, {"stone"}, {"stone", "wood"}};
-  EXPECT_EQ(names, expected);
+  EXPECT_EQ(materials_of_faces(scene), expected);
+}
+
+TEST(CookScene, MeshesThatAProfileListsHaveTheirMaterials) {
+  test::TempFolder folder;
+  folder.write("a.obj",
+               "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nusemtl stone\nf 1 2 3\nusemtl wood\nf 1 2 4\n");
+  folder.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n");
+  folder.write("c.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n");
+  std::string text;
+  for (const std::string file : {"b.obj", "a.obj", "c.off"}) {
+    text += "[[mesh]]\nname = \"" + file + "\"\nfile = \"" + file + "\"\n[[instance]]\nmesh = \"" +
+            file + "\"\n";
+  }
+  const CookedFileOf cooked({}, CookOptions(), folder.write("scene.toml", text));
+  EXPECT_EQ(cooked.scene.material_count(), 2u);
+  const std::vector<std::vector<std::string>> expected{{"wood"}, {"stone", "wood"}, {""}};
+  EXPECT_EQ(materials_of_faces(cooked.scene), expected);
 }
 
 TEST(CookScene, InvalidScenesAreRefused) {
