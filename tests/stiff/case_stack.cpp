@@ -91,11 +91,11 @@ CaseResult run_stack(const Scale& scale) {
   const double explicit_step = 0.1 / omega;
   constexpr double kImplicitStep = 1e-3;
   const std::size_t implicit_steps = scale.quick ? 1500 : 3000;
-  std::vector<Run> runs;
-  for (const double mass : {1.0, 1e2, 1e4, 1e6}) {
-    runs.push_back({mass, true, kImplicitStep, implicit_steps});
-  }
-  runs.push_back({1, false, explicit_step, 5000});
+  std::vector<Run> runs = {{1, true, kImplicitStep, implicit_steps},
+                           {1e2, true, kImplicitStep, implicit_steps},
+                           {1e4, true, kImplicitStep, implicit_steps},
+                           {1e6, true, kImplicitStep, implicit_steps},
+                           {1, false, explicit_step, 5000}};
   if (!scale.quick) runs.push_back({1e2, false, explicit_step, 60000});
   cooker::PagePlot plot{"time, s", "log10 of the share that the depth is off rest", {}};
   plot.lines = true;

@@ -496,7 +496,9 @@ degrees = 30.5
 }
 
 TEST_F(ProfileTest, DeepNestingIsRefused) {
-  EXPECT_EQ(fault("a = " + std::string(100000, '[')).rfind("scene.toml:1: ", 0), 0u);
+  std::string text = "a = ";
+  text.append(100000, '[');
+  EXPECT_EQ(fault(text).rfind("scene.toml:1: ", 0), 0u);
 }
 
 }  // namespace
