@@ -84,8 +84,8 @@ constexpr std::array kTable = {
              "no encoding keeps to the bytes and the time requested", 1},
     ErrcInfo{Errc::kProfileInvalid, "profile_invalid",
              "a profile says what it must not, or of nothing that is there", 3},
-    ErrcInfo{Errc::kDocumentInvalid, "document_invalid",
-             "a JSON document is not what it should be", 3},
+    ErrcInfo{Errc::kDocumentInvalid, "document_invalid", "a JSON document is not what it should be",
+             3},
     ErrcInfo{Errc::kInternal, "internal", "an internal error; please report it", 4},
 };
 

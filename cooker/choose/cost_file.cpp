@@ -59,7 +59,8 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
   const auto store = std::find_if(kStores.begin(), kStores.end(),
                                   [&](GeometryId s) { return geometry_name(s) == geometry; });
   if (store == kStores.end()) {
-    return fault(fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
+    return fault(
+        fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
   }
   CodecCost cost{*id, *store, {}};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {

@@ -31,7 +31,8 @@ class Descriptor {
 };
 
 Error system_error(Errc code, const std::string& path, int number) {
-  return Error{number == ENOMEM ? Errc::kOutOfMemory : code, path + ": " + std::generic_category().message(number)};
+  return Error{number == ENOMEM ? Errc::kOutOfMemory : code,
+               path + ": " + std::generic_category().message(number)};
 }
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.

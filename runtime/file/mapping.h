@@ -23,7 +23,8 @@ class Mapping {
   ~Mapping();
 
   /// Maps `path`; size and bytes come from one open descriptor, so a rename cannot mix two files.
-  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory. An empty file gives empty bytes.
+  /// Errors: kFileNotFound, kFileUnreadable, kMapFailed, kOutOfMemory. An empty file gives empty
+  /// bytes.
   ///
   /// While it is mapped the file must not be truncated in place: replace files by rename, as the
   /// cooker does. Use copy() for files that others may modify.

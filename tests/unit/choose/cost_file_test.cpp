@@ -67,9 +67,10 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
             "costs: plain-f32, arrays, ray: expected \"node_ns\", nanoseconds, 0 or more, found "
             "nothing");
   for (const Json& value : {Json(-1), Json("7"), Json(nullptr)}) {
-    EXPECT_EQ(refusal([&](Json& j) { j["costs"][0]["ray"]["leaf_ns"] = value; }),
-              "costs: plain-f32, arrays, ray: expected \"leaf_ns\", nanoseconds, 0 or more, found " +
-                  value.dump());
+    EXPECT_EQ(
+        refusal([&](Json& j) { j["costs"][0]["ray"]["leaf_ns"] = value; }),
+        "costs: plain-f32, arrays, ray: expected \"leaf_ns\", nanoseconds, 0 or more, found " +
+            value.dump());
   }
   EXPECT_EQ(refusal([](Json& j) {
               j["costs"][0]["ray"] = {{"query_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
