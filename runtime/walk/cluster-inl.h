@@ -39,26 +39,31 @@ class ClusterReader {
   template <std::size_t kStride>
   HWY_INLINE bool read(std::uint32_t leaf, float scale, float (&out)[3][3][kStride]) {
     if (!enter(leaf / kClusterLeaves)) return false;
+    // In an order in which the longest chain begins first: two gathers, the second of which waits
+    // for the first.
     Faces faces;
-    if (!read_faces(leaf % kClusterLeaves, faces)) return false;
-    Slots slots;
-    if (!find_slots(faces, slots)) return false;
+    if (!find_faces(leaf % kClusterLeaves, faces)) return false;
+    const Slots slots = find_slots(faces);
+    Places places;
+    if (!find_places(faces, places)) return false;
+    const Named thirds =
+        read_places(places, lanes_with(faces.word, kThirdBits), ranks(faces.new_thirds), 0);
+    const auto new_thirds = static_cast<std::uint32_t>(std::popcount(faces.new_thirds));
+    const std::uint32_t new_aparts = faces.new_aparts & 0xffu;
+    const Named aparts = read_places(places, lanes_with(small(new_aparts), kLaneBits),
+                                     hn::Add(ranks(new_aparts), small(new_thirds)), kLeafFaces);
     const FloatVector scales = hn::Set(Floats(), scale);
     FloatVector third[3], apart[3];
-    const auto rank = ranks(faces.new_thirds);
-    auto corrupt = read_vertices(slots, lanes_with(faces.word, kThirdBits), rank, 0, scales, third);
-    const auto thirds = static_cast<std::uint32_t>(std::popcount(faces.new_thirds));
-    const auto apart_rank = hn::Add(ranks(faces.new_aparts & 0xffu), small(thirds));
-    const auto of_aparts =
-        read_vertices(slots, lanes_with(small(faces.new_aparts & 0xffu), kLaneBits), apart_rank,
-                      kLeafFaces, scales, apart);
+    auto corrupt = read_vertices(slots, thirds, 0, scales, third);
+    const auto of_aparts = read_vertices(slots, aparts, kLeafFaces, scales, apart);
     corrupt =
         hn::Or(corrupt, hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts)), of_aparts));
-    corrupt = hn::Or(corrupt, hn::Or(faces.corrupt, slots.corrupt));
+    const Corners corners = join_faces(faces);
+    corrupt = hn::Or(corrupt, hn::Or(corners.corrupt, slots.corrupt));
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) hn::Store(third[k], Floats(), out[2][k]);
     if (HWY_LIKELY(faces.aparts <= kWideChildren / 2)) {
-      const Place first(faces.first), second(faces.second);
+      const Place first(corners.first), second(corners.second);
       HWY_UNROLL(3)
       for (std::size_t k = 0; k < 3; ++k) {
         hn::Store(first.look_up(third[k], apart[k]), Floats(), out[0][k]);
@@ -68,10 +73,11 @@ class ClusterReader {
       // Copies, so that the usual case may keep them in registers.
       const Faces faces_copy = faces;
       const Slots slots_copy = slots;
+      const Places places_copy = places;
       const FloatVector third_copy[3] = {third[0], third[1], third[2]};
       const FloatVector apart_copy[3] = {apart[0], apart[1], apart[2]};
-      corrupt =
-          hn::Or(corrupt, read_more(faces_copy, slots_copy, scales, third_copy, apart_copy, out));
+      corrupt = hn::Or(corrupt, read_more(faces_copy, places_copy, slots_copy, scales, third_copy,
+                                          apart_copy, out));
     }
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
@@ -114,12 +120,15 @@ class ClusterReader {
     std::uint32_t numbers_at = 0;  // byte of their numbers
     std::uint32_t places_at = 0;   // bit of the places of references that are not new
     WordVector word;               // has the bits of new_thirds, see kThirdBits
-    WordVector first, second;      // references of the other two corners
-    WordVector corrupt;            // 0 if nothing is
   };
 
-  // The leaf itself and the others whose vertices it names, a lane each, and the places of vertices
-  // there, a few bits each.
+  // References of the first two corners of eight faces.
+  struct Corners {
+    WordVector first, second;
+    WordVector corrupt;  // 0 if nothing is
+  };
+
+  // The leaf itself and the others whose vertices it names, a lane each.
   struct Slots {
     WordVector middle;             // bit; beyond the cluster in unused lanes
     WordVector stride;             // bits of a vertex
@@ -127,10 +136,20 @@ class ClusterReader {
     WordVector width[3], mask[3];  // of their offsets
     WordVector corrupt;            // 0 if nothing is
     bool is_narrow = false;        // no offset has more than 25 bits
-    hn::Vec<Bytes> places;
-    WordVector first_place;           // bit of `places`
-    WordVector place_bits;            // of each
+  };
+
+  // The places of references to vertices that are not new.
+  struct Places {
+    hn::Vec<Bytes> bytes;
+    WordVector first;                 // bit of `bytes` where the first begins
+    WordVector bits;                  // of each
     WordVector slot_bits, slot_mask;  // of its first field
+  };
+
+  // Vertices that eight references lead to: the slots of their leaves, and how many vertices before
+  // the middle of the leaf they begin.
+  struct Named {
+    WordVector slot, back;
   };
 
   // Of the fields of a leaf: steps, a bit for each third corner, and how many other leaves there
@@ -240,7 +259,7 @@ class ClusterReader {
     return hn::Sub(exponent, constant<127>());
   }
 
-  HWY_INLINE bool read_faces(std::uint32_t self, Faces& faces) {
+  HWY_INLINE bool find_faces(std::uint32_t self, Faces& faces) const {
     const ClusterHeader& header = cluster_.header;
     const std::byte* const bytes = cluster_.bytes;
     const auto start = static_cast<std::uint32_t>(
@@ -262,6 +281,11 @@ class ClusterReader {
     faces.new_aparts = static_cast<std::uint32_t>(read_bits(bytes, aparts_at, 2 * kLeafFaces)) &
                        ((1u << (2 * faces.aparts)) - 1);
     faces.places_at = aparts_at + 2 * faces.aparts;
+    return true;
+  }
+
+  // The corners of faces, and those of the source, which position() needs.
+  HWY_INLINE Corners join_faces(const Faces& faces) {
     // The step to each face; the first is apart.
     HWY_ALIGN static constexpr std::uint32_t kShift[kWideChildren] = {0, 0, 3, 6, 9, 12, 15, 18};
     HWY_ALIGN static constexpr std::uint32_t kMask[kWideChildren] = {0, 7, 7, 7, 7, 7, 7, 7};
@@ -272,7 +296,8 @@ class ClusterReader {
     const auto is_apart = is_less(constant<StripStep::kApart - 1>(), step);
     const auto is_second =
         hn::AndNot(is_apart, is_less(constant<StripStep::code(1, 0) - 1>(), step));
-    faces.corrupt = hn::VecFromMask(Words(), is_less(constant<StripStep::kApart>(), step));
+    Corners corners;
+    corners.corrupt = hn::VecFromMask(Words(), is_less(constant<StripStep::kApart>(), step));
     const std::uint32_t aparts = bits_of_words(is_apart);
     const std::uint32_t seconds = bits_of_words(is_second);
     // One corner of a face that is not apart is the third of the face before. The other is one of
@@ -286,12 +311,12 @@ class ClusterReader {
     const auto changed =
         hn::IfThenElse(is_apart, hn::Add(pair, constant<1>()), permute(last, before));
     const auto kept = permute(changed, last_set(aparts | ((seconds ^ seconds << 1) & 0xffu)));
-    faces.first = hn::IfThenElse(is_second, kept, last);
-    faces.second = hn::IfThenElse(is_second, last, kept);
+    corners.first = hn::IfThenElse(is_second, kept, last);
+    corners.second = hn::IfThenElse(is_second, last, kept);
     hn::Store(step, Words(), step_);
-    hn::Store(faces.first, Words(), corner_[0]);
-    hn::Store(faces.second, Words(), corner_[1]);
-    return true;
+    hn::Store(corners.first, Words(), corner_[0]);
+    hn::Store(corners.second, Words(), corner_[1]);
+    return corners;
   }
 
   // The words of 32 bits that begin at the bytes of some bits, shifted so that the field is lowest.
@@ -313,34 +338,54 @@ class ClusterReader {
   }
 
   // False if places take more bytes than a vector has.
-  HWY_INLINE bool find_slots(const Faces& faces, Slots& slots) const {
-    const ClusterHeader& header = cluster_.header;
-    const std::uint32_t leaf_bits = faces.leaf_bits;
+  HWY_INLINE bool find_places(const Faces& faces, Places& places) const {
     const auto slot_bits = static_cast<std::uint32_t>(std::bit_width(faces.others));
-    const std::uint32_t place_bits = slot_bits + header.own_bits;
-    const std::uint32_t places_at = faces.places_at;
-    const auto places = kLeafFaces + 2 * faces.aparts -
-                        static_cast<std::uint32_t>(
-                            std::popcount(faces.new_aparts << kLeafFaces | faces.new_thirds));
-    if (HWY_UNLIKELY(places_at % 8 + places * place_bits > 128)) return false;
-    slots.places = hn::LoadDup128(
-        Bytes(), reinterpret_cast<const std::uint8_t*>(cluster_.bytes) + places_at / 8);
-    slots.first_place = small(places_at % 8);
-    slots.place_bits = small(place_bits);
-    slots.slot_bits = small(slot_bits);
-    slots.slot_mask = small((1u << slot_bits) - 1);
+    const std::uint32_t bits = slot_bits + cluster_.header.own_bits;
+    const std::uint32_t is_new = faces.new_aparts << kLeafFaces | faces.new_thirds;
+    const std::uint32_t count =
+        kLeafFaces + 2 * faces.aparts - static_cast<std::uint32_t>(std::popcount(is_new));
+    if (HWY_UNLIKELY(faces.places_at % 8 + count * bits > 128)) return false;
+    places.bytes = hn::LoadDup128(
+        Bytes(), reinterpret_cast<const std::uint8_t*>(cluster_.bytes) + faces.places_at / 8);
+    places.first = small(faces.places_at % 8);
+    places.bits = small(bits);
+    places.slot_bits = small(slot_bits);
+    places.slot_mask = small((1u << slot_bits) - 1);
+    return true;
+  }
+
+  // Eight references from `first` on. `is_own`: the leaf stores their vertices. `rank`: how many
+  // references up to each are such.
+  HWY_INLINE Named read_places(const Places& places, WordMask is_own, WordVector rank,
+                               std::uint32_t first) const {
+    // Places of references that are not new follow each other. Each has at most 8 bits.
+    const auto count = hn::Sub(hn::Iota(Words(), first), rank);
+    const auto place = hn::Add(multiply(count, places.bits), places.first);
+    const auto two_bytes =
+        hn::Add(multiply(hn::ShiftRight<3>(place), constant<0x0101>()), constant<0x0100>());
+    const auto field = hn::Shr(
+        hn::BitCast(Words(), hn::TableLookupBytes(places.bytes, hn::BitCast(Bytes(), two_bytes))),
+        hn::And(place, constant<7>()));
+    const auto number = hn::And(hn::Shr(field, places.slot_bits), set(own_mask_));
+    return {hn::IfThenZeroElse(is_own, hn::And(field, places.slot_mask)),
+            hn::IfThenElse(is_own, rank, hn::Add(number, constant<1>()))};
+  }
+
+  HWY_INLINE Slots find_slots(const Faces& faces) const {
+    const ClusterHeader& header = cluster_.header;
+    Slots slots;
     // Lane 0 is the leaf itself; lane i has the i-th number, (i - 1) leaf_bits on.
     const hn::Repartition<std::uint64_t, Words> pairs;
     const auto all = hn::Set(pairs, load<std::uint64_t>(cluster_.bytes + faces.numbers_at));
     HWY_ALIGN static constexpr std::uint32_t kEven[kWideChildren] = {0, 0, 1, 0, 3, 0, 5, 0};
     HWY_ALIGN static constexpr std::uint32_t kOdd[kWideChildren] = {0, 0, 2, 0, 4, 0, 6, 0};
     HWY_ALIGN static constexpr std::uint32_t kItself[kWideChildren] = {~0u};
-    const auto width = small(leaf_bits);
+    const auto width = small(faces.leaf_bits);
     const auto even = hn::Shr(all, hn::MulEven(hn::Load(Words(), kEven), width));
     const auto odd = hn::Shr(all, hn::MulEven(hn::Load(Words(), kOdd), width));
     const auto number = hn::And(
         hn::OddEven(hn::BitCast(Words(), hn::ShiftLeft<32>(odd)), hn::BitCast(Words(), even)),
-        small((1u << leaf_bits) - 1));
+        small((1u << faces.leaf_bits) - 1));
     const auto self = small(faces.self);
     const auto itself = hn::Load(Words(), kItself);
     const auto leaf = hn::Or(hn::AndNot(itself, number), hn::And(itself, self));
@@ -373,7 +418,7 @@ class ClusterReader {
       const auto is_wide = hn::AndNot(is_less(widest, set(kGatheredBits + 1)), is_listed);
       slots.is_narrow = hn::AllFalse(Words(), is_wide);
     }
-    return true;
+    return slots;
   }
 
   // The low bits of words, up to 32 of them: a shift by 32 gives 0 here.
@@ -387,25 +432,13 @@ class ClusterReader {
     return hn::Shl(words, set(bits));
   }
 
-  // Eight references from `first` on. `is_own`: the leaf stores their vertices. `rank`: how many
-  // references up to each are such. Returns a vector that is 0 but for lanes whose bytes are
-  // corrupt.
-  HWY_INLINE WordVector read_vertices(const Slots& slots, WordMask is_own, WordVector rank,
-                                      std::uint32_t first, FloatVector scale,
-                                      FloatVector (&out)[3]) {
-    // Places of references that are not new follow each other. Each has at most 8 bits.
-    const auto count = hn::Sub(hn::Iota(Words(), first), rank);
-    const auto place = hn::Add(multiply(count, slots.place_bits), slots.first_place);
-    const auto two_bytes =
-        hn::Add(multiply(hn::ShiftRight<3>(place), constant<0x0101>()), constant<0x0100>());
-    const auto field = hn::Shr(
-        hn::BitCast(Words(), hn::TableLookupBytes(slots.places, hn::BitCast(Bytes(), two_bytes))),
-        hn::And(place, constant<7>()));
-    const auto number = hn::And(hn::Shr(field, slots.slot_bits), set(own_mask_));
-    const auto back = hn::IfThenElse(is_own, rank, hn::Add(number, constant<1>()));
-    const auto slot = hn::IfThenZeroElse(is_own, hn::And(field, slots.slot_mask));
+  // The vertices of references `first` and on. Returns a vector that is 0 but for lanes whose bytes
+  // are corrupt.
+  HWY_INLINE WordVector read_vertices(const Slots& slots, const Named& named, std::uint32_t first,
+                                      FloatVector scale, FloatVector (&out)[3]) {
+    const auto slot = named.slot;
     const auto begin =
-        hn::Sub(permute(slots.middle, slot), multiply(back, permute(slots.stride, slot)));
+        hn::Sub(permute(slots.middle, slot), multiply(named.back, permute(slots.stride, slot)));
     WordVector bit[3];
     bit[0] = hn::Min(begin, set(most_bits_));
     bit[1] = hn::Add(bit[0], permute(slots.width[0], slot));
@@ -446,16 +479,17 @@ class ClusterReader {
 
   // The vertices of more than four faces that are apart, and the corners of the leaf.
   template <std::size_t kStride>
-  HWY_NOINLINE WordVector read_more(const Faces& faces, const Slots& slots, FloatVector scale,
-                                    const FloatVector (&third)[3], const FloatVector (&apart)[3],
-                                    float (&out)[3][3][kStride]) {
+  HWY_NOINLINE WordVector read_more(const Faces& faces, const Places& places, const Slots& slots,
+                                    FloatVector scale, const FloatVector (&third)[3],
+                                    const FloatVector (&apart)[3], float (&out)[3][3][kStride]) {
     const std::uint32_t before = faces.new_thirds | (faces.new_aparts & 0xffu) << kWideChildren;
-    const auto rank = hn::Add(ranks(faces.new_aparts >> kWideChildren),
-                              small(static_cast<std::uint32_t>(std::popcount(before))));
+    const std::uint32_t is_new = faces.new_aparts >> kWideChildren;
+    const auto rank =
+        hn::Add(ranks(is_new), small(static_cast<std::uint32_t>(std::popcount(before))));
+    const Named named =
+        read_places(places, lanes_with(small(is_new), kLaneBits), rank, 2 * kWideChildren);
     FloatVector more[3];
-    const auto corrupt =
-        read_vertices(slots, lanes_with(small(faces.new_aparts >> kWideChildren), kLaneBits), rank,
-                      2 * kWideChildren, scale, more);
+    const auto corrupt = read_vertices(slots, named, 2 * kWideChildren, scale, more);
     HWY_ALIGN float all[kReferences];
     for (std::size_t k = 0; k < 3; ++k) {
       hn::Store(third[k], Floats(), all);
