@@ -35,14 +35,14 @@ void exercise(Bytes bytes) {
   const Result<Tree> tree = Tree::bind(*file);
   if (!tree) return;
   static const std::vector<test::TreeQuery> queries = [] {
-    test::QuerySet queries;
-    queries.ray = {{0.3, 0.4, 9}, {0.01, 0.02, -1}};
-    queries.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)};
-    queries.point = {3, 2, 1};
-    queries.radius = 4;
-    queries.far.translation() = Eigen::Vector3d(4, 5, 1);
-    queries.node_budget = 100;
-    return test::tree_queries(queries);
+    test::QuerySet set;
+    set.ray = {{0.3, 0.4, 9}, {0.01, 0.02, -1}};
+    set.box = {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(9, 9, 9)};
+    set.point = {3, 2, 1};
+    set.radius = 4;
+    set.far.translation() = Eigen::Vector3d(4, 5, 1);
+    set.node_budget = 100;
+    return test::tree_queries(set);
   }();
   for (const test::TreeQuery& query : queries) static_cast<void>(query.run_query(*tree, *tree, {}));
 }
