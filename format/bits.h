@@ -14,6 +14,9 @@ namespace boxtree {
 /// Bytes after the last field that read_bits may load.
 inline constexpr std::size_t kBitPadding = 8;
 
+/// Bits that one unaligned load has from any bit on.
+inline constexpr std::uint32_t kMostBitsRead = 57;
+
 /// The `width` low bits of a word, set. Precondition: width <= 64.
 [[nodiscard]] constexpr std::uint64_t low_bits(std::uint32_t width) noexcept {
   return width == 0 ? 0 : ~std::uint64_t{0} >> (64 - width);
@@ -32,7 +35,7 @@ inline constexpr std::size_t kBitPadding = 8;
 }
 
 /// The field of `width` bits that starts `position` bits after `bytes`; the first bit is the least
-/// significant one. Precondition: width <= 57, and kBitPadding bytes follow the field.
+/// significant one. Precondition: width <= kMostBitsRead, and kBitPadding bytes follow the field.
 [[nodiscard]] inline std::uint64_t read_bits(const std::byte* bytes, std::uint64_t position,
                                              std::uint32_t width) noexcept {
   return (load<std::uint64_t>(bytes + position / 8) >> (position % 8)) & low_bits(width);

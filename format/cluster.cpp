@@ -14,6 +14,7 @@ namespace {
 // each reference: 362 bits, after which 16 bytes are read at once.
 static_assert(kClusterPadding >= 362 / 8 + 2 * kBitPadding);
 
+template <ClusterNumbers kNumbers>
 class LeafDecoder {
  public:
   LeafDecoder(const ClusterView& view, ClusterLeaf& out) : view_(view), out_(out) {}
@@ -70,13 +71,16 @@ class LeafDecoder {
     }
     is_new |= take(out_.vertex_count - out_.face_count) << out_.face_count;
     const std::uint32_t slot_bits = width_below(named_.other_count + 1);
+    const std::uint32_t place_bits = slot_bits + cluster_.header.own_bits;
+    const std::uint32_t slot_mask = (1u << slot_bits) - 1;
     for (std::uint32_t r = 0; r < out_.vertex_count; ++r) {
       if (((is_new >> r) & 1u) != 0) {
         if (!read_vertex(own_, named_.stored++, out_.position[r])) return false;
         continue;
       }
-      const std::uint32_t slot = take(slot_bits);
-      const std::uint32_t number = take(cluster_.header.own_bits);
+      const std::uint32_t place = take(place_bits);
+      const std::uint32_t slot = place & slot_mask;
+      const std::uint32_t number = place >> slot_bits;
       if (slot > named_.other_count || !read_vertex(places[slot], number, out_.position[r])) {
         return false;
       }
@@ -93,26 +97,35 @@ class LeafDecoder {
     const std::uint64_t back = std::uint64_t{number + 1} * leaf.stride;
     if (back > leaf.middle) return false;
     std::uint64_t at = leaf.middle - back;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::uint64_t offset = read_wide_bits(cluster_.bytes, at, leaf.width[k]);
-      // Unsigned, so that corrupt sums wrap.
-      out[k] = position_of(leaf.base[k] + offset, cluster_.header.trailing[k]);
-      at += leaf.width[k];
+    std::array<std::uint64_t, 3> stored;
+    if (leaf.stride <= kMostBitsRead) {
+      std::uint64_t fields = read_bits(cluster_.bytes, at, kMostBitsRead);
+      for (std::size_t k = 0; k < 3; ++k) {
+        stored[k] = fields & ((std::uint64_t{1} << leaf.width[k]) - 1);
+        fields >>= leaf.width[k];
+      }
+    } else {
+      for (std::size_t k = 0; k < 3; ++k) {
+        stored[k] = read_wide_bits(cluster_.bytes, at, leaf.width[k]);
+        at += leaf.width[k];
+      }
     }
+    // Unsigned, so that corrupt sums wrap.
+    for (std::size_t k = 0; k < 3; ++k) stored[k] += leaf.base[k];
+    const std::array<std::uint8_t, 3>& trailing = cluster_.header.trailing;
+    for (std::size_t k = 0; k < 3; ++k) out[k] = position_of(stored[k], trailing[k]);
     return true;
   }
 
-  [[nodiscard]] double position_of(std::uint64_t number, std::uint32_t trailing) const {
+  static double position_of(std::uint64_t number, std::uint32_t trailing) {
     const auto number_32 = static_cast<std::int32_t>(static_cast<std::uint32_t>(number));
-    switch (view_.numbers) {
-      case ClusterNumbers::kGrid:
-        return static_cast<std::int32_t>(static_cast<std::uint32_t>(number_32) << trailing);
-      case ClusterNumbers::kF32:
-        return float_of_number(number_32, trailing);
-      case ClusterNumbers::kF64:
-        break;
+    if constexpr (kNumbers == ClusterNumbers::kGrid) {
+      return static_cast<std::int32_t>(static_cast<std::uint32_t>(number_32) << trailing);
+    } else if constexpr (kNumbers == ClusterNumbers::kF32) {
+      return float_of_number(number_32, trailing);
+    } else {
+      return double_of_number(static_cast<std::int64_t>(number), trailing);
     }
-    return double_of_number(static_cast<std::int64_t>(number), trailing);
   }
 
   // References lead to the third corners of all faces, then to the other two of those that are
@@ -153,7 +166,15 @@ class LeafDecoder {
 
 bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, ClusterLeaf& out,
                          ClusterLeafFields* fields) noexcept {
-  return LeafDecoder(clusters, out).run(leaf, fields);
+  switch (clusters.numbers) {
+    case ClusterNumbers::kGrid:
+      return LeafDecoder<ClusterNumbers::kGrid>(clusters, out).run(leaf, fields);
+    case ClusterNumbers::kF32:
+      return LeafDecoder<ClusterNumbers::kF32>(clusters, out).run(leaf, fields);
+    case ClusterNumbers::kF64:
+      break;
+  }
+  return LeafDecoder<ClusterNumbers::kF64>(clusters, out).run(leaf, fields);
 }
 
 }  // namespace boxtree

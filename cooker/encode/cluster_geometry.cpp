@@ -119,13 +119,30 @@ Step step_between(const ClusterFace& from, std::uint32_t entered, const ClusterF
 class StripOrder {
  public:
   explicit StripOrder(std::span<ClusterFace> faces) : faces_(faces), count_(faces.size()) {
-    for (std::size_t i = 0; i < count_; ++i) {
-      for (std::size_t j = 0; j < count_; ++j) {
-        for (std::uint32_t edge = 0; i != j && edge < 3; ++edge) {
-          turn_[i][j][edge] = turn_over(faces[i], edge, faces[j]);
-          across_[i][edge] |= (turn_[i][j][edge] != kNoTurn ? 1u : 0u) << j;
+    // Edges from corner to corner as one number, and the same reversed. Lanes of faces that are not
+    // there match nothing.
+    std::array<std::uint32_t, kEdges> edge, reversed;
+    edge.fill(kNoEdge);
+    reversed.fill(kNoEdge + 1);
+    for (std::size_t f = 0; f < count_; ++f) {
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::uint32_t from = faces[f].corner[e], to = faces[f].corner[(e + 1) % 3];
+        edge[e * kLeafFaces + f] = from << 16 | to;
+        reversed[e * kLeafFaces + f] = to << 16 | from;
+      }
+    }
+    for (std::size_t f = 0; f < count_; ++f) {
+      for (std::size_t e = 0; e < 3; ++e) {
+        const std::uint32_t sought = reversed[e * kLeafFaces + f];
+        std::uint32_t found = 0;
+        for (std::size_t i = 0; i < kEdges; ++i) found |= edge[i] == sought ? kBit[i] : 0;
+        for (std::size_t turn = 0; turn < 3; ++turn) {
+          by_turn_[f][e][turn] =
+              (found >> (turn * kLeafFaces)) & ((1u << kLeafFaces) - 1) & ~(1u << f);
+          across_[f][e] |= by_turn_[f][e][turn];
         }
       }
+      near_[f] = across_[f][0] | across_[f][1] | across_[f][2];
     }
   }
 
@@ -134,6 +151,7 @@ class StripOrder {
     for (std::size_t start = 0; start < count_; ++start) {
       const Walk walk = walk_from(start);
       if (walk.shared > best.shared) best = walk;
+      if (best.shared + 1 == static_cast<int>(count_)) break;
     }
     std::array<ClusterFace, kLeafFaces> ordered;
     for (std::size_t i = 0; i < count_; ++i) ordered[i] = faces_[best.face[i]];
@@ -141,6 +159,16 @@ class StripOrder {
   }
 
  private:
+  static constexpr std::size_t kEdges = std::size_t{3} * kLeafFaces;
+  static constexpr std::uint32_t kNoEdge = 0xfffffffeu;  // vertices of a cluster are fewer
+
+  // In memory, so that compilers compare several edges at once.
+  static constexpr auto kBit = [] {
+    std::array<std::uint32_t, kEdges> bits{};
+    for (std::size_t i = 0; i < kEdges; ++i) bits[i] = 1u << i;
+    return bits;
+  }();
+
   struct Walk {
     std::array<std::size_t, kLeafFaces> face{};
     int shared = -1;
@@ -158,9 +186,14 @@ class StripOrder {
       const std::uint32_t first = (entered + 1) % 3, second = (entered + 2) % 3;
       const std::uint32_t near = (across_[at][first] | across_[at][second]) & left;
       const std::size_t next = loneliest(near != 0 ? near : left, left);
-      walk.shared += near != 0 ? 1 : 0;
-      const std::uint8_t turn = turn_[at][next][turn_[at][next][first] != kNoTurn ? first : second];
-      entered = near != 0 ? turn : 0;
+      entered = 0;
+      if (near != 0) {
+        ++walk.shared;
+        const bool is_first = ((across_[at][first] >> next) & 1u) != 0;
+        const std::uint32_t(&turns)[3] = by_turn_[at][is_first ? first : second];
+        // The first of them, as step_between finds it.
+        while (((turns[entered] >> next) & 1u) == 0) ++entered;
+      }
       at = next;
     }
   }
@@ -168,11 +201,10 @@ class StripOrder {
   // Of some faces, the one with the fewest neighbours left. Precondition: there is one.
   [[nodiscard]] std::size_t loneliest(std::uint32_t faces, std::uint32_t left) const {
     std::size_t best = 0;
-    int fewest = std::numeric_limits<int>::max();
+    std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max();
     for (; faces != 0; faces &= faces - 1) {
       const auto face = static_cast<std::size_t>(std::countr_zero(faces));
-      const std::uint32_t(&across)[3] = across_[face];
-      const int others = std::popcount((across[0] | across[1] | across[2]) & left);
+      const std::uint32_t others = kOnes[near_[face] & left];
       if (others < fewest) {
         fewest = others;
         best = face;
@@ -181,10 +213,22 @@ class StripOrder {
     return best;
   }
 
+  // How many bits of a number are set: instruction sets without such an instruction call a
+  // function.
+  static constexpr auto kOnes = [] {
+    std::array<std::uint8_t, 1u << kLeafFaces> ones{};
+    for (std::size_t i = 1; i < ones.size(); ++i) {
+      ones[i] = static_cast<std::uint8_t>(ones[i / 2] + i % 2);
+    }
+    return ones;
+  }();
+
   std::span<ClusterFace> faces_;
   std::size_t count_;
-  std::uint8_t turn_[kLeafFaces][kLeafFaces][3];  // of face j where it follows face i over an edge
-  std::uint32_t across_[kLeafFaces][3] = {};      // bit j: face j can follow face i over an edge
+  // Bit j: face j can follow face i over its edge, and is entered by the edge of the turn.
+  std::uint32_t by_turn_[kLeafFaces][3][3] = {};
+  std::uint32_t across_[kLeafFaces][3] = {};  // by any of its edges
+  std::uint32_t near_[kLeafFaces] = {};       // over any edge
 };
 
 class BitWriter {
