@@ -14,7 +14,6 @@ namespace {
 // each reference: 362 bits, after which 16 bytes are read at once.
 static_assert(kClusterPadding >= 362 / 8 + 2 * kBitPadding);
 
-template <ClusterNumbers kNumbers>
 class LeafDecoder {
  public:
   LeafDecoder(const ClusterView& view, ClusterLeaf& out) : view_(view), out_(out) {}
@@ -117,15 +116,17 @@ class LeafDecoder {
     return true;
   }
 
-  static double position_of(std::uint64_t number, std::uint32_t trailing) {
+  [[nodiscard]] double position_of(std::uint64_t number, std::uint32_t trailing) const {
     const auto number_32 = static_cast<std::int32_t>(static_cast<std::uint32_t>(number));
-    if constexpr (kNumbers == ClusterNumbers::kGrid) {
-      return static_cast<std::int32_t>(static_cast<std::uint32_t>(number_32) << trailing);
-    } else if constexpr (kNumbers == ClusterNumbers::kF32) {
-      return float_of_number(number_32, trailing);
-    } else {
-      return double_of_number(static_cast<std::int64_t>(number), trailing);
+    switch (view_.numbers) {
+      case ClusterNumbers::kGrid:
+        return static_cast<std::int32_t>(static_cast<std::uint32_t>(number_32) << trailing);
+      case ClusterNumbers::kF32:
+        return float_of_number(number_32, trailing);
+      case ClusterNumbers::kF64:
+        break;
     }
+    return double_of_number(static_cast<std::int64_t>(number), trailing);
   }
 
   // References lead to the third corners of all faces, then to the other two of those that are
@@ -166,15 +167,7 @@ class LeafDecoder {
 
 bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, ClusterLeaf& out,
                          ClusterLeafFields* fields) noexcept {
-  switch (clusters.numbers) {
-    case ClusterNumbers::kGrid:
-      return LeafDecoder<ClusterNumbers::kGrid>(clusters, out).run(leaf, fields);
-    case ClusterNumbers::kF32:
-      return LeafDecoder<ClusterNumbers::kF32>(clusters, out).run(leaf, fields);
-    case ClusterNumbers::kF64:
-      break;
-  }
-  return LeafDecoder<ClusterNumbers::kF64>(clusters, out).run(leaf, fields);
+  return LeafDecoder(clusters, out).run(leaf, fields);
 }
 
 }  // namespace boxtree
