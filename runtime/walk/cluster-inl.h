@@ -35,7 +35,7 @@ class ClusterReader {
 
   /// Decodes a leaf of 8 triangles: coordinates as floats times `scale`, [corner][axis][triangle].
   /// Corners are those of the source but for a turn, which position() undoes. False when its bytes
-  /// are corrupt.
+  /// are corrupt, or when decode_cluster_leaf has to read it.
   template <std::size_t kStride>
   HWY_INLINE bool read(std::uint32_t leaf, float scale, float (&out)[3][3][kStride]) {
     if (!enter(leaf / kClusterLeaves)) return false;
@@ -63,7 +63,7 @@ class ClusterReader {
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) hn::Store(third[k], Floats(), out[2][k]);
     if (HWY_LIKELY(faces.aparts <= kWideChildren / 2)) {
-      const Place first(corners.first), second(corners.second);
+      const TwoVectorLanes first(corners.first), second(corners.second);
       HWY_UNROLL(3)
       for (std::size_t k = 0; k < 3; ++k) {
         hn::Store(first.look_up(third[k], apart[k]), Floats(), out[0][k]);
@@ -226,8 +226,8 @@ class ClusterReader {
     return hn::TableLookupLanes(words, hn::IndicesFromVec(Words(), lanes));
   }
   // Lanes of two vectors in a row.
-  struct Place {
-    explicit HWY_INLINE Place(WordVector number)
+  struct TwoVectorLanes {
+    explicit HWY_INLINE TwoVectorLanes(WordVector number)
         : lanes(number),
           is_high(hn::RebindMask(Floats(), is_less(constant<kWideChildren - 1>(), number))) {}
     [[nodiscard]] HWY_INLINE FloatVector look_up(FloatVector low, FloatVector high) const {
@@ -244,7 +244,8 @@ class ClusterReader {
     return hn::PromoteTo(
         Words(), hn::LoadU(small, reinterpret_cast<const std::uint8_t*>(&kRanksOfBits[bits])));
   }
-  // Products below 2^16, in half the time of those of words.
+  // Products below 2^16, in half the time of those of words: not of leaf_bytes, which alone may
+  // take 16 bits.
   static HWY_INLINE WordVector multiply(WordVector a, WordVector b) {
     const hn::Repartition<std::uint16_t, Words> halves;
     return hn::BitCast(Words(), hn::Mul(hn::BitCast(halves, a), hn::BitCast(halves, b)));
@@ -408,7 +409,7 @@ class ClusterReader {
     }
     slots.stride = hn::Add(hn::Add(slots.width[0], slots.width[1]), slots.width[2]);
     const auto middle = hn::ShiftLeft<3>(
-        hn::Add(start, hn::Add(multiply(inside, set(header.leaf_bytes)), set(cluster_.leaves_at))));
+        hn::Add(start, hn::Add(hn::Mul(inside, set(header.leaf_bytes)), set(cluster_.leaves_at))));
     const auto is_place = hn::And(is_before, hn::Eq(middle, hn::Min(middle, set(most_bits_))));
     slots.corrupt = hn::VecFromMask(Words(), hn::AndNot(is_place, is_listed));
     slots.middle = hn::Or(middle, hn::VecFromMask(Words(), hn::Not(is_listed)));

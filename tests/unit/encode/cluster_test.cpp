@@ -3,20 +3,26 @@
 // corner, whatever the numbers; and leaves that name vertices of many others.
 #include "format/cluster.h"
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <map>
 #include <random>
+#include <span>
 
 #include <gtest/gtest.h>
 
+#include "cooker/proof/proof.h"
+#include "cooker/write/file_writer.h"
 #include "format/cluster_leaf.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/require.h"
 
 namespace boxtree {
 namespace {
@@ -125,6 +131,59 @@ TEST_P(ExactStore, NamesVerticesOfManyLeaves) {
   }
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
   EXPECT_EQ(decoded(cooked.tree), source(mesh));
+}
+
+// The same leaves with `gap` zero bytes more between each two: a file that other writers may make.
+cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16_t gap) {
+  const test::CookedTree cooked = test::cook_tree(mesh, codec);
+  const ClusterView& view = BoundTree::of(cooked.tree).leaves().clusters();
+  Cluster cluster;
+  EXPECT_TRUE(find_cluster(view, 0, cluster));
+  cooker::EncodedTree spread = test::require(cooker::cook_as(mesh, codec, {}));
+  std::vector<std::byte>& bytes = spread.geometry.vertices;
+  const std::size_t leaves = leaves_of(view.face_count);
+  bytes.assign(view.bytes.size() + leaves * gap + kClusterUnit, std::byte{0});
+  std::copy_n(cluster.bytes, cluster.leaves_at, bytes.begin());
+  ClusterHeader header = cluster.header;
+  header.leaf_bytes = static_cast<std::uint16_t>(header.leaf_bytes + gap);
+  std::memcpy(bytes.data(), &header, sizeof(header));
+  std::uint64_t end = 0;
+  for (std::uint32_t i = 0; i < leaves; ++i) {
+    ClusterLeaf leaf;
+    ClusterLeafFields fields;
+    EXPECT_TRUE(decode_cluster_leaf(view, i, leaf, &fields));
+    for (std::uint64_t bit = fields.begin; bit < fields.end; ++bit) {
+      write_bits(bytes.data(), bit + std::uint64_t{8} * gap * i, 1,
+                 read_bits(view.bytes.data(), bit, 1));
+    }
+    end = (fields.end + 7) / 8 + std::uint64_t{gap} * i;
+  }
+  bytes.resize((end + kClusterUnit - 1) / kClusterUnit * kClusterUnit + kClusterPadding);
+  return spread;
+}
+
+// leaf_bytes times the number of a leaf takes more than 16 bits, in which vectors multiplied them.
+TEST_P(ExactStore, LeavesMayLieFarApart) {
+  const SourceMesh mesh = test::torus(16, 12);
+  ASSERT_LE(mesh.faces.size(), kClusterFaces);
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  const cooker::EncodedTree spread = with_gaps(mesh, GetParam(), 8192);
+  const std::vector<std::byte> bytes = cooker::serialize(std::span(&spread, 1));
+  const File file = test::require(File::open(Bytes(bytes)));
+  EXPECT_TRUE(cooker::verify_file(file).empty());
+  const Tree tree = test::require(Tree::bind(file));
+  EXPECT_EQ(decoded(tree), source(mesh));
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-2, 2);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d point(place(random), place(random), place(random));
+    const PointResult expected = closest_point(cooked.tree, point);
+    const PointResult found = closest_point(tree, point);
+    ASSERT_TRUE(expected);
+    ASSERT_EQ(found.code(), Errc::kOk);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->distance, expected->distance);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(WideCodecs, ExactStore, testing::Values(CodecId::kWide8, CodecId::kWide4),
