@@ -13,20 +13,15 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "cooker/encode/axis_fields.h"
 #include "cooker/encode/encoded.h"
 #include "cooker/encode/face_ids.h"
+#include "cooker/encode/strip.h"
 #include "format/bits.h"
 #include "format/cluster_leaf.h"
 
 namespace boxtree::cooker {
 namespace {
-
-// A face by the indices of its vertices in the cluster.
-struct ClusterFace {
-  std::array<std::uint16_t, 4> corner;
-  std::uint32_t source;
-  bool is_quad;
-};
 
 // The vertices of one cluster without duplicates. Vertices are compared by their numbers, not by
 // source numbers, so vertices that are equal on the grid or were never welded are stored once.
@@ -85,152 +80,6 @@ class ClusterVertices {
   std::uint16_t count_ = 0;
 };
 
-// A step of a strip from one face to the next, and the corner that it adds.
-struct Step {
-  std::uint32_t code = StripStep::kApart;
-  std::uint32_t turn = 0;  // the edge by which the next face is entered
-
-  [[nodiscard]] bool is_apart() const { return code == StripStep::kApart; }
-  [[nodiscard]] std::uint32_t brings() const { return (turn + 2) % 3; }
-};
-
-inline constexpr std::uint8_t kNoTurn = 3;
-
-// The edge of `to` that is edge `edge` of `from`, reversed; kNoTurn if there is none.
-std::uint8_t turn_over(const ClusterFace& from, std::uint32_t edge, const ClusterFace& to) {
-  const std::uint16_t begin = from.corner[(edge + 1) % 3], end = from.corner[edge];
-  for (std::uint8_t turn = 0; turn < 3; ++turn) {
-    if (to.corner[turn] == begin && to.corner[(turn + 1u) % 3] == end) return turn;
-  }
-  return kNoTurn;
-}
-
-// The step from a face that is entered by edge `entered`.
-Step step_between(const ClusterFace& from, std::uint32_t entered, const ClusterFace& to) {
-  for (std::uint32_t side = 0; side < 2; ++side) {
-    const std::uint8_t turn = turn_over(from, (entered + 1 + side) % 3, to);
-    if (turn != kNoTurn) return {StripStep::code(side, turn), turn};
-  }
-  return {};
-}
-
-// Orders the faces of a leaf so that many share an edge with the previous one: from each face,
-// walks over shared edges to the neighbour with the fewest others left, and keeps the best walk.
-class StripOrder {
- public:
-  explicit StripOrder(std::span<ClusterFace> faces) : faces_(faces), count_(faces.size()) {
-    // Edges from corner to corner as one number, and the same reversed. Lanes of faces that are not
-    // there match nothing.
-    std::array<std::uint32_t, kEdges> edge, reversed;
-    edge.fill(kNoEdge);
-    reversed.fill(kNoEdge + 1);
-    for (std::size_t f = 0; f < count_; ++f) {
-      for (std::size_t e = 0; e < 3; ++e) {
-        const std::uint32_t from = faces[f].corner[e], to = faces[f].corner[(e + 1) % 3];
-        edge[e * kLeafFaces + f] = from << 16 | to;
-        reversed[e * kLeafFaces + f] = to << 16 | from;
-      }
-    }
-    for (std::size_t f = 0; f < count_; ++f) {
-      for (std::size_t e = 0; e < 3; ++e) {
-        const std::uint32_t sought = reversed[e * kLeafFaces + f];
-        std::uint32_t found = 0;
-        for (std::size_t i = 0; i < kEdges; ++i) found |= edge[i] == sought ? kBit[i] : 0;
-        for (std::size_t turn = 0; turn < 3; ++turn) {
-          by_turn_[f][e][turn] =
-              (found >> (turn * kLeafFaces)) & ((1u << kLeafFaces) - 1) & ~(1u << f);
-          across_[f][e] |= by_turn_[f][e][turn];
-        }
-      }
-      near_[f] = across_[f][0] | across_[f][1] | across_[f][2];
-    }
-  }
-
-  void apply() {
-    Walk best;
-    for (std::size_t start = 0; start < count_; ++start) {
-      const Walk walk = walk_from(start);
-      if (walk.shared > best.shared) best = walk;
-      if (best.shared + 1 == static_cast<int>(count_)) break;
-    }
-    std::array<ClusterFace, kLeafFaces> ordered;
-    for (std::size_t i = 0; i < count_; ++i) ordered[i] = faces_[best.face[i]];
-    std::copy_n(ordered.begin(), count_, faces_.begin());
-  }
-
- private:
-  static constexpr std::size_t kEdges = std::size_t{3} * kLeafFaces;
-  static constexpr std::uint32_t kNoEdge = 0xfffffffeu;  // vertices of a cluster are fewer
-
-  // In memory, so that compilers compare several edges at once.
-  static constexpr auto kBit = [] {
-    std::array<std::uint32_t, kEdges> bits{};
-    for (std::size_t i = 0; i < kEdges; ++i) bits[i] = 1u << i;
-    return bits;
-  }();
-
-  struct Walk {
-    std::array<std::size_t, kLeafFaces> face{};
-    int shared = -1;
-  };
-
-  [[nodiscard]] Walk walk_from(std::size_t at) const {
-    Walk walk;
-    walk.shared = 0;
-    std::uint32_t left = (1u << count_) - 1;
-    std::uint32_t entered = 0;
-    for (std::size_t length = 0;; ++length) {
-      walk.face[length] = at;
-      left &= ~(1u << at);
-      if (left == 0) return walk;
-      const std::uint32_t first = (entered + 1) % 3, second = (entered + 2) % 3;
-      const std::uint32_t near = (across_[at][first] | across_[at][second]) & left;
-      const std::size_t next = loneliest(near != 0 ? near : left, left);
-      entered = 0;
-      if (near != 0) {
-        ++walk.shared;
-        const bool is_first = ((across_[at][first] >> next) & 1u) != 0;
-        const std::uint32_t(&turns)[3] = by_turn_[at][is_first ? first : second];
-        // The first of them, as step_between finds it.
-        while (((turns[entered] >> next) & 1u) == 0) ++entered;
-      }
-      at = next;
-    }
-  }
-
-  // Of some faces, the one with the fewest neighbours left. Precondition: there is one.
-  [[nodiscard]] std::size_t loneliest(std::uint32_t faces, std::uint32_t left) const {
-    std::size_t best = 0;
-    std::uint32_t fewest = std::numeric_limits<std::uint32_t>::max();
-    for (; faces != 0; faces &= faces - 1) {
-      const auto face = static_cast<std::size_t>(std::countr_zero(faces));
-      const std::uint32_t others = kOnes[near_[face] & left];
-      if (others < fewest) {
-        fewest = others;
-        best = face;
-      }
-    }
-    return best;
-  }
-
-  // How many bits of a number are set: instruction sets without such an instruction call a
-  // function.
-  static constexpr auto kOnes = [] {
-    std::array<std::uint8_t, 1u << kLeafFaces> ones{};
-    for (std::size_t i = 1; i < ones.size(); ++i) {
-      ones[i] = static_cast<std::uint8_t>(ones[i / 2] + i % 2);
-    }
-    return ones;
-  }();
-
-  std::span<ClusterFace> faces_;
-  std::size_t count_;
-  // Bit j: face j can follow face i over its edge, and is entered by the edge of the turn.
-  std::uint32_t by_turn_[kLeafFaces][3][3] = {};
-  std::uint32_t across_[kLeafFaces][3] = {};  // by any of its edges
-  std::uint32_t near_[kLeafFaces] = {};       // over any edge
-};
-
 class BitWriter {
  public:
   explicit BitWriter(std::vector<std::byte>& out) : out_(out), at_(8 * out.size()) {}
@@ -246,62 +95,6 @@ class BitWriter {
   std::vector<std::byte>& out_;
   std::uint64_t at_;
 };
-
-// How one axis of a cluster is stored.
-struct AxisFields {
-  std::uint8_t base_bits = 0;
-  std::uint8_t base_shift = 0;
-  std::uint8_t width = 0;
-  std::uint8_t wider_bits = 0;
-  std::uint64_t cost = ~std::uint64_t{0};  // bits
-};
-
-// The numbers of the vertices that a leaf stores, on one axis, less the least of the cluster.
-struct AxisRange {
-  std::uint64_t low = 0;
-  std::uint64_t high = 0;
-  std::uint32_t vertices = 0;
-
-  [[nodiscard]] std::uint32_t width(std::uint32_t shift) const {
-    return vertices == 0
-               ? 0
-               : static_cast<std::uint32_t>(std::bit_width(high - (low >> shift << shift)));
-  }
-  [[nodiscard]] std::uint64_t base(std::uint32_t shift) const {
-    return vertices == 0 ? 0 : low >> shift;
-  }
-};
-
-// The fields that take the fewest bits, over all leaves of a cluster.
-AxisFields best_fields(std::span<const AxisRange> leaves) {
-  std::uint64_t largest = 0;
-  for (const AxisRange& leaf : leaves) largest = std::max(largest, leaf.high);
-  AxisFields best;
-  const auto shifts = static_cast<std::uint32_t>(std::bit_width(largest));
-  for (std::uint32_t shift = 0; shift <= std::min(shifts, 63u); ++shift) {
-    std::uint32_t widest = 0;
-    std::uint64_t largest_base = 0;
-    std::array<std::uint32_t, 65> vertices_of{};  // by the width of their leaf
-    for (const AxisRange& leaf : leaves) {
-      widest = std::max(widest, leaf.width(shift));
-      largest_base = std::max(largest_base, leaf.base(shift));
-      vertices_of[leaf.width(shift)] += leaf.vertices;
-    }
-    const auto base_bits = static_cast<std::uint32_t>(std::bit_width(largest_base));
-    for (std::uint32_t bits = 0; base_bits + bits <= ClusterHeader::kMostEntryBits; ++bits) {
-      if ((1u << bits) - 1 > widest) break;
-      const std::uint32_t narrowest = widest - ((1u << bits) - 1);
-      std::uint64_t cost = leaves.size() * (base_bits + bits);
-      for (std::uint32_t width = 0; width <= widest; ++width) {
-        cost += std::uint64_t{vertices_of[width]} * std::max(width, narrowest);
-      }
-      if (cost >= best.cost) continue;
-      best = {static_cast<std::uint8_t>(base_bits), static_cast<std::uint8_t>(shift),
-              static_cast<std::uint8_t>(narrowest), static_cast<std::uint8_t>(bits), cost};
-    }
-  }
-  return best;
-}
 
 // Appends clusters to `out`, one after another.
 template <class Number>
@@ -651,7 +444,7 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
     }
     for (std::size_t leaf = 0; leaf < faces.size(); leaf += kLeafFaces) {
       const std::size_t count = std::min<std::size_t>(kLeafFaces, faces.size() - leaf);
-      if (leaf_order == LeafOrder::kFree) StripOrder(std::span(faces).subspan(leaf, count)).apply();
+      if (leaf_order == LeafOrder::kFree) order_as_strip(std::span(faces).subspan(leaf, count));
     }
     for (std::size_t i = 0; i < faces.size(); ++i) of_cluster[i] = faces[i].source;
     block.offsets.push_back(static_cast<std::uint32_t>(block.bytes.size() / kClusterUnit));
