@@ -142,7 +142,7 @@ Status SceneIntake::take(const Placements& placements) {
     }
     if (*mesh == kNoMesh) continue;
     const Pose pose = pose_of(placement.transform);
-    if (!pose.matrix().allFinite() || !is_invertible(pose)) {
+    if (!pose.matrix().allFinite() || !has_double_inverse(pose)) {
       return Error{Errc::kInvalidPose, fmt::format("{}: node '{}': its transform {}", context_.file,
                                                    placement.name, pose_fault(pose))};
     }

@@ -17,7 +17,7 @@ Eigen::Matrix3d of_size_one(const Eigen::Matrix3d& linear) noexcept {
   return (linear * std::ldexp(1.0, -half)) * std::ldexp(1.0, half - exponent);
 }
 
-bool is_invertible(const Eigen::Matrix3d& linear) noexcept {
+bool has_double_inverse(const Eigen::Matrix3d& linear) noexcept {
   const Eigen::Matrix3d inverse = inverse_of(linear);
   const Eigen::Matrix3d product = matrix_product(inverse, linear);
   return inverse.allFinite() && product.allFinite() && inverse_of(product).allFinite();
@@ -25,8 +25,8 @@ bool is_invertible(const Eigen::Matrix3d& linear) noexcept {
 
 }  // namespace
 
-bool is_invertible(const Pose& pose) noexcept {
-  return is_invertible(Eigen::Matrix3d(pose.linear()));
+bool has_double_inverse(const Pose& pose) noexcept {
+  return has_double_inverse(Eigen::Matrix3d(pose.linear()));
 }
 
 std::string pose_fault(const Pose& pose) {
@@ -39,10 +39,10 @@ std::string pose_fault(const Pose& pose) {
   }
   const Eigen::Matrix3d linear = pose.linear();
   if (linear.isZero(0)) return "is not invertible: its matrix is zero";
-  if (!is_invertible(of_size_one(linear))) {
+  if (!has_double_inverse(of_size_one(linear))) {
     return "is not invertible: it flattens what it places";
   }
-  if (!is_invertible(linear)) return "is not invertible: it scales beyond the range of double";
+  if (!has_double_inverse(linear)) return "is not invertible: it scales beyond the range of double";
   return "leads too far away: coordinates may be 2^185 mesh extents";
 }
 

@@ -11,7 +11,7 @@ namespace boxtree::cooker {
 /// Whether the linear part has an inverse in double: the test of pair queries, with their
 /// arithmetic, for a body relative to itself. The inverse must be finite, and so must the product
 /// of both (a determinant beyond the range of doubles makes the inverse zero).
-[[nodiscard]] bool is_invertible(const Pose& pose) noexcept;
+[[nodiscard]] bool has_double_inverse(const Pose& pose) noexcept;
 
 /// What is wrong with a pose that was refused, to stand behind its name: "is not finite: row 1,
 /// column 4 is inf".
