@@ -110,9 +110,8 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
   const auto balanced =
       least(mesh, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
   const auto fastest = least(mesh, [&](std::size_t i) { return slower[i]; });
-  const auto exact = least(mesh, [&](std::size_t i) {
-    return is_lossless(mesh.points[i].geometry) ? bytes(i) : kNone;
-  });
+  const auto exact = least(
+      mesh, [&](std::size_t i) { return is_lossless(mesh.points[i].geometry) ? bytes(i) : kNone; });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};
 }
@@ -176,9 +175,20 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
 }
 
 std::string cook_options(const TradePoint& point) {
-  return fmt::format(
-      "--codec {} {}", codec_name(point.codec),
-      point.grid_bits == 0 ? "--exact" : fmt::format("--grid-bits {}", point.grid_bits));
+  const auto positions = [&]() -> std::string {
+    switch (point.geometry) {
+      case GeometryId::kGrid:
+        return fmt::format("--grid-bits {}", point.grid_bits);
+      case GeometryId::kArrays:  // of the two stores that keep every bit, the faster
+        return "--exact --for speed";
+      case GeometryId::kExact:  // and the smaller
+        return "--exact --for memory";
+      case GeometryId::kExternal:
+        break;
+    }
+    return "--external";
+  };
+  return fmt::format("--codec {} {}", codec_name(point.codec), positions());
 }
 
 std::string time_in_words(double nanoseconds) {

@@ -290,6 +290,12 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
       "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24");
   EXPECT_NE(words[3].text.find("No position changes by a single bit."), std::string::npos);
   EXPECT_NE(words[3].text.find("--codec wide4 --exact"), std::string::npos);
+  // Two stores keep every bit; the goal says which.
+  EXPECT_NE(words[3].text.find("--codec wide4 --exact --for memory"), std::string::npos);
+  made.points[1].geometry = GeometryId::kArrays;
+  EXPECT_NE(advice_in_words(made)[3].text.find("--codec wide4 --exact --for speed"),
+            std::string::npos);
+  made.points[1].geometry = GeometryId::kExact;
 
   // What fails its gates is no choice, however good.
   made.points[4].gates.missed = 1;
