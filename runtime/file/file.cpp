@@ -29,6 +29,9 @@ File::~File() = default;
 Bytes File::bytes() const noexcept {
   return open_->bytes();
 }
+bool File::advise(Access access) const noexcept {
+  return open_->advise(access);
+}
 std::uint32_t File::tree_count() const noexcept {
   return open_->tree_count();
 }

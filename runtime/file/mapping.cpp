@@ -51,11 +51,14 @@ Result<std::size_t> regular_file_size(int file, const std::string& path) {
 }  // namespace
 
 Mapping::Mapping(Mapping&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+    : data_(std::exchange(other.data_, nullptr)),
+      size_(std::exchange(other.size_, 0)),
+      is_of_file_(other.is_of_file_) {}
 
 Mapping& Mapping::operator=(Mapping&& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
+  std::swap(is_of_file_, other.is_of_file_);
   return *this;
 }
 
@@ -75,7 +78,32 @@ Result<Mapping> Mapping::map(int descriptor, const std::string& name) {
   if (*size == 0) return Mapping();
   void* data = ::mmap(nullptr, *size, PROT_READ, MAP_PRIVATE, descriptor, 0);
   if (data == MAP_FAILED) return system_error(Errc::kMapFailed, name, errno);
-  return Mapping(static_cast<const std::byte*>(data), *size);
+  return Mapping(static_cast<const std::byte*>(data), *size, true);
+}
+
+bool Mapping::advise([[maybe_unused]] Access access) const noexcept {
+#ifdef MADV_DONTNEED  // POSIX does not have it; Linux, the BSDs and macOS do
+  // Of memory that no file is behind, MADV_DONTNEED would lose the content.
+  if (!is_of_file_) return false;
+  const int advice = [access] {
+    switch (access) {
+      case Access::kNormal:
+        return MADV_NORMAL;
+      case Access::kRandom:
+        return MADV_RANDOM;
+      case Access::kSequential:
+        return MADV_SEQUENTIAL;
+      case Access::kWillNeed:
+        return MADV_WILLNEED;
+      case Access::kDontNeed:
+        return MADV_DONTNEED;
+    }
+    return -1;  // no value of Access: the system refuses it
+  }();
+  return ::madvise(const_cast<std::byte*>(data_), size_, advice) == 0;
+#else
+  return false;
+#endif
 }
 
 Result<Mapping> Mapping::copy(const std::string& path) {

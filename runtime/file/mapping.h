@@ -7,6 +7,7 @@
 #include <utility>
 
 #include <boxtree/error.h>
+#include <boxtree/file.h>
 
 #include "format/bytes.h"
 
@@ -38,12 +39,17 @@ class Mapping {
 
   [[nodiscard]] Bytes bytes() const noexcept { return {data_, size_}; }
 
+  /// See File::advise. Does nothing with memory that no file is behind.
+  bool advise(Access access) const noexcept;
+
  private:
   friend class WritableMapping;
-  Mapping(const std::byte* data, std::size_t size) noexcept : data_(data), size_(size) {}
+  Mapping(const std::byte* data, std::size_t size, bool is_of_file) noexcept
+      : data_(data), size_(size), is_of_file_(is_of_file) {}
 
   const std::byte* data_ = nullptr;
   std::size_t size_ = 0;
+  bool is_of_file_ = false;  // else a copy in memory
 };
 
 /// Memory that is filled once and then becomes a Mapping. Move-only.
@@ -56,7 +62,8 @@ class WritableMapping {
   [[nodiscard]] Mapping finish() && noexcept { return std::move(mapping_); }
 
  private:
-  WritableMapping(std::byte* data, std::size_t size) noexcept : mapping_(data, size), data_(data) {}
+  WritableMapping(std::byte* data, std::size_t size) noexcept
+      : mapping_(data, size, false), data_(data) {}
 
   Mapping mapping_;
   std::byte* data_;

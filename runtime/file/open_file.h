@@ -26,6 +26,8 @@ class OpenFile {
   [[nodiscard]] static const OpenFile& of(const File& file) noexcept { return *file.open_; }
 
   [[nodiscard]] Bytes bytes() const noexcept { return bytes_; }
+  /// See File::advise.
+  bool advise(Access access) const noexcept { return mapping_.advise(access); }
   [[nodiscard]] const Container& container() const noexcept { return container_; }
   [[nodiscard]] std::uint32_t tree_count() const noexcept { return tree_count_; }
 

@@ -25,6 +25,15 @@ struct OpenOptions {
   bool verify_checksums = false;
 };
 
+/// How an application is going to read a mapped file.
+enum class Access : std::uint8_t {
+  kNormal,      ///< What files have that no advice was given for: some pages are read ahead.
+  kRandom,      ///< Here and there: nothing is read ahead, so a query reads only pages it needs.
+  kSequential,  ///< From front to back, as verify_checksums() does: much is read ahead.
+  kWillNeed,    ///< All of it, soon: starts reading the whole file in the background.
+  kDontNeed,    ///< Nothing for a while: gives the memory back; what is read again is loaded again.
+};
+
 /// Immutable once open; safe to use from many threads. Move-only; trees bound to it point into its
 /// bytes and must not outlive it (moving the File keeps them valid).
 class BOXTREE_API File {
@@ -50,6 +59,12 @@ class BOXTREE_API File {
 
   /// All bytes of the file, as mapped, read or given.
   [[nodiscard]] Bytes bytes() const noexcept;
+  /// Tells the system how the whole file will be read. This changes when pages are loaded, never an
+  /// answer. Returns whether the system took the advice: not for files that are in memory (a copy,
+  /// bytes of the caller), for which nothing is done, and not on systems without madvise().
+  /// kNormal, kRandom and kSequential hold until the next of them; kWillNeed and kDontNeed act
+  /// once. One system call. Safe from many threads, beside queries, too.
+  bool advise(Access access) const noexcept;
   /// How many trees it holds, those of a scene included.
   [[nodiscard]] std::uint32_t tree_count() const noexcept;
   /// Whether Scene::bind() finds a scene.
