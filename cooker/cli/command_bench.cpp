@@ -174,11 +174,19 @@ void print_row(const char* kind, const PageCount& count) {
              count.worst, count.queries);
 }
 
+void print_row(const FirstRays& first) {
+  fmt::print("  {:>5} levels, {:6} nodes: {:5} pages read ahead, {:5} by the rays\n", first.levels,
+             first.nodes, first.pages_before, first.pages_more);
+}
+
 // What queries read of a file of which nothing has been read.
 Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
                    const Arguments& arguments) {
-  const Result<PageFigures> figures = measure_pages(path, index, arguments.quick ? 100 : 1000);
+  const std::size_t queries = arguments.quick ? 100 : 1000;
+  const Result<PageFigures> figures = measure_pages(path, index, queries);
   if (!figures) return figures.error();
+  const Result<std::vector<FirstRays>> first_rays = measure_first_rays(path, index, queries);
+  if (!first_rays) return first_rays.error();
   if (!arguments.json) {
     fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", shown(path.string()),
                shown(tree.name()), codec_name(BoundTree::of(tree).codec()), tree.triangle_count(),
@@ -187,12 +195,17 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
     print_row("ray", figures->ray);
     print_row("box", figures->box);
     print_row("point", figures->point);
+    fmt::print("  the first {} rays on one open file, after Tree::prefetch(levels)\n", queries);
+    for (const FirstRays& first : *first_rays) print_row(first);
   }
+  Json rays = Json::array();
+  for (const FirstRays& first : *first_rays) rays.push_back(to_json(first));
   return Json{{"file", path.string()},
               {"tree", tree.name()},
               {"codec", codec_name(BoundTree::of(tree).codec())},
               {"triangles", tree.triangle_count()},
-              {"pages", to_json(*figures)}};
+              {"pages", to_json(*figures)},
+              {"first_rays", {{"rays", queries}, {"prefetched", std::move(rays)}}}};
 }
 
 int run(const Arguments& arguments) {

@@ -180,6 +180,36 @@ Result<std::vector<std::size_t>> pages_read(const std::filesystem::path& path,
   return watch.numbers();
 }
 
+Result<std::vector<FirstRays>> measure_first_rays(const std::filesystem::path& path,
+                                                  std::uint32_t index, std::size_t rays) {
+  const Result<File> file = File::open(path);
+  if (!file) return file.error();
+  const Result<Tree> tree = Tree::bind(*file, index);
+  if (!tree) return tree.error();
+  const Workload workload = make_workload(bounds_in_object_space(*tree), {rays, 0, 0, 0});
+
+  Watch watch(path);
+  if (!watch.is_mapped()) return Error{Errc::kMapFailed, path.string()};
+  ColdFile cold(watch, index);
+  std::vector<FirstRays> figures;
+  for (std::uint32_t levels = 0; levels <= BoundTree::of(*tree).depth(); ++levels) {
+    FirstRays first{levels, 0, 0, 0};
+    const Result<std::size_t> pages = cold.pages([&](const Tree& bound) -> Status {
+      first.nodes = bound.prefetch(levels);
+      first.pages_before = watch.count();
+      for (const Ray& ray : workload.rays) {
+        const auto hit = closest_hit(bound, ray);
+        if (!hit.ok()) return hit.error();
+      }
+      return {};
+    });
+    if (!pages) return pages.error();
+    first.pages_more = *pages - first.pages_before;
+    figures.push_back(first);
+  }
+  return figures;
+}
+
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t index,
                                   std::size_t queries) {
   const Result<File> file = File::open(path);

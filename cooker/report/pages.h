@@ -37,6 +37,19 @@ struct PageFigures {
 Result<PageFigures> measure_pages(const std::filesystem::path& path, std::uint32_t tree,
                                   std::size_t queries);
 
+/// What Tree::prefetch() spares the first rays on a cold file, all on the same open file.
+struct FirstRays {
+  std::uint32_t levels = 0;      // read ahead
+  std::size_t nodes = 0;         // in these levels
+  std::size_t pages_before = 0;  // open, bind and prefetch
+  std::size_t pages_more = 0;    // what the rays then still read
+};
+
+/// Casts `rays` rays, those of PageFigures::ray, after reading 0, 1, ... levels ahead, up to all
+/// levels of the tree. Restrictions and errors as above.
+Result<std::vector<FirstRays>> measure_first_rays(const std::filesystem::path& path,
+                                                  std::uint32_t tree, std::size_t rays);
+
 /// The pages of a file that `read` reads, in the order of the file. Restrictions and errors as
 /// above.
 Result<std::vector<std::size_t>> pages_read(const std::filesystem::path& path,

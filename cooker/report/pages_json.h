@@ -20,4 +20,11 @@ namespace boxtree::cooker {
           {"point", to_json(pages.point)}};
 }
 
+[[nodiscard]] inline nlohmann::ordered_json to_json(const FirstRays& first) {
+  return {{"levels", first.levels},
+          {"nodes", first.nodes},
+          {"pages_before", first.pages_before},
+          {"pages_more", first.pages_more}};
+}
+
 }  // namespace boxtree::cooker

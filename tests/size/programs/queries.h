@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Every query there is, each once.
+// Every query there is, and what reads ahead for them, each once.
 #pragma once
 
 #include <cstdio>
@@ -42,6 +42,8 @@ inline bool run_query(boxtree::Scene& scene, const boxtree::Tree& tree) {
 inline int run_query(const boxtree::File& file) {
   const auto tree = boxtree::Tree::bind(file);
   if (!tree) return std::puts(tree.error().detail.c_str()), 1;
+  file.advise(boxtree::Access::kWillNeed);
+  tree->prefetch(4);
   bool all = run_query(*tree);
   auto scene = boxtree::Scene::bind(file);
   if (scene) all = all && run_query(*scene, *tree);

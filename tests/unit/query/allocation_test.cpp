@@ -50,6 +50,7 @@ TEST(Allocation, QueriesNeverAllocate) {
     EXPECT_NE(outcome.answer, -1) << query.name << " found nothing";
   }
   const std::size_t before = allocations;
+  EXPECT_GT(tree->prefetch(100), 0u);
   const bool refused = closest_point(*tree, {NAN, 0, 0}).code() == Errc::kInvalidQuery;
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(refused);

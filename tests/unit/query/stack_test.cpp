@@ -99,6 +99,11 @@ TEST_P(Stack, OfQueriesOfATreeIsAsDocumented) {
   });
 }
 
+TEST_P(Stack, OfPrefetchIsAsDocumented) {
+  const test::CookedTree cooked = test::cook_tree(test::terrain(120, 3), GetParam());
+  expect_at_most(64, "prefetch", [&] { EXPECT_GT(cooked.tree.prefetch(100), 0u); });
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, Stack, testing::ValuesIn(test::all_codecs()), test::test_name);
 
 TEST(StackOfScenes, IsAsDocumented) {

@@ -17,7 +17,9 @@ class Threads : public testing::TestWithParam<CodecId> {};
 double query_everything(const File& file, const Tree& tree) {
   double sum = 0;
   const Result<Tree> own = Tree::bind(file);  // binding is safe too
+  file.advise(Access::kWillNeed);
   for (int i = 0; i < 200; ++i) {
+    sum += tree.prefetch(static_cast<std::uint32_t>(i) % 4);
     const double x = 0.01 * i - 1;
     const auto hit = closest_hit(tree, {{x, 0.3, 9}, {0.01, 0.02, -1}});
     if (hit.has_value()) sum += hit->t;

@@ -97,6 +97,37 @@ TEST_P(ColdFileOf, LocalQueriesReadLittle) {
   EXPECT_LT(figures->point.worst, 64u);
 }
 
+// Nodes that are read ahead are not read by rays, and nothing else is spared them.
+TEST_P(ColdFileOf, PrefetchSparesTheFirstRays) {
+  const SourceMesh mesh = bench::make_city(100'000, 1);
+  CookOptions options;
+  options.geometry = GetParam().geometry;
+  options.grid.bits = 20;
+  const std::vector<std::byte> bytes = test::cook_bytes(mesh, GetParam().codec, options);
+  const TempFolder folder;
+  const auto figures = measure_first_rays(write(folder, bytes), 0, 200);
+  ASSERT_TRUE(figures.ok()) << figures.error().message();
+  ASSERT_GT(figures->size(), 4u);
+  const FirstRays& without = figures->front();
+  EXPECT_EQ(without.levels, 0u);
+  EXPECT_EQ(without.nodes, 0u);
+  for (std::size_t i = 1; i < figures->size(); ++i) {
+    const FirstRays& before = (*figures)[i - 1];
+    const FirstRays& first = (*figures)[i];
+    EXPECT_EQ(first.levels, i);
+    EXPECT_GT(first.nodes, before.nodes);
+    EXPECT_GE(first.pages_before, before.pages_before);
+    EXPECT_LE(first.pages_more, before.pages_more);
+    // A page is read once, by prefetch or by the rays.
+    EXPECT_GE(first.pages_before + first.pages_more, without.pages_before + without.pages_more);
+  }
+  const std::size_t node_pages =
+      test::entry_of(bytes, SectionKind::kNodes).size / kPage + 2;  // both ends are shared
+  EXPECT_LT(figures->back().pages_more, without.pages_more);
+  EXPECT_LE(without.pages_more, figures->back().pages_more + node_pages);
+  EXPECT_LE(figures->back().pages_before, without.pages_before + node_pages);
+}
+
 INSTANTIATE_TEST_SUITE_P(WideCodecs, ColdFileOf,
                          testing::Values(test::Encoding{CodecId::kWide4, GeometryId::kExact},
                                          test::Encoding{CodecId::kWide4, GeometryId::kGrid},
