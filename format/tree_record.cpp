@@ -57,12 +57,11 @@ bool frame_fits(const TreeRecord& record) {
   return is_within(record.scale_exponent, kMaxScaleExponent);
 }
 
-// Copies need an original. They come after all other faces, which leaves that hold source face
-// numbers cannot express.
+// Copies need an original. They come after all other faces: in source order, too, if the source has
+// been written in tree order.
 bool duplicates_fit(const TreeRecord& record) {
   if (record.duplicate_count == 0) return record.duplicate_bytes == 0;
-  return is_number_width(record.duplicate_bytes) && counts_of(record).faces_in_leaves > 0 &&
-         (record.flags & kTreeFacesInSourceOrder) == 0;
+  return is_number_width(record.duplicate_bytes) && counts_of(record).faces_in_leaves > 0;
 }
 
 bool geometry_fits(const TreeRecord& record) {

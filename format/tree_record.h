@@ -14,8 +14,9 @@
 
 namespace boxtree {
 
-/// TreeRecord::flags: leaves hold source face numbers, so that no face_ids section is needed.
-/// Otherwise faces are in tree order.
+/// TreeRecord::flags: leaves hold source face numbers, so that no face_ids section is needed:
+/// because the geometry is external, or the source was written in tree order. Otherwise faces are
+/// in tree order and face_ids leads to the source.
 inline constexpr std::uint32_t kTreeFacesInSourceOrder = 1u;
 /// TreeRecord::flags: positions are f64, otherwise f32.
 inline constexpr std::uint32_t kTreePositionsF64 = 2u;

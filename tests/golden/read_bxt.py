@@ -395,8 +395,8 @@ class Tree:
         expect(not any(rest[12:]) and self.flags < 4, "zeros of a record")
         expect(self.duplicate_bytes in ((1, 2, 4) if self.duplicate_count else (0,)),
                "width of duplicates")
-        expect(self.duplicate_count == 0 or self.leaf_faces > 0 and not self.flags & 1,
-               "duplicates of faces in tree order")
+        expect(self.duplicate_count == 0 or self.leaf_faces > 0,
+               "duplicates have an original")
         expect(self.codec in CODECS and EXTERNAL <= self.geometry <= EXACT,
                "codec and geometry")
         expect(abs(self.exponent) <= 1010, "scale exponent")
