@@ -9,11 +9,11 @@
 
 #include <fmt/format.h>
 
-#include "cooker/export/byte_sink.h"
 #include "cooker/export/glb_writer.h"
 #include "cooker/export/obj_writer.h"
 #include "cooker/export/placed_shape.h"
 #include "cooker/import/text_tokens.h"
+#include "cooker/write/byte_sink.h"
 
 namespace boxtree::cooker {
 namespace {

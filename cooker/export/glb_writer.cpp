@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "cooker/export/byte_sink.h"
 #include "cooker/export/placed_shape.h"
 #include "cooker/version.h"
+#include "cooker/write/byte_sink.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include "cooker/export/byte_sink.h"
 #include "cooker/export/placed_shape.h"
 #include "cooker/version.h"
+#include "cooker/write/byte_sink.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
