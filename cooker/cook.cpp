@@ -63,6 +63,7 @@ class Cook {
     if (Status status = try_meshes(); !status) return status.error();
     if (Status status = choose_encodings(); !status) return status.error();
     assemble();
+    if (options_.number_by_tree) number_by_tree(file_.trees.front());
     if (Status status = keep_to_bytes(); !status) return status.error();
     if (Status status = summarise(); !status) return status.error();
     return std::move(file_);
@@ -70,6 +71,13 @@ class Cook {
 
  private:
   Status plan() {
+    if (options_.number_by_tree && (input_.has_top_level || input_.scene.meshes.size() != 1)) {
+      return Error{Errc::kMeshUnsupported,
+                   input_.scene.name +
+                       ": faces are written in the order of one tree, and this is " +
+                       (input_.has_top_level ? "a scene; --flatten makes one tree of a file"
+                                             : "several meshes")};
+    }
     if (!input_.has_top_level) {  // nothing is placed: the options decide
       plan_.meshes.resize(input_.scene.meshes.size());
       return {};
@@ -162,10 +170,19 @@ class Cook {
         return Error{Errc::kProfileInvalid,
                      mesh.name + ": hidden_faces leave nothing of it; leave_out drops an object"};
       }
-      const SearchOptions search = search_options(m, (*grids)[m].has_value());
+      SearchOptions search = search_options(m, (*grids)[m].has_value());
+      if (options_.number_by_tree) {
+        // Ids of the faces of the mesh instead of polygons: in the tree they give its order.
+        polygons_ = std::exchange(mesh.face_ids, {});
+        search.face_ids = true;
+      }
       Result<TriedTree> tried = try_encodings(mesh, search, (*grids)[m]);
       if (!tried) return in_mesh(m, tried.error());
       edges_.push_back(count_surface_edges(arrays_of(mesh)));
+      if (options_.number_by_tree) {
+        numbered_ = std::exchange(mesh, {});
+        mesh.name = numbered_.name;
+      }
       mesh.positions = {};
       mesh.faces = {};
       mesh.face_ids = {};
@@ -217,9 +234,8 @@ class Cook {
       }
       return false;
     };
-    return !input_.has_top_level ||
-           (may_use_grid_[tree] && has(GeometryId::kGrid) &&
-            (has(GeometryId::kExact) || has(GeometryId::kArrays)));
+    return !input_.has_top_level || (may_use_grid_[tree] && has(GeometryId::kGrid) &&
+                                     (has(GeometryId::kExact) || has(GeometryId::kArrays)));
   }
 
   // In a scene, errors name the mesh; without one, users list the meshes themselves.
@@ -246,6 +262,27 @@ class Cook {
     for (std::size_t t = 0; t < tried_.size(); ++t) file_.trees.push_back(tree_of(t));
     if (input_.has_top_level) place_trees();
     if (options_.cook_record) file_.record = make_cook_record(options_, input_, profile_);
+  }
+
+  // From here on the source of the tree is the mesh with its faces in the order of the tree.
+  void number_by_tree(EncodedTree& tree) {
+    EncodedGeometry& geometry = tree.geometry;
+    SourceMesh& mesh = numbered_;
+    std::vector<Face> faces;
+    faces.reserve(tree.face_count);
+    file_.tree_order.reserve(tree.face_count);
+    const NumberView ids(geometry.face_ids.data(), geometry.face_id_bytes);
+    for (std::uint32_t i = 0; i < tree.face_count; ++i) {
+      const std::uint32_t face = tree.faces_in_source_order ? i : ids[i];
+      faces.push_back(mesh.faces[face]);
+      file_.tree_order.push_back(
+          {polygons_.empty() ? face : polygons_[face], mesh.polygon_corners[face]});
+    }
+    mesh.faces = std::move(faces);
+    tree.geometry_hash = hash_of(mesh);
+    tree.faces_in_source_order = true;
+    geometry.face_ids = {};
+    geometry.face_id_bytes = 0;
   }
 
   void place_trees() {
@@ -403,7 +440,7 @@ class Cook {
       tree.tree.name = input_.scene.meshes[mesh_of_tree_[t]].mesh.name;
       tree.edges = edges_[t];
       tree.collapsed = tried_[t].collapsed_of(chosen_[t]);
-      if (!input_.has_top_level && !options_.face_ids) {
+      if (!input_.has_top_level && !options_.face_ids && !options_.number_by_tree) {
         const std::uint64_t bytes = std::uint64_t{file_.trees[t].face_count} * 4;
         tree.left_out.push_back({"face_ids", bytes, "--no-face-ids"});
       }
@@ -452,6 +489,10 @@ class Cook {
   std::vector<Wishes> wishes_;
   std::vector<bool> may_use_grid_;
   std::vector<std::size_t> chosen_;
+
+  // With number_by_tree.
+  SourceMesh numbered_;                  // as imported, then in the order of the tree
+  std::vector<std::uint32_t> polygons_;  // source numbers of its faces; empty: the same
 
   std::vector<std::uint32_t> material_number_;
   CookedFile file_;

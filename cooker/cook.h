@@ -3,6 +3,7 @@
 // shell/cook_job.h.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -22,6 +23,11 @@ namespace boxtree::cooker {
 struct CookOptions : SearchOptions {
   std::optional<BlobMethod> blob;  // compress the whole file; queries need it decompressed
   bool cook_record = true;  // tool version, options and source hashes, for people and build systems
+  /// [false] Number the faces of the tree by its own order, for a mesh that is written in that
+  /// order (reorder/reordered_mesh.h). The file then needs no face ids: FaceRef::id and
+  /// FaceRef::index are the same. For one tree without a top level, imported with
+  /// keep_polygon_corners.
+  bool number_by_tree = false;
   ImportOptions import;
 };
 
@@ -70,12 +76,20 @@ struct Summary {
   std::optional<SceneSummary> scene;  // empty without a top level
 };
 
+/// A face of a tree: which corners it has of which source polygon. The fourth is kNoCorner for a
+/// triangle.
+struct SourceCorners {
+  std::uint32_t polygon;
+  std::array<std::uint32_t, 4> corner;
+};
+
 /// A cooked file that is not written yet.
 struct CookedFile {
   std::vector<EncodedTree> trees;
   std::optional<SceneParts> scene;  // empty without a top level
   std::string record;
   Summary summary;  // its trees have names and the candidates they were chosen from
+  std::vector<SourceCorners> tree_order;  // with number_by_tree: of each face of the tree
 
   [[nodiscard]] FileParts parts() const { return {trees, record, scene ? &*scene : nullptr}; }
 };
@@ -85,6 +99,8 @@ struct CookedFile {
 /// Without a top level there is no profile: each mesh becomes a tree as `options` state. Several
 /// trees then share one geometry store and, where a grid is allowed, one grid, so that surfaces
 /// that touch still touch.
+///
+/// With CookOptions::number_by_tree, kMeshUnsupported for more than one tree or a top level.
 ///
 /// The bytes do not depend on threads or folders. Meshes are freed once they are encoded; all
 /// candidates stay in memory until the shared geometry store is chosen. Runs on the threads of the

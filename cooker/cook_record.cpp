@@ -54,6 +54,7 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
       {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
       {"skip_bad", options.import.skip_bad}};
   // Recorded only if not the default, so that records of other files stay the same.
+  if (options.number_by_tree) record["options"]["faces"] = "reordered";
   if (!options.costs.empty()) record["options"]["costs"] = "own";
   if (options.shrink_share != kShrinkShare) {
     record["options"]["shrink_share"] = options.shrink_share;

@@ -22,11 +22,6 @@
 namespace boxtree::cooker {
 namespace {
 
-std::uint64_t hash_of(const SourceMesh& mesh) {
-  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
-  return hash ? *hash : 0;  // import has checked every corner
-}
-
 std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
   std::uint32_t count = 0;
   for (const Face& face : mesh.faces) {

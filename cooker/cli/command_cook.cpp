@@ -57,6 +57,7 @@ std::string positive_fault(const std::string& text) {
 
 Json report_json(const Arguments& arguments, const Summary& summary, double seconds) {
   Json json = {{"output", arguments.job.output.string()}};
+  if (!arguments.job.reordered.empty()) json["reordered"] = arguments.job.reordered.string();
   json.update(summary_json(summary));
   rusage usage{};
   ::getrusage(RUSAGE_SELF, &usage);
@@ -71,6 +72,10 @@ std::string report_text(const Arguments& arguments, const std::string& output,
   std::string text = summary.scene ? scene_text(summary, arguments.candidates)
                                    : trees_text(summary, arguments.candidates);
   if (summary.scene && arguments.why) text += why_text(*summary.scene);
+  if (!arguments.job.reordered.empty()) {
+    text += fmt::format("wrote {}: face i of the tree is face i of it\n",
+                        shown(arguments.job.reordered.string()));
+  }
   return text + fmt::format(
                     "wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every "
                     "box above it\n",
@@ -128,6 +133,10 @@ std::string stream_fault(const Arguments& arguments) {
   if (count == 0 && !arguments.format.empty()) return "--format goes with the input -";
   if ((count > 0 || is_to_standard) && !arguments.job.depfile.empty()) {
     return "--depfile lists files by their names: - has none";
+  }
+  if (!arguments.job.reordered.empty() &&
+      (count > 0 || is_standard_stream(arguments.job.reordered))) {
+    return "--write-reordered reads a file again and writes one: - is none";
   }
   if (is_standard_stream(arguments.job.depfile)) return "--depfile needs the name of a file";
   if (is_to_standard && arguments.json) return "--json and -o - cannot share standard output";
@@ -295,6 +304,13 @@ void add_cook_command(Command& program, int& status) {
   rare(command.add_flag("--trusted", arguments->trusted,
                         "Read formats that assimp reads once, not first in another process that "
                         "may crash"));
+  command
+      .add_file("--write-reordered", arguments->job.reordered, Values::kMeshes,
+                "Write MESH, an OBJ, PLY or glTF file, with all it says, but with its faces in the "
+                "order of the tree; no face ids are needed then")
+      ->excludes(profile)
+      ->excludes(scene)
+      ->excludes(no_face_ids);
   rare(command.add_file("--depfile", arguments->job.depfile, Values::kFiles,
                         "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
@@ -309,6 +325,8 @@ void add_cook_command(Command& program, int& status) {
   command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");
   command.example("Vertices may move by 0.001, for the fewest bytes",
                   "boxtree cook bunny.obj -o small.bxt --tolerance 0.001 --for memory");
+  command.example("The mesh in the order of the tree, instead of face ids",
+                  "boxtree cook bunny.obj -o bunny.bxt --write-reordered ordered.obj");
   command.example("A scene, with what each part takes",
                   "boxtree cook level.gltf -o level.bxt --why");
   command.example("A scene by its profile", "boxtree cook --profile scene.toml -o profiled.bxt");

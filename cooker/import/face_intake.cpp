@@ -89,9 +89,16 @@ double rounding_of(double value) {
 }
 
 template <class T>
+void FaceIntake<T>::add_face(const std::array<std::uint32_t, 4>& corners,
+                             const std::array<std::uint32_t, 4>& of_polygon) {
+  mesh_.faces.push_back({corners});
+  if (options_.keep_polygon_corners) mesh_.polygon_corners.push_back(of_polygon);
+}
+
+template <class T>
 void FaceIntake<T>::add_triangle(std::uint32_t face_id,
                                  const std::array<std::uint32_t, 3>& corners) {
-  mesh_.faces.push_back({{corners[0], corners[1], corners[2], kNoCorner}});
+  add_face({corners[0], corners[1], corners[2], kNoCorner}, {0, 1, 2, kNoCorner});
   end_polygon(face_id, mesh_.faces.size() - 1);
 }
 
@@ -101,7 +108,7 @@ void FaceIntake<T>::add_quad(std::uint32_t face_id, const std::array<std::uint32
   const std::size_t first = mesh_.faces.size();
   if (is_planar_convex_quad(rounded)) {
     ++report_.quads_kept;
-    mesh_.faces.push_back({corners});
+    add_face(corners, {0, 1, 2, 3});
   } else {
     ++report_.quads_split;
     split(corners);
@@ -122,8 +129,8 @@ void FaceIntake<T>::split(std::span<const std::uint32_t> corners) {
   points_.clear();
   for (const std::uint32_t corner : corners) points_.push_back(position(corner));
   for (const PolygonSplitter::Triangle& triangle : splitter_.split(points_)) {
-    mesh_.faces.push_back(
-        {{corners[triangle[0]], corners[triangle[1]], corners[triangle[2]], kNoCorner}});
+    add_face({corners[triangle[0]], corners[triangle[1]], corners[triangle[2]], kNoCorner},
+             {triangle[0], triangle[1], triangle[2], kNoCorner});
   }
 }
 

@@ -60,8 +60,8 @@ template <class T>
 template <class T>
 class FaceIntake {
  public:
-  FaceIntake(const std::vector<T>& positions, Imported& out)
-      : positions_(positions), mesh_(out.mesh), report_(out.report) {}
+  FaceIntake(const std::vector<T>& positions, const ImportOptions& options, Imported& out)
+      : positions_(positions), options_(options), mesh_(out.mesh), report_(out.report) {}
 
   void add_triangle(std::uint32_t face_id, const std::array<std::uint32_t, 3>& corners);
   /// Keeps a quad if `rounded`, the corners in the winding of the source, is planar and convex.
@@ -76,11 +76,14 @@ class FaceIntake {
   }
 
  private:
+  void add_face(const std::array<std::uint32_t, 4>& corners,
+                const std::array<std::uint32_t, 4>& of_polygon);
   void split(std::span<const std::uint32_t> corners);
   void end_polygon(std::uint32_t face_id, std::size_t first);
   [[nodiscard]] bool has_no_area(const Face& face) const;
 
   const std::vector<T>& positions_;
+  const ImportOptions& options_;
   SourceMesh& mesh_;
   ImportReport& report_;
   PolygonSplitter splitter_;

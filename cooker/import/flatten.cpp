@@ -51,7 +51,7 @@ class Flattener {
         positions_(positions),
         report_(out.report),
         welder_(positions),
-        intake_(positions, out) {}
+        intake_(positions, context.options, out) {}
 
   Status add(const aiMesh& mesh, const Transform& transform);
 

@@ -27,6 +27,8 @@ struct ImportOptions {
   /// second reading. No effect on formats that assimp does not read. The copy is made by fork(): do
   /// not use it in programs whose other threads hold locks that reading needs.
   bool try_first = false;
+  /// [false] Fill in SourceMesh::polygon_corners.
+  bool keep_polygon_corners = false;
 };
 
 /// SkippedFace::mesh: no face of the mesh is left.

@@ -27,7 +27,7 @@ class IndexedMesh {
         options_(options),
         positions_(positions),
         out_(out),
-        intake_(positions, out),
+        intake_(positions, options, out),
         first_number_(first_number) {}
   IndexedMesh(const IndexedMesh&) = delete;
   IndexedMesh& operator=(const IndexedMesh&) = delete;

@@ -26,6 +26,11 @@ MeshArrays arrays_of(const SourceMesh& mesh) {
   return arrays;
 }
 
+std::uint64_t hash_of(const SourceMesh& mesh) {
+  const Result<std::uint64_t> hash = geometry_hash(arrays_of(mesh));
+  return hash ? *hash : 0;  // import has checked every corner
+}
+
 MeshArrays absent_arrays(const TreeRecord& record) {
   static constexpr std::byte kNowhere{0};
   MeshArrays absent;

@@ -16,6 +16,9 @@ namespace boxtree::cooker {
 /// Points into `mesh`. Faces have four corners each; kNoCorner is the runtime's missing corner.
 [[nodiscard]] MeshArrays arrays_of(const SourceMesh& mesh);
 
+/// The hash by which a reader recognises the mesh. Precondition: import's guarantees on meshes.
+[[nodiscard]] std::uint64_t hash_of(const SourceMesh& mesh);
+
 /// Replaces the missing mesh of a tree with external geometry if no leaf is read: the tree can be
 /// bound and its boxes walked.
 [[nodiscard]] MeshArrays absent_arrays(const TreeRecord& record);

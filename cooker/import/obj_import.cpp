@@ -188,14 +188,6 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
   return {Errc::kMeshIndexOutOfRange, std::move(why)};
 }
 
-// The text without bytes that editors and systems add around it.
-std::string_view statements_of(std::string_view text) {
-  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
-  if (text.ends_with('\x1a')) text.remove_suffix(1);  // end of text in DOS
-  return text;
-}
-
 // Adds the libraries that can be read to the files read and the others to those that are missing,
 // without duplicates.
 void find_libraries(const fs::path& path, const std::vector<std::string>& names,

@@ -53,6 +53,13 @@ bool ObjStatement::is_element() const {
   return begins_with(text, "flp");
 }
 
+std::string_view statements_of(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xef\xbb\xbf";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  if (text.ends_with('\x1a')) text.remove_suffix(1);  // end of text in DOS
+  return text;
+}
+
 // A comment ends with its line even after a backslash: paths end in backslashes, too.
 bool ObjStatements::next(ObjStatement& statement) {
   if (rest_.empty()) return false;

@@ -17,6 +17,9 @@ struct ObjStatement {
   [[nodiscard]] bool is_element() const;
 };
 
+/// The statements of a file: its text without bytes that editors and systems add around it.
+[[nodiscard]] std::string_view statements_of(std::string_view text);
+
 class ObjStatements {
  public:
   /// `text` must outlive this object and its statements.

@@ -51,6 +51,9 @@ struct SourceMesh {
   Positions positions;
   std::vector<Face> faces;
   std::vector<std::uint32_t> face_ids;  // source number of each face; parts of an n-gon share one
+  /// Of each face, which corners of its source polygon it has, from 0; the last is kNoCorner for a
+  /// triangle. Empty unless import was told to keep it (ImportOptions::keep_polygon_corners).
+  std::vector<std::array<std::uint32_t, 4>> polygon_corners;
 
   [[nodiscard]] std::uint32_t face_id(std::size_t face) const {
     return face_ids.empty() ? static_cast<std::uint32_t>(face) : face_ids[face];

@@ -28,7 +28,7 @@ class StlMesh {
       : file_(std::move(file)),
         options_(options),
         welder_(positions),
-        intake_(positions, out),
+        intake_(positions, options, out),
         out_(out) {}
 
   /// Reserves memory for `count` triangles, which bytes of the file must back. Error:

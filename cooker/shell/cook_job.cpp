@@ -2,9 +2,12 @@
 #include "cooker/shell/cook_job.h"
 
 #include <array>
+#include <optional>
 #include <utility>
 
 #include "cooker/choose/cost_file.h"
+#include "cooker/import/source_files.h"
+#include "cooker/reorder/reordered_mesh.h"
 #include "cooker/shell/depfile.h"
 #include "cooker/write/blob_writer.h"
 #include "cooker/write/outputs.h"
@@ -18,7 +21,11 @@ namespace fs = std::filesystem;
 class Job {
  public:
   Job(const CookJob& job, const Progress& progress)
-      : job_(job), options_(job.options), progress_(progress) {}
+      : job_(job), options_(job.options), progress_(progress) {
+    if (job.reordered.empty()) return;
+    options_.number_by_tree = true;
+    options_.import.keep_polygon_corners = true;
+  }
 
   Result<Summary> run() {
     if (Status status = check_job(job_); !status) return status.error();
@@ -63,21 +70,44 @@ class Job {
                                 import.files_read.end());
     }
     if (!job_.costs.empty()) summary.files_read.push_back(job_.costs);
-    const std::array outputs{job_.output, job_.depfile};
+    const std::array outputs{job_.output, job_.depfile, job_.reordered};
     if (Status status = check_outputs(outputs, summary.files_read); !status) return status.error();
     // Written first, so that an error in it leaves no new output without a depfile.
     if (!job_.depfile.empty()) {
       const Status status = write_depfile(job_.depfile, job_.output, summary.files_read);
       if (!status) return status.error();
     }
+    // Whole before the output is replaced, and renamed after it.
+    std::optional<AtomicFile> reordered;
+    if (!job_.reordered.empty()) {
+      announce(progress_, "write " + job_.reordered.filename().string());
+      if (Status status = check_source(summary.imports.front()); !status) return status.error();
+      Result<AtomicFile> mesh =
+          write_reordered(job_.inputs.front(), cooked.tree_order, job_.reordered);
+      if (!mesh) return mesh.error();
+      reordered.emplace(std::move(*mesh));
+      cooked.tree_order = {};
+    }
     announce(progress_, "write " + job_.output.filename().string());
     const Result<std::uint64_t> bytes = write_parts(cooked.parts());
     if (!bytes) return bytes.error();
+    if (reordered) {
+      if (Status status = reordered->commit(); !status) return status.error();
+    }
     summary.file_bytes = *bytes;
     if (options_.blob && summary.scene) summary.scene->why.front().bytes = *bytes;
     for (std::size_t i = 0; i < cooked.trees.size(); ++i)
       release(cooked.trees[i], summary.trees[i]);
     return std::move(summary);
+  }
+
+  // The mesh is read once more, so it has to be what was cooked.
+  [[nodiscard]] Status check_source(const ImportReport& import) const {
+    const Result<std::uint64_t> hash = hash_source_files(import.files_read);
+    if (!hash) return hash.error();
+    if (*hash == import.content_hash) return {};
+    return Error{Errc::kImportFailed,
+                 job_.inputs.front().string() + ": has changed while it was cooked"};
   }
 
   [[nodiscard]] Result<std::uint64_t> write_parts(const FileParts& parts) const {
@@ -110,7 +140,15 @@ Status check_job(const CookJob& job) {
   for (const fs::path& more : {job.profile, job.costs}) {
     if (!more.empty()) inputs.push_back(more);
   }
-  return check_outputs(std::array{job.output, job.depfile}, inputs);
+  if (!job.reordered.empty()) {
+    if (job.inputs.size() != 1 || !job.profile.empty() || job.as_scene) {
+      return Error{Errc::kMeshUnsupported,
+                   job.reordered.string() + ": one input, cooked to one tree, can be reordered"};
+    }
+    const Status status = check_reordered_names(job.inputs.front(), job.reordered);
+    if (!status) return status;
+  }
+  return check_outputs(std::array{job.output, job.depfile, job.reordered}, inputs);
 }
 
 Result<Summary> cook_job(const CookJob& job, const Progress& progress) {

@@ -1,0 +1,422 @@
+// SPDX-License-Identifier: MIT
+// Reorders the triangles of a glTF 2.0 file: three vertex numbers each, of the only primitive of
+// triangles. Numbers of a .glb that nothing else uses are reordered in place, so no other byte
+// changes; others get a new accessor.
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "cooker/import/glb.h"
+#include "cooker/import/gltf_nesting.h"
+#include "cooker/import/whole_file.h"
+#include "cooker/reorder/reorder.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// Numbers of the glTF 2.0 specification.
+constexpr std::uint32_t kGlbMagic = 0x46546c67u;  // "glTF"
+constexpr std::uint32_t kGlbVersion = 2;
+constexpr std::uint32_t kJsonChunk = 0x4e4f534au;    // "JSON"
+constexpr std::uint32_t kBinaryChunk = 0x004e4942u;  // "BIN"
+constexpr std::size_t kChunkHeaderBytes = 8;
+constexpr std::size_t kGlbHeaderBytes = 12;
+constexpr std::size_t kGlbAlignment = 4;
+constexpr std::uint64_t kUnsignedByte = 5121;
+constexpr std::uint64_t kUnsignedShort = 5123;
+constexpr std::uint64_t kUnsignedInt = 5125;
+constexpr std::uint64_t kElementArrayBuffer = 34963;
+constexpr std::uint64_t kModeTriangles = 4;
+constexpr std::uint64_t kModeTriangleFan = 6;
+
+constexpr std::uint64_t kNone = std::numeric_limits<std::uint64_t>::max();
+
+std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>()
+                                                              : otherwise;
+}
+
+// An object of one of the document's arrays; null if it is not there.
+const Json* object_of(const Json& document, const char* array, std::uint64_t number) {
+  const auto found = document.find(array);
+  if (found == document.end() || !found->is_array() || number >= found->size()) return nullptr;
+  const Json& object = (*found)[number];
+  return object.is_object() ? &object : nullptr;
+}
+
+std::size_t bytes_of_index(std::uint64_t component) {
+  if (component == kUnsignedByte) return 1;
+  if (component == kUnsignedShort) return 2;
+  return component == kUnsignedInt ? 4 : 0;
+}
+
+Error unsupported(std::string why) {
+  return {Errc::kMeshUnsupported, std::move(why)};
+}
+
+std::string base64(std::string_view bytes) {
+  constexpr std::string_view kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {
+    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0u);
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      text += k <= count ? kDigits[group >> (18 - 6 * k) & 63u] : '=';
+    }
+  }
+  return text;
+}
+
+// The bytes of a data URI in base64; empty if it is none.
+std::optional<std::string> data_of(std::string_view uri) {
+  constexpr std::string_view kMark = ";base64,";
+  const std::size_t mark = uri.find(kMark);
+  if (!uri.starts_with("data:") || mark == std::string_view::npos) return std::nullopt;
+  std::string bytes;
+  std::uint32_t group = 0;
+  unsigned bits = 0;
+  for (const char c : uri.substr(mark + kMark.size())) {
+    std::uint32_t digit = 0;
+    if (c >= 'A' && c <= 'Z') {
+      digit = static_cast<std::uint32_t>(c - 'A');
+    } else if (c >= 'a' && c <= 'z') {
+      digit = static_cast<std::uint32_t>(c - 'a') + 26;
+    } else if (c >= '0' && c <= '9') {
+      digit = static_cast<std::uint32_t>(c - '0') + 52;
+    } else if (c == '+' || c == '/') {
+      digit = c == '+' ? 62 : 63;
+    } else {
+      break;  // padding
+    }
+    group = group << 6 | digit;
+    bits += 6;
+    if (bits < 8) continue;
+    bits -= 8;
+    bytes += static_cast<char>(group >> bits & 0xffu);
+  }
+  return bytes;
+}
+
+// A path as a URI, and back.
+std::string percent_encoded(std::string_view path) {
+  std::string uri;
+  for (const char c : path) {
+    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
+                          (c >= '0' && c <= '9') ||
+                          std::string_view("-._~/").find(c) != std::string_view::npos;
+    uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return uri;
+}
+std::string percent_decoded(std::string_view uri) {
+  std::string path;
+  const auto digit = [](char c) -> int {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
+  };
+  for (std::size_t i = 0; i < uri.size(); ++i) {
+    const bool is_code =
+        uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
+    path += is_code ? static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
+    if (is_code) i += 2;
+  }
+  return path;
+}
+
+class GltfReorder {
+ public:
+  GltfReorder(const Reordering& reordering, bool is_binary, ByteSink& out)
+      : reordering_(reordering), is_binary_(is_binary), out_(out) {}
+
+  Status run() {
+    if (Status status = read(); !status) return status;
+    if (Status status = find_triangles(); !status) return status;
+    if (Status status = read_numbers(); !status) return status;
+    if (Status status = reorder(); !status) return status;
+    const bool have_moved = move_references();
+    if (is_binary_ && !have_moved && has_place_of_its_own()) {
+      std::string file(reordering_.text);
+      file.replace(static_cast<std::size_t>(binary_.data() - reordering_.text.data()) + offset_,
+                   numbers_.size(), numbers_);
+      write(file);
+      return {};
+    }
+    add_accessor();
+    return is_binary_ ? write_glb() : (write(document_.dump(2) + "\n"), Status());
+  }
+
+ private:
+  Status read() {
+    std::string_view json = reordering_.text;
+    if (is_binary_) {
+      json = glb_json(reordering_.text);
+      std::array<std::uint32_t, 3> header{};
+      if (json.empty()) return has_changed("it is no GLB");
+      std::memcpy(header.data(), reordering_.text.data(), sizeof(header));
+      if (header[0] != kGlbMagic || header[1] != kGlbVersion) {
+        return unsupported("glTF 2.0 alone is written");
+      }
+      std::string_view rest = reordering_.text.substr(
+          static_cast<std::size_t>(json.data() - reordering_.text.data()) + json.size());
+      std::array<std::uint32_t, 2> chunk{};
+      if (rest.size() >= kChunkHeaderBytes) std::memcpy(chunk.data(), rest.data(), sizeof(chunk));
+      if (chunk[1] == kBinaryChunk) binary_ = rest.substr(kChunkHeaderBytes, chunk[0]);
+    }
+    if (const auto checked = parse_gltf(json); !checked) return checked.error();  // its nesting
+    document_ = Json::parse(json, nullptr, false);
+    const Json* const asset =
+        document_.is_object() && document_.contains("asset") ? &document_["asset"] : nullptr;
+    if (asset == nullptr || !asset->is_object()) return has_changed("it is no glTF");
+    const auto version = asset->find("version");
+    const bool is_2 = version != asset->end() && version->is_string() &&
+                      version->get_ref<const std::string&>().starts_with("2.");
+    return is_2 ? Status() : unsupported("glTF 2.0 alone is written");
+  }
+
+  Status find_triangles() {
+    const auto meshes = document_.find("meshes");
+    if (meshes == document_.end() || !meshes->is_array()) return has_changed("it has no meshes");
+    std::size_t count = 0;
+    for (Json& mesh : *meshes) {
+      const auto primitives = mesh.find("primitives");
+      if (primitives == mesh.end() || !primitives->is_array()) continue;
+      for (Json& primitive : *primitives) {
+        const std::uint64_t mode = number_at(primitive, "mode", kModeTriangles);
+        if (mode < kModeTriangles || mode > kModeTriangleFan) continue;
+        if (mode != kModeTriangles) {
+          return unsupported(
+              "its triangles are in strips or fans, which have an order of their own: write it "
+              "with triangles (mode 4)");
+        }
+        if (primitive.contains("extensions") &&
+            primitive["extensions"].contains("KHR_draco_mesh_compression")) {
+          return unsupported("a primitive is compressed (KHR_draco_mesh_compression)");
+        }
+        primitive_ = &primitive;
+        ++count;
+      }
+    }
+    if (count == 1) return {};
+    return unsupported(fmt::format(
+        "it has {} primitives of triangles; in glTF a triangle has a number within its primitive, "
+        "so one order for all needs one primitive: join them, convert the mesh to OBJ, or keep "
+        "face ids",
+        count));
+  }
+
+  // The vertex numbers of all triangles.
+  Status read_numbers() {
+    const std::uint64_t accessor_number = number_at(*primitive_, "indices", kNone);
+    if (accessor_number == kNone) return count_numbers();
+    const Json* const accessor = object_of(document_, "accessors", accessor_number);
+    if (accessor == nullptr) return has_changed("an accessor is missing");
+    component_ = number_at(*accessor, "componentType", 0);
+    const Json* const view =
+        object_of(document_, "bufferViews", number_at(*accessor, "bufferView", kNone));
+    if (accessor->contains("sparse") || view == nullptr || view->contains("extensions") ||
+        bytes_of_index(component_) == 0) {
+      return unsupported("the numbers of the vertices are sparse or compressed");
+    }
+    offset_ = number_at(*view, "byteOffset", 0) + number_at(*accessor, "byteOffset", 0);
+    const std::uint64_t count = number_at(*accessor, "count", 0) / 3 * 3;
+    buffer_ = number_at(*view, "buffer", kNone);
+    const Json* const buffer = object_of(document_, "buffers", buffer_);
+    if (buffer == nullptr) return has_changed("a buffer is missing");
+    std::string bytes;
+    std::string_view source = binary_;
+    if (buffer->contains("uri")) {
+      if (!(*buffer)["uri"].is_string()) return has_changed("a buffer is missing");
+      const auto& uri = (*buffer)["uri"].get_ref<const std::string&>();
+      if (const auto data = data_of(uri)) {
+        bytes = *data;
+      } else {
+        Result<std::string> file =
+            read_whole_file(reordering_.from / percent_decoded(uri), kAnyBytes);
+        if (!file) return file.error();
+        bytes = std::move(*file);
+      }
+      source = bytes;
+    }
+    const std::uint64_t size = count * bytes_of_index(component_);
+    if (offset_ > source.size() || size > source.size() - offset_) {
+      return has_changed("a buffer is too short");
+    }
+    numbers_ = source.substr(offset_, size);
+    return {};
+  }
+
+  // Without numbers, each three vertices in turn are a triangle.
+  Status count_numbers() {
+    const auto attributes = primitive_->find("attributes");
+    const Json* const positions =
+        attributes == primitive_->end()
+            ? nullptr
+            : object_of(document_, "accessors", number_at(*attributes, "POSITION", kNone));
+    if (positions == nullptr) return has_changed("a primitive has no positions");
+    const std::uint64_t vertices = number_at(*positions, "count", 0);
+    if (vertices / 3 < reordering_.faces.size()) return has_changed("it has fewer triangles");
+    component_ = kUnsignedInt;
+    for (std::uint64_t i = 0; i < vertices / 3 * 3; ++i) {
+      const auto number = static_cast<std::uint32_t>(i);
+      std::array<char, sizeof(number)> bytes{};
+      std::memcpy(bytes.data(), &number, sizeof(number));
+      numbers_.append(bytes.data(), bytes.size());
+    }
+    return {};
+  }
+
+  Status reorder() {
+    const std::size_t triangle = 3 * bytes_of_index(component_);
+    if (numbers_.size() / triangle < reordering_.faces.size()) {
+      return unsupported("its triangles are placed more than once: give each placement a mesh");
+    }
+    std::string reordered;
+    reordered.reserve(numbers_.size());
+    for (const SourceCorners& face : reordering_.faces) {
+      const std::size_t at = face.polygon * triangle;
+      if (at >= numbers_.size()) {
+        return unsupported("its triangles are placed more than once: give each placement a mesh");
+      }
+      reordered.append(numbers_, at, triangle);
+    }
+    numbers_ = std::move(reordered);
+    return {};
+  }
+
+  // Whether the numbers may be changed where they are: nothing else uses them, all are written, and
+  // they are in the file.
+  [[nodiscard]] bool has_place_of_its_own() const {
+    const std::uint64_t used = number_at(*primitive_, "indices", kNone);
+    if (used == kNone || buffer_ != 0 || document_["buffers"][0].contains("uri")) return false;
+    const Json& accessor = document_["accessors"][used];
+    if (number_at(accessor, "count", 0) != 3 * reordering_.faces.size()) return false;
+    const std::uint64_t view = number_at(accessor, "bufferView", kNone);
+    std::size_t users = 0;
+    for (const Json& other : document_["accessors"]) {
+      users += number_at(other, "bufferView", kNone) == view ? 1u : 0u;
+    }
+    for (const Json& mesh : document_["meshes"]) {
+      const auto primitives = mesh.find("primitives");
+      if (primitives == mesh.end()) continue;
+      for (const Json& primitive : *primitives) {
+        if (&primitive != primitive_ && number_at(primitive, "indices", kNone) == used) {
+          return false;
+        }
+      }
+    }
+    return users == 1;
+  }
+
+  // A buffer view and an accessor for the numbers, at the end of the binary chunk or in a buffer of
+  // their own.
+  void add_accessor() {
+    const auto append = [this](const char* array, Json object) {
+      document_[array].push_back(std::move(object));
+      return document_[array].size() - 1;
+    };
+    std::uint64_t buffer = 0;
+    std::uint64_t offset = 0;
+    const bool has_chunk =
+        is_binary_ && !binary_.empty() && !document_["buffers"][0].contains("uri");
+    if (has_chunk) {
+      appended_at_ = offset = (binary_.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment;
+      document_["buffers"][0]["byteLength"] = offset + numbers_.size();
+    } else {
+      buffer =
+          append("buffers", {{"byteLength", numbers_.size()},
+                             {"uri", "data:application/octet-stream;base64," + base64(numbers_)}});
+    }
+    const std::uint64_t view = append("bufferViews", {{"buffer", buffer},
+                                                      {"byteOffset", offset},
+                                                      {"byteLength", numbers_.size()},
+                                                      {"target", kElementArrayBuffer}});
+    const std::uint64_t accessor =
+        append("accessors", {{"bufferView", view},
+                             {"componentType", component_},
+                             {"count", numbers_.size() / bytes_of_index(component_)},
+                             {"type", "SCALAR"}});
+    (*primitive_)["indices"] = accessor;
+  }
+
+  // References to buffers and images are relative to the folder of the file. Whether any changed.
+  bool move_references() {
+    bool has_moved = false;
+    const std::string way = percent_encoded(reordering_.way());
+    if (way.empty()) return false;
+    for (const char* array : {"buffers", "images"}) {
+      const auto found = document_.find(array);
+      if (found == document_.end() || !found->is_array()) continue;
+      for (Json& object : *found) {
+        if (!object.contains("uri") || !object["uri"].is_string()) continue;
+        const std::string uri = object["uri"];
+        const std::size_t colon = uri.find(':');  // of a scheme, if no slash comes before it
+        if (uri.starts_with('/') || colon < uri.find('/')) continue;
+        object["uri"] = way + uri;
+        has_moved = true;
+      }
+    }
+    return has_moved;
+  }
+
+  Status write_glb() {
+    std::string json = document_.dump();
+    json.resize((json.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment, ' ');
+    std::string chunk(binary_);
+    if (appended_at_) {
+      chunk.resize(*appended_at_);
+      chunk += numbers_;
+      chunk.resize((chunk.size() + kGlbAlignment - 1) / kGlbAlignment * kGlbAlignment);
+    }
+    const std::uint64_t bytes = kGlbHeaderBytes + kChunkHeaderBytes + json.size() +
+                                (chunk.empty() ? 0 : kChunkHeaderBytes + chunk.size());
+    if (bytes > std::numeric_limits<std::uint32_t>::max()) {
+      return Error{Errc::kMeshTooLarge, "more than the 4 GiB that a GLB holds"};
+    }
+    out_.put(std::array{kGlbMagic, kGlbVersion, static_cast<std::uint32_t>(bytes)});
+    out_.put(std::array{static_cast<std::uint32_t>(json.size()), kJsonChunk});
+    write(json);
+    if (chunk.empty()) return {};
+    out_.put(std::array{static_cast<std::uint32_t>(chunk.size()), kBinaryChunk});
+    write(chunk);
+    return {};
+  }
+
+  void write(std::string_view bytes) { out_.write(std::as_bytes(std::span(bytes))); }
+
+  const Reordering& reordering_;
+  const bool is_binary_;
+  ByteSink& out_;
+  Json document_;
+  std::string_view binary_;      // the chunk of a .glb
+  Json* primitive_ = nullptr;    // in document_
+  std::string numbers_;          // of the vertices of all triangles
+  std::uint64_t component_ = 0;  // their type
+  std::uint64_t buffer_ = kNone;
+  std::uint64_t offset_ = 0;  // of the source's numbers in its buffer
+  std::optional<std::size_t> appended_at_;
+};
+
+}  // namespace
+
+Status reorder_gltf(const Reordering& reordering, bool is_binary, ByteSink& out) {
+  return GltfReorder(reordering, is_binary, out).run();
+}
+
+}  // namespace boxtree::cooker
