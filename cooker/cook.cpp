@@ -17,7 +17,7 @@
 #include "cooker/scene/scene_grid.h"
 #include "cooker/scene_account.h"
 #include "format/container.h"
-#include "format/numbers.h"
+#include "format/face_ids.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -271,9 +271,9 @@ class Cook {
     std::vector<Face> faces;
     faces.reserve(tree.face_count);
     file_.tree_order.reserve(tree.face_count);
-    const NumberView ids(geometry.face_ids.data(), geometry.face_id_bytes);
+    const FaceIdView ids = geometry.face_ids.empty() ? FaceIdView() : FaceIdView(geometry.face_ids);
     for (std::uint32_t i = 0; i < tree.face_count; ++i) {
-      const std::uint32_t face = tree.faces_in_source_order ? i : ids[i];
+      const std::uint32_t face = ids ? ids[i] : i;
       faces.push_back(mesh.faces[face]);
       file_.tree_order.push_back(
           {polygons_.empty() ? face : polygons_[face], mesh.polygon_corners[face]});
@@ -347,15 +347,16 @@ class Cook {
           materials.runs.push_back({run.first_face, material_number_[run.material]});
         }
       } else {
-        const NumberView ids(tree.geometry.face_ids.data(), tree.geometry.face_id_bytes);
+        const FaceIdView ids =
+            tree.faces_in_source_order ? FaceIdView() : FaceIdView(tree.geometry.face_ids);
         for (std::uint32_t face = 0; face < tree.face_count; ++face) {
-          materials.faces.push_back(material_at(ids[face]));
+          materials.faces.push_back(material_at(ids ? ids[face] : face));
         }
       }
     }
     if (!ids_are_wanted && !ids_are_structure) {
       tree.geometry.face_ids = {};
-      tree.geometry.face_id_bytes = 0;
+      tree.faces_in_source_order = false;
     }
     return materials;
   }
@@ -441,8 +442,8 @@ class Cook {
       tree.edges = edges_[t];
       tree.collapsed = tried_[t].collapsed_of(chosen_[t]);
       if (!input_.has_top_level && !options_.face_ids && !options_.number_by_tree) {
-        const std::uint64_t bytes = std::uint64_t{file_.trees[t].face_count} * 4;
-        tree.left_out.push_back({"face_ids", bytes, "--no-face-ids"});
+        tree.left_out.push_back(
+            {"face_ids", file_.trees[t].geometry.face_id_bytes, "--no-face-ids"});
       }
       summary.trees.push_back(std::move(tree));
     }

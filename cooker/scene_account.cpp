@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "format/container.h"
-#include "format/numbers.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -179,8 +178,7 @@ class Account {
   }
 
   static std::uint64_t face_id_bytes(const EncodedTree& tree) {
-    if (tree.face_count == 0) return 0;
-    return std::uint64_t{tree.face_count} * number_bytes(tree.face_count - 1);
+    return tree.geometry.face_id_bytes;
   }
 
   // Bytes per triangle in this file: an estimate for meshes that were never cooked.

@@ -65,12 +65,11 @@ bool duplicates_fit(const TreeRecord& record) {
 }
 
 bool geometry_fits(const TreeRecord& record) {
-  const bool width_known = record.face_id_bytes == 0 || is_number_width(record.face_id_bytes);
   const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
-  if (!width_known || (in_source_order && record.face_id_bytes != 0)) return false;
+  if (record.has_face_ids > (in_source_order || record.face_count == 0 ? 0 : 1)) return false;
   if (record.geometry == GeometryId::kExternal) {
     // External faces are found by source number, or through the face ids of a tree's own order.
-    const bool faces_are_named = in_source_order || record.face_id_bytes != 0;
+    const bool faces_are_named = in_source_order || record.has_face_ids != 0;
     return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
   }
   if (record.corners_per_face != 3 && record.corners_per_face != 4) return false;
@@ -116,7 +115,7 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   if (!root_fits(record)) return invalid("kind of root contradicts the counts");
   if (!frame_fits(record))
     return invalid("origin, scale or root box is not finite, ordered and within limits");
-  if (!geometry_fits(record)) return invalid("widths of corners or face ids are not as specified");
+  if (!geometry_fits(record)) return invalid("corners or face ids are not as specified");
   if (!reserve_is_zero(record)) return invalid("reserved bits are set");
   return {};
 }

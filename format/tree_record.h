@@ -14,9 +14,9 @@
 
 namespace boxtree {
 
-/// TreeRecord::flags: leaves hold source face numbers, so that no face_ids section is needed:
-/// because the geometry is external, or the source was written in tree order. Otherwise faces are
-/// in tree order and face_ids leads to the source.
+/// TreeRecord::flags: the tree's face numbers are those of the source, so that no face_ids section
+/// is needed: because nodes hold them (external geometry), or the source is in tree order.
+/// Otherwise faces are in tree order.
 inline constexpr std::uint32_t kTreeFacesInSourceOrder = 1u;
 /// TreeRecord::flags: positions are f64, otherwise f32.
 inline constexpr std::uint32_t kTreePositionsF64 = 2u;
@@ -39,8 +39,8 @@ struct TreeRecord {
   std::uint32_t depth;            // inner nodes on the longest path; at most kMaxDepth
   std::uint8_t corner_bytes;      // 2 or 4; 0 unless geometry is arrays
   std::uint8_t corners_per_face;  // 3, or 4 when the mesh has quads; 0 when external
-  std::uint8_t face_id_bytes;     // width (format/numbers.h); 0 without a face_ids section
-  std::uint8_t duplicate_bytes;   // likewise, of duplicates
+  std::uint8_t has_face_ids;      // 1 with a face_ids section, else 0
+  std::uint8_t duplicate_bytes;   // width (format/numbers.h); 0 without a duplicates section
   std::int32_t scale_exponent;
   std::uint32_t name_offset;  // into the names section
   std::uint32_t name_bytes;

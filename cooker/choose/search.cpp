@@ -13,6 +13,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "cooker/build/face_boxes.h"
+#include "cooker/encode/face_ids.h"
 #include "cooker/import/mesh_arrays.h"
 #include "format/limits.h"
 #include "runtime/primitive/float_state.h"
@@ -87,31 +88,45 @@ Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
   duplicates = find_duplicates(built());
 }
 
+// Adds the ids of the faces in `order`. A tree in the order of its source needs none; nor does one
+// without faces.
+void add_face_ids(const Source& source, const SearchOptions& options,
+                  std::span<const std::uint32_t> order, EncodedTree& tree) {
+  const bool external = options.geometry == GeometryId::kExternal;
+  const bool are_wanted = options.face_ids || external;  // through them, leaves have faces
+  if (is_in_source_order(source.mesh, order)) {
+    tree.faces_in_source_order = are_wanted;
+    return;
+  }
+  std::vector<std::byte> ids = encode_face_ids(source.mesh, order);
+  tree.geometry.face_id_bytes = ids.size();
+  if (are_wanted) tree.geometry.face_ids = std::move(ids);
+}
+
 // The geometry of the faces in `order`, followed by their duplicates.
-EncodedGeometry encode_geometry(const Source& source, const SearchOptions& options,
-                                std::vector<std::uint32_t> order, LeafOrder leaf_order) {
+void encode_geometry(const Source& source, const SearchOptions& options,
+                     std::vector<std::uint32_t> order, LeafOrder leaf_order, EncodedTree& tree) {
   const bool has_duplicates = source.duplicates.count > 0;
-  const auto encode_clusters = [&](LeafOrder faces, bool face_ids) {
-    return source.quantised ? encode_grid_geometry(*source.quantised, order, faces, face_ids)
-                            : encode_exact_geometry(source.mesh, order, faces, face_ids);
+  const auto encode_clusters = [&](LeafOrder faces) {
+    return source.quantised ? encode_grid_geometry(*source.quantised, order, faces)
+                            : encode_exact_geometry(source.mesh, order, faces);
   };
   if (has_clusters(options.geometry) && has_duplicates && leaf_order == LeafOrder::kFree) {
     // The order of the originals decides the order of their duplicates, so clusters come first.
-    static_cast<void>(encode_clusters(leaf_order, false));
+    static_cast<void>(encode_clusters(leaf_order));
     leaf_order = LeafOrder::kFixed;
   }
   const std::vector<std::uint32_t> originals =
       append_duplicates(source.built(), source.duplicates, order);
-  EncodedGeometry out;
   if (options.geometry == GeometryId::kExternal) {
-    out = encode_external_geometry(source.mesh, order);
+    tree.geometry = encode_external_geometry(source.mesh);
   } else if (options.geometry == GeometryId::kArrays) {
-    out = encode_array_geometry(source.mesh, order, options.face_ids);
+    tree.geometry = encode_array_geometry(source.mesh, order);
   } else {
-    out = encode_clusters(leaf_order, options.face_ids);
+    tree.geometry = encode_clusters(leaf_order);
   }
-  encode_duplicates(originals, out);
-  return out;
+  encode_duplicates(originals, tree.geometry);
+  add_face_ids(source, options, order, tree);
 }
 
 // Codecs that share a build tree and its order of faces; only their nodes differ. The build tree is
@@ -127,15 +142,17 @@ Family binary_family(const Source& source, const SearchOptions& options,
   const BuildTree build =
       build_tree(source.built(), options.builder, source.origin(), source.duplicates);
   Family family{source.known, {}};
-  // Duplicates follow all other faces, which is not the order of the source.
-  const bool in_source_order =
+  // Nodes may hold the source's face numbers. Duplicates follow all other faces, which is not the
+  // order of the source.
+  const bool hold_source_numbers =
       options.geometry == GeometryId::kExternal && source.duplicates.count == 0;
-  family.tree.faces_in_source_order = in_source_order;
-  family.tree.geometry =
-      in_source_order
-          ? encode_external_geometry(source.mesh, {})
-          : encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed);
-  const FaceOrder order = in_source_order ? FaceOrder::kSource : FaceOrder::kTree;
+  if (hold_source_numbers) {
+    family.tree.faces_in_source_order = true;
+    family.tree.geometry = encode_external_geometry(source.mesh);
+  } else {
+    encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed, family.tree);
+  }
+  const FaceOrder order = hold_source_numbers ? FaceOrder::kSource : FaceOrder::kTree;
   std::array<EncodedNodes, 3> plain;  // by PlainCut
   const auto walk_for = [&](std::size_t i) {
     const auto cut = static_cast<PlainCut>(i);
@@ -159,10 +176,7 @@ Family binary_family(const Source& source, const SearchOptions& options,
 Family wide_family(const Source& source, const SearchOptions& options,
                    const std::shared_ptr<const WideLayout>& layout) {
   Family family{source.known, {}};
-  const bool external = options.geometry == GeometryId::kExternal;
-  // Leaves refer to the application's faces through face ids. A tree without faces has no ids.
-  family.tree.faces_in_source_order = external && layout->face_order.empty();
-  family.tree.geometry = encode_geometry(source, options, layout->face_order, LeafOrder::kFree);
+  encode_geometry(source, options, layout->face_order, LeafOrder::kFree, family.tree);
   family.nodes_of = [layout](CodecId codec) { return encode_wide(*layout, codec); };
   return family;
 }

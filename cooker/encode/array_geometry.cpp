@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "cooker/encode/face_ids.h"
+#include "cooker/encode/encoded.h"
 #include "format/numbers.h"
 
 namespace boxtree::cooker {
@@ -38,17 +38,6 @@ void append_position(const Positions& positions, std::size_t vertex, std::vector
 
 }  // namespace
 
-void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
-                     EncodedGeometry& out) {
-  std::uint32_t largest = 0;
-  for (const std::uint32_t face : order) largest = std::max(largest, mesh.face_id(face));
-  out.face_id_bytes = number_bytes(largest);
-  out.face_ids.reserve(order.size() * out.face_id_bytes);
-  for (const std::uint32_t face : order) {
-    append_number(out.face_ids, mesh.face_id(face), out.face_id_bytes);
-  }
-}
-
 void encode_duplicates(std::span<const std::uint32_t> originals, EncodedGeometry& out) {
   if (originals.empty()) return;
   out.duplicate_count = static_cast<std::uint32_t>(originals.size());
@@ -68,8 +57,8 @@ std::vector<std::uint32_t> faces_in_tree_order(const BuildTree& tree) {
   return order;
 }
 
-EncodedGeometry encode_array_geometry(const SourceMesh& mesh, std::span<const std::uint32_t> order,
-                                      bool face_ids) {
+EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
+                                      std::span<const std::uint32_t> order) {
   EncodedGeometry out;
   out.geometry = GeometryId::kArrays;
   const bool quads =
@@ -94,16 +83,13 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh, std::span<const st
       append_number(out.corners, renumbered[corner], out.corner_bytes);
     }
   }
-  if (face_ids && !order.empty()) encode_face_ids(mesh, order, out);
   return out;
 }
 
-EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
-                                         std::span<const std::uint32_t> order) {
+EncodedGeometry encode_external_geometry(const SourceMesh& mesh) {
   EncodedGeometry out;
   out.geometry = GeometryId::kExternal;
   out.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
-  if (!order.empty()) encode_face_ids(mesh, order, out);
   return out;
 }
 

@@ -15,7 +15,6 @@
 
 #include "cooker/encode/axis_fields.h"
 #include "cooker/encode/encoded.h"
-#include "cooker/encode/face_ids.h"
 #include "cooker/encode/strip.h"
 #include "format/bits.h"
 #include "format/cluster_leaf.h"
@@ -456,8 +455,7 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
 
 template <class Numbers>
 EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
-                                std::vector<std::uint32_t>& order, LeafOrder leaf_order,
-                                bool face_ids) {
+                                std::vector<std::uint32_t>& order, LeafOrder leaf_order) {
   const bool may_have_quads = std::any_of(mesh.faces.begin(), mesh.faces.end(),
                                           [](const Face& face) { return face.is_quad(); });
   EncodedGeometry out;
@@ -487,17 +485,15 @@ EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
     block = {};
   }
   if (!blocks.empty()) out.vertices.resize(out.vertices.size() + kClusterPadding);
-  if (face_ids && !order.empty()) encode_face_ids(mesh, order, out);
   return out;
 }
 
 }  // namespace
 
 EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
-                                     std::vector<std::uint32_t>& order, LeafOrder leaf_order,
-                                     bool face_ids) {
-  EncodedGeometry out = encode_clusters(quantised.mesh, GridNumbers{quantised.mesh.positions},
-                                        order, leaf_order, face_ids);
+                                     std::vector<std::uint32_t>& order, LeafOrder leaf_order) {
+  EncodedGeometry out =
+      encode_clusters(quantised.mesh, GridNumbers{quantised.mesh.positions}, order, leaf_order);
   out.geometry = GeometryId::kGrid;
   out.grid_exponent = quantised.step_exponent;
   out.max_vertex_error = quantised.max_vertex_error;
@@ -505,14 +501,14 @@ EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
 }
 
 EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::vector<std::uint32_t>& order,
-                                      LeafOrder leaf_order, bool face_ids) {
+                                      LeafOrder leaf_order) {
   const Positions& positions = mesh.positions;
   EncodedGeometry out =
       positions.precision == Precision::kF64
           ? encode_clusters(mesh, FloatNumbers<std::int64_t, double>{positions.f64}, order,
-                            leaf_order, face_ids)
+                            leaf_order)
           : encode_clusters(mesh, FloatNumbers<std::int32_t, float>{positions.f32}, order,
-                            leaf_order, face_ids);
+                            leaf_order);
   out.geometry = GeometryId::kExact;
   return out;
 }

@@ -55,7 +55,7 @@ enum class FieldWidths : std::uint8_t {
 };
 
 /// Vertices, corners, ids and duplicates, as bytes of their sections. The first two are empty for
-/// external geometry.
+/// external geometry; ids are empty if they are left out or those of the tree's own order.
 struct EncodedGeometry {
   GeometryId geometry{};
   std::vector<std::byte> vertices;
@@ -65,9 +65,9 @@ struct EncodedGeometry {
   std::uint32_t vertex_count = 0;
   std::uint8_t corner_bytes = 0;
   std::uint8_t corners_per_face = 0;
-  std::uint8_t face_id_bytes = 0;
   std::uint8_t duplicate_bytes = 0;
   std::uint32_t duplicate_count = 0;
+  std::uint64_t face_id_bytes = 0;  // that ids take, or would take if they were not left out
   int grid_exponent = 0;        // geometry grid: of its step in object space
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
@@ -78,8 +78,7 @@ struct EncodedGeometry {
 
 /// Faces in `order`, vertices in order of first use, positions bit for bit.
 [[nodiscard]] EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
-                                                    std::span<const std::uint32_t> order,
-                                                    bool face_ids);
+                                                    std::span<const std::uint32_t> order);
 
 /// Whether the faces of a leaf may be reordered: kFixed for trees with one triangle per leaf.
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
@@ -88,15 +87,13 @@ enum class LeafOrder : std::uint8_t { kFixed, kFree };
 /// may be reordered within groups of kLeafFaces; on return, `order` is the order stored.
 [[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
                                                     std::vector<std::uint32_t>& order,
-                                                    LeafOrder leaf_order, bool face_ids);
+                                                    LeafOrder leaf_order);
 [[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
                                                    std::vector<std::uint32_t>& order,
-                                                   LeafOrder leaf_order, bool face_ids);
+                                                   LeafOrder leaf_order);
 
-/// No geometry; only the face ids through which a reader finds the application's faces, unless
-/// `order` is empty.
-[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh,
-                                                       std::span<const std::uint32_t> order);
+/// No geometry: the application has the arrays.
+[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh);
 
 /// The places of the originals of all duplicates, ascending, as their section.
 void encode_duplicates(std::span<const std::uint32_t> originals, EncodedGeometry& out);

@@ -21,7 +21,7 @@ TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
   record.depth = tree.nodes.depth;
   record.corner_bytes = tree.geometry.corner_bytes;
   record.corners_per_face = tree.geometry.corners_per_face;
-  record.face_id_bytes = tree.geometry.face_id_bytes;
+  record.has_face_ids = tree.geometry.face_ids.empty() ? 0 : 1;
   record.duplicate_bytes = tree.geometry.duplicate_bytes;
   record.duplicate_count = tree.geometry.duplicate_count;
   record.scale_exponent = tree.scale_exponent;

@@ -1,15 +1,22 @@
 // SPDX-License-Identifier: MIT
-// The numbers of source faces, which all geometry stores hold.
+// The numbers of source faces (reader: format/face_ids.h), which all geometry stores may have.
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <span>
+#include <vector>
 
-#include "cooker/encode/encoded.h"
+#include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
 
-/// Source numbers of the faces in `order`, in as few bytes as the largest takes.
-void encode_face_ids(const SourceMesh& mesh, std::span<const std::uint32_t> order,
-                     EncodedGeometry& out);
+/// Section face_ids of the faces in `order`, as small as its form allows. Precondition: `order` is
+/// not empty.
+[[nodiscard]] std::vector<std::byte> encode_face_ids(const SourceMesh& mesh,
+                                                     std::span<const std::uint32_t> order);
+
+/// Whether the faces in `order` have the ids 0, 1, 2 and so on, so that no section is needed.
+[[nodiscard]] bool is_in_source_order(const SourceMesh& mesh, std::span<const std::uint32_t> order);
 
 }  // namespace boxtree::cooker

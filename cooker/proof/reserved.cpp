@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Checks the reserved bits of each codec and of clusters.
+// Checks the reserved bits of each codec, of clusters and of face ids.
 #include "cooker/proof/reserved.h"
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <string>
 
 #include "format/bits.h"
@@ -11,6 +12,8 @@
 #include "format/codec_packed.h"
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
+#include "format/face_ids.h"
+#include "format/limits.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 
@@ -25,6 +28,20 @@ class Check {
     if (holds || findings_.size() >= kMaxFindings) return;
     findings_.push_back(
         {Errc::kPaddingNotZero, what + std::to_string(number) + ": " + where + " are not zero"});
+  }
+
+  void misplaced_ids(std::uint32_t group, std::uint32_t block) {
+    if (findings_.size() >= kMaxFindings) return;
+    findings_.push_back({Errc::kFaceOutOfRange, "face ids: block " + std::to_string(block) +
+                                                    " of group " + std::to_string(group) +
+                                                    " is not where the one before ends"});
+  }
+
+  void large_id(std::uint32_t face, std::uint32_t id) {
+    if (findings_.size() >= kMaxFindings) return;
+    findings_.push_back({Errc::kFaceOutOfRange, "face " + std::to_string(face) + " has the id " +
+                                                    std::to_string(id) + ", limit " +
+                                                    std::to_string(kMaxFaces - 1)});
   }
 
   void missing_vertex(std::uint32_t leaf, std::uint32_t other) {
@@ -180,6 +197,48 @@ void check_clusters(const ClusterView& clusters, Check& check) {
                "the bits behind them, or their number,");
 }
 
+// Checks the bits between the blocks of face ids, and that each id has an interval and is a number
+// that a face can have. Precondition: the section has been bound.
+void check_face_ids(Bytes section, std::uint32_t face_count, Check& check) {
+  const FaceIdView ids(section);
+  const std::uint32_t groups = id_groups_of(face_count);
+  const std::uint64_t last = (section.size() - kBitPadding) * 8;
+  std::uint64_t end = id_table_bytes(face_count) * 8;  // of the previous block
+  for (std::uint32_t g = 0; g < groups; ++g) {
+    const std::uint32_t blocks =
+        std::min(kIdGroupBlocks, id_blocks_of(face_count) - g * kIdGroupBlocks);
+    FaceIdGroup group{};
+    std::memcpy(&group, section.data() + g * sizeof(group),
+                offsetof(FaceIdGroup, block) + blocks * sizeof(std::uint32_t));
+    const std::uint64_t begin = group.begin * (kIdUnit * 8);
+    if (begin != align_up(end, kIdUnit * 8) || begin > last) return check.misplaced_ids(g, 0);
+    check.expect(are_zero(section, end, begin), "group ", g, "the bits before its face ids");
+    end = begin;
+    for (std::uint32_t b = 0; b < blocks; ++b) {
+      const std::uint32_t first = g * kIdGroupFaces + b * kIdBlockFaces;
+      const FaceIdBlock block = FaceIdBlock::of(group.block[b]);
+      const std::uint32_t count = std::min(kIdBlockFaces, face_count - first);
+      const std::uint64_t middle = begin + block.middle;
+      const std::uint64_t after = middle + std::uint64_t{count} * block.width();
+      if (middle < end || after > last || block.grain > FaceIdBlock::kNoGrain) {
+        return check.misplaced_ids(g, b);
+      }
+      std::uint64_t intervals = 0;
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const std::uint64_t field =
+            read_bits(section.data(), middle + std::uint64_t{i} * block.width(), block.width());
+        intervals = std::max(intervals, (field >> block.offset_bits) + 1);
+        if (ids[first + i] >= kMaxFaces) check.large_id(first + i, ids[first + i]);
+      }
+      if (middle - end != intervals * block.start_bits) return check.misplaced_ids(g, b);
+      end = after;
+    }
+  }
+  check.expect(section.size() * 8 == align_up(end, kIdUnit * 8) + kBitPadding * 8 &&
+                   are_zero(section, end, section.size() * 8),
+               "group ", groups, "the bits before it, or their number,");
+}
+
 }  // namespace
 
 Findings check_reserved(const File& opened, std::uint32_t index) {
@@ -216,6 +275,9 @@ Findings check_reserved(const File& opened, std::uint32_t index) {
                     file.section(SectionKind::kVertices, index), record.face_count,
                     record.corners_per_face, numbers_of(record.geometry, is_f64)},
                    check);
+  }
+  if (record.has_face_ids != 0) {
+    check_face_ids(file.section(SectionKind::kFaceIds, index), record.face_count, check);
   }
   return findings;
 }

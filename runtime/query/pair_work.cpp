@@ -13,6 +13,8 @@ PairReport::PairReport(const BoundTree& first, const BoundTree& second,
                        PairVisitor visitor) noexcept
     : first_(first),
       second_(second),
+      first_refs_(first),
+      second_refs_(second),
       visitor_(visitor),
       pairs_left_(saturated_product(first.face_count(), second.face_count())) {}
 

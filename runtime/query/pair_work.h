@@ -70,7 +70,7 @@ class PairReport {
   /// see stopped() and error().
   [[nodiscard]] bool add(std::uint32_t first, std::uint32_t second) {
     if (!first_.has_duplicates() && !second_.has_duplicates()) {
-      stopped_ = !visitor_({face_ref(first_, first), face_ref(second_, second)});
+      stopped_ = !visitor_({first_refs_(first), second_refs_(second)});
       return !stopped_;
     }
     return report_copies(first, second);
@@ -85,6 +85,7 @@ class PairReport {
 
   const BoundTree& first_;
   const BoundTree& second_;
+  LeafFaceRefs first_refs_, second_refs_;
   PairVisitor visitor_;
   std::uint64_t pairs_left_;
   bool stopped_ = false;

@@ -120,6 +120,7 @@ double length_above(const Eigen::Vector3d& v) noexcept {
 
 Errc find_nearest(const BoundTree& tree, PointQuery& query) {
   const Errc walked = walk_nearest(tree, query);
+  query.name_face();
   return walked != Errc::kOk ? walked : query.error;
 }
 
@@ -182,6 +183,7 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
       scaled_below(std::max(0.0, std::min(untested, query.tested_lower) - place), exponent);
   result.nodes_expanded = query.nodes_expanded;
   if (!query.found) return result;
+  query.name_face();
   // A point of a face is off by up to 26 u of the largest coordinate (see triangle_distance.cpp),
   // and the point itself by half the least double where its conversion to tree space underflows.
   const double off = 26 * kRoundoffF64 * tree.largest_abs() + place;

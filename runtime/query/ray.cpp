@@ -15,12 +15,15 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
   RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit);
   if (!(query.origin_max_abs <= kMaxCoordinate)) return Errc::kInvalidQuery;  // NaN, too
   if (tree.empty() || !query.enters_root()) return Errc::kOk;
-  // Wide codecs: RayWalk::intersect (ray_wide.cpp); others: traverse_nearest (walk/traversal.h), which
-  // calls RayQuery::key.
+  // Wide codecs: RayWalk::intersect (ray_wide.cpp); others: traverse_nearest (walk/traversal.h),
+  // which calls RayQuery::key.
   const Errc walked = walk_nearest(tree, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (hit.is_hit) hit.t = parameter_of(ray, hit.t, query.parameter_exponent);
+  if (hit.is_hit) {
+    hit.t = parameter_of(ray, hit.t, query.parameter_exponent);
+    hit.face = face_ref(tree, hit.face.index);
+  }
   return Errc::kOk;
 }
 

@@ -90,7 +90,8 @@ struct RayInTree {
   }
 };
 
-/// A query of traverse_nearest. `best` receives the answer; it holds no hit yet.
+/// A query of traverse_nearest. `best` receives the answer, without the id of its face; it holds no
+/// hit yet.
 struct RayQuery : RayInTree {
   RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
            bool stop_at_first, RayCandidate& best) noexcept
@@ -132,9 +133,11 @@ struct RayQuery : RayInTree {
     // above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
-    const FaceRef face = face_ref(tree, face_index);
-    if (hit.is_hit && t == hit.t && !comes_before(face, half, hit.face, hit.half)) return;
-    hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
+    if (hit.is_hit && t == hit.t &&
+        !tree.comes_before(face_index, half, hit.face.index, hit.half)) {
+      return;
+    }
+    hit = RayCandidate{true, t, {kNoFaceId, face_index}, half, found->u, found->v, triangle};
     t_max = t;
   }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Binding: the checks that let queries trust counts and section sizes, and nothing else.
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -160,11 +161,14 @@ Status BoundTree::bind_external_geometry(const TreeParts& parts, const std::stri
 
 Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place,
                                 const BindOptions& options) {
-  const std::uint8_t width = parts.record.face_id_bytes;
-  const auto ids = sized_section(parts.face_ids, SectionKind::kFaceIds, place,
-                                 number_array_bytes(face_count_, width), 1);
+  const bool is_there = parts.record.has_face_ids != 0;
+  const std::uint64_t least = is_there ? least_id_bytes(face_count_) : 0;
+  // Fields take more bytes than that; each is looked for where it is read.
+  const auto ids =
+      sized_section(parts.face_ids, SectionKind::kFaceIds, place,
+                    is_there ? std::max<std::uint64_t>(parts.face_ids.size(), least) : 0, 1);
   if (!ids) return ids.error();
-  if (width != 0) face_ids_ = {*ids, width};
+  if (is_there) face_ids_ = FaceIdView(parts.face_ids);
   if (geometry_ == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");

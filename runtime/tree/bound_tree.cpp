@@ -24,6 +24,27 @@ bool BoundTree::has_face_ids() const noexcept {
   return bool{face_ids_} || is_in_source_order_;
 }
 
+std::uint32_t BoundTree::face_id(std::uint32_t face) const noexcept {
+  if (face_ids_) return face_ids_[face];
+  return is_in_source_order_ ? face : kNoFaceId;
+}
+
+void BoundTree::read_leaf_ids(std::uint32_t leaf,
+                              std::span<std::uint32_t, kLeafFaces> out) const noexcept {
+  if (face_ids_) return face_ids_.read_leaf(leaf, out);
+  for (std::uint32_t i = 0; i < kLeafFaces; ++i) {
+    out[i] = is_in_source_order_ ? leaf * kLeafFaces + i : kNoFaceId;
+  }
+}
+
+bool BoundTree::comes_before(std::uint32_t a, std::uint32_t a_half, std::uint32_t b,
+                             std::uint32_t b_half) const noexcept {
+  const std::uint32_t a_id = face_id(a);
+  const std::uint32_t b_id = face_id(b);
+  if (a_id != b_id) return a_id < b_id;
+  return a != b ? a < b : a_half < b_half;
+}
+
 NodeRef BoundTree::root_ref() const noexcept {
   return is_leaf() ? NodeRef{0, counts_.faces_in_leaves} : functions_->root(nodes_);
 }

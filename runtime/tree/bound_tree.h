@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -14,6 +15,7 @@
 
 #include "format/children.h"
 #include "format/codec.h"
+#include "format/face_ids.h"
 #include "format/numbers.h"
 #include "runtime/tree/bound_codec.h"
 #include "runtime/tree/geometry.h"
@@ -107,10 +109,16 @@ class BoundTree {
 
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
   /// Precondition: face < face_count().
-  [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept {
-    if (face_ids_) return face_ids_[face];
-    return is_in_source_order_ ? face : kNoFaceId;
-  }
+  [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
+
+  /// The same for faces 8 leaf to 8 leaf + 7, in a third of the time of eight calls. Those of faces
+  /// that do not exist are unspecified. Precondition: 8 leaf < face_count().
+  void read_leaf_ids(std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) const noexcept;
+
+  /// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
+  /// that every codec and builder agrees. Precondition: the faces exist.
+  [[nodiscard]] bool comes_before(std::uint32_t a, std::uint32_t a_half, std::uint32_t b,
+                                  std::uint32_t b_half) const noexcept;
 
   /// Whether some faces are in no leaf because they are copies of others.
   [[nodiscard]] bool has_duplicates() const noexcept { return bool{duplicates_}; }
@@ -171,7 +179,7 @@ class BoundTree {
   std::string_view name_;
   BoundCodec nodes_;
   const CodecFunctions* functions_ = &kNoCodec;
-  NumberView face_ids_;
+  FaceIdView face_ids_;
   NumberView duplicates_;  // the original of each, ascending
   LeafReader leaves_;
   // What every query needs, computed when the tree is bound.

@@ -101,14 +101,23 @@ Errc LeafReader::read_clusters(std::uint32_t first, std::uint32_t count,
   return Errc::kOk;
 }
 
+// The number of a face in the mesh. `ids`: of the faces of its leaf, read with the first.
+std::uint32_t LeafReader::stored_face(std::uint32_t face, bool is_first,
+                                      std::span<std::uint32_t, kLeafFaces> ids) const noexcept {
+  if (!order_) return face;
+  if (is_first || face % kLeafFaces == 0) order_.read_leaf(face / kLeafFaces, ids);
+  return ids[face % kLeafFaces];
+}
+
 template <class Scalar, class Corner>
 Errc LeafReader::read_as(std::uint32_t first, std::uint32_t count,
                          TriangleBatch& out) const noexcept {
   constexpr auto kMissing = static_cast<Corner>(kMissingCorner);
   const std::uint32_t corners_per_face = mesh_.corners_per_face;
   std::uint32_t triangles = 0;
+  std::array<std::uint32_t, kLeafFaces> ids;
   for (std::uint32_t f = first; f < first + count; ++f) {
-    const std::uint32_t stored = order_ ? order_[f] : f;
+    const std::uint32_t stored = stored_face(f, f == first, ids);
     if (stored >= mesh_.face_count) return Errc::kFaceOutOfRange;
     const std::byte* const face =
         mesh_.corners + std::size_t{stored} * corners_per_face * sizeof(Corner);

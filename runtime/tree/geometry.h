@@ -11,8 +11,8 @@
 
 #include "format/bytes.h"
 #include "format/cluster.h"
+#include "format/face_ids.h"
 #include "format/limits.h"
-#include "format/numbers.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/triangle.h"
 #include "runtime/tree/frame.h"
@@ -49,7 +49,7 @@ struct TriangleBatch {
 
 /// What walks by vectors read of a store once per query, computed when a tree is bound.
 struct FloatLeaves {
-  float scale = 1;         // of stored coordinates, to tree space
+  float scale = 1;            // of stored coordinates, to tree space
   float rounding = 0;         // how far a coordinate is off once rounded to float
   float direct_rounding = 0;  // the same for coordinates that are scaled as they are stored
   bool is_direct = false;     // full leaves of triangles can be scaled as they are stored
@@ -69,7 +69,7 @@ class LeafReader {
 
   /// From now on face n of the tree is face order[n] of the mesh: for arrays of an application,
   /// whose order is not the tree's.
-  void set_order(NumberView order) noexcept { order_ = order; }
+  void set_order(FaceIdView order) noexcept { order_ = order; }
 
   /// Call it last. `max_abs`: the largest absolute coordinate in tree space.
   void prepare_floats(double max_abs) noexcept;
@@ -99,6 +99,8 @@ class LeafReader {
   [[nodiscard]] Errc read_as(std::uint32_t first, std::uint32_t count,
                              TriangleBatch& out) const noexcept;
 
+  [[nodiscard]] std::uint32_t stored_face(std::uint32_t face, bool is_first,
+                                          std::span<std::uint32_t, kLeafFaces> ids) const noexcept;
   [[nodiscard]] Errc read_clusters(std::uint32_t first, std::uint32_t count,
                                    TriangleBatch& out) const noexcept;
 
@@ -106,7 +108,7 @@ class LeafReader {
   Frame frame_;
   ClusterView clusters_;
   double grid_step_ = 0;
-  NumberView order_;  // none: the mesh is in the order of the tree
+  FaceIdView order_;  // none: the mesh is in the order of the tree
   FloatLeaves floats_;
 };
 

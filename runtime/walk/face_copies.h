@@ -3,6 +3,7 @@
 // ones, and visitors get all of them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include <boxtree/query.h>
@@ -15,6 +16,26 @@ namespace boxtree {
 [[nodiscard]] inline FaceRef face_ref(const BoundTree& tree, std::uint32_t index) noexcept {
   return {tree.face_id(index), index};
 }
+
+/// Names faces that come leaf by leaf: reads the ids of a leaf together, when the first is needed.
+class LeafFaceRefs {
+ public:
+  explicit LeafFaceRefs(const BoundTree& tree) noexcept : tree_(tree) {}
+
+  /// See face_ref.
+  [[nodiscard]] FaceRef operator()(std::uint32_t index) noexcept {
+    if (index / kLeafFaces != leaf_) {
+      leaf_ = index / kLeafFaces;
+      tree_.read_leaf_ids(leaf_, ids_);
+    }
+    return {ids_[index % kLeafFaces], index};
+  }
+
+ private:
+  const BoundTree& tree_;
+  std::uint32_t leaf_ = ~std::uint32_t{0};  // whose ids these are
+  std::array<std::uint32_t, kLeafFaces> ids_;
+};
 
 /// A face that a leaf holds, followed by its copies.
 class FaceWithCopies {

@@ -22,6 +22,7 @@ struct FaceWalk {
   bool stopped = false;
   // In valid files each copy is reported once; in corrupt ones many faces may have the same copies.
   std::uint32_t copies_left = tree.duplicate_count();
+  LeafFaceRefs refs{tree};
   TriangleBatch batch;
 
   template <class S>
@@ -45,7 +46,7 @@ struct FaceWalk {
 
   /// Reports a face and its copies to the visitor. Returns whether to go on.
   [[nodiscard]] [[gnu::always_inline]] bool report(std::uint32_t face) {
-    stopped = !visitor(face_ref(tree, face));
+    stopped = !visitor(refs(face));
     return !stopped && (!tree.has_duplicates() || report_copies(face));
   }
 

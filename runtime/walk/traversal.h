@@ -39,14 +39,6 @@ namespace boxtree {
   return box;
 }
 
-/// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
-/// that every codec and builder agrees.
-[[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,
-                                       std::uint32_t b_half) noexcept {
-  if (a.id != b.id) return a.id < b.id;
-  return a.index != b.index ? a.index < b.index : a_half < b_half;
-}
-
 /// 1 for the second triangle of a quad, else 0.
 [[nodiscard]] inline std::uint32_t half_of_face(const TriangleBatch& batch,
                                                 std::uint32_t triangle) noexcept {

@@ -386,7 +386,7 @@ class Tree:
     def __init__(self, file, index, record):
         (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,
          self.vertex_count, self.node_count, self.root_kind, self.depth, self.corner_bytes,
-         self.corners_per_face, self.face_id_bytes, self.duplicate_bytes, self.exponent, name_offset,
+         self.corners_per_face, self.has_face_ids, self.duplicate_bytes, self.exponent, name_offset,
          name_bytes, *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQiI7Q", record)
         self.origin, self.low, self.high = rest[0:3], tuple(rest[3:6]), tuple(rest[6:9])
         self.grid_exponent = rest[10]
@@ -427,7 +427,10 @@ class Tree:
             expect(len(self.corners) == self.face_count * self.corners_per_face
                    * self.corner_bytes, "size of section corners")
         self.clusters = Clusters(self) if self.geometry in (GRID, EXACT) else None
-        expect(len(self.ids) == self.face_count * self.face_id_bytes, "size of section face_ids")
+        expect(self.has_face_ids <= (self.face_count > 0 and not self.flags & 1),
+               "face ids of faces in tree order")
+        expect(self.has_face_ids == bool(self.ids), "a section face_ids")
+        self.face_ids = self.read_face_ids() if self.ids else None
         expect(len(self.duplicates) == self.duplicate_count * self.duplicate_bytes,
                "size of section duplicates")
 
@@ -460,13 +463,50 @@ class Tree:
         return [struct.unpack_from("<3" + self.scalar, self.vertices, number * size)
                 for number in numbers]
 
+    def read_face_ids(self):
+        """All face ids (section 8.2)."""
+        def field(at, width):
+            expect(0 <= at and at + width <= 8 * len(self.ids), "a field of face ids")
+            data = self.ids[at // 8:(at + width + 7) // 8]
+            return int.from_bytes(data, "little") >> at % 8 & (1 << width) - 1
+
+        ids = []
+        groups = (self.face_count + 1023) // 1024
+        blocks_left = (self.face_count + 63) // 64
+        end = (groups * 8 + blocks_left * 4) * 8
+        expect(end <= 8 * len(self.ids), "size of section face_ids")
+        for group in range(groups):
+            count = min(16, blocks_left)
+            blocks_left -= count
+            base, begin, *blocks = struct.unpack_from(f"<{2 + count}I", self.ids, group * 72)
+            expect(begin * 32 == end + -end % 32 and not field(end, -end % 32), "begin of a group")
+            end = begin * 32
+            for number, block in enumerate(blocks):
+                faces = min(64, self.face_count - group * 1024 - number * 64)
+                middle, offset_bits, start_bits = block & 0xffff, block >> 16 & 31, block >> 21 & 31
+                interval_bits, grain = block >> 26 & 7, block >> 29
+                expect(grain <= 6, "grain of a block")
+                middle += begin * 32
+                width = offset_bits + interval_bits
+                largest = 0
+                for i in range(faces):
+                    value = field(middle + i * width, width)
+                    interval, offset = value >> offset_bits, value & (1 << offset_bits) - 1
+                    largest = max(largest, interval)
+                    start = field(middle - (interval + 1) * start_bits, start_bits)
+                    face_id = (base + start + offset + (i >> grain << grain)) % 2 ** 32
+                    expect(face_id <= 2 ** 31 - 2, "a face id")
+                    ids.append(face_id)
+                expect(middle - (largest + 1) * start_bits == end, "starts of a block")
+                end = middle + faces * width
+        rest = -end % 32 + 64
+        expect(end + rest == 8 * len(self.ids) and not field(end, rest), "end of section face_ids")
+        return ids
+
     def face_id(self, face):
         if self.flags & 1:
             return face
-        if not self.face_id_bytes:
-            return None
-        at = face * self.face_id_bytes
-        return int.from_bytes(self.ids[at:at + self.face_id_bytes], "little")
+        return self.face_ids[face] if self.has_face_ids else None
 
     def walk(self):
         """Visits every leaf; returns what the certificate must say."""

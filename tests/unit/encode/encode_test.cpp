@@ -75,17 +75,15 @@ TEST(ArrayGeometry, StandsInTreeOrderWithVerticesInOrderOfUse) {
   SourceMesh mesh = two_triangles();
   std::swap(mesh.faces[0], mesh.faces[1]);  // source order is not tree order
   const BuildTree build = build_tree(mesh, Builder::kSah);
-  const EncodedGeometry geometry = encode_array_geometry(mesh, faces_in_tree_order(build), true);
+  const EncodedGeometry geometry = encode_array_geometry(mesh, faces_in_tree_order(build));
   EXPECT_EQ(geometry.corner_bytes, 2);
   EXPECT_EQ(geometry.corners_per_face, 3);
-  EXPECT_EQ(geometry.face_id_bytes, 1);
   ASSERT_EQ(geometry.vertices.size(), 6 * 12u);
   ASSERT_EQ(geometry.corners.size(), 6 * 2u);
   for (std::uint16_t i = 0; i < 6; ++i) {
     EXPECT_EQ(load<std::uint16_t>(geometry.corners.data(), i), i);
   }
   EXPECT_EQ(load<float>(geometry.vertices.data(), 3), 1.0f);  // vertex 1 of the left triangle
-  EXPECT_EQ(geometry.face_ids, (std::vector<std::byte>{std::byte{1}, std::byte{0}}));
 }
 
 TEST(ArrayGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
@@ -98,9 +96,8 @@ TEST(ArrayGeometry, CornersTakeFourBytesWhenTwoCannotMarkAMissingOne) {
     }
     mesh.faces.push_back({{0, 1, 2, 3}});
     const EncodedGeometry geometry =
-        encode_array_geometry(mesh, faces_in_tree_order(build_tree(mesh, Builder::kSah)), true);
+        encode_array_geometry(mesh, faces_in_tree_order(build_tree(mesh, Builder::kSah)));
     EXPECT_EQ(geometry.corner_bytes, vertices == 0xffff ? 2 : 4);
-    EXPECT_EQ(geometry.face_id_bytes, vertices == 0xffff ? 2 : 4);
   }
 }
 

@@ -120,6 +120,27 @@ TEST(TreeRecords, DuplicatesHaveAnOriginalAndAWidth) {
   for (const int bytes : {0, 3, 5, 8}) EXPECT_EQ(with_duplicates(1, bytes), kInvalid) << bytes;
 }
 
+TEST(TreeRecords, FacesInSourceOrderAndNoFacesHaveNoIds) {
+  const auto with_ids = [](int has_face_ids, std::uint32_t flags, bool is_empty = false) {
+    return tree_after([=](TreeRecord& record) {
+      record.has_face_ids = static_cast<std::uint8_t>(has_face_ids);
+      record.flags = flags;
+      if (!is_empty) return;
+      record.face_count = record.triangle_count = record.node_count = record.vertex_count = 0;
+      record.depth = 0;
+      record.root = RootKind::kEmpty;
+    });
+  };
+  EXPECT_EQ(with_ids(0, 0), kOk);
+  EXPECT_EQ(with_ids(1, 0), kOk);
+  EXPECT_EQ(with_ids(2, 0), kInvalid);
+  EXPECT_EQ(with_ids(0xff, 0), kInvalid);
+  EXPECT_EQ(with_ids(0, kTreeFacesInSourceOrder), kOk);
+  EXPECT_EQ(with_ids(1, kTreeFacesInSourceOrder), kInvalid);
+  EXPECT_EQ(with_ids(0, 0, true), kOk);
+  EXPECT_EQ(with_ids(1, 0, true), kInvalid);
+}
+
 TEST(TreeRecords, FramesAreFiniteAndOrdered) {
   for (std::size_t k = 0; k < 3; ++k) {
     for (const double bad : {kNaN, kInfinity, -kInfinity}) {

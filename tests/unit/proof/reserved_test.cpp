@@ -12,8 +12,11 @@
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
+#include "format/face_ids.h"
+#include "format/limits.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
+#include "runtime/tree/tree_parts.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
@@ -135,6 +138,95 @@ TEST(ReservedBits, OfClustersAreFound) {
   for (std::uint64_t at = size - kClusterPadding; at < size; ++at) {
     EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, at, 1)) << at;
   }
+}
+
+// A mesh whose last group of face ids is shorter than the others.
+cooker::SourceMesh mesh_of_several_groups() {
+  cooker::SourceMesh mesh = test::torus(48, 24);
+  std::reverse(mesh.faces.begin(), mesh.faces.end());
+  return mesh;
+}
+
+TEST(ReservedBits, OfFaceIdsAreFound) {
+  const FileBytes bytes = test::cook_bytes(mesh_of_several_groups(), CodecId::kWide8);
+  const SectionEntry section = test::entry_of(bytes, SectionKind::kFaceIds);
+  const auto record =
+      load<TreeRecord>(bytes.data() + test::entry_of(bytes, SectionKind::kTrees).offset);
+  const std::byte* const ids = bytes.data() + section.offset;
+  const std::uint32_t groups = id_groups_of(record.face_count);
+  ASSERT_GT(groups, 1u);
+  ASSERT_NE(id_blocks_of(record.face_count) % kIdGroupBlocks, 0u);
+  std::size_t gaps = 0;
+  for (std::uint32_t g = 0; g < groups; ++g) {
+    const std::uint32_t last = std::min((g + 1) * kIdGroupFaces, record.face_count) - 1;
+    const std::byte* const group = ids + g * sizeof(FaceIdGroup);
+    const auto begin = load<std::uint32_t>(group + offsetof(FaceIdGroup, begin));
+    const FaceIdBlock block = FaceIdBlock::of(load<std::uint32_t>(
+        group + offsetof(FaceIdGroup, block), last / kIdBlockFaces % kIdGroupBlocks));
+    const std::uint64_t end =
+        begin * kIdUnit * 8 + block.middle + (last % kIdBlockFaces + 1) * block.width();
+    const std::uint64_t next =
+        g + 1 < groups ? load<std::uint32_t>(group + sizeof(FaceIdGroup) +
+                                             offsetof(FaceIdGroup, begin)) *
+                             kIdUnit * 8
+                       : section.size * 8;
+    for (std::uint64_t bit = end; bit < next; ++bit) {
+      ++gaps;
+      EXPECT_TRUE(is_found_at(bytes, SectionKind::kFaceIds, bit / 8, 1u << (bit % 8))) << bit;
+    }
+  }
+  EXPECT_GT(gaps, kBitPadding * 8);
+}
+
+// What no reader can tell from valid ids while it answers a query.
+TEST(FaceIds, ThatLieWhereTheyMustNotAreFound) {
+  const FileBytes valid = test::cook_bytes(mesh_of_several_groups(), CodecId::kWide8);
+  const SectionEntry section = test::entry_of(valid, SectionKind::kFaceIds);
+  const auto is_found_after = [&](auto change) {
+    FileBytes bytes = valid;
+    auto group = load<FaceIdGroup>(bytes.data() + section.offset, 1);
+    FaceIdBlock block = FaceIdBlock::of(group.block[3]);
+    change(group, block);
+    group.block[3] = block.word();
+    std::memcpy(bytes.data() + section.offset + sizeof(group), &group, sizeof(group));
+    test::repair_checksums(bytes);
+    const cooker::Findings findings = cooker::verify_file(test::require(File::open(Bytes(bytes))));
+    return std::any_of(findings.begin(), findings.end(),
+                       [](const Error& finding) { return finding.code == Errc::kFaceOutOfRange; });
+  };
+  using Group = FaceIdGroup;
+  using Block = FaceIdBlock;
+  EXPECT_FALSE(is_found_after([](Group&, Block&) {}));
+  EXPECT_TRUE(is_found_after([](Group& group, Block&) { group.begin += 1; }));
+  EXPECT_TRUE(is_found_after([](Group& group, Block&) { group.begin = 0xffffffffu; }));
+  EXPECT_TRUE(is_found_after([](Group& group, Block&) { group.base = kMaxFaces; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.middle -= 1; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.middle = 0xffff; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.middle = 0; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.start_bits += 1; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.offset_bits += 1; }));
+  EXPECT_TRUE(is_found_after([](Group&, Block& block) { block.grain = 7; }));
+}
+
+TEST(FaceIds, OfTooFewBytesAreRefused) {
+  cooker::EncodedTree tree =
+      test::require(cooker::cook_as(mesh_of_several_groups(), CodecId::kWide8));
+  const auto bound_with = [&tree](std::size_t size) {
+    tree.geometry.face_ids.resize(size);
+    // The record would say that there is none.
+    TreeRecord record = cooker::record_of(tree, 0);
+    record.has_face_ids = 1;
+    const cooker::EncodedGeometry& geometry = tree.geometry;
+    return bind_parts({record, tree.name, tree.nodes.bytes, geometry.vertices, geometry.corners,
+                       geometry.face_ids, geometry.duplicates},
+                      {})
+        .code();
+  };
+  const std::size_t least = least_id_bytes(tree.face_count);
+  EXPECT_EQ(bound_with(least), Errc::kOk);
+  EXPECT_EQ(bound_with(least - 1), Errc::kSectionSize);
+  EXPECT_EQ(bound_with(1), Errc::kSectionSize);
+  EXPECT_EQ(bound_with(0), Errc::kSectionMissing);
 }
 
 // Found by the second reader: a child that is not there has kind 0 and cut 0.
