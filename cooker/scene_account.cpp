@@ -23,10 +23,10 @@ class Account {
       add_section(entry);
       of_sections += entry.size;
     }
-    const std::uint64_t table = sizeof(FileHeader) + layout.sections.size() * sizeof(SectionEntry);
+    const std::uint64_t table = table_end(layout.sections.size());
     keep("header and section table", table, "what a reader opens the file by");
     keep("padding", layout.bytes - of_sections - table,
-         "every section starts at a multiple of 64 bytes");
+         "sections start at multiples of 8 bytes, those of 4096 bytes at multiples of 64");
   }
 
   void add_left_out() {
@@ -97,15 +97,14 @@ class Account {
   }
 
   void add_section(const SectionEntry& entry) {
-    const auto kind = static_cast<SectionKind>(entry.kind);
     WhyLine line;
-    line.part = section_name(kind);
+    line.part = section_name(entry.kind);
     line.bytes = entry.size;
     std::optional<std::size_t> mesh;
     if (entry.owner != kNoOwner) mesh = cooked_.mesh_of_tree[entry.owner];
     line.owner = mesh ? mesh_name(*mesh) : "file";
     std::optional<Aspect> aspect;
-    line.reason = purpose(kind, entry, aspect);
+    line.reason = purpose(entry, aspect);
     const Decision* decision = aspect ? decision_on(*aspect, mesh) : nullptr;
     if (decision != nullptr) {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
@@ -115,11 +114,11 @@ class Account {
   }
 
   // The reason for a section, with the plan's decision on it.
-  [[nodiscard]] std::string purpose(SectionKind kind, const SectionEntry& entry,
+  [[nodiscard]] std::string purpose(const SectionEntry& entry,
                                     std::optional<Aspect>& aspect) const {
-    switch (kind) {
+    switch (entry.kind) {
       case SectionKind::kTrees:
-        return "one record a tree";
+        return "one record a tree, with what was proven of it";
       case SectionKind::kNodes:
         aspect = Aspect::kCodec;
         return fmt::format("codec {}", codec_name(cooked_.trees[entry.owner].nodes.codec));
@@ -128,15 +127,13 @@ class Account {
         if (cooked_.trees[entry.owner].geometry.geometry == GeometryId::kGrid) {
           aspect = Aspect::kPrecision;
         }
-        return geometry_reason(kind, cooked_.trees[entry.owner]);
+        return geometry_reason(entry.kind, cooked_.trees[entry.owner]);
       case SectionKind::kFaceIds:
         aspect = Aspect::kFaceIds;
         return {};
       case SectionKind::kDuplicates:
         return fmt::format("{} faces are copies of others, which stand in leaves for them",
                            cooked_.trees[entry.owner].geometry.duplicate_count);
-      case SectionKind::kCertificate:
-        return "what was proven of the tree";
       case SectionKind::kNames:
         return "objects'; those of instances, meshes and materials that keep theirs; reasons of "
                "parts left out";

@@ -12,7 +12,7 @@
 namespace boxtree {
 
 /// FileHeader::incompatible_features of a blob: it has one section, kBlob, and no trees.
-inline constexpr std::uint64_t kFeatureBlob = 1u;
+inline constexpr std::uint32_t kFeatureBlob = 1u;
 
 /// First bytes of the section; the compressed stream follows up to its end.
 struct BlobHeader {

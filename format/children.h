@@ -29,7 +29,7 @@ enum class [[nodiscard]] NodeState : bool{kCorrupt, kValid};
 }
 
 /// What the root of a tree is. Numbers are pinned.
-enum class RootKind : std::uint32_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
+enum class RootKind : std::uint8_t { kEmpty = 0, kLeaf = 1, kSubtree = 2 };
 
 /// Numbers of nodes and faces that a tree states; references in its bytes must be below them.
 struct TreeCounts {

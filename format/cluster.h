@@ -71,6 +71,11 @@ static_assert(offsetof(ClusterHeader, start_bits) == 15 && offsetof(ClusterHeade
   return faces / kClusterFaces + (faces % kClusterFaces != 0 ? 1 : 0);
 }
 
+/// Bytes in front of the clusters that say where they begin.
+[[nodiscard]] constexpr std::uint64_t cluster_table_bytes(std::uint32_t faces) noexcept {
+  return clusters_of(faces) * sizeof(std::uint32_t);
+}
+
 /// How a face of a strip follows from the previous one. Edges of a face are numbered like the
 /// corner they begin at. A face is entered by the edge that it shares with the one before, or by
 /// edge 0. It is left by one of the other two: the first after that edge (side 0) or the second
@@ -88,8 +93,9 @@ struct StripStep {
 
 /// The clusters of one tree, as stored in the file.
 struct ClusterView {
-  const std::byte* offsets = nullptr;  // of each cluster in `bytes`: u32, in units of kClusterUnit
-  Bytes bytes;                         // of all clusters, and kClusterPadding
+  /// For each cluster, a u32: where it begins in these bytes, in units of kClusterUnit. Then all
+  /// clusters, and kClusterPadding.
+  Bytes bytes;
   std::uint32_t face_count = 0;
   std::uint32_t corners_per_face = 3;
   ClusterNumbers numbers = ClusterNumbers::kGrid;
@@ -129,7 +135,7 @@ struct ClusterLeafFields {
 
 /// Decodes leaf `leaf`: faces 8 leaf to 8 leaf + 7, or up to the last. False when its bytes are
 /// corrupt. Reads nothing outside `clusters`, whatever the bytes. `fields` may be null.
-/// Precondition: the leaf exists, and there are clusters_of(face_count) offsets.
+/// Precondition: the leaf exists, and there are cluster_table_bytes.
 [[nodiscard]] bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf,
                                        ClusterLeaf& out,
                                        ClusterLeafFields* fields = nullptr) noexcept;

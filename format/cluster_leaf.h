@@ -117,13 +117,14 @@ struct HeaderBytes {
 
 }  // namespace cluster_detail
 
-/// Finds cluster `number`. False if it is corrupt. Precondition: it has an offset.
+/// Finds cluster `number`. False if it is corrupt. Precondition: it exists, and so does the
+/// table.
 BOXTREE_ALWAYS_INLINE bool find_cluster(const ClusterView& view, std::uint32_t number,
                                         Cluster& out) noexcept {
   const bool is_64 = view.numbers == ClusterNumbers::kF64;
   const std::uint32_t fixed =
       sizeof(ClusterHeader) + 3 * (is_64 ? sizeof(std::int64_t) : sizeof(std::int32_t));
-  const std::uint64_t start = load<std::uint32_t>(view.offsets, number) * kClusterUnit;
+  const std::uint64_t start = load<std::uint32_t>(view.bytes.data(), number) * kClusterUnit;
   if (!in_range(start, fixed + kClusterPadding, view.bytes.size())) return false;
   out.bytes = view.bytes.data() + start;
   out.size = view.bytes.size() - start - kClusterPadding;

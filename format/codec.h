@@ -10,7 +10,7 @@
 namespace boxtree {
 
 /// How nodes are stored. Numbers are pinned.
-enum class CodecId : std::uint16_t {
+enum class CodecId : std::uint8_t {
   kPlainF32 = 1,
   kPlainF16 = 2,
   kPackedF32 = 3,
@@ -22,7 +22,7 @@ enum class CodecId : std::uint16_t {
 };
 
 /// How vertices and corners are stored. Numbers are pinned.
-enum class GeometryId : std::uint16_t {
+enum class GeometryId : std::uint8_t {
   kExternal = 1,  // not in the file; the application gives its arrays when binding
   kArrays = 2,    // f32 or f64 positions bit for bit, corners as 16 or 32-bit vertex numbers
   kGrid = 3,      // positions rounded to a grid, in clusters (format/cluster.h)

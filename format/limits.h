@@ -52,10 +52,10 @@ inline constexpr std::uint32_t kLeafFaces = 8;
 /// Triangles in one leaf: each of its faces may be a quad.
 inline constexpr std::uint32_t kMaxLeafTriangles = 2 * kLeafFaces;
 
-/// Every section starts at a multiple of this many bytes: a cache line.
-inline constexpr std::uint64_t kSectionAlignment = 64;
-
-/// Largest gap between two sections: a writer may align a section to a page.
-inline constexpr std::uint64_t kMaxSectionGap = 4096;
+/// Sections of at least kLargeSection bytes start at a cache line. Smaller ones, which are in the
+/// nearest cache after a few queries, and the end of the file lie at numbers of eight bytes.
+inline constexpr std::uint64_t kLargeSection = 4096;
+inline constexpr std::uint64_t kLargeAlignment = 64;
+inline constexpr std::uint64_t kSmallAlignment = 8;
 
 }  // namespace boxtree

@@ -46,7 +46,8 @@ bool frame_fits(const SceneRecord& record) {
 }
 
 bool reserve_is_zero(const SceneRecord& record) {
-  return record.reserved0 == 0 && record.reserved1 == decltype(record.reserved1){};
+  return record.reserved0 == 0 && record.reserved1 == decltype(record.reserved1){} &&
+         record.reserved2 == decltype(record.reserved2){};
 }
 
 }  // namespace

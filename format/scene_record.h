@@ -31,10 +31,11 @@ struct SceneRecord {
   std::uint32_t static_count;  // instances 0 to static_count - 1 are the leaves of the top level
   std::uint32_t node_count;    // of section scene_nodes
   RootKind root;               // kLeaf: one static instance, which has no node
-  std::uint32_t depth;         // inner nodes on the longest path
-  std::uint8_t pose_bytes;     // of a number in section poses: 4 or 8
-  std::uint8_t layer_count;    // 1 to kMaxLayers
-  QueryKinds query_kinds;      // queries that the scene answers
+  std::array<std::uint8_t, 3> reserved2;
+  std::uint32_t depth;       // inner nodes on the longest path
+  std::uint8_t pose_bytes;   // of a number in section poses: 4 or 8
+  std::uint8_t layer_count;  // 1 to kMaxLayers
+  QueryKinds query_kinds;    // queries that the scene answers
   std::uint8_t reserved0;
   std::int32_t scale_exponent;
   std::uint32_t material_count;

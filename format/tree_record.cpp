@@ -21,10 +21,9 @@ constexpr int kMaxGridShift = 64;
 bool counts_fit(const TreeRecord& record) {
   const std::uint64_t faces = record.face_count;
   const std::uint32_t deepest = is_wide(record.codec) ? kMaxWideDepth : kMaxDepth;
-  return faces <= kMaxFaces && record.duplicate_count <= faces &&
-         record.vertex_count <= kMaxVertices && record.node_count <= kMaxNodes &&
+  return faces <= kMaxFaces && record.duplicate_count <= faces && record.node_count <= kMaxNodes &&
          record.depth <= deepest && record.triangle_count >= faces &&
-         record.triangle_count <= 2 * faces;
+         record.triangle_count <= 2 * faces && record.degenerate_count <= record.triangle_count;
 }
 
 bool root_fits(const TreeRecord& record) {
@@ -65,12 +64,11 @@ bool duplicates_fit(const TreeRecord& record) {
 }
 
 bool geometry_fits(const TreeRecord& record) {
-  const bool in_source_order = (record.flags & kTreeFacesInSourceOrder) != 0;
-  if (record.has_face_ids > (in_source_order || record.face_count == 0 ? 0 : 1)) return false;
+  const double error = record.max_vertex_error;
+  if (!(error >= 0) || !std::isfinite(error)) return false;  // NaN is not at least 0
+  if (record.geometry != GeometryId::kGrid && record.grid_exponent != 0) return false;
   if (record.geometry == GeometryId::kExternal) {
-    // External faces are found by source number, or through the face ids of a tree's own order.
-    const bool faces_are_named = in_source_order || record.has_face_ids != 0;
-    return faces_are_named && record.corner_bytes == 0 && record.corners_per_face == 0;
+    return record.corner_bytes == 0 && record.corners_per_face == 0;
   }
   if (record.corners_per_face != 3 && record.corners_per_face != 4) return false;
   if (record.geometry == GeometryId::kArrays) {
@@ -80,13 +78,6 @@ bool geometry_fits(const TreeRecord& record) {
   return record.geometry == GeometryId::kExact ||
          (is_within(record.grid_exponent, kMaxScaleExponent) &&
           is_within(std::int64_t{record.grid_exponent} - record.scale_exponent, kMaxGridShift));
-}
-
-bool reserve_is_zero(const TreeRecord& record) {
-  const bool has_grid = record.geometry == GeometryId::kGrid;
-  return (has_grid || record.grid_exponent == 0) &&
-         std::all_of(record.reserved2.begin(), record.reserved2.end(),
-                     [](std::uint64_t word) { return word == 0; });
 }
 
 }  // namespace
@@ -115,8 +106,7 @@ Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
   if (!root_fits(record)) return invalid("kind of root contradicts the counts");
   if (!frame_fits(record))
     return invalid("origin, scale or root box is not finite, ordered and within limits");
-  if (!geometry_fits(record)) return invalid("corners or face ids are not as specified");
-  if (!reserve_is_zero(record)) return invalid("reserved bits are set");
+  if (!geometry_fits(record)) return invalid("corners, grid or its error are not as specified");
   return {};
 }
 

@@ -119,7 +119,7 @@ void encode_geometry(const Source& source, const SearchOptions& options,
   const std::vector<std::uint32_t> originals =
       append_duplicates(source.built(), source.duplicates, order);
   if (options.geometry == GeometryId::kExternal) {
-    tree.geometry = encode_external_geometry(source.mesh);
+    tree.geometry = encode_external_geometry();
   } else if (options.geometry == GeometryId::kArrays) {
     tree.geometry = encode_array_geometry(source.mesh, order);
   } else {
@@ -148,7 +148,7 @@ Family binary_family(const Source& source, const SearchOptions& options,
       options.geometry == GeometryId::kExternal && source.duplicates.count == 0;
   if (hold_source_numbers) {
     family.tree.faces_in_source_order = true;
-    family.tree.geometry = encode_external_geometry(source.mesh);
+    family.tree.geometry = encode_external_geometry();
   } else {
     encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed, family.tree);
   }

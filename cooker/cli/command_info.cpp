@@ -17,7 +17,6 @@
 #include "cooker/cli/scene_info.h"
 #include "cooker/cli/surface_text.h"
 #include "cooker/export/decoded_faces.h"
-#include "format/certificate_record.h"
 #include "format/container.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -44,7 +43,7 @@ TreeBytes bytes_of(const File& file, std::uint32_t index) {
   };
   return {size(SectionKind::kNodes) + size(SectionKind::kDuplicates),
           size(SectionKind::kVertices) + size(SectionKind::kCorners), size(SectionKind::kFaceIds),
-          size(SectionKind::kCertificate) + sizeof(TreeRecord)};
+          sizeof(TreeRecord)};
 }
 
 double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
@@ -53,15 +52,21 @@ double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
              : static_cast<double>(bytes) / static_cast<double>(record.triangle_count);
 }
 
-// Of what is stored: on a grid, edges of the rounded mesh. Faces that cannot be read keep nothing
-// from being said of the rest of the file.
-Json surface_of_tree(const File& file, std::uint32_t index, GeometryId geometry) {
-  if (geometry == GeometryId::kExternal) return nullptr;
+// Of what is stored: on a grid, vertices and edges of the rounded mesh. Faces that cannot be read
+// keep nothing from being said of the rest of the file.
+void add_surface(const File& file, std::uint32_t index, GeometryId geometry, Json& json) {
+  json["vertices"] = nullptr;
+  json["surface"] = nullptr;
+  if (geometry == GeometryId::kExternal) return;
   const Result<Tree> tree = Tree::bind(file, index);
-  if (!tree) return {{"error", tree.error().message()}};
-  const Result<DecodedFaces> faces = DecodedFaces::decode(*tree, ExportOrder::kTree);
-  if (!faces) return {{"error", faces.error().message()}};
-  return surface_json(count_surface_edges(faces->arrays()));
+  const Result<DecodedFaces> faces =
+      tree ? DecodedFaces::decode(*tree, ExportOrder::kTree) : tree.error();
+  if (!faces) {
+    json["surface"] = {{"error", faces.error().message()}};
+    return;
+  }
+  json["vertices"] = faces->vertex_count();
+  json["surface"] = surface_json(count_surface_edges(faces->arrays()));
 }
 
 std::string text_of_surface(const Json& surface) {
@@ -79,7 +84,6 @@ Json tree_json(const File& file, std::uint32_t index) {
                {"triangles", record.triangle_count},
                {"faces", record.face_count},
                {"duplicates", record.duplicate_count},
-               {"vertices", record.vertex_count},
                {"nodes", record.node_count},
                {"depth", record.depth}};
   json["bytes"] = {{"tree", bytes.tree},
@@ -89,11 +93,7 @@ Json tree_json(const File& file, std::uint32_t index) {
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)}};
-  const Bytes certificate = OpenFile::of(file).section(SectionKind::kCertificate, index);
-  json["max_vertex_error"] =
-      certificate.size() == sizeof(CertificateRecord)
-          ? Json(load<CertificateRecord>(certificate.data()).max_vertex_error)
-          : Json(nullptr);
+  json["max_vertex_error"] = record.max_vertex_error;
   const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -103,20 +103,20 @@ Json tree_json(const File& file, std::uint32_t index) {
   }
   json["bounds"] = {{"min", to_json(frame.to_object(low))},
                     {"max", to_json(frame.to_object(high))}};
-  json["surface"] = surface_of_tree(file, index, record.geometry);
+  add_surface(file, index, record.geometry, json);
   return json;
 }
 
 Json file_json(const File& file) {
   const FileHeader& header = OpenFile::of(file).container().header;
   Json json = {{"version", fmt::format("{}.{}", header.version_major, header.version_minor)},
-               {"file_bytes", header.file_bytes}};
+               {"file_bytes", file.bytes().size()}};
   json["trees"] = Json::array();
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) json["trees"].push_back(tree_json(file, i));
   json["sections"] = Json::array();
   for (const SectionEntry& entry : OpenFile::of(file).container().sections) {
     json["sections"].push_back(
-        {{"kind", section_name(static_cast<SectionKind>(entry.kind))},
+        {{"kind", section_name(entry.kind)},
          {"tree", entry.owner == kNoOwner ? Json(nullptr) : Json(entry.owner)},
          {"offset", entry.offset},
          {"bytes", entry.size}});

@@ -68,6 +68,7 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
   out.corner_bytes = mesh.positions.size() <= 0xffff ? 2 : 4;
   out.corners.reserve(order.size() * out.corners_per_face * out.corner_bytes);
 
+  std::uint32_t vertices = 0;
   std::vector<std::uint32_t> renumbered(mesh.positions.size(), kNoCorner);
   for (const std::uint32_t face : order) {
     for (std::size_t i = 0; i < out.corners_per_face; ++i) {
@@ -77,7 +78,7 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
         continue;
       }
       if (renumbered[corner] == kNoCorner) {
-        renumbered[corner] = out.vertex_count++;
+        renumbered[corner] = vertices++;
         append_position(mesh.positions, corner, out.vertices);
       }
       append_number(out.corners, renumbered[corner], out.corner_bytes);
@@ -86,10 +87,9 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
   return out;
 }
 
-EncodedGeometry encode_external_geometry(const SourceMesh& mesh) {
+EncodedGeometry encode_external_geometry() {
   EncodedGeometry out;
   out.geometry = GeometryId::kExternal;
-  out.vertex_count = static_cast<std::uint32_t>(mesh.positions.size());
   return out;
 }
 

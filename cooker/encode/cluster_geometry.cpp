@@ -378,7 +378,6 @@ class ClusterEncoder {
 struct Block {
   std::vector<std::uint32_t> offsets;
   std::vector<std::byte> bytes;
-  std::uint32_t vertex_count = 0;
 };
 
 // The number of a float that keeps the order of floats; see float_of_number.
@@ -448,7 +447,6 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
     for (std::size_t i = 0; i < faces.size(); ++i) of_cluster[i] = faces[i].source;
     block.offsets.push_back(static_cast<std::uint32_t>(block.bytes.size() / kClusterUnit));
     encoder.encode(faces, vertices);
-    block.vertex_count += vertices.count();
   }
   return block;
 }
@@ -472,19 +470,24 @@ EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i) encode(i);
                     });
-  std::size_t bytes = kClusterPadding;
+  if (blocks.empty()) return out;
+  const std::size_t table = cluster_table_bytes(static_cast<std::uint32_t>(order.size()));
+  std::size_t bytes = table + kClusterPadding;
   for (const Block& block : blocks) bytes += block.bytes.size();
-  if (!blocks.empty()) out.vertices.reserve(bytes);
+  out.vertices.reserve(bytes);
+  std::size_t end = table;
   for (Block& block : blocks) {
-    const auto offset = static_cast<std::uint32_t>(out.vertices.size() / kClusterUnit);
+    const auto offset = static_cast<std::uint32_t>(end / kClusterUnit);
     for (std::uint32_t& of_cluster : block.offsets) of_cluster += offset;
     const Bytes offsets = std::as_bytes(std::span(block.offsets));
-    out.corners.insert(out.corners.end(), offsets.begin(), offsets.end());
+    out.vertices.insert(out.vertices.end(), offsets.begin(), offsets.end());
+    end += block.bytes.size();
+  }
+  for (Block& block : blocks) {
     out.vertices.insert(out.vertices.end(), block.bytes.begin(), block.bytes.end());
-    out.vertex_count += block.vertex_count;
     block = {};
   }
-  if (!blocks.empty()) out.vertices.resize(out.vertices.size() + kClusterPadding);
+  out.vertices.resize(bytes);
   return out;
 }
 

@@ -62,7 +62,6 @@ struct EncodedGeometry {
   std::vector<std::byte> corners;
   std::vector<std::byte> face_ids;
   std::vector<std::byte> duplicates;
-  std::uint32_t vertex_count = 0;
   std::uint8_t corner_bytes = 0;
   std::uint8_t corners_per_face = 0;
   std::uint8_t duplicate_bytes = 0;
@@ -93,7 +92,7 @@ enum class LeafOrder : std::uint8_t { kFixed, kFree };
                                                    LeafOrder leaf_order);
 
 /// No geometry: the application has the arrays.
-[[nodiscard]] EncodedGeometry encode_external_geometry(const SourceMesh& mesh);
+[[nodiscard]] EncodedGeometry encode_external_geometry();
 
 /// The places of the originals of all duplicates, ascending, as their section.
 void encode_duplicates(std::span<const std::uint32_t> originals, EncodedGeometry& out);

@@ -10,9 +10,8 @@
 #include "cooker/encode/encoded.h"
 
 namespace boxtree {
-struct CertificateRecord;
 struct TreeRecord;
-}  // namespace boxtree
+}
 
 namespace boxtree::cooker {
 
@@ -31,11 +30,9 @@ struct EncodedTree {
   bool positions_f64 = false;
 };
 
-/// The tree's record; its name starts at `name_offset` in the names section.
+/// The tree's record, whose claims the proof checks; its name starts at `name_offset` in the names
+/// section.
 [[nodiscard]] TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset);
-
-/// The encoder's claims about the tree, which the proof checks.
-[[nodiscard]] CertificateRecord certificate_of(const EncodedTree& tree);
 
 /// The tree as a reader binds it. It points into `tree`. Errors: as Tree::bind.
 [[nodiscard]] Result<Tree> bind_encoded(const EncodedTree& tree, const BindOptions& options = {});

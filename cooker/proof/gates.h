@@ -8,12 +8,12 @@
 
 namespace boxtree::cooker {
 
-/// Results of one candidate. It passes if no face is missed, no box escapes and its certificate is
-/// correct.
+/// Results of one candidate. It passes if no face is missed, no box escapes and the rest
+/// of what its record states holds, too.
 struct Gates {
   std::uint64_t missed = 0;   // faces that no walk from the root reaches
   std::uint64_t escapes = 0;  // boxes that do not contain what is below them
-  bool certificate = false;
+  bool certificate = false;   // whether the rest of what the record states holds
 
   [[nodiscard]] bool pass() const { return missed == 0 && escapes == 0 && certificate; }
 };

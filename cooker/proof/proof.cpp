@@ -55,10 +55,10 @@ class Walk {
       visit_duplicates();
       report_unreached();
     }
-    compare("depth", proof_.certificate.depth, BoundTree::of(tree_).depth());
-    compare("nodes", proof_.certificate.node_count, BoundTree::of(tree_).node_count());
-    compare("faces", proof_.certificate.face_count, tree_.face_count());
-    if (with_geometry_) compare("triangles", triangles_, tree_.triangle_count());
+    compare("depth", proof_.depth, BoundTree::of(tree_).depth());
+    compare("nodes", proof_.node_count, BoundTree::of(tree_).node_count());
+    compare("faces", proof_.face_count, tree_.face_count());
+    if (with_geometry_) compare("triangles", proof_.triangle_count, tree_.triangle_count());
   }
 
  private:
@@ -105,9 +105,8 @@ class Walk {
       add(error, fault_of_node(node.ref.first, state));
       return content;
     }
-    ++proof_.certificate.node_count;
-    proof_.certificate.depth = std::max(proof_.certificate.depth, depth + 1);
-    if (children.count == 1) ++proof_.certificate.shrink_count;
+    ++proof_.node_count;
+    proof_.depth = std::max(proof_.depth, depth + 1);
     if (depth < task_levels_) return walk_in_tasks(children, depth + 1);
     for (std::uint32_t i = 0; i < children.count; ++i) {
       expand(content, walk(children.child[i], depth + 1));
@@ -119,7 +118,6 @@ class Walk {
     struct Part {
       TreeProof proof;
       Box<double> content;
-      std::uint32_t triangles = 0;
     };
     std::array<Part, std::tuple_size_v<decltype(children.child)>> parts;
     tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, children.count, 1),
@@ -127,27 +125,22 @@ class Walk {
                         for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
                           Walk below(tree_, with_geometry_, reached_, bound_, parts[i].proof);
                           parts[i].content = below.walk(children.child[i], depth);
-                          parts[i].triangles = below.triangles_;
                         }
                       });
     Box<double> content = empty_box<double>();
     for (std::uint32_t i = 0; i < children.count; ++i) {
       expand(content, parts[i].content);
-      triangles_ += parts[i].triangles;
       add_up(parts[i].proof);
     }
     return content;
   }
 
   void add_up(const TreeProof& part) {
-    CertificateRecord& sum = proof_.certificate;
-    const CertificateRecord& more = part.certificate;
-    sum.depth = std::max(sum.depth, more.depth);
-    sum.node_count += more.node_count;
-    sum.leaf_count += more.leaf_count;
-    sum.face_count += more.face_count;
-    sum.shrink_count += more.shrink_count;
-    sum.degenerate_count += more.degenerate_count;
+    proof_.depth = std::max(proof_.depth, part.depth);
+    proof_.node_count += part.node_count;
+    proof_.face_count += part.face_count;
+    proof_.triangle_count += part.triangle_count;
+    proof_.degenerate_count += part.degenerate_count;
     proof_.missed += part.missed;
     proof_.escapes += part.escapes;
     for (const Error& finding : part.findings) add(finding.code, finding.detail);
@@ -157,12 +150,11 @@ class Walk {
   bool mark_reached(std::uint32_t face, const char* twice) {
     const bool met = reached_[face].exchange(1, std::memory_order_relaxed) != 0;
     if (met) add(Errc::kFaceRepeated, "face " + std::to_string(face) + " " + twice);
-    if (!met) ++proof_.certificate.face_count;
+    if (!met) ++proof_.face_count;
     return !met;
   }
 
   Box<double> visit_leaf(const Node& leaf) {
-    ++proof_.certificate.leaf_count;
     Box<double> content = empty_box<double>();
     if (!in_range(leaf.ref.first, leaf.ref.second, reached_.size())) {
       add(Errc::kFaceOutOfRange, "a leaf names face " + std::to_string(leaf.ref.first) + " of " +
@@ -183,8 +175,8 @@ class Walk {
   }
 
   void visit_triangle(const Triangle& triangle, Box<double>& content) {
-    ++triangles_;
-    if (is_degenerate(triangle)) ++proof_.certificate.degenerate_count;
+    ++proof_.triangle_count;
+    if (is_degenerate(triangle)) ++proof_.degenerate_count;
     expand(content, bounds_of(triangle));
   }
 
@@ -252,19 +244,14 @@ class Walk {
   Reached& reached_;
   SharedWalkBound& bound_;
   TreeProof& proof_;
-  std::uint32_t triangles_ = 0;
 };
 
-Status check_certificate(const File& file, std::uint32_t index, bool with_geometry,
-                         const CertificateRecord& found) {
-  const Bytes bytes = OpenFile::of(file).section(SectionKind::kCertificate, index);
-  if (bytes.size() != sizeof(CertificateRecord)) {
-    return Error{
-        Errc::kSectionSize,
-        "certificate: " + section_size_error(bytes.size(), sizeof(CertificateRecord)).detail};
-  }
-  if (certificate_holds(load<CertificateRecord>(bytes.data()), found, with_geometry)) return {};
-  return Error{Errc::kCertificateMismatch, "the certificate's figures are not the tree's"};
+Status check_degenerate(const TreeRecord& record, const TreeProof& proof) {
+  if (record.degenerate_count == proof.degenerate_count) return {};
+  return Error{Errc::kRecordInvalid, "the record states " +
+                                         std::to_string(record.degenerate_count) +
+                                         " triangles without area, the tree has " +
+                                         std::to_string(proof.degenerate_count)};
 }
 
 // Binds for a structural check: leaves of external geometry are never read.
@@ -293,18 +280,6 @@ TreeProof prove_tree(const Tree& tree, bool with_geometry) {
   return proof;
 }
 
-bool certificate_holds(const CertificateRecord& stated, const CertificateRecord& found,
-                       bool with_geometry) {
-  const bool counts_hold = stated.depth == found.depth && stated.node_count == found.node_count &&
-                           stated.leaf_count == found.leaf_count &&
-                           stated.face_count == found.face_count &&
-                           stated.shrink_count == found.shrink_count &&
-                           (!with_geometry || stated.degenerate_count == found.degenerate_count);
-  const bool well_formed = std::isfinite(stated.max_vertex_error) && stated.max_vertex_error >= 0 &&
-                           stated.reserved == decltype(stated.reserved){};
-  return counts_hold && well_formed;
-}
-
 Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
   Findings findings;
   if (Status status = check_padding(file.bytes(), OpenFile::of(file).container()); !status) {
@@ -324,7 +299,7 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
     for (Error& finding : check_reserved(file, i)) {
       proof.findings.push_back(std::move(finding));
     }
-    if (Status status = check_certificate(file, i, with_geometry, proof.certificate); !status) {
+    if (Status status = check_degenerate(record, proof); with_geometry && !status) {
       proof.findings.push_back(status.error());
     }
     if (Status status = check_text(OpenFile::of(file).section(SectionKind::kNames),

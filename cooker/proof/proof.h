@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Proves the certificate: every triangle is inside every decoded box above it, every face is
+// Proves what a file states: every triangle is inside every decoded box above it, every face is
 // reached exactly once, and the counts are as stated.
 #pragma once
 
@@ -10,7 +10,6 @@
 
 #include <boxtree/file.h>
 
-#include "format/certificate_record.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
@@ -23,25 +22,26 @@ inline constexpr std::size_t kMaxFindings = 100;
 
 /// The result of walking one tree.
 struct TreeProof {
-  CertificateRecord certificate{};  // the counts found
-  std::uint64_t missed = 0;         // faces in no leaf
-  std::uint64_t escapes = 0;        // boxes that do not contain what is below them
-  Findings findings;                // the first kMaxFindings
+  std::uint32_t depth = 0;             // inner nodes on the longest path
+  std::uint32_t node_count = 0;        // nodes reached from the root
+  std::uint32_t face_count = 0;        // faces reached, each exactly once; copies via originals
+  std::uint32_t triangle_count = 0;    // of faces that were read
+  std::uint32_t degenerate_count = 0;  // of these, triangles without area
+  std::uint64_t missed = 0;            // faces in no leaf
+  std::uint64_t escapes = 0;           // boxes that do not contain what is below them
+  Findings findings;                   // the first kMaxFindings
 };
 
 /// The message for a node at which a walk cannot continue, given the result of decoding it.
 [[nodiscard]] std::string fault_of_node(std::uint32_t node, NodeState state);
 
 /// Walks the whole tree as a reader would. With `with_geometry` false, leaves are counted but
-/// triangles are not read (external geometry without its mesh). Safe on any bytes.
+/// triangles are not read (external geometry without its mesh). Whoever has the tree's record
+/// compares degenerate_count, which a tree does not know. Safe on any bytes.
 [[nodiscard]] TreeProof prove_tree(const Tree& tree, bool with_geometry);
 
-/// Whether a stated certificate is well formed and matches `found`.
-[[nodiscard]] bool certificate_holds(const CertificateRecord& stated,
-                                     const CertificateRecord& found, bool with_geometry);
-
 /// Checks an open file: padding, section checksums, records, names, reserved bytes, and each tree
-/// by prove_tree and against its certificate. `mesh` is for trees with external geometry; without
+/// by prove_tree and against its record. `mesh` is for trees with external geometry; without
 /// it their triangles are not read.
 [[nodiscard]] Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh = {});
 

@@ -186,7 +186,7 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
 // Precondition: the sections have been bound. Skips what cannot be found; the walk reports it.
 void check_clusters(const ClusterView& clusters, Check& check) {
   const std::uint32_t count = clusters_of(clusters.face_count);
-  std::uint64_t end = 0;  // of the previous cluster, in bits
+  std::uint64_t end = cluster_table_bytes(clusters.face_count) * 8;  // of the previous cluster
   for (std::uint32_t n = 0; n < count; ++n) {
     if (!check_cluster(clusters, n, end, check)) return;
   }
@@ -271,14 +271,12 @@ Findings check_reserved(const File& opened, std::uint32_t index) {
   }
   if (has_clusters(record.geometry)) {
     const bool is_f64 = (record.flags & kTreePositionsF64) != 0;
-    check_clusters({file.section(SectionKind::kCorners, index).data(),
-                    file.section(SectionKind::kVertices, index), record.face_count,
+    check_clusters({file.section(SectionKind::kVertices, index), record.face_count,
                     record.corners_per_face, numbers_of(record.geometry, is_f64)},
                    check);
   }
-  if (record.has_face_ids != 0) {
-    check_face_ids(file.section(SectionKind::kFaceIds, index), record.face_count, check);
-  }
+  const Bytes face_ids = file.section(SectionKind::kFaceIds, index);
+  if (!face_ids.empty()) check_face_ids(face_ids, record.face_count, check);
   return findings;
 }
 

@@ -9,7 +9,6 @@
 
 #include "cooker/proof/proof.h"
 #include "cooker/text/utf8.h"
-#include "format/certificate_record.h"
 #include "format/container.h"
 #include "format/tree_record.h"
 #include "runtime/file/checksum.h"
@@ -29,7 +28,8 @@ Bytes bytes_of(const auto& container) {
   return std::as_bytes(std::span(container));
 }
 
-// Owns the small sections and lists all; the large ones stay in the encoders' buffers.
+// Owns the small sections and lists all in the order of the file; the large ones stay in the
+// encoders' buffers.
 class Layout {
  public:
   // Precondition: `scene` is encoded from these trees, or null, and its names are `names`.
@@ -39,26 +39,24 @@ class Layout {
     for (const EncodedTree& tree : parts.trees) {
       records_.push_back(record_of(tree, name_offset));
       records_.back().name_bytes = static_cast<std::uint32_t>(to_utf8(tree.name).size());
-      certificates_.push_back(certificate_of(tree));
       name_offset += records_.back().name_bytes;
     }
     sections_.push_back({SectionKind::kTrees, kNoOwner, bytes_of(records_)});
     add(SectionKind::kNames, kNoOwner, bytes_of(names_));
+    add(SectionKind::kCookRecord, kNoOwner, bytes_of(cook_record_));
     if (scene != nullptr) add_scene(*scene);
     for (std::uint32_t i = 0; i < parts.trees.size(); ++i) {
       const EncodedTree& tree = parts.trees[i];
-      sections_.push_back(
-          {SectionKind::kCertificate, i, bytes_of(std::span(certificates_).subspan(i, 1))});
       add(SectionKind::kNodes, i, tree.nodes.bytes);
       add(SectionKind::kVertices, i, tree.geometry.vertices);
       add(SectionKind::kCorners, i, tree.geometry.corners);
       add(SectionKind::kFaceIds, i, tree.geometry.face_ids);
+      if (scene != nullptr && i < scene->material_runs.size()) {
+        add(SectionKind::kMaterialRuns, i, scene->material_runs[i]);
+        add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);
+      }
       add(SectionKind::kDuplicates, i, tree.geometry.duplicates);
-      if (scene == nullptr || i >= scene->material_runs.size()) continue;
-      add(SectionKind::kMaterialRuns, i, scene->material_runs[i]);
-      add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);
     }
-    add(SectionKind::kCookRecord, kNoOwner, bytes_of(cook_record_));
     place();
   }
   Layout(const Layout&) = delete;  // sections point into it
@@ -67,12 +65,12 @@ class Layout {
   // Calls sink(Bytes) with the file's bytes from first to last.
   template <class Sink>
   Status emit(Sink sink) const {
-    static constexpr std::array<std::byte, kSectionAlignment> kZeros{};
-    std::uint64_t at = sizeof(FileHeader) + table_.size() * sizeof(SectionEntry);
+    static constexpr std::array<std::byte, kLargeAlignment> kZeros{};
+    std::uint64_t at = table_end(table_.size());
     if (Status status = sink(std::as_bytes(std::span(&header_, 1))); !status) return status;
-    if (Status status = sink(bytes_of(table_)); !status) return status;
+    if (Status status = sink(bytes_of(rows_)); !status) return status;
     for (std::size_t i = 0; i <= sections_.size(); ++i) {
-      const std::uint64_t next = i < sections_.size() ? table_[i].offset : header_.file_bytes;
+      const std::uint64_t next = i < sections_.size() ? table_[i].offset : file_bytes_;
       if (Status status = sink(Bytes(kZeros).first(next - at)); !status) return status;
       if (i == sections_.size()) break;
       if (Status status = sink(sections_[i].bytes); !status) return status;
@@ -81,7 +79,7 @@ class Layout {
     return {};
   }
 
-  [[nodiscard]] std::uint64_t file_bytes() const { return header_.file_bytes; }
+  [[nodiscard]] std::uint64_t file_bytes() const { return file_bytes_; }
   [[nodiscard]] const std::vector<SectionEntry>& sections() const { return table_; }
 
  private:
@@ -89,45 +87,47 @@ class Layout {
     if (!bytes.empty()) sections_.push_back({kind, owner, bytes});
   }
 
-  // Sections that a top-level walk reads are adjacent.
   void add_scene(const EncodedScene& scene) {
     add(SectionKind::kScene, kNoOwner, scene.scene);
-    add(SectionKind::kLayers, kNoOwner, scene.layers);
     add(SectionKind::kSceneNodes, kNoOwner, scene.nodes);
     add(SectionKind::kInstances, kNoOwner, scene.instances);
     add(SectionKind::kPoses, kNoOwner, scene.poses);
+    add(SectionKind::kLayers, kNoOwner, scene.layers);
     add(SectionKind::kMaterials, kNoOwner, scene.materials);
     add(SectionKind::kLeftOut, kNoOwner, scene.left_out);
   }
 
   void place() {
-    std::uint64_t at = sizeof(FileHeader) + sections_.size() * sizeof(SectionEntry);
+    std::uint64_t at = table_end(sections_.size());
     for (const Section& section : sections_) {
-      SectionEntry entry{};
-      entry.kind = static_cast<std::uint32_t>(section.kind);
+      SectionEntry entry;
+      entry.kind = section.kind;
       const bool informative =
-          section.kind == SectionKind::kCertificate || section.kind == SectionKind::kNames ||
-          section.kind == SectionKind::kMaterials || section.kind == SectionKind::kMaterialRuns ||
+          section.kind == SectionKind::kNames || section.kind == SectionKind::kMaterials ||
+          section.kind == SectionKind::kMaterialRuns ||
           section.kind == SectionKind::kFaceMaterials || section.kind == SectionKind::kLeftOut ||
           section.kind == SectionKind::kCookRecord;
-      entry.flags = informative ? 0 : kSectionRequired;
+      entry.is_required = !informative;
       entry.owner = section.owner;
-      entry.offset = align_up(at, kSectionAlignment);
+      entry.offset = section_begin(at, section.bytes.size());
       entry.size = section.bytes.size();
       entry.checksum = checksum(section.bytes);
       table_.push_back(entry);
-      at = entry.offset + entry.size;
+      rows_.push_back(entry.row());
+      at = entry.end();
     }
-    header_ = make_header(table_, 0, checksum);
+    header_ = make_header(rows_, 0, checksum);
+    file_bytes_ = file_end(at);
   }
 
   std::vector<TreeRecord> records_;
-  std::vector<CertificateRecord> certificates_;
   std::string names_;
   std::string cook_record_;
   std::vector<Section> sections_;
   std::vector<SectionEntry> table_;
+  std::vector<SectionRow> rows_;  // the same as stored
   FileHeader header_{};
+  std::uint64_t file_bytes_ = 0;
 };
 
 std::vector<std::byte> bytes_of_file(const Layout& layout) {

@@ -95,17 +95,17 @@ Result<std::vector<std::byte>> make_blob(Bytes file, BlobMethod method) {
   std::memcpy(body.data(), &blob, sizeof(blob));
   std::copy(stream->begin(), stream->end(), body.begin() + sizeof(blob));
 
-  SectionEntry entry{};
-  entry.kind = static_cast<std::uint32_t>(SectionKind::kBlob);
-  entry.flags = kSectionRequired;
-  entry.owner = kNoOwner;
-  entry.offset = align_up(sizeof(FileHeader) + sizeof(SectionEntry), kSectionAlignment);
+  SectionEntry entry;
+  entry.kind = SectionKind::kBlob;
+  entry.is_required = true;
+  entry.offset = section_begin(table_end(1), body.size());
   entry.size = body.size();
   entry.checksum = checksum(body);
-  const FileHeader header = make_header({&entry, 1}, kFeatureBlob, checksum);
-  std::vector<std::byte> out(header.file_bytes);
+  const SectionRow row = entry.row();
+  const FileHeader header = make_header({&row, 1}, kFeatureBlob, checksum);
+  std::vector<std::byte> out(file_end(entry.end()));
   std::memcpy(out.data(), &header, sizeof(header));
-  std::memcpy(out.data() + sizeof(header), &entry, sizeof(entry));
+  std::memcpy(out.data() + sizeof(header), &row, sizeof(row));
   std::copy(body.begin(), body.end(), out.begin() + static_cast<std::ptrdiff_t>(entry.offset));
   return out;
 }

@@ -67,9 +67,7 @@ Status OpenFile::verify_checksums() const {
     const SectionEntry& entry = container_.sections[i];
     if (checksum(bytes_.subspan(entry.offset, entry.size)) != entry.checksum) {
       return error_with(Errc::kChecksumMismatch, "section ",
-                        "# (" + std::string(section_name(static_cast<SectionKind>(entry.kind))) +
-                            "): checksum differs",
-                        {i});
+                        "# (" + std::string(section_name(entry.kind)) + "): checksum differs", {i});
     }
   }
   return {};

@@ -107,28 +107,31 @@ Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
 Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
   if (has_clusters(geometry_)) return bind_clusters(parts, place);
   const std::size_t stride = 3 * (has_f64_positions_ ? sizeof(double) : sizeof(float));
-  const auto positions = sized_section(parts.vertices, SectionKind::kVertices, place,
-                                       parts.record.vertex_count, stride);
+  const std::uint64_t vertices =
+      std::clamp<std::uint64_t>(parts.vertices.size() / stride, face_count_ > 0, kMaxVertices);
+  const auto positions =
+      sized_section(parts.vertices, SectionKind::kVertices, place, vertices, stride);
   if (!positions) return positions.error();
   const auto corners =
       sized_section(parts.corners, SectionKind::kCorners, place, face_count_,
                     std::uint64_t{parts.record.corners_per_face} * parts.record.corner_bytes);
   if (!corners) return corners.error();
-  leaves_ = LeafReader({*positions, stride, has_f64_positions_, parts.record.vertex_count, *corners,
-                        parts.record.corner_bytes, parts.record.corners_per_face, face_count_},
-                       frame_);
+  leaves_ =
+      LeafReader({*positions, stride, has_f64_positions_, static_cast<std::uint32_t>(vertices),
+                  *corners, parts.record.corner_bytes, parts.record.corners_per_face, face_count_},
+                 frame_);
   return {};
 }
 
 Status BoundTree::bind_clusters(const TreeParts& parts, const std::string& place) {
-  const auto offsets = sized_section(parts.corners, SectionKind::kCorners, place,
-                                     clusters_of(face_count_), sizeof(std::uint32_t));
-  if (!offsets) return offsets.error();
-  if (face_count_ > 0 && parts.vertices.empty()) {
-    return error_with(Errc::kSectionMissing, place,
-                      section_text(SectionKind::kVertices) + " is absent");
-  }
-  leaves_ = LeafReader({*offsets, parts.vertices, face_count_, parts.record.corners_per_face,
+  const auto corners = sized_section(parts.corners, SectionKind::kCorners, place, 0, 1);
+  if (!corners) return corners.error();
+  // Clusters take more bytes than their table; each is looked for where it is read.
+  const std::uint64_t least = cluster_table_bytes(face_count_);
+  const auto clusters = sized_section(parts.vertices, SectionKind::kVertices, place,
+                                      std::max<std::uint64_t>(parts.vertices.size(), least), 1);
+  if (!clusters) return clusters.error();
+  leaves_ = LeafReader({parts.vertices, face_count_, parts.record.corners_per_face,
                         numbers_of(geometry_, has_f64_positions_)},
                        frame_, std::ldexp(1.0, grid_exponent_ - scale_exponent_));
   return {};
@@ -161,15 +164,21 @@ Status BoundTree::bind_external_geometry(const TreeParts& parts, const std::stri
 
 Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place,
                                 const BindOptions& options) {
-  const bool is_there = parts.record.has_face_ids != 0;
-  const std::uint64_t least = is_there ? least_id_bytes(face_count_) : 0;
-  // Fields take more bytes than that; each is looked for where it is read.
-  const auto ids =
-      sized_section(parts.face_ids, SectionKind::kFaceIds, place,
-                    is_there ? std::max<std::uint64_t>(parts.face_ids.size(), least) : 0, 1);
-  if (!ids) return ids.error();
-  if (is_there) face_ids_ = FaceIdView(parts.face_ids);
-  if (geometry_ == GeometryId::kExternal && face_ids_) leaves_.set_order(face_ids_);
+  // External faces are found by source number, or through the ids of the tree's own order.
+  const bool are_needed = geometry_ == GeometryId::kExternal && face_count_ > 0;
+  if (parts.face_ids.empty() ? are_needed && !is_in_source_order_
+                             : is_in_source_order_ || face_count_ == 0) {
+    return error_with(Errc::kRecordInvalid, place, "face ids are not as specified");
+  }
+  if (!parts.face_ids.empty()) {
+    // Fields take more bytes than that; each is looked for where it is read.
+    const std::uint64_t bytes =
+        std::max<std::uint64_t>(parts.face_ids.size(), least_id_bytes(face_count_));
+    const auto ids = sized_section(parts.face_ids, SectionKind::kFaceIds, place, bytes, 1);
+    if (!ids) return ids.error();
+    face_ids_ = FaceIdView(parts.face_ids);
+  }
+  if (are_needed && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
   }

@@ -77,7 +77,7 @@ class LeafReader {
 
   /// The arrays; for clusters only their counts.
   [[nodiscard]] const MeshArrays& mesh() const noexcept { return mesh_; }
-  [[nodiscard]] bool has_clusters() const noexcept { return clusters_.offsets != nullptr; }
+  [[nodiscard]] bool has_clusters() const noexcept { return !clusters_.bytes.empty(); }
   [[nodiscard]] const ClusterView& clusters() const noexcept { return clusters_; }
   /// Whether positions are on a grid, and not those of the source.
   [[nodiscard]] bool is_grid() const noexcept {

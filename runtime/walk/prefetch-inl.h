@@ -43,9 +43,9 @@ class Prefetch {
     for (; children != 0; children &= children - 1) {
       const auto child = static_cast<std::uint32_t>(std::countr_zero(children));
       const std::size_t face = first_face(links, child);
-      if (clusters_.offsets != nullptr) {
+      if (!clusters_.bytes.empty()) {
         const std::uint64_t start =
-            load<std::uint32_t>(clusters_.offsets, face / kClusterFaces) * kClusterUnit;
+            load<std::uint32_t>(clusters_.bytes.data(), face / kClusterFaces) * kClusterUnit;
         hwy::Prefetch(clusters_.bytes.data() + std::min(start, clusters_.bytes.size()));
       } else {
         hwy::Prefetch(corners_ + face * face_bytes_);

@@ -24,19 +24,10 @@ std::size_t below(Random& random, std::size_t end) {
   return end == 0 ? 0 : random() % end;
 }
 
+// Sections that can be changed.
 std::vector<SectionEntry> sections_of(const FileBytes& file) {
-  std::vector<SectionEntry> sections;
-  if (file.size() < sizeof(FileHeader)) return sections;
-  const auto count = load<FileHeader>(file.data()).section_count;
-  if (!in_range(sizeof(FileHeader), std::uint64_t{count} * sizeof(SectionEntry), file.size())) {
-    return sections;
-  }
-  for (std::uint32_t i = 0; i < count; ++i) {
-    const auto entry = load<SectionEntry>(file.data() + sizeof(FileHeader), i);
-    if (entry.size > 0 && in_range(entry.offset, entry.size, file.size())) {
-      sections.push_back(entry);
-    }
-  }
+  std::vector<SectionEntry> sections = test::sections_of(file);
+  std::erase_if(sections, [](const SectionEntry& entry) { return entry.size == 0; });
   return sections;
 }
 
@@ -104,15 +95,10 @@ void change_file(Random& random, FileBytes& file, std::size_t most) {
     const std::size_t before = file.size();
     file.resize(std::max(before, most));
     file.resize(LLVMFuzzerMutate(reinterpret_cast<std::uint8_t*>(file.data()), before, most));
-    if (file.size() >= sizeof(FileHeader) && random() % 2 == 0) {
-      const std::uint64_t bytes = file.size();
-      std::memcpy(file.data() + offsetof(FileHeader, file_bytes), &bytes, sizeof(bytes));
-    }
     return;
   }
   if (kind <= 3) {  // header and section table
-    const std::size_t table =
-        load<FileHeader>(file.data()).section_count * sizeof(SectionEntry) + sizeof(FileHeader);
+    const std::size_t table = table_end(load<FileHeader>(file.data()).section_count);
     change_bytes(random, file.data(), std::min(table, file.size()));
     return;
   }

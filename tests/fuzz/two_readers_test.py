@@ -19,32 +19,42 @@ import xxhash
 QUERY_BYTES = 64  # behind each file of the corpus
 
 
+def places(data):
+    """Offset and size of each section that lies in the file, in the order of the table."""
+    count = struct.unpack_from("<I", data, 12)[0]
+    end = 32 + 16 * count
+    found = []
+    for i in range(count if end <= len(data) else 0):
+        size = struct.unpack_from("<Q", data, 32 + 16 * i)[0] & (1 << 40) - 1
+        offset = end + -end % (8 if size < 4096 else 64)
+        end = offset + size
+        if end > len(data):
+            break
+        found.append((offset, size))
+    return found
+
+
 def repair(data):
     """Makes the checksums of sections and header right again."""
-    count = struct.unpack_from("<I", data, 40)[0]
-    if 64 + 40 * count > len(data):
+    end = 32 + 16 * struct.unpack_from("<I", data, 12)[0]
+    if end > len(data):
         return
-    for i in range(count):
-        at = 64 + 40 * i
-        offset, size = struct.unpack_from("<QQ", data, at + 16)
-        if offset + size <= len(data):
-            body = bytes(data[offset:offset + size])
-            struct.pack_into("<Q", data, at + 32, xxhash.xxh3_64_intdigest(body))
-    head = bytes(data[:56]) + bytes(data[64:64 + 40 * count])
-    struct.pack_into("<Q", data, 56, xxhash.xxh3_64_intdigest(head))
+    for i, (offset, size) in enumerate(places(data)):
+        body = bytes(data[offset:offset + size])
+        struct.pack_into("<Q", data, 32 + 16 * i + 8, xxhash.xxh3_64_intdigest(body))
+    head = bytes(data[:24]) + bytes(data[32:end])
+    struct.pack_into("<Q", data, 24, xxhash.xxh3_64_intdigest(head))
 
 
 def sections(data):
-    count = struct.unpack_from("<I", data, 40)[0]
-    return [place for place in
-            (struct.unpack_from("<QQ", data, 64 + 40 * i + 16) for i in range(count)) if place[1]]
+    return [place for place in places(data) if place[1]]
 
 
 def damaged(whole, rng):
     data = bytearray(whole)
     for _ in range(rng.choice((1, 1, 1, 2, 3))):
         if rng.random() < 0.1:
-            offset, size = 0, min(len(data), 64 + 40 * len(sections(whole)))
+            offset, size = 0, min(len(data), 32 + 16 * len(sections(whole)))
         else:
             offset, size = rng.choice(sections(whole))
         width = rng.choice([w for w in (1, 2, 4, 8) if w <= size])

@@ -13,7 +13,7 @@ import sys
 import xxhash
 
 NO_OWNER = 0xFFFFFFFF
-NODES, VERTICES, CORNERS, FACE_IDS, CERTIFICATE, NAMES, DUPLICATES = 2, 3, 4, 5, 6, 7, 19
+NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES = 2, 3, 4, 5, 7, 19
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
@@ -41,29 +41,29 @@ class File:
 
     def __init__(self, data):
         self.data = data
-        expect(len(data) >= 64, "a header has 64 bytes")
-        (magic, major, _minor, header_bytes, file_bytes, incompatible, _compatible, count, zero32,
-         zero64, checksum) = struct.unpack_from("<8sHHIQQQIIQQ", data)
+        expect(len(data) >= 32, "a header has 32 bytes")
+        magic, major, _minor, count, incompatible, _compatible, checksum = struct.unpack_from(
+            "<8sHHIIIQ", data)
         expect(magic == bytes([0x89, 0x42, 0x58, 0x54, 0x0D, 0x0A, 0x1A, 0x0A]), "magic")
-        expect(major == 1 and header_bytes == 64 and file_bytes == len(data), "version and sizes")
-        expect(incompatible == 0 and zero32 == 0 and zero64 == 0, "features and zeros")
-        table = data[64:64 + 40 * count]
-        expect(checksum == xxh3(data[:56] + table), "checksum of header and table")
+        expect(major == 1 and incompatible == 0, "version and features")
+        end = 32 + 16 * count
+        expect(end <= len(data), "section table inside the file")
+        expect(checksum == xxh3(data[:24] + data[32:end]), "checksum of header and table")
         self.sections = {}
-        end = 64 + 40 * count
+        before = -1
         for i in range(count):
-            kind, flags, owner, zero, offset, size, checksum = struct.unpack_from(
-                "<IIIIQQQ", table, 40 * i)
-            expect(flags in (0, 1) and zero == 0, "section flags")
-            expect(offset % 64 == 0 and end <= offset <= end + 4096, "section offset")
+            word, checksum = struct.unpack_from("<QQ", data, 32 + 16 * i)
+            size, kind, owner = word & (1 << 40) - 1, word >> 41 & 127, word >> 48
+            expect(word >> 41 > before, "sections by owner and kind")
+            before = word >> 41
+            offset = end + -end % (8 if size < 4096 else 64)
             expect(offset + size <= len(data), "section inside the file")
             expect(not any(data[end:offset]), "zero padding")
             body = data[offset:offset + size]
             expect(checksum == xxh3(body), f"checksum of section {i}")
-            expect((kind, owner) not in self.sections, "one section of a kind and owner")
-            self.sections[kind, owner] = body
+            self.sections[kind, owner - 1 if owner else NO_OWNER] = body
             end = offset + size
-        expect(len(data) - end < 64 and not any(data[end:]), "padding at the end")
+        expect(len(data) == end + -end % 8 and not any(data[end:]), "padding at the end")
 
     def section(self, kind, owner=NO_OWNER):
         return self.sections.get((kind, owner), b"")
@@ -277,13 +277,13 @@ class Clusters:
         self.has_quads = tree.corners_per_face == 4
         self.faces = []
         count = -(-tree.face_count // self.CLUSTER_FACES)
-        expect(len(tree.corners) == 4 * count, "size of section corners")
+        expect(not tree.corners and len(tree.vertices) >= 4 * count, "a table of clusters")
         padding = self.PADDING if count else 0
         end = len(tree.vertices) - padding
         expect(end >= 0 and end % 4 == 0 and not any(tree.vertices[end:]),
                "padding after the last cluster")
-        starts = [4 * start for start in struct.unpack(f"<{count}I", tree.corners)] + [end]
-        expect(starts[0] == 0 and starts == sorted(starts), "clusters follow each other")
+        starts = [4 * start for start in struct.unpack_from(f"<{count}I", tree.vertices)] + [end]
+        expect(starts[0] == 4 * count and starts == sorted(starts), "clusters follow each other")
         for start, end in zip(starts, starts[1:]):
             left = tree.face_count - len(self.faces)
             self.cluster(tree.vertices[start:end], min(self.CLUSTER_FACES, left))
@@ -381,18 +381,18 @@ CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Pa
 
 
 class Tree:
-    """A TreeRecord and its sections (sections 3, 8 and 9)."""
+    """A TreeRecord and its sections (sections 3 and 8)."""
 
     def __init__(self, file, index, record):
-        (self.codec, self.geometry, self.flags, self.face_count, self.triangle_count,
-         self.vertex_count, self.node_count, self.root_kind, self.depth, self.corner_bytes,
-         self.corners_per_face, self.has_face_ids, self.duplicate_bytes, self.exponent, name_offset,
-         name_bytes, *rest) = struct.unpack_from("<HHIIIIIIIBBBBiII9dQiI7Q", record)
+        (self.codec, self.geometry, self.root_kind, self.depth, self.flags, self.corner_bytes,
+         self.corners_per_face, self.duplicate_bytes, self.face_count, self.triangle_count,
+         self.node_count, self.duplicate_count, degenerate, name_offset, name_bytes, self.exponent,
+         self.grid_exponent, error, *rest) = struct.unpack_from("<8B7I2h10dQ", record)
         self.origin, self.low, self.high = rest[0:3], tuple(rest[3:6]), tuple(rest[6:9])
-        self.grid_exponent = rest[10]
-        self.duplicate_count = rest[11]
         self.leaf_faces = self.face_count - self.duplicate_count
-        expect(not any(rest[12:]) and self.flags < 4, "zeros of a record")
+        expect(self.flags < 4, "flags of a record")
+        expect(degenerate <= self.triangle_count and 0 <= error < float("inf"),
+               "triangles without area and the error")
         expect(self.duplicate_bytes in ((1, 2, 4) if self.duplicate_count else (0,)),
                "width of duplicates")
         expect(self.duplicate_count == 0 or self.leaf_faces > 0,
@@ -415,7 +415,6 @@ class Tree:
         self.corners = file.section(CORNERS, index)
         self.ids = file.section(FACE_IDS, index)
         self.duplicates = file.section(DUPLICATES, index)
-        self.certificate = file.section(CERTIFICATE, index)
         self.scalar = "d" if self.flags & 2 else "f"
         if self.geometry == EXTERNAL:
             expect(not self.vertices and not self.corners, "no arrays")
@@ -423,13 +422,13 @@ class Tree:
                    "numbers of the application's faces")
         if self.geometry == ARRAYS:
             stride = 3 * struct.calcsize(self.scalar)
-            expect(len(self.vertices) == self.vertex_count * stride, "size of section vertices")
+            self.vertex_count = len(self.vertices) // stride
+            expect(len(self.vertices) % stride == 0, "size of section vertices")
             expect(len(self.corners) == self.face_count * self.corners_per_face
                    * self.corner_bytes, "size of section corners")
         self.clusters = Clusters(self) if self.geometry in (GRID, EXACT) else None
-        expect(self.has_face_ids <= (self.face_count > 0 and not self.flags & 1),
+        expect(not self.ids or self.face_count > 0 and not self.flags & 1,
                "face ids of faces in tree order")
-        expect(self.has_face_ids == bool(self.ids), "a section face_ids")
         self.face_ids = self.read_face_ids() if self.ids else None
         expect(len(self.duplicates) == self.duplicate_count * self.duplicate_bytes,
                "size of section duplicates")
@@ -506,11 +505,11 @@ class Tree:
     def face_id(self, face):
         if self.flags & 1:
             return face
-        return self.face_ids[face] if self.has_face_ids else None
+        return self.face_ids[face] if self.face_ids else None
 
     def walk(self):
-        """Visits every leaf; returns what the certificate must say."""
-        found = {"depth": 0, "nodes": 0, "leaves": 0, "shrink": 0, "faces": {}, "triangles": 0}
+        """Visits every leaf; returns what the record must say."""
+        found = {"depth": 0, "nodes": 0, "faces": {}, "triangles": 0}
         if self.root_kind == EMPTY:
             expect(self.face_count == 0, "an empty tree has no faces")
             return found
@@ -526,7 +525,6 @@ class Tree:
             expect(found["nodes"] <= self.node_count, "each node is reached once")
             children = codec.expand(ref, path[-1])
             expect(children, "a node has a child")
-            found["shrink"] += len(children) == 1
             for kind, child, box in children:
                 if kind == "leaf":
                     self.leaf(found, child, path + [box])
@@ -535,7 +533,6 @@ class Tree:
         return found
 
     def leaf(self, found, faces, path):
-        found["leaves"] += 1
         for face in range(faces[0], faces[0] + faces[1]):
             expect(face < self.leaf_faces and face not in found["faces"], "each face in one leaf")
             found["faces"][face] = self.face_id(face)
@@ -574,11 +571,6 @@ class Tree:
         if self.geometry != EXTERNAL:
             expect(found["triangles"] == self.triangle_count, "every quad has two triangles")
         expect(found["nodes"] == self.node_count and found["depth"] == self.depth, "counts")
-        error, depth, nodes, leaves, faces, shrink, _degenerate, *zeros = struct.unpack(
-            "<d6I4Q", self.certificate)
-        expect((depth, nodes, leaves, faces, shrink) ==
-               (found["depth"], found["nodes"], found["leaves"], self.face_count, found["shrink"])
-               and error >= 0 and not any(zeros), "certificate")
         return {"name": self.name, "codec": CODECS[self.codec][0], "faces": self.face_count,
                 "duplicates": self.duplicate_count, "triangles": self.triangle_count,
                 "nodes": self.node_count, "depth": self.depth,
@@ -588,9 +580,9 @@ class Tree:
 def read(data):
     file = File(data)
     records = file.section(1)
-    expect(len(records) % 192 == 0, "size of section trees")
-    return [Tree(file, i, records[192 * i:192 * (i + 1)]).check()
-            for i in range(len(records) // 192)]
+    expect(len(records) % 128 == 0, "size of section trees")
+    return [Tree(file, i, records[128 * i:128 * (i + 1)]).check()
+            for i in range(len(records) // 128)]
 
 
 def main(arguments):

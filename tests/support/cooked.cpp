@@ -90,7 +90,7 @@ std::vector<Triangle> all_triangles(const Tree& tree) {
 SectionEntry entry_of(const std::vector<std::byte>& file, SectionKind kind) {
   const File opened = require(File::open(Bytes(file)));
   for (const SectionEntry& entry : OpenFile::of(opened).container().sections) {
-    if (entry.kind == static_cast<std::uint32_t>(kind)) return entry;
+    if (entry.kind == kind) return entry;
   }
   throw std::runtime_error("no such section");
 }
@@ -103,26 +103,41 @@ std::span<std::byte> section_of(std::vector<std::byte>& file, SectionKind kind) 
 void edit_entry(std::vector<std::byte>& file, SectionKind kind,
                 const std::function<void(SectionEntry&)>& change) {
   SectionEntry entry = entry_of(file, kind);
+  const SectionRow before = entry.row();
   std::byte* at = file.data() + sizeof(FileHeader);
-  while (std::memcmp(at, &entry, sizeof(entry)) != 0) at += sizeof(entry);
+  while (std::memcmp(at, &before, sizeof(before)) != 0) at += sizeof(before);
   change(entry);
-  std::memcpy(at, &entry, sizeof(entry));
+  const SectionRow after = entry.row();
+  std::memcpy(at, &after, sizeof(after));
   repair_checksums(file);
+}
+
+std::vector<SectionEntry> sections_of(const std::vector<std::byte>& file) {
+  std::vector<SectionEntry> sections;
+  if (file.size() < sizeof(FileHeader)) return sections;
+  const auto count = load<FileHeader>(file.data()).section_count;
+  std::uint64_t end = table_end(count);
+  for (std::size_t i = 0; i < count && end <= file.size(); ++i) {
+    const auto row = load<SectionRow>(file.data() + sizeof(FileHeader), i);
+    const SectionEntry entry = SectionEntry::of(row, end);
+    end = entry.end();
+    if (end <= file.size()) sections.push_back(entry);
+  }
+  return sections;
 }
 
 void repair_checksums(std::vector<std::byte>& bytes) {
   if (bytes.size() < sizeof(FileHeader)) return;
-  const auto count = load<FileHeader>(bytes.data()).section_count;
-  const std::size_t table = sizeof(FileHeader);
-  if (!in_range(table, std::uint64_t{count} * sizeof(SectionEntry), bytes.size())) return;
-  for (std::size_t i = 0; i < count; ++i) {
-    auto entry = load<SectionEntry>(bytes.data() + table, i);
-    if (!in_range(entry.offset, entry.size, bytes.size())) continue;
-    entry.checksum = checksum(Bytes(bytes).subspan(entry.offset, entry.size));
-    std::memcpy(bytes.data() + table + i * sizeof(SectionEntry), &entry, sizeof(entry));
+  const std::uint64_t end = table_end(load<FileHeader>(bytes.data()).section_count);
+  if (end > bytes.size()) return;
+  std::byte* at = bytes.data() + sizeof(FileHeader);
+  for (const SectionEntry& entry : sections_of(bytes)) {
+    const std::uint64_t sum = checksum(Bytes(bytes).subspan(entry.offset, entry.size));
+    std::memcpy(at + offsetof(SectionRow, checksum), &sum, sizeof(sum));
+    at += sizeof(SectionRow);
   }
-  const std::uint64_t sum = checksum(Bytes(bytes).first(offsetof(FileHeader, checksum)),
-                                     Bytes(bytes).subspan(table, count * sizeof(SectionEntry)));
+  const Bytes table = Bytes(bytes).first(end).subspan(sizeof(FileHeader));
+  const std::uint64_t sum = checksum(Bytes(bytes).first(offsetof(FileHeader, checksum)), table);
   std::memcpy(bytes.data() + offsetof(FileHeader, checksum), &sum, sizeof(sum));
 }
 

@@ -61,6 +61,9 @@ struct Encoding {
 /// The bytes of that section.
 [[nodiscard]] std::span<std::byte> section_of(std::vector<std::byte>& file, SectionKind kind);
 
+/// The sections of a file that may be corrupt, in the order of its table: those that lie in it.
+[[nodiscard]] std::vector<SectionEntry> sections_of(const std::vector<std::byte>& file);
+
 /// Changes that entry and repairs the checksums.
 void edit_entry(std::vector<std::byte>& file, SectionKind kind,
                 const std::function<void(SectionEntry&)>& change);

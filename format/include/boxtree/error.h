@@ -23,15 +23,12 @@ enum class Errc : std::uint16_t {
 
   // 10..29: the container (header, section table, sections).
   kBadMagic = 10,            ///< Not a .bxt file.
-  kTruncated = 11,           ///< The file ends before its own stated size.
+  kTruncated = 11,           ///< The file is not as long as its sections.
   kVersionUnsupported = 12,  ///< Written by a newer format than this reader knows.
   kFeatureUnsupported = 13,  ///< Uses a feature that a reader must know and this one does not.
   kHeaderCorrupt = 14,       ///< Header or section table is damaged.
   kTooManySections = 15,     ///< More sections than the limit.
-  kSectionOutOfRange = 16,   ///< A section leaves the file.
-  kSectionMisaligned = 17,   ///< A section is not aligned.
-  kSectionOverlap = 18,      ///< Sections overlap or are out of order.
-  kSectionDuplicate = 19,    ///< A section occurs twice.
+  kSectionOrder = 18,        ///< Sections are out of order, or one occurs twice.
   kSectionMissing = 20,      ///< A section that the tree needs is absent.
   kSectionSize = 21,         ///< A section's size contradicts its records.
   kSectionUnknown = 22,      ///< A section that a reader must know and this one does not.
@@ -48,7 +45,6 @@ enum class Errc : std::uint16_t {
   kDepthExceeded = 34,        ///< The tree is deeper than it states.
   kFaceOutOfRange = 35,       ///< A leaf names a face that is not there.
   kVertexOutOfRange = 36,     ///< A face names a vertex that is not there.
-  kCertificateMismatch = 37,  ///< The certificate does not hold for this tree.
   kBoxEscape = 38,            ///< A triangle sticks out of a box above it.
   kFaceUnreachable = 39,      ///< No leaf holds this face.
   kFaceRepeated = 40,         ///< More than one leaf holds this face.

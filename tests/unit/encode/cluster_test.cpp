@@ -143,10 +143,11 @@ cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16
   std::vector<std::byte>& bytes = spread.geometry.vertices;
   const std::size_t leaves = leaves_of(view.face_count);
   bytes.assign(view.bytes.size() + leaves * gap + kClusterUnit, std::byte{0});
-  std::copy_n(cluster.bytes, cluster.leaves_at, bytes.begin());
+  const std::size_t table = cluster_table_bytes(view.face_count);
+  std::copy_n(view.bytes.begin(), table + cluster.leaves_at, bytes.begin());
   ClusterHeader header = cluster.header;
   header.leaf_bytes = static_cast<std::uint16_t>(header.leaf_bytes + gap);
-  std::memcpy(bytes.data(), &header, sizeof(header));
+  std::memcpy(bytes.data() + table, &header, sizeof(header));
   std::uint64_t end = 0;
   for (std::uint32_t i = 0; i < leaves; ++i) {
     ClusterLeaf leaf;

@@ -83,9 +83,9 @@ TEST(FaceIds, OfAnyOrderAreReadBack) {
     Ids ids(1 + random() % 3000);
     std::uint32_t id = 0;
     for (std::uint32_t& next : ids) {
-      if (random() % 16 == 0) id = random() >> (1 + random() % 24);
+      if (random() % 16 == 0) id = static_cast<std::uint32_t>(random() >> (1 + random() % 24));
       next = std::min(id, kMaxFaces - 1);
-      id = next + random() % 3;
+      id = next + static_cast<std::uint32_t>(random() % 3);
     }
     EXPECT_EQ(decode(encode(ids), ids.size()), ids) << round;
   }
@@ -126,7 +126,7 @@ TEST(FaceIds, AreStoredAsSpecified) {
   EXPECT_EQ(decode(expected, 4), ids);
 }
 
-TEST(FaceIds, AreThoseOfTheOrderThatIsAskedFor) {
+TEST(FaceIds, AreThoseOfTheOrderThatIsGiven) {
   SourceMesh mesh;  // ids of its faces are their numbers
   const Ids order = {4, 2, 0, 1, 3};
   EXPECT_EQ(decode(encode_face_ids(mesh, order), 5), order);

@@ -12,6 +12,7 @@
 #include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
+#include "tests/support/require.h"
 
 namespace boxtree {
 namespace {
@@ -30,11 +31,12 @@ void edit_header(FileBytes& bytes, const std::function<void(FileHeader&)>& chang
 }
 void edit_section(FileBytes& bytes, std::size_t index,
                   const std::function<void(SectionEntry&)>& change) {
-  edit<SectionEntry>(bytes, sizeof(FileHeader) + index * sizeof(SectionEntry), change);
+  SectionEntry entry = test::sections_of(bytes)[index];
+  change(entry);
+  edit<SectionRow>(bytes, table_end(index), [&](SectionRow& row) { row = entry.row(); });
 }
 void edit_record(FileBytes& bytes, const std::function<void(TreeRecord&)>& change) {
-  const auto trees = load<SectionEntry>(bytes.data() + sizeof(FileHeader));
-  edit<TreeRecord>(bytes, trees.offset, change);
+  edit<TreeRecord>(bytes, test::sections_of(bytes).front().offset, change);
 }
 
 FileBytes valid_file() {
@@ -45,7 +47,7 @@ std::size_t section_index(const FileBytes& bytes, SectionKind kind) {
   const Result<File> file = File::open(Bytes(bytes));
   const auto& sections = OpenFile::of(*file).container().sections;
   for (std::size_t i = 0; i < sections.size(); ++i) {
-    if (sections[i].kind == static_cast<std::uint32_t>(kind)) return i;
+    if (sections[i].kind == kind) return i;
   }
   ADD_FAILURE() << "no such section";
   return 0;
@@ -80,14 +82,8 @@ INSTANTIATE_TEST_SUITE_P(
             [](FileBytes& b) { edit_header(b, [](FileHeader& h) { h.version_major = 2; }); }},
         Lie{"feature", Errc::kFeatureUnsupported,
             [](FileBytes& b) {
-              edit_header(b, [](FileHeader& h) { h.incompatible_features = 1ull << 40; });
+              edit_header(b, [](FileHeader& h) { h.incompatible_features = 1u << 30; });
             }},
-        Lie{"reserved", Errc::kHeaderCorrupt,
-            [](FileBytes& b) { edit_header(b, [](FileHeader& h) { h.reserved1 = 1; }); }},
-        Lie{"header_bytes", Errc::kHeaderCorrupt,
-            [](FileBytes& b) { edit_header(b, [](FileHeader& h) { h.header_bytes = 128; }); }},
-        Lie{"larger_than_it_is", Errc::kTruncated,
-            [](FileBytes& b) { edit_header(b, [](FileHeader& h) { h.file_bytes += 64; }); }},
         Lie{"too_many_sections", Errc::kTooManySections,
             [](FileBytes& b) {
               edit_header(b, [](FileHeader& h) { h.section_count = kMaxSections + 1; });
@@ -99,39 +95,39 @@ INSTANTIATE_TEST_SUITE_P(
 INSTANTIATE_TEST_SUITE_P(
     Sections, ContainerLies,
     testing::Values(
-        Lie{"misaligned", Errc::kSectionMisaligned,
-            [](FileBytes& b) { edit_section(b, 1, [](SectionEntry& s) { s.offset += 32; }); }},
-        Lie{"overlap", Errc::kSectionOverlap,
-            [](FileBytes& b) { edit_section(b, 1, [](SectionEntry& s) { s.offset -= 64; }); }},
-        Lie{"gap", Errc::kSectionOverlap,
-            [](FileBytes& b) { edit_section(b, 1, [](SectionEntry& s) { s.offset += 64 * 65; }); }},
-        Lie{"outside", Errc::kSectionOutOfRange,
+        Lie{"longer_than_the_file", Errc::kTruncated,
             [](FileBytes& b) {
               const std::size_t last = load<FileHeader>(b.data()).section_count - 1;
-              edit_section(b, last, [](SectionEntry& s) { s.size = ~std::uint64_t{0}; });
+              edit_section(b, last, [](SectionEntry& s) { s.size = (1ull << 40) - 1; });
             }},
-        Lie{"duplicate", Errc::kSectionDuplicate,
+        Lie{"shorter_than_the_file", Errc::kTruncated,
             [](FileBytes& b) {
-              const SectionEntry first = load<SectionEntry>(b.data() + sizeof(FileHeader));
+              const std::size_t last = load<FileHeader>(b.data()).section_count - 1;
+              edit_section(b, last, [](SectionEntry& s) { s.size -= 8; });
+            }},
+        Lie{"twice", Errc::kSectionOrder,
+            [](FileBytes& b) {
+              const SectionEntry first = test::sections_of(b).front();
               edit_section(b, 1, [&](SectionEntry& s) {
                 s.kind = first.kind;
                 s.owner = first.owner;
               });
             }},
+        Lie{"of_a_tree_before_the_file", Errc::kSectionOrder,
+            [](FileBytes& b) { edit_section(b, 0, [](SectionEntry& s) { s.owner = 9; }); }},
         Lie{"unknown_but_required", Errc::kSectionUnknown,
             [](FileBytes& b) {
-              edit_section(b, 1, [](SectionEntry& s) {
-                s.kind = 999;
-                s.flags = kSectionRequired;
+              const std::size_t last = load<FileHeader>(b.data()).section_count - 1;
+              edit_section(b, last, [](SectionEntry& s) {
+                s.kind = static_cast<SectionKind>(99);
+                s.is_required = true;
               });
             }},
-        Lie{"unknown_flag", Errc::kHeaderCorrupt,
-            [](FileBytes& b) { edit_section(b, 1, [](SectionEntry& s) { s.flags |= 2; }); }},
         Lie{"no_trees", Errc::kSectionMissing,
             [](FileBytes& b) {
               edit_section(b, 0, [](SectionEntry& s) {
-                s.kind = 999;
-                s.flags = 0;
+                s.kind = static_cast<SectionKind>(0);
+                s.is_required = false;
               });
             }},
         Lie{"half_a_record", Errc::kSectionSize,
@@ -140,9 +136,9 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(Container, UnknownOptionalSectionsAndNewerMinorsAreRead) {
   FileBytes bytes = valid_file();
-  edit_section(bytes, section_index(bytes, SectionKind::kCertificate), [](SectionEntry& s) {
-    s.kind = 999;
-    s.flags = 0;
+  edit_section(bytes, section_index(bytes, SectionKind::kFaceIds), [](SectionEntry& s) {
+    s.kind = static_cast<SectionKind>(99);
+    s.is_required = false;
   });
   edit_header(bytes, [](FileHeader& h) {
     h.version_minor = 7;
@@ -154,36 +150,58 @@ TEST(Container, UnknownOptionalSectionsAndNewerMinorsAreRead) {
   EXPECT_TRUE(Tree::bind(*file).ok());
 }
 
-// As many zero bytes as there may be between two sections, and 64 more.
-TEST(Container, GapsHaveABound) {
-  const FileBytes original = valid_file();
-  const auto header = load<FileHeader>(original.data());
-  const auto entry = [&original](std::size_t i) {
-    return load<SectionEntry>(original.data() + sizeof(FileHeader) + i * sizeof(SectionEntry));
-  };
-  std::size_t behind = 1;  // the first section whose predecessor ends where it may begin itself
-  while (behind < header.section_count && entry(behind - 1).size % kSectionAlignment != 0) ++behind;
-  ASSERT_LT(behind, header.section_count);
-  for (const std::uint64_t gap : {kMaxSectionGap, kMaxSectionGap + kSectionAlignment}) {
-    FileBytes bytes = original;
-    bytes.insert(bytes.begin() + static_cast<std::ptrdiff_t>(entry(behind).offset), gap,
-                 std::byte{0});
-    for (std::size_t i = behind; i < header.section_count; ++i) {
-      edit_section(bytes, i, [gap](SectionEntry& s) { s.offset += gap; });
-    }
-    edit_header(bytes, [gap](FileHeader& h) { h.file_bytes += gap; });
-    test::repair_checksums(bytes);
-    EXPECT_EQ(File::open(Bytes(bytes)).code(),
-              gap == kMaxSectionGap ? Errc::kOk : Errc::kSectionOverlap)
-        << gap;
+// Sections of at least 4096 bytes begin at a cache line, others at eight bytes.
+TEST(Container, LargeSectionsBeginAtACacheLine) {
+  EXPECT_EQ(section_begin(1, 4095), 8u);
+  EXPECT_EQ(section_begin(1, 4096), 64u);
+  EXPECT_EQ(section_begin(64, 4096), 64u);
+  EXPECT_EQ(section_begin(65, 1), 72u);
+  EXPECT_EQ(file_end(65), 72u);
+}
+
+// The bits of docs/FORMAT.md, section 2, as literals.
+TEST(Container, RowsAreAsSpecified) {
+  SectionEntry entry;
+  entry.kind = SectionKind::kDuplicates;
+  entry.is_required = true;
+  entry.owner = 2;
+  entry.size = 0x1234567890;
+  entry.checksum = 7;
+  EXPECT_EQ(entry.row().word, 0x0003'27'1234567890u);
+  EXPECT_EQ(entry.row().checksum, 7u);
+  entry.owner = kNoOwner;
+  entry.kind = SectionKind::kTrees;
+  entry.is_required = false;
+  EXPECT_EQ(entry.row().word, 0x0000'02'1234567890u);
+  const SectionEntry read = SectionEntry::of({0x0003'27'0000000010u, 7}, 33);
+  EXPECT_EQ(read.kind, SectionKind::kDuplicates);
+  EXPECT_TRUE(read.is_required);
+  EXPECT_EQ(read.owner, 2u);
+  EXPECT_EQ(read.offset, 40u);
+  EXPECT_EQ(read.end(), 56u);
+}
+
+// What precedes the section that a reader does not know is found, and what follows it.
+TEST(Container, CutAtEveryByteAndPaddedItIsRefused) {
+  const FileBytes bytes = valid_file();
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    ASSERT_FALSE(File::open(Bytes(bytes).first(size)).ok()) << size;
   }
+  FileBytes longer = bytes;
+  longer.resize(bytes.size() + 8);
+  EXPECT_EQ(File::open(Bytes(longer)).code(), Errc::kTruncated);
 }
 
 TEST(Container, PaddingMustBeZero) {
   FileBytes bytes = valid_file();
   const Result<File> file = File::open(Bytes(bytes));
   EXPECT_TRUE(check_padding(Bytes(bytes), OpenFile::of(*file).container()).ok());
-  bytes.back() = std::byte{1};
+  std::uint64_t end = table_end(test::sections_of(bytes).size());
+  for (const SectionEntry& entry : test::sections_of(bytes)) {
+    if (entry.offset > end) break;
+    end = entry.end();
+  }
+  bytes[end] = std::byte{1};
   EXPECT_EQ(check_padding(Bytes(bytes), OpenFile::of(*file).container()).code(),
             Errc::kPaddingNotZero);
 }
@@ -219,11 +237,16 @@ INSTANTIATE_TEST_SUITE_P(
     Record, RecordLies,
     testing::Values(
         record_lie("codec", Errc::kCodecUnsupported,
-                   [](TreeRecord& r) { r.codec = static_cast<CodecId>(777); }),
+                   [](TreeRecord& r) { r.codec = static_cast<CodecId>(77); }),
         record_lie("geometry", Errc::kGeometryUnsupported,
-                   [](TreeRecord& r) { r.geometry = static_cast<GeometryId>(777); }),
-        record_lie("flags", Errc::kFeatureUnsupported, [](TreeRecord& r) { r.flags |= 1u << 31; }),
-        record_lie("reserve", Errc::kRecordInvalid, [](TreeRecord& r) { r.reserved2[6] = 1; }),
+                   [](TreeRecord& r) { r.geometry = static_cast<GeometryId>(77); }),
+        record_lie("flags", Errc::kFeatureUnsupported, [](TreeRecord& r) { r.flags |= 1u << 7; }),
+        record_lie("error", Errc::kRecordInvalid,
+                   [](TreeRecord& r) {
+                     r.max_vertex_error = std::numeric_limits<double>::quiet_NaN();
+                   }),
+        record_lie("degenerate", Errc::kRecordInvalid,
+                   [](TreeRecord& r) { r.degenerate_count = r.triangle_count + 1; }),
         record_lie("grid_of_exact", Errc::kRecordInvalid,
                    [](TreeRecord& r) { r.grid_exponent = 1; }),
         record_lie("grid_of_bytes", Errc::kRecordInvalid,
@@ -241,23 +264,34 @@ INSTANTIATE_TEST_SUITE_P(
         record_lie("scale", Errc::kRecordInvalid, [](TreeRecord& r) { r.scale_exponent = 2000; }),
         record_lie("triangles", Errc::kRecordInvalid, [](TreeRecord& r) { r.triangle_count = 1; }),
         record_lie("corner_bytes", Errc::kRecordInvalid, [](TreeRecord& r) { r.corner_bytes = 3; }),
-        record_lie("face_ids", Errc::kRecordInvalid, [](TreeRecord& r) { r.has_face_ids = 2; }),
-        record_lie("face_ids_that_are_there", Errc::kSectionSize,
-                   [](TreeRecord& r) { r.has_face_ids = 0; }),
-        record_lie("nodes_missing", Errc::kSectionSize, [](TreeRecord& r) { r.node_count += 1; }),
-        record_lie("vertices_missing", Errc::kSectionSize,
-                   [](TreeRecord& r) { r.vertex_count += 1; })),
+        record_lie("face_ids", Errc::kRecordInvalid,
+                   [](TreeRecord& r) { r.flags |= kTreeFacesInSourceOrder; }),
+        record_lie("nodes_missing", Errc::kSectionSize, [](TreeRecord& r) { r.node_count += 1; })),
     [](const auto& lie) { return std::string(lie.param.name); });
 
 TEST(Record, WithoutASectionItNeedsItIsRefused) {
   FileBytes bytes = valid_file();
-  edit_section(bytes, section_index(bytes, SectionKind::kVertices), [](SectionEntry& s) {
-    s.kind = 999;
-    s.flags = 0;
-  });
+  const std::size_t last = test::sections_of(bytes).size() - 1;
+  ASSERT_EQ(section_index(bytes, SectionKind::kFaceIds), last);
+  for (const std::size_t i : {last, last - 1}) {  // corners precede them
+    edit_section(bytes, i, [i](SectionEntry& s) {
+      s.kind = static_cast<SectionKind>(90 + i);
+      s.is_required = false;
+    });
+  }
   test::repair_checksums(bytes);
   const Result<File> file = File::open(Bytes(bytes));
   EXPECT_EQ(Tree::bind(*file).code(), Errc::kSectionMissing);
+}
+
+TEST(Record, VerticesAreAWholeNumber) {
+  cooker::EncodedTree tree = test::require(cooker::cook_as(test::city(2, 1), CodecId::kPlainF32));
+  ASSERT_EQ(tree.geometry.geometry, GeometryId::kArrays);
+  EXPECT_TRUE(cooker::bind_encoded(tree).ok());
+  tree.geometry.vertices.resize(tree.geometry.vertices.size() - 1);
+  EXPECT_EQ(cooker::bind_encoded(tree).code(), Errc::kSectionSize);
+  tree.geometry.vertices.clear();
+  EXPECT_EQ(cooker::bind_encoded(tree).code(), Errc::kSectionMissing);
 }
 
 }  // namespace

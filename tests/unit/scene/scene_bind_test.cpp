@@ -369,8 +369,7 @@ TEST(SceneBind, DamagedBytesAreRefusedOrAnswered) {
   const CookedScene cooked = cook(named_parts());
   std::size_t refused = 0, found = 0;
   for (const SectionEntry& entry : OpenFile::of(cooked.file).container().sections) {
-    const auto kind = static_cast<SectionKind>(entry.kind);
-    if (kind < SectionKind::kScene || kind > SectionKind::kLeftOut) continue;
+    if (entry.kind < SectionKind::kScene || entry.kind > SectionKind::kLeftOut) continue;
     for (std::uint64_t i = 0; i < entry.size; ++i) {
       for (const std::byte change : {std::byte{1}, std::byte{0x80}, std::byte{0xff}}) {
         std::vector<std::byte> bytes = cooked.bytes;
