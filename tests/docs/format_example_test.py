@@ -1,0 +1,134 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: MIT
+"""The examples of FORMAT.md 8.1 are what the cooker writes: its commands give the bytes that it shows, every
+row of its tables is what is at that bit, and the second reader finds the same corners.
+
+    format_example_test.py SOURCE_DIR BOXTREE
+"""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+from blocks import blocks_of
+
+SIGN_BITS = 32  # of origin, the only field with a sign
+
+
+def rows_of(text, first_column):
+    """Cells of the rows of all tables whose first column has that title, one list for each table."""
+    tables = []
+    for table in re.findall(r"(?:^\|.*\|\n)+", text, re.MULTILINE):
+        rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+        if rows[0][0] == first_column:
+            tables.append(rows[2:])
+    return tables
+
+
+def numbers(cell):
+    return [int(number) for number in cell.split(",")]
+
+
+class Example:
+    def __init__(self, source, boxtree, reader, text, blocks, work):
+        self.text = text
+        (_, command, _), (_, shown, _) = blocks
+        assert command.startswith("boxtree cook ") and command.count("\n") == 1, command
+        arguments = command.split()[1:]
+        output = work / arguments[arguments.index("-o") + 1]
+        arguments[arguments.index("-o") + 1] = str(output)
+        subprocess.run([boxtree, *arguments, "-q"], cwd=source, check=True)
+        file = reader.File(output.read_bytes())
+        records = file.section(1)
+        trees = [reader.Tree(file, i, records[128 * i:128 * (i + 1)]) for i in range(len(records) // 128)]
+        self.tree = next(tree for tree in trees if tree.name == "crate")
+        self.number = trees.index(self.tree)
+        self.bytes = bytes.fromhex(shown)
+        table = bytes([1, 0, 0, 0])  # the only cluster begins at byte 4
+        assert self.tree.vertices == table + self.bytes + bytes(64), self.tree.vertices.hex(" ")
+        self.read = self.record_strips(reader)
+
+    def record_strips(self, reader):
+        """Of each leaf, what the second reader makes of it: corners as [(leaf, vertex)] of each face."""
+        strips = []
+
+        class Recorded(reader.Clusters):
+            def strip(self, *arguments):
+                faces, own, named = super().strip(*arguments)
+                strips.append([[named[reference] for reference in face] for face in faces])
+                return faces, own, named
+
+        Recorded(self.tree)
+        return strips
+
+    def check_fields(self, is_whole):
+        whole = int.from_bytes(self.bytes, "little")
+        covered = 0
+        for row in sum(rows_of(self.text, "from"), []):
+            byte, bit = row[0].split(".")
+            count, width = (int(part) for part in row[1].split(" x "))
+            shown, at = numbers(row[3]), 8 * int(byte) + int(bit)
+            found = [(whole >> (at + width * i)) & ((1 << width) - 1) for i in range(count)]
+            if width == SIGN_BITS:
+                origin = found = [value - (value >> (width - 1) << width) for value in found]
+            assert found == shown, (row, found)
+            if len(row) == 5:  # base is 0 in both examples
+                assert numbers(row[4]) == [low + field for low, field in zip(origin, shown)], row
+            bits = ((1 << (count * width)) - 1) << at
+            assert covered & bits == 0, f"two rows have bits of {row}"
+            covered |= bits
+        assert not is_whole or whole & ~covered == 0, "bits that no row shows"
+
+    def check_faces(self):
+        tables = rows_of(self.text, "face")
+        assert len(tables) == len(self.read), (len(tables), len(self.read))
+        for rows, faces in zip(tables, self.read):
+            entered = 0
+            assert [numbers(row[3 if len(row) == 5 else 1]) for row in rows] == [
+                [vertex for _, vertex in face] for face in faces], (rows, faces)
+            assert all(leaf == 0 for face in faces for leaf, _ in face)
+            for row in rows:
+                if len(row) != 5:
+                    continue
+                if row[2] == "apart":
+                    assert row[1] == "none" and row[4] == "0", row
+                else:
+                    side, turn, e = numbers(row[2])
+                    assert int(row[1]) == 3 * side + turn and e == entered + 1 + side and row[4] == str(turn), row
+                entered = int(row[4])
+
+
+def main():
+    source, boxtree = pathlib.Path(sys.argv[1]), sys.argv[2]
+    sys.path.insert(0, str(source / "tests/golden"))
+    import read_bxt  # pylint: disable=import-outside-toplevel
+    page = source / "docs/FORMAT.md"
+    text = page.read_text(encoding="utf-8")
+    start = text.index("#### Example")
+    middle = text.index("```sh", text.index("```hex", start))
+    end = re.compile(r"\n##+ ").search(text, middle).start()
+    blocks = [block for block in blocks_of(page)
+              if text.count("\n", 0, start) < block[2] <= text.count("\n", 0, end)]
+    assert [language for language, _, _ in blocks] == ["sh", "hex"] * 2, "two examples"
+    with tempfile.TemporaryDirectory() as work:
+        level, quads = (Example(source, boxtree, read_bxt, part, blocks[2 * i:2 * i + 2], pathlib.Path(work))
+                        for i, part in enumerate((text[start:middle], text[middle:end])))
+    level.check_fields(True)
+    level.check_faces()
+    quads.check_fields(False)
+    quads.check_faces()
+    # What the text says of the trees.
+    assert f"The tree `crate`, number {level.number}, of" in text
+    assert (level.tree.geometry, level.tree.corners_per_face, level.tree.exponent,
+            level.tree.grid_exponent, level.tree.face_count) == (read_bxt.GRID, 3, -15, -16, 12)
+    assert not any(level.tree.origin)
+    assert {abs(x) * 2.0 ** -16 for face in level.tree.clusters.faces for point in face for x in point} == {
+        0.399993896484375}
+    assert (quads.tree.geometry, quads.tree.corners_per_face, quads.tree.face_count) == (read_bxt.EXACT, 4, 6)
+    assert [quads.tree.clusters.faces[0][i] for i in (0, 2)] == [(-0.5, -0.5, 0), (0.5, 0.5, 0)]
+    print("the examples are as cooked")
+
+
+if __name__ == "__main__":
+    main()
