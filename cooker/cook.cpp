@@ -412,7 +412,7 @@ class Cook {
     double least = 0;
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       const std::vector<Candidate>& candidates = contests_[t].candidates;
-      const std::vector<double> slower = slowdowns(candidates, wishes_[t].queries);
+      const std::vector<double> slower = slowdowns(contests_[t]);
       const std::vector<bool> eligible = may_be_chosen(candidates);
       const Candidate& now = candidates[chosen_[t]];
       for (std::size_t c = 0; c < candidates.size(); ++c) {

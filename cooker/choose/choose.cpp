@@ -44,7 +44,7 @@ double score_of(double bytes, double slowdown, Goal goal) {
 }
 
 std::vector<Rated> rate(const Contest& tree, const Wishes& wishes) {
-  const std::vector<double> slower = slowdowns(tree.candidates, wishes.queries);
+  const std::vector<double> slower = slowdowns(tree);
   const std::vector<bool> eligible = may_be_chosen(tree.candidates);
   std::vector<Rated> rated;
   for (std::size_t i = 0; i < tree.candidates.size(); ++i) {
@@ -101,9 +101,8 @@ Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes
     wanted += fmt::format("{}a slowdown of at most {}", wanted.empty() ? "" : " and ",
                           *wishes.max_slowdown);
   }
-  return {Errc::kBudgetUnreachable,
-          "wanted " + wanted + "; " + nearest_of(tree, rated) +
-              " (slowdown is relative to the best time of each kind of query, on average)"};
+  return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, rated) +
+                                        fmt::format(" (slowdown: {})", kSlowdownMeaning)};
 }
 
 std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,
@@ -162,26 +161,18 @@ std::vector<bool> may_be_chosen(std::span<const Candidate> candidates) {
   return eligible;
 }
 
-std::vector<double> slowdowns(std::span<const Candidate> candidates, QueryKinds queries) {
+std::vector<double> slowdowns(const Contest& tree) {
   static_assert(kQueryKinds == 4 && kRayQueries == 1 && kPairQueries == 8);  // bits in their order
-  if ((queries & kAllQueries) == 0) queries = kAllQueries;
-  QueryCost fastest;
-  fastest.fill(kNone);
-  const std::vector<bool> eligible = may_be_chosen(candidates);
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!eligible[i]) continue;
-    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      fastest[kind] = std::min(fastest[kind], candidates[i].cost[kind]);
-    }
-  }
+  const QueryKinds queries =
+      (tree.queries & kAllQueries) == 0 ? QueryKinds{kAllQueries} : tree.queries;
   std::vector<double> slower;
-  for (const Candidate& candidate : candidates) {
+  for (const Candidate& candidate : tree.candidates) {
     double sum = 0;
     int counted = 0;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       if (((queries >> kind) & 1u) == 0) continue;
       // Queries on an empty tree have no cost.
-      sum += fastest[kind] > 0 ? candidate.cost[kind] / fastest[kind] : 1;
+      sum += tree.baseline[kind] > 0 ? candidate.cost[kind] / tree.baseline[kind] : 1;
       ++counted;
     }
     slower.push_back(sum / counted);

@@ -57,6 +57,7 @@ struct Contest {
   std::vector<Candidate> candidates;
   std::vector<NotTried> not_tried;
   QueryKinds queries = kAllQueries;  // that count for the choice
+  QueryCost baseline{};              // of wide8 with arrays, whether that was tried or not
 };
 
 /// Which candidates may be chosen: those that pass their gates and that boxtree::runtime alone can
@@ -64,11 +65,13 @@ struct Contest {
 /// as when one was requested.
 [[nodiscard]] std::vector<bool> may_be_chosen(std::span<const Candidate> candidates);
 
-/// The time of each candidate relative to the best of those that may be chosen: the mean, over the
-/// kinds of queries that count, of the ratio of its cost to the least cost of that kind. None needs
-/// to have 1: one may be fastest for rays and another one for boxes.
-[[nodiscard]] std::vector<double> slowdowns(std::span<const Candidate> candidates,
-                                            QueryKinds queries = kAllQueries);
+/// What slowdowns are relative to, for texts.
+inline constexpr const char* kSlowdownMeaning =
+    "time over that of wide8 with arrays, mean over the kinds of queries";
+
+/// The time of each candidate relative to wide8 with arrays: the mean, over the kinds of queries
+/// that count, of the ratio of its cost to the baseline's. 1 where the baseline has no cost.
+[[nodiscard]] std::vector<double> slowdowns(const Contest& tree);
 
 /// Chooses one candidate for each of the trees that share a file, all with positions of the source
 /// or all on the grid, so that surfaces that touch still touch. Fills Candidate::rejected of the

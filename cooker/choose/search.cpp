@@ -181,6 +181,11 @@ Family wide_family(const Source& source, const SearchOptions& options,
   return family;
 }
 
+std::shared_ptr<const WideLayout> lay_out(const Source& source) {
+  return std::make_shared<const WideLayout>(
+      lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates)));
+}
+
 // Proves a candidate and counts its work.
 Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh, const Workload& queries,
                           std::span<const CodecCost> costs) {
@@ -219,10 +224,14 @@ class Search {
   }
 
   Result<TriedTree> run() {
-    if (options_.geometry != GeometryId::kExact) {
-      if (Status status = try_store(options_.geometry); !status) return status.error();
-      return std::move(out_);
-    }
+    if (Status status = try_stores(); !status) return status.error();
+    if (Status status = enter_baseline(); !status) return status.error();
+    return std::move(out_);
+  }
+
+ private:
+  Status try_stores() {
+    if (options_.geometry != GeometryId::kExact) return try_store(options_.geometry);
     for (const GeometryId store : {GeometryId::kExact, GeometryId::kArrays, GeometryId::kGrid}) {
       if (store == GeometryId::kGrid && !options_.may_use_grid) continue;
       const std::string why = options_.try_all ? "" : why_not(store);
@@ -235,10 +244,41 @@ class Search {
       if (store != GeometryId::kGrid) return status.error();
       leave_out(store, status.error().detail);  // the scene has no grid that fine
     }
-    return std::move(out_);
+    return {};
   }
 
- private:
+  // What slowdowns are relative to. The store does not change the work of a tree, so that any wide8
+  // tree tells it, best one over positions that are not rounded, which are tried first.
+  Status enter_baseline() {
+    const auto found = std::find_if(
+        out_.contest.candidates.begin(), out_.contest.candidates.end(),
+        [](const Candidate& each) { return each.codec == CodecId::kWide8 && each.gates.pass(); });
+    WorkOfKinds work{};
+    if (found != out_.contest.candidates.end()) {
+      work = found->work;
+    } else {
+      const Result<WorkOfKinds> counted = count_wide8();
+      if (!counted) return counted.error();
+      work = *counted;
+    }
+    out_.contest.baseline = cost_of(work, CodecId::kWide8, GeometryId::kArrays, costs_);
+    return {};
+  }
+
+  // The work of wide8 where only other codecs were requested.
+  [[nodiscard]] Result<WorkOfKinds> count_wide8() const {
+    const Source source(mesh_, {});
+    SearchOptions options = options_;
+    options.geometry = GeometryId::kArrays;
+    std::shared_ptr<const WideLayout> layout = unrounded_ ? unrounded_->layout : nullptr;
+    if (layout == nullptr) layout = lay_out(source);
+    Family family = wide_family(source, options, layout);
+    family.tree.nodes = family.nodes_of(CodecId::kWide8);
+    const Result<Tree> bound = bind_encoded(family.tree);
+    if (!bound) return bound.error();
+    return count_work(*bound, queries_);
+  }
+
   void leave_out(GeometryId store, const std::string& why) {
     if (store == GeometryId::kArrays && !options_.may_use_arrays) return;
     for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
@@ -314,8 +354,7 @@ class Search {
     options.geometry = store;
     if (!wide.empty()) {
       if (built.layout == nullptr) {
-        built.layout = std::make_shared<const WideLayout>(
-            lay_out_wide(build_full_leaves(source.built(), source.origin(), source.duplicates)));
+        built.layout = lay_out(source);
       }
       if (Status status = try_family(wide_family(source, options, built.layout), source, wide);
           !status) {

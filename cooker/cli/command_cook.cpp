@@ -261,8 +261,8 @@ void add_cook_command(Command& program, int& status) {
       command
           .add_option(
               "--max-slowdown", arguments->job.options.wishes.max_slowdown,
-              "Choose nothing slower than FACTOR times the best time of each kind of query, on "
-              "average")
+              "Choose nothing with a larger slowdown: time over that of wide8 with arrays, mean "
+              "over the kinds of queries")
           ->type_name("FACTOR")
           ->check(positive_fault);
   Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,

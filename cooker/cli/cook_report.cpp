@@ -73,7 +73,7 @@ Json import_json(const ImportReport& report) {
 // What was tried and what was not, with the reasons.
 void add_contest(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
-  const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+  const std::vector<double> slower = slowdowns(cooked.contest);
   text += fmt::format("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>8}  {:>9}\n",
                       "codec", "geometry", "tree B/tri", "with geom.", "slowdown", "ray ns",
                       "box ns", "point ns", "pairs us", "error");
@@ -136,7 +136,7 @@ void add_grid(const CookedTree& cooked, std::string& text) {
 // What was chosen for the only tree.
 void add_choice(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
-  const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+  const std::vector<double> slower = slowdowns(cooked.contest);
   text += fmt::format("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
                       surface_text(cooked.edges));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -144,10 +144,11 @@ void add_choice(const CookedTree& cooked, std::string& text) {
     if (!candidate.rejected.empty()) continue;
     text += fmt::format(
         "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry\n"
-        "  {:.2f} times the best time of each kind of query, on average; {} tried\n",
+        "  slowdown {:.2f} ({}); {} tried\n",
         codec_name(candidate.codec), geometry_name(candidate.geometry),
         per_triangle(candidate.tree_bytes, cooked.tree),
-        per_triangle(candidate.bytes(), cooked.tree), slower[i], candidates.size());
+        per_triangle(candidate.bytes(), cooked.tree), slower[i], kSlowdownMeaning,
+        candidates.size());
   }
   add_grid(cooked, text);
 }
@@ -161,7 +162,7 @@ void add_choices(const Summary& summary, std::string& text) {
                       "slowdown", "error", "surface");
   for (const CookedTree& cooked : summary.trees) {
     const std::vector<Candidate>& candidates = cooked.contest.candidates;
-    const std::vector<double> slower = slowdowns(candidates, cooked.contest.queries);
+    const std::vector<double> slower = slowdowns(cooked.contest);
     for (std::size_t i = 0; i < candidates.size(); ++i) {
       const Candidate& candidate = candidates[i];
       if (!candidate.rejected.empty()) continue;
@@ -201,7 +202,7 @@ Json trees_json(const Summary& summary) {
                  {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)},
                  {"surface", surface_json(cooked.edges)}};
     tree["candidates"] = Json::array();
-    const std::vector<double> slower = slowdowns(cooked.contest.candidates, cooked.contest.queries);
+    const std::vector<double> slower = slowdowns(cooked.contest);
     for (std::size_t c = 0; c < slower.size(); ++c) {
       tree["candidates"].push_back(
           candidate_json(cooked.contest.candidates[c], slower[c], cooked.tree));

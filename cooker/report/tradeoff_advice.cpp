@@ -16,6 +16,15 @@ namespace {
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
+// The point of wide8 with arrays; null if there is none.
+const TradePoint* baseline_of(const MeshTradeoff& mesh) {
+  const auto found =
+      std::find_if(mesh.points.begin(), mesh.points.end(), [](const TradePoint& point) {
+        return point.codec == CodecId::kWide8 && point.geometry == GeometryId::kArrays;
+      });
+  return found == mesh.points.end() ? nullptr : &*found;
+}
+
 // The first point with the least score; empty if all scores are infinite.
 std::optional<std::size_t> least(const MeshTradeoff& mesh,
                                  const std::function<double(std::size_t)>& score) {
@@ -119,6 +128,7 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
 std::optional<std::size_t> cooks_choice(const MeshTradeoff& mesh, Goal goal) {
   Contest contest;
   contest.triangles = static_cast<std::uint32_t>(mesh.triangles);
+  if (const TradePoint* const baseline = baseline_of(mesh)) contest.baseline = baseline->modelled;
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const TradePoint& point = mesh.points[i];

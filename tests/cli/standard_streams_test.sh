@@ -161,7 +161,7 @@ expect 0 "$boxtree" cook notes.obj -o notes.bxt --grid-bits 10
 [ "$(wc -l <out)" -le 6 ] || { cat out; exit 1; }
 same "$(awk 'length > 100' out)" ""
 grep -q 'skipped 1 points and 1 lines; kept 1 faces without area; the last line has no end' out
-grep -qE '^  [0-9.]+ times the best time of each kind of query, on average; [0-9]+ tried$' out
+grep -qE '^  slowdown [0-9.]+ \(time over that of wide8 with arrays, mean over the kinds of queries\); [0-9]+ tried$' out
 expect 0 "$boxtree" cook --help
 head -3 out | grep -q '24 bits'
 echo "standard streams: all as expected"

@@ -102,6 +102,32 @@ TEST(Search, AToleranceThatNoGridKeepsLeavesExactGeometry) {
   EXPECT_EQ(winner(large_mesh(), options).geometry, GeometryId::kExact);
 }
 
+TEST(Search, TheBaselineIsWide8WithArraysWhateverIsRequested) {
+  const SourceMesh mesh = test::torus(30, 20);
+  SearchOptions options = options_for(Goal::kBalance);
+  const TriedTree all = require(try_encodings(mesh, options));
+  const auto arrays = std::find_if(
+      all.contest.candidates.begin(), all.contest.candidates.end(), [](const Candidate& each) {
+        return each.codec == CodecId::kWide8 && each.geometry == GeometryId::kArrays;
+      });
+  ASSERT_NE(arrays, all.contest.candidates.end());
+  EXPECT_EQ(all.contest.baseline, arrays->cost);
+  EXPECT_EQ(
+      slowdowns(all.contest)[static_cast<std::size_t>(arrays - all.contest.candidates.begin())], 1);
+  options.wishes.goal = Goal::kMemory;
+  EXPECT_EQ(require(try_encodings(mesh, options)).contest.baseline, arrays->cost);
+  options.may_use_grid = options.may_use_arrays = false;
+  for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4, CodecId::kPackedF16}) {
+    options.codec = codec;
+    EXPECT_EQ(require(try_encodings(mesh, options)).contest.baseline, arrays->cost)
+        << codec_name(codec);
+  }
+  options.geometry = GeometryId::kExternal;
+  EXPECT_EQ(require(try_encodings(mesh, options)).contest.baseline, arrays->cost);
+  options.geometry = GeometryId::kGrid;
+  EXPECT_EQ(require(try_encodings(mesh, options)).contest.baseline, arrays->cost);
+}
+
 TEST(Search, TakesOutOneTreeWhole) {
   const SourceMesh mesh = test::torus(12, 8);
   TriedTree tried = require(try_encodings(mesh, options_for(Goal::kBalance)));
