@@ -25,13 +25,24 @@ const TradePoint* baseline_of(const MeshTradeoff& mesh) {
   return found == mesh.points.end() ? nullptr : &*found;
 }
 
-// The first point with the least score; empty if all scores are infinite.
-std::optional<std::size_t> least(const MeshTradeoff& mesh,
+// Whether cook takes arrays for the fewest bytes: clusters with the same nodes take more.
+bool has_smaller_arrays(const MeshTradeoff& mesh, const TradePoint& clusters) {
+  const auto geometry_bytes = [](const TradePoint& point) {
+    return point.bytes.vertices + point.bytes.corners;
+  };
+  return std::any_of(mesh.points.begin(), mesh.points.end(), [&](const TradePoint& other) {
+    return other.codec == clusters.codec && other.geometry == GeometryId::kArrays &&
+           other.gates.pass() && geometry_bytes(other) < geometry_bytes(clusters);
+  });
+}
+
+// The first point that may be advised with the least score; empty if all scores are infinite.
+std::optional<std::size_t> least(const std::vector<bool>& may_be_advised,
                                  const std::function<double(std::size_t)>& score) {
   std::optional<std::size_t> best;
   double best_score = kNone;
-  for (std::size_t i = 0; i < mesh.points.size(); ++i) {
-    if (!mesh.points[i].gates.pass()) continue;
+  for (std::size_t i = 0; i < may_be_advised.size(); ++i) {
+    if (!may_be_advised[i]) continue;
     const double of_point = score(i);
     if (of_point < best_score) {
       best = i;
@@ -39,14 +50,6 @@ std::optional<std::size_t> least(const MeshTradeoff& mesh,
     }
   }
   return best;
-}
-
-std::string size_in_words(std::uint64_t bytes) {
-  constexpr double kKibi = 1024;
-  const auto value = static_cast<double>(bytes);
-  if (value < kKibi) return fmt::format("{} bytes", bytes);
-  if (value < kKibi * kKibi) return fmt::format("{:.1f} KiB", value / kKibi);
-  return fmt::format("{:.2f} MiB", value / (kKibi * kKibi));
 }
 
 PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::string& role,
@@ -71,10 +74,10 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
   }
   return {
       role + ": " + point.name() + ".",
-      fmt::format("{:.2f} bytes per triangle, {} in all: {:.0f} % of the source arrays, tree "
-                  "included. {} {} That is {:.2f} times the best time of each kind, on average. "
+      fmt::format("{:.2f} bytes per triangle, a file of {} bytes: {:.0f} % of the source arrays, "
+                  "tree included. {} {} Slowdown: {:.2f}. "
                   "Make it with: boxtree cook MESH -o FILE.bxt {}",
-                  mesh.per_triangle(bytes), size_in_words(bytes),
+                  mesh.per_triangle(bytes), bytes,
                   100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
                   surface, times, slowdown, cook_options(point))};
 }
@@ -86,41 +89,49 @@ double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t ki
 }
 
 std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
-  std::array<double, kTimedKinds> fastest;
-  fastest.fill(kNone);
-  for (const TradePoint& point : mesh.points) {
-    if (!point.gates.pass()) continue;
-    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
-      const double time = time_of(mesh, point, kind);
-      if (time > 0) fastest[kind] = std::min(fastest[kind], time);
-    }
-  }
+  const TradePoint* const baseline = baseline_of(mesh);
   std::vector<double> slower;
   for (const TradePoint& point : mesh.points) {
     double sum = 0;
     for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
-      // Below the clock's resolution: counts as the fastest.
       const double time = time_of(mesh, point, kind);
-      sum += time > 0 ? time / fastest[kind] : 1;
+      const double base = baseline == nullptr ? 0 : time_of(mesh, *baseline, kind);
+      sum += time > 0 && base > 0 ? time / base : 1;  // else below the clock's resolution
     }
     slower.push_back(sum / kTimedKinds);
   }
   return slower;
 }
 
+std::vector<bool> may_be_advised(const MeshTradeoff& mesh) {
+  const auto passes_wide = [](const TradePoint& point) {
+    return point.gates.pass() && is_wide(point.codec);
+  };
+  const bool any_wide = std::any_of(mesh.points.begin(), mesh.points.end(), passes_wide);
+  std::vector<bool> may;
+  for (const TradePoint& point : mesh.points) {
+    const bool is_read = any_wide ? passes_wide(point) : point.gates.pass();
+    may.push_back(is_read &&
+                  !(point.geometry == GeometryId::kExact && has_smaller_arrays(mesh, point)));
+  }
+  return may;
+}
+
 std::optional<Advice> advise(const MeshTradeoff& mesh) {
   const std::vector<double> slower = slowdowns_of(mesh);
+  const std::vector<bool> may = may_be_advised(mesh);
   const auto bytes = [&](std::size_t i) {
     return static_cast<double>(mesh.points[i].bytes.total());
   };
   const auto moved = [&](std::size_t i) { return mesh.points[i].surface_max; };
+  const auto is_exact = [&](std::size_t i) { return is_lossless(mesh.points[i].geometry); };
   const auto smallest =
-      least(mesh, [&](std::size_t i) { return moved(i) <= kCoarse ? bytes(i) : kNone; });
+      least(may, [&](std::size_t i) { return moved(i) <= kCoarse ? bytes(i) : kNone; });
   const auto balanced =
-      least(mesh, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
-  const auto fastest = least(mesh, [&](std::size_t i) { return slower[i]; });
-  const auto exact = least(
-      mesh, [&](std::size_t i) { return is_lossless(mesh.points[i].geometry) ? bytes(i) : kNone; });
+      least(may, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
+  // Among equal surfaces: triangles that a coarse grid makes points take no time.
+  const auto fastest = least(may, [&](std::size_t i) { return is_exact(i) ? slower[i] : kNone; });
+  const auto exact = least(may, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kNone; });
   if (!smallest || !balanced || !fastest || !exact) return std::nullopt;
   return Advice{*smallest, *balanced, *fastest, *exact};
 }
@@ -163,7 +174,7 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
       Role{"Balanced, for most uses (surface within a millionth of the diagonal)",
            advice->balanced},
       Role{"Smallest (surface within a ten-thousandth of the diagonal)", advice->smallest},
-      Role{"Fastest", advice->fastest},
+      Role{"Fastest with every position bit for bit", advice->fastest_exact},
       Role{"Smallest with every position bit for bit", advice->smallest_exact}};
   static_assert(kFine == 1e-6 && kCoarse == 1e-4, "as the words say");
   // An encoding that is best in several ways is listed once.
@@ -198,7 +209,7 @@ std::string cook_options(const TradePoint& point) {
     }
     return "--external";
   };
-  return fmt::format("--codec {} {}", codec_name(point.codec), positions());
+  return fmt::format("--codec {} {} --flatten --strip", codec_name(point.codec), positions());
 }
 
 std::string time_in_words(double nanoseconds) {

@@ -21,7 +21,7 @@ inline constexpr double kFine = 1e-6;
 struct Advice {
   std::size_t smallest = 0;        // fewest bytes, surface moved by at most kCoarse
   std::size_t balanced = 0;        // smallest product of bytes and slowdown, moved by at most kFine
-  std::size_t fastest = 0;         // least slowdown of all
+  std::size_t fastest_exact = 0;   // least slowdown with every position bit for bit
   std::size_t smallest_exact = 0;  // fewest bytes with every position bit for bit
 };
 
@@ -29,11 +29,16 @@ struct Advice {
 /// of the counted work.
 [[nodiscard]] double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind);
 
-/// The time of each point relative to the fastest that passes its gates: the mean over the timed
-/// kinds, each relative to the fastest of that kind.
+/// The time of each point relative to that of wide8 with arrays: the mean over the timed kinds of
+/// the ratio of both times, as slowdowns() has it by counted work. 1 where either has no time.
 [[nodiscard]] std::vector<double> slowdowns_of(const MeshTradeoff& mesh);
 
-/// Empty if no point passes its gates. Otherwise all members are set, because exact points are
+/// Which points may be recommended: those that pass their gates, that boxtree::runtime alone reads
+/// (see may_be_chosen()) and that cook_options() produce: not clusters without loss where arrays
+/// are smaller, on meshes of a few faces.
+[[nodiscard]] std::vector<bool> may_be_advised(const MeshTradeoff& mesh);
+
+/// Empty if no point may be recommended. Otherwise all members are set, because exact points are
 /// within every limit.
 [[nodiscard]] std::optional<Advice> advise(const MeshTradeoff& mesh);
 
@@ -44,7 +49,8 @@ struct Advice {
 /// A paragraph for each recommendation.
 [[nodiscard]] std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh);
 
-/// The options of `boxtree cook` that produce a point.
+/// The options of `boxtree cook` that produce a file of a point's bytes: the first input is one
+/// tree, and no record of the cook follows.
 [[nodiscard]] std::string cook_options(const TradePoint& point);
 
 /// "820 ns", "3.4 µs".

@@ -156,7 +156,7 @@ Json to_json(const MeshTradeoff& mesh) {
   if (const auto advice = advise(mesh)) {
     json["advice"] = {{"balanced", mesh.points[advice->balanced].name()},
                       {"smallest", mesh.points[advice->smallest].name()},
-                      {"fastest", mesh.points[advice->fastest].name()},
+                      {"fastest_exact", mesh.points[advice->fastest_exact].name()},
                       {"smallest_exact", mesh.points[advice->smallest_exact].name()}};
   }
   json["points"] = Json::array();

@@ -186,7 +186,9 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   section.title = mesh.name + ": what to use";
   section.text = fmt::format(
       "{} triangles, {} vertices, a diagonal of {:.4g} units. Every encoding below gives the same "
-      "answers as brute force over its own geometry; on a grid that geometry is rounded.",
+      "answers as brute force over its own geometry; on a grid that geometry is rounded. Sizes are "
+      "those of whole files with face ids, as the commands make them; without --strip a file also "
+      "holds the record of its cook, some 0.4 KB.",
       mesh.triangles, mesh.vertices, mesh.diagonal);
   section.conclusions = advice_in_words(mesh);
   const auto advice = advise(mesh);
@@ -199,7 +201,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   for (const auto& [role, place] :
        {std::pair<const char*, std::size_t>{"balanced", advice->balanced},
         {"smallest", advice->smallest},
-        {"fastest", advice->fastest},
+        {"fastest exact", advice->fastest_exact},
         {"smallest exact", advice->smallest_exact}}) {
     const TradePoint& point = mesh.points[place];
     Row row = {role, point.name(), fmt::format("{:.2f}", mesh.per_triangle(point.bytes.total())),
@@ -223,9 +225,9 @@ PageSection advice_section(const MeshTradeoff& mesh) {
   section.text += fmt::format(
       " Unless told a codec, boxtree cook chooses by counted work, the same on every machine: {}. "
       "The choices below go by the times on this page, by whole files, and by how far a surface "
-      "may move, so that they may differ. Slowdown is the time relative to the best of each kind "
-      "of query, on average.",
-      cooks);
+      "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
+      "compete for the fastest. Slowdown: {}.",
+      cooks, kSlowdownMeaning);
   return section;
 }
 
@@ -233,7 +235,8 @@ PageSection bytes_section(const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": where the bytes go";
   section.text =
-      "Bytes per triangle of a whole file. Nodes are the tree, vertices and corners the triangles "
+      "Bytes per triangle of a whole file, as cook --strip writes it. Nodes are the tree, vertices "
+      "and corners the triangles "
       "themselves, face ids the numbers that answers name; the rest is header, records and "
       "padding. "
       "Source arrays are positions and 32-bit corners as a program holds them, without any tree.";

@@ -264,6 +264,7 @@ MeshTradeoff three_points() {
   add(CodecId::kWide4, 8, 200, 3e-3, 200);  // small, but farther off than any choice allows
   add(CodecId::kWide4, 14, 400, 5e-5, 200);
   add(CodecId::kWide8, 24, 800, 4e-8, 120);
+  made.points[0].geometry = GeometryId::kArrays;
   return made;
 }
 
@@ -273,7 +274,7 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
   ASSERT_TRUE(advice);
   EXPECT_EQ(advice->smallest, 3u);
   EXPECT_EQ(advice->balanced, 4u);  // 800 * 1.2 < 1300 * 1 < 1200 * 1.5
-  EXPECT_EQ(advice->fastest, 0u);
+  EXPECT_EQ(advice->fastest_exact, 0u);
   EXPECT_EQ(advice->smallest_exact, 1u);
   const std::vector<PageConclusion> words = advice_in_words(made);
   ASSERT_EQ(words.size(), 4u);
@@ -282,12 +283,12 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
       "Balanced, for most uses (surface within a millionth of the diagonal): wide8, grid 24.");
   EXPECT_EQ(
       words[0].text,
-      "8.00 bytes per triangle, 800 bytes in all: 80 % of the source arrays, tree included. No "
+      "8.00 bytes per triangle, a file of 800 bytes: 80 % of the source arrays, tree included. No "
       "point of the surface moves by more than 4e-08 of the diagonal (8e-08 units of the "
       "mesh). In the median a ray takes 120 ns, a small box 120 ns, a closest point 120 ns, a "
       "first contact 120 ns (one in a hundred takes longer than 240 ns, 240 ns, 240 ns and "
-      "240 ns). That is 1.20 times the best time of each kind, on average. Make it with: "
-      "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24");
+      "240 ns). Slowdown: 1.20. Make it with: "
+      "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24 --flatten --strip");
   EXPECT_NE(words[3].text.find("No position changes by a single bit."), std::string::npos);
   EXPECT_NE(words[3].text.find("--codec wide4 --exact"), std::string::npos);
   // Two stores keep every bit; the goal says which.
@@ -302,6 +303,45 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
   EXPECT_EQ(advise(made)->balanced, 0u);
   for (TradePoint& point : made.points) point.gates.missed = 1;
   EXPECT_FALSE(advise(made));
+}
+
+// A coarse grid makes points of triangles, which are tested in no time.
+TEST(Advice, TheFastestHasTheSurfaceOfTheMesh) {
+  MeshTradeoff made = three_points();
+  for (KindTimes& times : made.points[2].times) times = {50, 100, 50};
+  EXPECT_EQ(advise(made)->fastest_exact, 0u);
+  made.points[1].times = made.points[2].times;
+  EXPECT_EQ(advise(made)->fastest_exact, 1u);
+}
+
+TEST(Advice, SlowdownsAreRelativeToWide8WithArrays) {
+  MeshTradeoff made = three_points();
+  EXPECT_EQ(slowdowns_of(made), (std::vector<double>{1, 1.5, 2, 2, 1.2}));
+  made.points[1].times[0].median_ns = 50;  // faster than the baseline for rays alone
+  EXPECT_EQ(slowdowns_of(made)[0], 1);
+  EXPECT_EQ(slowdowns_of(made)[1], (0.5 + 3 * 1.5) / 4);
+}
+
+// `cook --for memory` takes arrays where they are smaller, so no command makes the clusters.
+TEST(Advice, ClustersLargerThanArraysAreNotRecommended) {
+  MeshTradeoff made = three_points();
+  TradePoint arrays = made.points[1];
+  arrays.geometry = GeometryId::kArrays;
+  made.points[1].bytes = {1000, 150, 50, 0, 0};
+  arrays.bytes = {1000, 100, 101, 0, 0};
+  made.points.push_back(arrays);
+  EXPECT_EQ(advise(made)->smallest_exact, 1u);
+  made.points.back().bytes = {1000, 100, 99, 0, 60};  // more in all, by padding
+  EXPECT_FALSE(may_be_advised(made)[1]);
+  EXPECT_EQ(advise(made)->smallest_exact, 5u);
+}
+
+TEST(Advice, CodecsOfThePaperAreThereToCompareWith) {
+  MeshTradeoff made = three_points();
+  made.points[0].codec = CodecId::kPackedF16;
+  EXPECT_EQ(advise(made)->fastest_exact, 1u);
+  for (std::size_t i = 1; i < made.points.size(); ++i) made.points[i].gates.missed = 1;
+  EXPECT_EQ(advise(made)->fastest_exact, 0u);
 }
 
 TEST(Advice, TellsWhatCookChooses) {

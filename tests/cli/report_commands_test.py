@@ -1,0 +1,84 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: MIT
+"""The commands of a report's page do what the page says: each writes a file of as many bytes, in the encoding
+that it names, and the surface moves as far.
+
+    report_commands_test.py BOXTREE SOURCE_DIR
+"""
+import html
+import json
+import os
+import pathlib
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+
+CONCLUSION = re.compile(
+    r"([^.>]*): (wide8|wide4), (arrays|exact|grid)(?: (\d+))?\..{0,40}?"
+    r"([\d.]+) bytes per triangle, a file of (\d+) bytes:.*?"
+    r"(No position changes by a single bit|No point of the surface moves by more than).*?"
+    r"Make it with: boxtree (cook MESH -o FILE\.bxt [^<]*?)\s*<", re.DOTALL)
+
+
+def write_strip(path, cells):
+    """A bent strip of triangles. A single cell and its neighbour are less than a leaf."""
+    with open(path, "w", encoding="ascii") as file:
+        for x in range(cells + 1):
+            file.write(f"v {x / 3} 0 {x * x / 7}\nv {x / 3} 0.7 {x * x / 9}\n")
+        for x in range(cells):
+            a = 2 * x + 1
+            file.write(f"f {a} {a + 2} {a + 3}\nf {a} {a + 3} {a + 1}\n")
+
+
+def run(boxtree, *arguments):
+    return subprocess.run([boxtree, *map(str, arguments)], check=True, stdout=subprocess.PIPE, text=True).stdout
+
+
+def check(boxtree, mesh, *options):
+    """How many recommendations have which store."""
+    run(boxtree, "report", mesh, "-o", "page.html", "--json-out", "figures.json", "--quick", "-q", *options)
+    page = html.unescape(pathlib.Path("page.html").read_text(encoding="utf-8"))
+    figures = json.loads(pathlib.Path("figures.json").read_text(encoding="utf-8"))["meshes"][0]
+    found = CONCLUSION.findall(page)
+    assert len(found) == page.count("boxtree cook MESH") > 0, (len(found), page.count("boxtree cook MESH"))
+    stores = []
+    for roles, codec, store, bits, each, size, surface, command in found:
+        arguments = shlex.split(command.replace("MESH", shlex.quote(str(mesh))).replace("FILE.bxt", "made.bxt"))
+        run(boxtree, *arguments, "-q")
+        made, = json.loads(run(boxtree, "info", "made.bxt", "--json"))["trees"]
+        assert (made["codec"], made["geometry"]) == (codec, store), (mesh, roles, command, made)
+        assert os.path.getsize("made.bxt") == int(size), (mesh, roles, command, os.path.getsize("made.bxt"), size)
+        assert each == f"{int(size) / made['triangles']:.2f}", (each, size, made["triangles"])
+        is_exact = store in ("arrays", "exact")
+        assert is_exact or f"--grid-bits {bits}" in command, command
+        assert surface.endswith("single bit") or not is_exact, (mesh, roles)
+        assert is_exact or not re.search("(?i)bit for bit", roles), (mesh, roles)
+        point, = [point for point in figures["points"]
+                  if (point["codec"], point["geometry"], point["grid_bits"]) == (codec, store, int(bits) if bits else None)]
+        assert point["bytes"]["total"] == int(size)
+        stores.append(store)
+    advice = {point["name"]: point for point in figures["points"]}[figures["advice"]["fastest_exact"]]
+    assert advice["surface"]["max"] == 0, advice
+    return stores
+
+
+def main():
+    boxtree, source = os.path.abspath(sys.argv[1]), pathlib.Path(sys.argv[2]).resolve()
+    with tempfile.TemporaryDirectory() as work:
+        os.chdir(work)
+        write_strip("one.obj", 1)
+        write_strip("few.obj", 5)
+        write_strip("more.obj", 200)
+        stores = set()
+        for mesh in ("one.obj", "few.obj", "more.obj", source / "samples/meshes/crate.obj",
+                     source / "samples/level/level.gltf"):  # a scene, if it were not flattened
+            stores.update(check(boxtree, mesh, "--no-times"))
+        stores.update(check(boxtree, source / "samples/meshes/crate.obj"))  # by times of this machine
+    assert stores == {"arrays", "exact", "grid"}, stores
+    print("every printed command gives the printed file")
+
+
+if __name__ == "__main__":
+    main()
