@@ -102,7 +102,7 @@ if grep -q tmp/ err; then echo "a scratch name is shown: $(cat err)"; exit 1; fi
 printf 'x' | expect 3 "$boxtree" info -
 grep -q 'bad_magic: standard input: the first 1 bytes are not a .bxt magic' err
 head -c 8 crate.bxt | expect 3 "$boxtree" info -
-grep -q 'truncated: standard input: the file has 8 bytes, a header alone has 64' err
+grep -q 'truncated: standard input: the file has 8 bytes, a header alone has 32' err
 expect 2 script -qec "'$boxtree' info -" /dev/null </dev/null
 test ! -e out.bxt
 cp crate.bxt ./- # a file of that name

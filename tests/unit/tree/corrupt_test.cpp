@@ -33,6 +33,11 @@ void edit(Section bytes, std::size_t index, const std::function<void(Record&)>& 
   std::memcpy(bytes.data() + index * sizeof(Record), &record, sizeof(record));
 }
 
+// In section vertices of a store of clusters.
+std::byte* first_cluster(Section vertices) {
+  return vertices.data() + load<std::uint32_t>(vertices.data()) * kClusterUnit;
+}
+
 struct Corruption {
   const char* name;
   CodecId codec;
@@ -161,9 +166,13 @@ std::vector<Corruption> corruptions() {
                                     {"wide8_vertices", CodecId::kWide8},
                                     {"dedup_vertices", CodecId::kDedup}}) {
     all.push_back(
-        {name, codec, GeometryId::kExact, SectionKind::kCorners, Errc::kVertexOutOfRange,
+        {name, codec, GeometryId::kArrays, SectionKind::kCorners, Errc::kVertexOutOfRange,
          [](Section corners) { std::fill(corners.begin(), corners.end(), std::byte{0xfe}); }});
   }
+  all.push_back({"wide8_clusters", CodecId::kWide8, GeometryId::kExact, SectionKind::kVertices,
+                 Errc::kVertexOutOfRange, [](Section vertices) {
+                   std::fill_n(vertices.begin(), sizeof(std::uint32_t), std::byte{0xfe});
+                 }});
   for (const auto& [name, codec] : {std::pair("plain_f32_positions", CodecId::kPlainF32),
                                     {"wide8_positions", CodecId::kWide8},
                                     {"wide4_positions", CodecId::kWide4}}) {
@@ -177,13 +186,14 @@ std::vector<Corruption> corruptions() {
        {std::pair("wide8_origin", CodecId::kWide8), {"wide4_origin", CodecId::kWide4}}) {
     all.push_back(
         {name, codec, GeometryId::kExact, SectionKind::kVertices, Errc::kVertexNotFinite,
-         [](Section clusters) {
+         [](Section vertices) {
+           std::byte* const cluster = first_cluster(vertices);
            const std::array<std::int32_t, 3> origin = {0x7f800001, 0x7f800001, 0x7f800001};
            ClusterHeader header{};
-           std::memcpy(&header, clusters.data(), sizeof(header));
+           std::memcpy(&header, cluster, sizeof(header));
            header.trailing = {};
-           std::memcpy(clusters.data(), &header, sizeof(header));
-           std::memcpy(clusters.data() + sizeof(header), origin.data(), sizeof(origin));
+           std::memcpy(cluster, &header, sizeof(header));
+           std::memcpy(cluster + sizeof(header), origin.data(), sizeof(origin));
          }});
   }
   for (const GeometryId geometry : {GeometryId::kGrid, GeometryId::kExact}) {
@@ -200,9 +210,9 @@ std::vector<Corruption> corruptions() {
         names.push_back(std::string(codec_name(codec)) + '_' +
                         std::string(geometry_name(geometry)) + '_' + name);
         std::replace(names.back().begin(), names.back().end(), '-', '_');
-        all.push_back({names.back().c_str(), codec, geometry, SectionKind::kVertices,
-                       Errc::kVertexOutOfRange,
-                       [at = at](Section clusters) { clusters[at] = std::byte{0xff}; }});
+        all.push_back(
+            {names.back().c_str(), codec, geometry, SectionKind::kVertices, Errc::kVertexOutOfRange,
+             [at = at](Section vertices) { first_cluster(vertices)[at] = std::byte{0xff}; }});
       }
     }
   }
