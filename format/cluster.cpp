@@ -10,9 +10,9 @@ namespace {
 
 // Reads the fields of a leaf in order. No read leaves the section: a leaf begins where
 // kClusterPadding bytes and more follow, and has at most 8 faces with a bit for a fourth corner, 7
-// steps, 32 references of one bit each, 7 other leaves of 6 bits after their number, and 8 bits for
-// each reference: 362 bits, after which 16 bytes are read at once.
-static_assert(kClusterPadding >= 362 / 8 + 2 * kBitPadding);
+// steps, 32 references of one bit each, the width of those that are old, and 11 bits for each: 416
+// bits, after which one word is read. Its vertices lie in groups that find_cluster has checked.
+static_assert(kClusterPadding >= 416 / 8 + kBitPadding);
 
 class LeafDecoder {
  public:
@@ -20,9 +20,10 @@ class LeafDecoder {
 
   bool run(std::uint32_t leaf, ClusterLeafFields* fields) {
     if (!find_cluster(view_, leaf / kClusterLeaves, cluster_)) return false;
-    self_ = leaf % kClusterLeaves;
-    if (!find_leaf(cluster_, self_, own_)) return false;
-    at_ = own_.middle;
+    if (!find_groups(cluster_, groups_)) return false;
+    ClusterLeafPlace place;
+    if (!find_leaf(cluster_, leaf % kClusterLeaves, place)) return false;
+    at_ = std::uint64_t{place.byte} * 8;
     out_.face_count = std::min(kLeafFaces, view_.face_count - leaf * kLeafFaces);
     quads_ = view_.corners_per_face == 4 ? take(out_.face_count) : 0;
     steps_ = take(StripStep::kBits * (out_.face_count - 1));
@@ -32,19 +33,21 @@ class LeafDecoder {
       count += step(f) == StripStep::kApart ? 2u : 0u;
     }
     out_.vertex_count = count;
-    if (!read_references()) return false;
+    ClusterLeafFields found;
+    found.first = place.first;
+    if (!read_references(found)) return false;
     join_faces();
     if (fields != nullptr) {
       const auto start = static_cast<std::uint64_t>(cluster_.bytes - view_.bytes.data()) * 8;
-      *fields = named_;
-      fields->begin += start;
-      fields->end = start + at_;
+      found.begin = start + std::uint64_t{place.byte} * 8;
+      found.end = start + at_;
+      *fields = found;
     }
     return true;
   }
 
  private:
-  // Precondition: width <= 57.
+  // Precondition: width <= kMostBitsRead.
   std::uint32_t take(std::uint32_t width) {
     const std::uint64_t field = read_bits(cluster_.bytes, at_, width);
     at_ += width;
@@ -56,64 +59,54 @@ class LeafDecoder {
     return (steps_ >> (StripStep::kBits * (face - 1))) & ((1u << StripStep::kBits) - 1);
   }
 
-  // The vertices that references lead to: the next that the leaf stores, or one that it or another
-  // leaf stores.
-  bool read_references() {
+  // The vertices that references lead to: the next that no leaf before has used, or one that is so
+  // many before the last of these.
+  bool read_references(ClusterLeafFields& found) {
     std::uint32_t is_new = take(out_.face_count);
-    named_.other_count = take(kOtherBits);
-    std::array<ClusterLeafPlace, 1 + kMaxOtherLeaves> places;
-    places[0] = own_;
-    for (std::uint32_t i = 1; i <= named_.other_count; ++i) {
-      const std::uint32_t leaf = take(width_below(self_));
-      if (leaf >= self_ || !find_leaf(cluster_, leaf, places[i])) return false;
-      named_.others[i - 1].leaf = leaf;
-    }
+    const std::uint32_t wider = take(kOldWiderBits);
+    const std::uint32_t old_bits = cluster_.header().old_bits + wider;
     is_new |= take(out_.vertex_count - out_.face_count) << out_.face_count;
-    const std::uint32_t slot_bits = width_below(named_.other_count + 1);
-    const std::uint32_t place_bits = slot_bits + cluster_.header.own_bits;
-    const std::uint32_t slot_mask = (1u << slot_bits) - 1;
+    found.new_vertices = static_cast<std::uint32_t>(std::popcount(is_new));
+    found.has_width_of_none = wider != 0 && found.new_vertices == out_.vertex_count;
+    const std::uint32_t end = found.first + found.new_vertices;
+    std::uint32_t next = found.first;
     for (std::uint32_t r = 0; r < out_.vertex_count; ++r) {
-      if (((is_new >> r) & 1u) != 0) {
-        if (!read_vertex(own_, named_.stored++, out_.position[r])) return false;
-        continue;
-      }
-      const std::uint32_t place = take(place_bits);
-      const std::uint32_t slot = place & slot_mask;
-      const std::uint32_t number = place >> slot_bits;
-      if (slot > named_.other_count || !read_vertex(places[slot], number, out_.position[r])) {
-        return false;
-      }
-      ClusterLeafFields::Other& other = slot == 0 ? named_.self : named_.others[slot - 1];
-      other.named = std::max(other.named, number + 1);
+      // Wraps where an old vertex would be before the first of the cluster.
+      const std::uint32_t number = ((is_new >> r) & 1u) != 0 ? next++ : end - 1 - take(old_bits);
+      if (number >= cluster_.header().vertex_count) return false;
+      read_vertex(number, out_.position[r]);
     }
-    named_.self.leaf = self_;
-    named_.begin = own_.middle - std::uint64_t{named_.stored} * own_.stride;
     return true;
   }
 
-  bool read_vertex(const ClusterLeafPlace& leaf, std::uint32_t number,
-                   std::array<double, 3>& out) const {
-    const std::uint64_t back = std::uint64_t{number + 1} * leaf.stride;
-    if (back > leaf.middle) return false;
-    std::uint64_t at = leaf.middle - back;
+  // Precondition: the cluster has the vertex.
+  void read_vertex(std::uint32_t number, std::array<double, 3>& out) const {
+    const std::uint32_t group = number / cluster_.header().group_size;
+    const std::uint32_t stride = groups_.stride[group];
+    std::uint64_t at = std::uint64_t{8} * (cluster_.vertices_at + groups_.start[group]) +
+                       (number - group * cluster_.header().group_size) * stride;
     std::array<std::uint64_t, 3> stored;
-    if (leaf.stride <= kMostBitsRead) {
+    if (stride <= kMostBitsRead) {
       std::uint64_t fields = read_bits(cluster_.bytes, at, kMostBitsRead);
       for (std::size_t k = 0; k < 3; ++k) {
-        stored[k] = fields & ((std::uint64_t{1} << leaf.width[k]) - 1);
-        fields >>= leaf.width[k];
+        const std::uint32_t width = groups_.width[k][group];
+        stored[k] = fields & ((std::uint64_t{1} << width) - 1);
+        fields >>= width;
       }
     } else {
       for (std::size_t k = 0; k < 3; ++k) {
-        stored[k] = read_wide_bits(cluster_.bytes, at, leaf.width[k]);
-        at += leaf.width[k];
+        const std::uint32_t width = groups_.width[k][group];
+        stored[k] = read_wide_bits(cluster_.bytes, at, width);
+        at += width;
       }
     }
     // Unsigned, so that corrupt sums wrap.
-    for (std::size_t k = 0; k < 3; ++k) stored[k] += leaf.base[k];
-    const std::array<std::uint8_t, 3>& trailing = cluster_.header.trailing;
-    for (std::size_t k = 0; k < 3; ++k) out[k] = position_of(stored[k], trailing[k]);
-    return true;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto base = std::to_integer<std::uint64_t>(
+          cluster_.bytes[cluster_.bases_at + k * cluster_.groups + group]);
+      stored[k] += cluster_.origin(k) + (base << cluster_.header().base_shift[k]);
+      out[k] = position_of(stored[k], cluster_.header().trailing[k]);
+    }
   }
 
   [[nodiscard]] double position_of(std::uint64_t number, std::uint32_t trailing) const {
@@ -155,15 +148,37 @@ class LeafDecoder {
   const ClusterView& view_;
   ClusterLeaf& out_;
   Cluster cluster_;
-  ClusterLeafPlace own_;
-  std::uint32_t self_ = 0;  // number of the leaf in the cluster
-  std::uint64_t at_ = 0;    // bit of the next field
-  ClusterLeafFields named_;
+  ClusterGroups groups_;
+  std::uint64_t at_ = 0;     // bit of the next field
   std::uint32_t quads_ = 0;  // bit f: face f has a fourth corner
   std::uint32_t steps_ = 0;
 };
 
 }  // namespace
+
+bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept {
+  out = {};
+  std::uint32_t widest = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    auto wider = load<std::uint64_t>(cluster.bytes + cluster.wider_at + k * cluster.wider_bytes());
+    for (std::uint32_t g = 0; g < cluster.groups; ++g) {
+      const auto width = static_cast<std::uint32_t>(cluster.header().width[k] +
+                                                    (wider & low_bits(ClusterHeader::kWiderBits)));
+      wider >>= ClusterHeader::kWiderBits;
+      widest = std::max(widest, width);
+      out.width[k][g] = static_cast<std::uint8_t>(width);
+      out.stride[g] = static_cast<std::uint8_t>(out.stride[g] + width);
+    }
+  }
+  std::uint32_t end = 0;
+  for (std::uint32_t g = 0; g < cluster.groups; ++g) {
+    out.start[g] = static_cast<std::uint16_t>(end);
+    const std::uint32_t vertices =
+        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+    end += (vertices * out.stride[g] + 7) / 8;
+  }
+  return widest <= cluster.number_bits && cluster.vertices_at + end == cluster.header().leaves_at;
+}
 
 bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, ClusterLeaf& out,
                          ClusterLeafFields* fields) noexcept {

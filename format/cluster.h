@@ -2,10 +2,11 @@
 // Geometry stores "exact" and "grid": faces in clusters of 64 leaves of 8. A coordinate is a whole
 // number: a place on the grid, or a float of the source as a number that keeps the order of floats,
 // so that both stores are lossless and coordinates that lie close together differ in few bits. A
-// leaf holds the vertices that it is the first of its cluster to use, as offsets from a base of its
-// own in as many bits as they need, and its faces as a strip over these and over vertices of
-// earlier leaves. Any leaf can be decoded alone. A vertex has the same coordinates in every cluster
-// that it is in, so that no gap opens between them.
+// cluster holds each of its vertices once, in the order in which its leaves first use them, in
+// groups whose vertices are offsets from a base in as many bits as these need. A leaf holds its
+// faces as a strip over the vertices that it is the first to use and over earlier ones. Any leaf
+// can be decoded alone. A vertex has the same coordinates in every cluster that it is in, so that
+// no gap opens between them.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@ inline constexpr std::uint64_t kClusterUnit = 4;
 
 /// Zero bytes after the last cluster: the longest leaf (see format/cluster_leaf.h) and the width of
 /// one read, so that fields are read without a check each.
-inline constexpr std::size_t kClusterPadding = 64;
+inline constexpr std::size_t kClusterPadding = 72;
 
 /// What the numbers of a store stand for.
 enum class ClusterNumbers : std::uint8_t {
@@ -45,27 +46,49 @@ enum class ClusterNumbers : std::uint8_t {
 }
 
 /// The first bytes of a cluster. The low corner follows, a number of ClusterNumbers for each axis;
-/// then the table of leaves, an entry of equal width for each; then the leaves.
+/// then the table of leaves, an entry of equal width for each; then what each group has of its own,
+/// an axis after the other: bases, a byte each, and by how much their offsets are wider, kWiderBits
+/// each; then the vertices of all groups; then the leaves. So one may look for a leaf before the
+/// groups are known.
 struct ClusterHeader {
-  /// The narrowest that all fields of an axis in an entry may be together, so that those of three
-  /// axes can be read at once.
-  static constexpr std::uint32_t kMostEntryBits = 8;
+  /// As many as a byte shuffle looks up.
+  static constexpr std::uint32_t kMostGroups = 16;
+  static constexpr std::uint32_t kLeastGroupSize = 2;
+  /// So that groups hold every corner of kClusterFaces quads.
+  static constexpr std::uint32_t kMostGroupSize = 128;
+  /// Up to here, the group of a vertex follows from a product of 16 bits by 2^16 over the size,
+  /// rounded up: as numbers are less than kMostGroups times the size, the error is less than
+  /// kMostGroups size / 2^16 < 1 / size. Writers use larger ones only where they must.
+  static constexpr std::uint32_t kFastGroupSize = 63;
+  static_assert(kMostGroups * kFastGroupSize * kFastGroupSize < 1u << 16);
+  static constexpr std::uint32_t kBaseBits = 8;
+  static constexpr std::uint32_t kWiderBits = 4;
   static constexpr std::uint32_t kMostStartBits = 16;
-  static constexpr std::uint32_t kMostOwnBits = 5;
+  static constexpr std::uint32_t kMostFirstBits = 11;
+  static constexpr std::uint32_t kMostOldBits = 4;
+  /// Slopes count in units of 2^-kSlopeBits.
+  static constexpr std::uint32_t kSlopeBits = 3;
 
   // Each for x, y and z:
   std::array<std::uint8_t, 3> trailing;    // zero bits taken off the end of every number
-  std::array<std::uint8_t, 3> base_bits;   // of a leaf's base in its entry
-  std::array<std::uint8_t, 3> base_shift;  // its unit is 2^base_shift
-  std::array<std::uint8_t, 3> width;       // of a vertex's offset in the narrowest leaf
-  std::array<std::uint8_t, 3> wider_bits;  // of the bits, in its entry, that a leaf has more
-  std::uint8_t start_bits;                 // of a leaf's start in its entry
-  std::uint16_t leaf_bytes;                // times its number, is added to that
-  std::uint8_t own_bits;  // of the number that a vertex has among those of its leaf
-  std::uint8_t reserved;  // zero
+  std::array<std::uint8_t, 3> base_shift;  // the unit of bases is 2^base_shift
+  std::array<std::uint8_t, 3> width;       // of a vertex's offset in the narrowest group
+  std::uint8_t group_size;                 // vertices; the last group may have fewer
+  std::uint16_t vertex_count;              // of the cluster
+  std::uint16_t leaves_at;                 // byte where the vertices end and leaves begin
+  // Leaf i starts at byte leaves_at + (i * start_slope >> kSlopeBits) + its start - start_bias; its
+  // first vertex is number (i * first_slope >> kSlopeBits) + its first - first_bias.
+  std::uint16_t start_slope;
+  std::uint16_t start_bias;
+  std::uint16_t first_bias;
+  std::uint8_t first_slope;
+  std::uint8_t start_bits;  // of a leaf's start in its entry
+  std::uint8_t first_bits;  // of its first vertex there
+  std::uint8_t old_bits;    // of references in the leaf with the narrowest
 };
-static_assert(sizeof(ClusterHeader) == 20 && std::is_trivially_copyable_v<ClusterHeader>);
-static_assert(offsetof(ClusterHeader, start_bits) == 15 && offsetof(ClusterHeader, own_bits) == 18);
+static_assert(sizeof(ClusterHeader) == 24 && std::is_trivially_copyable_v<ClusterHeader>);
+static_assert(offsetof(ClusterHeader, group_size) == 9 && offsetof(ClusterHeader, old_bits) == 23);
+static_assert(ClusterHeader::kMostGroups * ClusterHeader::kMostGroupSize == 4 * kClusterFaces);
 
 [[nodiscard]] constexpr std::uint32_t clusters_of(std::uint32_t faces) noexcept {
   return faces / kClusterFaces + (faces % kClusterFaces != 0 ? 1 : 0);
@@ -101,10 +124,6 @@ struct ClusterView {
   ClusterNumbers numbers = ClusterNumbers::kGrid;
 };
 
-/// Most leaves whose vertices one leaf names: they and itself have a lane of a vector each. For
-/// further ones it stores vertices again.
-inline constexpr std::uint32_t kMaxOtherLeaves = 7;
-
 /// Most references of a leaf to vertices: every face is a quad and apart.
 inline constexpr std::size_t kMostLeafReferences = std::size_t{4} * kLeafFaces;
 
@@ -118,19 +137,13 @@ struct ClusterLeaf {
   std::array<std::array<std::uint8_t, 4>, kLeafFaces> corner;       // indices into `position`
 };
 
-/// What a leaf takes and names, for those who check it: decoders do not look at what other leaves
-/// store.
+/// Where a leaf is, for those who check what lies between leaves.
 struct ClusterLeafFields {
-  struct Other {
-    std::uint32_t leaf = 0;   // of the cluster
-    std::uint32_t named = 0;  // it must store so many vertices, or more
-  };
-  std::uint64_t begin = 0;   // bit of `bytes` where its vertices begin
-  std::uint64_t end = 0;     // bit where its faces end
-  std::uint32_t stored = 0;  // vertices
-  Other self;                // what it names of those that it stores
-  std::uint32_t other_count = 0;
-  std::array<Other, kMaxOtherLeaves> others;
+  std::uint64_t begin = 0;         // bit of `bytes` where it begins
+  std::uint64_t end = 0;           // and where it ends
+  std::uint32_t first = 0;         // number of the first vertex that it is the first to use
+  std::uint32_t new_vertices = 0;  // how many of them there are
+  bool has_width_of_none = false;  // says how wide old references are, but has none
 };
 
 /// Decodes leaf `leaf`: faces 8 leaf to 8 leaf + 7, or up to the last. False when its bytes are

@@ -10,7 +10,6 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <type_traits>
 
 #include "format/bits.h"
 #include "format/cluster.h"
@@ -35,28 +34,53 @@ namespace boxtree {
   return std::bit_cast<double>(magnitude | (sign & 0x8000000000000000u));
 }
 
+/// Bits by which a leaf tells how many more than ClusterHeader::old_bits its references have.
+inline constexpr std::uint32_t kOldWiderBits = 3;
+
 /// Where the parts of one cluster lie. Bits and bytes count from its first byte.
 struct Cluster {
   const std::byte* bytes = nullptr;
   std::uint64_t size = 0;  // fields may begin at bytes up to this one
-  ClusterHeader header;
-  std::array<std::uint64_t, 3> origin;  // sign extended
-  std::uint32_t table = 0;              // bit of the first entry
-  std::uint32_t entry_bits = 0;         // at most 40
-  std::uint32_t leaves_at = 0;          // byte that starts of leaves count from
+  std::uint32_t number_bits = 0;
+  std::uint32_t groups = 0;
+  std::uint32_t table = 0;        // bit of the first entry
+  std::uint32_t entry_bits = 0;   // at most 27
+  std::uint32_t bases_at = 0;     // byte
+  std::uint32_t wider_at = 0;     // byte, see ClusterHeader::kWiderBits
+  std::uint32_t vertices_at = 0;  // byte
+
+  /// Loaded where it is needed: most need few of its fields.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE ClusterHeader header() const noexcept {
+    return load<ClusterHeader>(bytes);
+  }
+  /// Sign extended.
+  [[nodiscard]] std::uint64_t origin(std::size_t axis) const noexcept {
+    const std::byte* const numbers = bytes + sizeof(ClusterHeader);
+    if (number_bits == 64) return load<std::uint64_t>(numbers, axis);
+    return static_cast<std::uint64_t>(load<std::int32_t>(numbers, axis));
+  }
+  /// Bytes of the widths of one axis of all groups.
+  [[nodiscard]] std::uint32_t wider_bytes() const noexcept { return (groups + 1) / 2; }
+  [[nodiscard]] std::uint32_t last_group_size() const noexcept {
+    return header().vertex_count - (groups - 1) * header().group_size;
+  }
 };
 
-/// Where the fields of one leaf of a cluster lie: its vertices end where its faces begin.
+/// The groups of a cluster. Those that it does not have are zero.
+struct ClusterGroups {
+  template <class T>
+  using OfEach = std::array<T, ClusterHeader::kMostGroups>;
+
+  std::array<OfEach<std::uint8_t>, 3> width;  // of offsets
+  OfEach<std::uint8_t> stride;                // bits of a vertex
+  OfEach<std::uint16_t> start;                // byte after vertices_at
+};
+
+/// Where one leaf of a cluster begins, and the number of the first vertex that it uses first.
 struct ClusterLeafPlace {
-  std::uint64_t middle = 0;            // bit
-  std::array<std::uint64_t, 3> base;   // of its vertices' numbers
-  std::array<std::uint32_t, 3> width;  // of their offsets
-  std::uint32_t stride = 0;            // bits of one vertex
+  std::uint32_t byte = 0;
+  std::uint32_t first = 0;
 };
-
-/// Bits of the number of other leaves that a leaf names vertices of.
-inline constexpr std::uint32_t kOtherBits = 3;
-static_assert(kMaxOtherLeaves < 1u << kOtherBits);
 
 /// Byte i of word n: how many of bits 0 to i of n are set.
 inline constexpr std::array<std::uint64_t, 256> kRanksOfBits = [] {
@@ -71,104 +95,77 @@ inline constexpr std::array<std::uint64_t, 256> kRanksOfBits = [] {
 
 namespace cluster_detail {
 
-// Bits of a word of eight fields of a byte each whose field is above that of `most`. All fields and
-// limits are below 128, or the bit of the field is set.
-BOXTREE_ALWAYS_INLINE std::uint64_t above(std::uint64_t fields, std::uint64_t most) {
+// Bits of a word of eight fields of a byte each whose field is above that of `most`. All limits are
+// below 128.
+BOXTREE_ALWAYS_INLINE std::uint64_t above(std::uint64_t fields, std::uint64_t most) noexcept {
   constexpr std::uint64_t kHighBits = 0x8080808080808080u;
   return (fields | ((fields & ~kHighBits) + (kHighBits - 0x0101010101010101u - most))) & kHighBits;
 }
 
-// The fields of a header that are checked and added up, a byte each.
-struct HeaderBytes {
-  std::uint64_t first;   // trailing, base_bits, two of base_shift
-  std::uint64_t second;  // the third, width, wider_bits, start_bits
-  static constexpr std::uint64_t kAxes = 0xffffffu;
-
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t base_bits() const {
-    return (first >> 24) & kAxes;
-  }
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t width() const { return (second >> 8) & kAxes; }
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint64_t wider_bits() const {
-    return (second >> 32) & kAxes;
-  }
-  // Bits of an entry. Precondition: those of an axis are below 86.
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t entry_bits() const {
-    const std::uint64_t of_axes = (base_bits() + wider_bits()) * 0x010101u;
-    return static_cast<std::uint32_t>(((of_axes >> 16) & 0xffu) + (second >> 56));
-  }
-
-  // Whether all shifts and widths are such that no shift of a number is by its own width or more,
-  // and the fields of an axis in an entry have at most kMostEntryBits.
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE bool are_valid(bool is_64) const {
-    const std::uint64_t most_first = is_64 ? 0x3f3f0808083f3f3fu : 0x1f1f0808081f1f1fu;
-    // A width of 2^6 - 1 bits more fits into 64 bits, but one of 2^7 - 1 does not.
-    const std::uint64_t most_second = is_64 ? 0x100606064040403fu : 0x100505052020201fu;
-    const std::uint64_t of_wider = wider_bits();
-    const std::uint64_t widest_more = (std::uint64_t{1} << (of_wider & 0x3fu)) +
-                                      (std::uint64_t{0x100} << ((of_wider >> 8) & 0x1fu)) +
-                                      (std::uint64_t{0x10000} << ((of_wider >> 16) & 0x1fu)) -
-                                      0x010101u;
-    const std::uint64_t widest = (width() + widest_more) & kAxes;
-    return (above(first, most_first) | above(second, most_second) |
-            above(base_bits() + of_wider, 0x080808u) |
-            above(widest, is_64 ? 0x404040u : 0x202020u)) == 0;
-  }
-};
-
 }  // namespace cluster_detail
 
-/// Finds cluster `number`. False if it is corrupt. Precondition: it exists, and so does the
-/// table.
+/// Whether all fields of a header are in range: no shift of a number of `number_bits` is by as many
+/// bits or more, and the groups are neither more than kMostGroups nor larger than they may be.
+BOXTREE_ALWAYS_INLINE bool is_valid_header(const std::byte* bytes,
+                                           std::uint32_t number_bits) noexcept {
+  const auto header = load<ClusterHeader>(bytes);
+  // trailing, base_shift and two of width; the third, with three fields of bits.
+  const std::uint64_t most_first = number_bits == 64 ? 0x40403f3f3f3f3f3fu : 0x20201f1f1f1f1f1fu;
+  const std::uint64_t most_second = number_bits == 64 ? 0x40040b10u : 0x20040b10u;
+  static_assert(ClusterHeader::kMostStartBits == 0x10 && ClusterHeader::kMostFirstBits == 0xb &&
+                ClusterHeader::kMostOldBits == 0x4);
+  const std::uint64_t second =
+      load<std::uint32_t>(bytes + offsetof(ClusterHeader, start_bits) - 1) >> 8 |
+      std::uint32_t{header.width[2]} << 24;
+  using cluster_detail::above;
+  const bool are_fields_valid =
+      (above(load<std::uint64_t>(bytes), most_first) | above(second, most_second)) == 0;
+  const std::uint32_t size = header.group_size;
+  return are_fields_valid &&
+         size - ClusterHeader::kLeastGroupSize <=
+             ClusterHeader::kMostGroupSize - ClusterHeader::kLeastGroupSize &&
+         header.vertex_count - 1u < ClusterHeader::kMostGroups * size;
+}
+
+/// Finds cluster `number`, but not its groups. False if it is corrupt. Precondition: it exists, and
+/// so does the table.
 BOXTREE_ALWAYS_INLINE bool find_cluster(const ClusterView& view, std::uint32_t number,
                                         Cluster& out) noexcept {
-  const bool is_64 = view.numbers == ClusterNumbers::kF64;
-  const std::uint32_t fixed =
-      sizeof(ClusterHeader) + 3 * (is_64 ? sizeof(std::int64_t) : sizeof(std::int32_t));
+  out.number_bits = view.numbers == ClusterNumbers::kF64 ? 64 : 32;
+  const std::uint32_t fixed = sizeof(ClusterHeader) + 3 * out.number_bits / 8;
   const std::uint64_t start = load<std::uint32_t>(view.bytes.data(), number) * kClusterUnit;
   if (!in_range(start, fixed + kClusterPadding, view.bytes.size())) return false;
   out.bytes = view.bytes.data() + start;
   out.size = view.bytes.size() - start - kClusterPadding;
-  out.header = load<ClusterHeader>(out.bytes);
-  const cluster_detail::HeaderBytes fields{load<std::uint64_t>(out.bytes, 0),
-                                           load<std::uint64_t>(out.bytes, 1)};
-  const std::byte* const origin = out.bytes + sizeof(ClusterHeader);
-  if (is_64) {
-    out.origin = load<std::array<std::uint64_t, 3>>(origin);
-  } else {
-    const auto of_32 = load<std::array<std::int32_t, 3>>(origin);
-    out.origin = {static_cast<std::uint64_t>(of_32[0]), static_cast<std::uint64_t>(of_32[1]),
-                  static_cast<std::uint64_t>(of_32[2])};
-  }
+  const ClusterHeader header = out.header();
+  if (!is_valid_header(out.bytes, out.number_bits)) return false;
   const std::uint32_t faces = std::min(view.face_count - number * kClusterFaces, kClusterFaces);
   const auto leaves = static_cast<std::uint32_t>(leaves_of(faces));
-  out.table = fixed * 8;
-  out.entry_bits = fields.entry_bits();
-  out.leaves_at = fixed + (leaves * out.entry_bits + 7) / 8;
-  return fields.are_valid(is_64) && out.header.own_bits <= ClusterHeader::kMostOwnBits &&
-         out.leaves_at <= out.size;
+  out.table = 8 * fixed;
+  out.entry_bits = header.start_bits + header.first_bits;
+  out.bases_at = fixed + (leaves * out.entry_bits + 7) / 8;
+  out.groups = (header.vertex_count + header.group_size - 1u) / header.group_size;
+  out.wider_at = out.bases_at + 3 * out.groups;
+  out.vertices_at = out.wider_at + 3 * out.wider_bytes();
+  return header.leaves_at <= out.size && out.vertices_at <= header.leaves_at;
 }
+
+/// Finds the groups of a cluster that was found. False if they are corrupt.
+bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept;
 
 /// Finds leaf `leaf` of a cluster. False if its place is corrupt. Precondition: the cluster has it.
 BOXTREE_ALWAYS_INLINE bool find_leaf(const Cluster& cluster, std::uint32_t leaf,
                                      ClusterLeafPlace& out) noexcept {
-  const ClusterHeader& header = cluster.header;
-  std::uint64_t entry =
-      read_bits(cluster.bytes, cluster.table + leaf * cluster.entry_bits, cluster.entry_bits);
-  const std::uint64_t start = entry & low_bits(header.start_bits);
-  entry >>= header.start_bits;
-  out.stride = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::uint64_t base = entry & low_bits(header.base_bits[k]);
-    entry >>= header.base_bits[k];
-    const auto wider = static_cast<std::uint32_t>(entry & low_bits(header.wider_bits[k]));
-    entry >>= header.wider_bits[k];
-    out.base[k] = cluster.origin[k] + (base << header.base_shift[k]);
-    out.width[k] = header.width[k] + wider;
-    out.stride += out.width[k];
-  }
-  const std::uint64_t middle = cluster.leaves_at + leaf * header.leaf_bytes + start;
-  out.middle = middle * 8;
-  return middle <= cluster.size;
+  const ClusterHeader header = cluster.header();
+  const auto entry = static_cast<std::uint32_t>(
+      read_bits(cluster.bytes, cluster.table + leaf * cluster.entry_bits, cluster.entry_bits));
+  constexpr std::uint32_t kSlopeBits = ClusterHeader::kSlopeBits;
+  // Both wrap where they would be negative.
+  out.first =
+      (entry >> header.start_bits) + (leaf * header.first_slope >> kSlopeBits) - header.first_bias;
+  out.byte = header.leaves_at + (leaf * header.start_slope >> kSlopeBits) +
+             static_cast<std::uint32_t>(entry & low_bits(header.start_bits)) - header.start_bias;
+  return out.byte <= cluster.size;
 }
 
 }  // namespace boxtree

@@ -13,9 +13,9 @@
 #include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
 
-#include "cooker/encode/axis_fields.h"
 #include "cooker/encode/encoded.h"
 #include "cooker/encode/strip.h"
+#include "cooker/encode/vertex_groups.h"
 #include "format/bits.h"
 #include "format/cluster_leaf.h"
 
@@ -95,6 +95,50 @@ class BitWriter {
   std::uint64_t at_;
 };
 
+// Numbers n[i] as (i * slope >> kSlopeBits) - bias + rest[i], where rests have `bits` bits.
+struct Line {
+  std::uint32_t slope = 0;
+  std::uint32_t bias = 0;
+  std::uint32_t bits = 0;
+
+  [[nodiscard]] std::uint32_t rest(std::uint32_t number, std::uint32_t i) const {
+    return number + bias - (i * slope >> ClusterHeader::kSlopeBits);
+  }
+};
+
+Line line_with(std::span<const std::uint32_t> numbers, std::uint32_t slope, std::uint32_t& range) {
+  std::int64_t least = 0, most = 0;
+  for (std::uint32_t i = 0; i < numbers.size(); ++i) {
+    const std::int64_t rest = std::int64_t{numbers[i]} - (i * slope >> ClusterHeader::kSlopeBits);
+    least = std::min(least, rest);
+    most = std::max(most, rest);
+  }
+  range = static_cast<std::uint32_t>(most - least);
+  return {slope, static_cast<std::uint32_t>(-least),
+          static_cast<std::uint32_t>(std::bit_width(range))};
+}
+
+// The line with the least range of rests, which is convex over slopes but for what is rounded off:
+// searched in halved steps from the one to the last number. Precondition: numbers rise from 0.
+Line best_line(std::span<const std::uint32_t> numbers, std::uint32_t most_slope) {
+  const auto last = static_cast<std::uint32_t>(numbers.size() - 1);
+  std::uint32_t range = 0;
+  if (last == 0) return line_with(numbers, 0, range);
+  const std::uint32_t mean = static_cast<std::uint32_t>(
+      (std::uint64_t{numbers[last]} << ClusterHeader::kSlopeBits) / last);
+  Line best = line_with(numbers, std::min(mean, most_slope), range);
+  for (std::uint32_t step = 16; step != 0; step /= 2) {
+    for (const std::uint32_t slope : {best.slope - std::min(step, best.slope), best.slope + step}) {
+      std::uint32_t other_range = 0;
+      const Line other = line_with(numbers, std::min(slope, most_slope), other_range);
+      if (other_range >= range) continue;
+      range = other_range;
+      best = other;
+    }
+  }
+  return best;
+}
+
 // Appends clusters to `out`, one after another.
 template <class Number>
 class ClusterEncoder {
@@ -106,71 +150,76 @@ class ClusterEncoder {
   void encode(std::span<const ClusterFace> faces, ClusterVertices<Number>& vertices) {
     vertices_ = &vertices;
     header_ = {};
-    name_vertices(faces, kMostLeafReferences);
-    choose_own_bits();
-    if (1u << header_.own_bits < most_owned()) name_vertices(faces, 1u << header_.own_bits);
-    choose_fields();
+    number_vertices(faces);
+    choose_groups();
+    write_vertices();
     write_leaves();
+    const std::size_t begin = out_.size();
     write_header();
     write_table();
-    out_.insert(out_.end(), bytes_.begin(), bytes_.end());
+    write_groups();
+    out_.insert(out_.end(), vertex_bytes_.begin(), vertex_bytes_.end());
+    const auto leaves_at = static_cast<std::uint16_t>(out_.size() - begin);
+    std::memcpy(out_.data() + begin + offsetof(ClusterHeader, leaves_at), &leaves_at,
+                sizeof(leaves_at));
+    out_.insert(out_.end(), leaf_bytes_.begin(), leaf_bytes_.end());
     while (out_.size() % kClusterUnit != 0) out_.push_back(std::byte{0});
   }
 
  private:
-  // The leaf that stores a vertex for others, and its number there.
-  struct Owner {
-    static constexpr std::uint32_t kNone = 0xffffffffu;
-    std::uint32_t leaf = kNone;
-    std::uint32_t number = 0;
-  };
-  // Leads to the next vertex that the leaf stores, or to one of leaf `slot`: 0 for itself, i for
-  // the i-th other.
+  // Leads to the next vertex that no leaf before has used, or to the one that is so many before the
+  // last of these.
   struct Reference {
     bool is_new = false;
-    std::uint16_t vertex = 0;
-    std::uint32_t slot = 0;
-    std::uint32_t number = 0;  // in that leaf
+    std::uint32_t number = 0;  // in the cluster
   };
   struct Leaf {
     std::array<Step, kLeafFaces> steps;  // to each face; the first is apart
     std::uint32_t faces = 0;
-    std::uint32_t quads = 0;            // bit f: face f is one
-    std::vector<Reference> references;  // in the order that they are stored
-    std::vector<std::uint32_t> others;  // leaves
-    std::uint32_t owned = 0;            // vertices that it stores
-    std::size_t start = 0;              // where its faces begin
+    std::uint32_t quads = 0;  // bit f: face f is one
+    std::array<Reference, kMostLeafReferences> references;
+    std::uint32_t reference_count = 0;
+    std::uint32_t end = 0;       // vertices that it or a leaf before uses
+    std::uint32_t old_bits = 0;  // that its old references need
 
-    template <class Visitor>
-    void for_owned(Visitor&& visit) const {
-      for (const Reference& each : references) {
-        if (each.is_new) visit(each.vertex);
-      }
+    [[nodiscard]] std::span<const Reference> all() const {
+      return std::span(references).first(reference_count);
     }
   };
+  static constexpr std::uint32_t kNoNumber = 0xffffffffu;
 
-  [[nodiscard]] std::uint32_t most_owned() const {
-    std::uint32_t most = 1;
-    for (const Leaf& leaf : leaves_) most = std::max(most, leaf.owned);
-    return most;
-  }
-
-  // Vertices from number `limit` on of a leaf are not named by others, which store them again.
-  void name_vertices(std::span<const ClusterFace> faces, std::uint32_t limit) {
-    owner_.assign(vertices_->count(), Owner{});
+  void number_vertices(std::span<const ClusterFace> faces) {
+    number_.assign(vertices_->count(), kNoNumber);
+    order_.clear();
     leaves_.clear();
+    firsts_.clear();
     for (std::size_t first = 0; first < faces.size(); first += kLeafFaces) {
-      name_vertices_of_leaf(
-          faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)), limit);
+      firsts_.push_back(static_cast<std::uint32_t>(order_.size()));
+      number_vertices_of_leaf(
+          faces.subspan(first, std::min<std::size_t>(kLeafFaces, faces.size() - first)));
     }
+    std::uint32_t most = 0;
+    for (const Leaf& leaf : leaves_) most = std::max(most, leaf.old_bits);
+    constexpr std::uint32_t kMostWider = (1u << kOldWiderBits) - 1;
+    header_.old_bits = static_cast<std::uint8_t>(most - std::min(most, kMostWider));
+    first_line_ = best_line(firsts_, std::numeric_limits<std::uint8_t>::max());
+    header_.first_slope = static_cast<std::uint8_t>(first_line_.slope);
+    header_.first_bias = static_cast<std::uint16_t>(first_line_.bias);
+    header_.first_bits = static_cast<std::uint8_t>(first_line_.bits);
+    assert(header_.first_bits <= ClusterHeader::kMostFirstBits);
   }
 
-  void name_vertices_of_leaf(std::span<const ClusterFace> faces, std::uint32_t limit) {
-    const auto number = static_cast<std::uint32_t>(leaves_.size());
+  void number_vertices_of_leaf(std::span<const ClusterFace> faces) {
     Leaf& leaf = leaves_.emplace_back();
     leaf.faces = static_cast<std::uint32_t>(faces.size());
-    leaf.references.reserve(2 * kLeafFaces);
-    const auto refer = [&](std::uint16_t vertex) { this->refer(vertex, number, limit, leaf); };
+    const auto refer = [&](std::uint16_t vertex) {
+      const bool is_new = number_[vertex] == kNoNumber;
+      if (is_new) {
+        number_[vertex] = static_cast<std::uint32_t>(order_.size());
+        order_.push_back(vertex);
+      }
+      leaf.references[leaf.reference_count++] = {is_new, number_[vertex]};
+    };
     for (std::size_t f = 0; f < faces.size(); ++f) {
       if (f != 0) leaf.steps[f] = step_between(faces[f - 1], leaf.steps[f - 1].turn, faces[f]);
       leaf.quads |= (faces[f].is_quad ? 1u : 0u) << f;
@@ -184,160 +233,73 @@ class ClusterEncoder {
     for (const ClusterFace& face : faces) {
       if (face.is_quad) refer(face.corner[3]);
     }
+    leaf.end = static_cast<std::uint32_t>(order_.size());
+    std::uint32_t farthest = 0;
+    for (const Reference& each : leaf.all()) {
+      if (!each.is_new) farthest = std::max(farthest, leaf.end - 1 - each.number);
+    }
+    leaf.old_bits = static_cast<std::uint32_t>(std::bit_width(farthest));
   }
 
-  void refer(std::uint16_t vertex, std::uint32_t number, std::uint32_t limit, Leaf& leaf) {
-    Owner& owner = owner_[vertex];
-    if (owner.leaf == number) {
-      leaf.references.push_back({false, vertex, 0, owner.number});
-      return;
-    }
-    if (owner.leaf != Owner::kNone) {
-      const auto other = std::find(leaf.others.begin(), leaf.others.end(), owner.leaf);
-      const bool is_known = other != leaf.others.end();
-      const auto slot = static_cast<std::uint32_t>(other - leaf.others.begin()) + 1;
-      if (!is_known && slot <= kMaxOtherLeaves) leaf.others.push_back(owner.leaf);
-      if (slot <= kMaxOtherLeaves) {
-        leaf.references.push_back({false, vertex, slot, owner.number});
-        return;
-      }
-    }
-    if (leaf.owned < limit) owner = {number, leaf.owned};
-    leaf.references.push_back({true, vertex, 0, leaf.owned++});
-  }
-
-  // Narrower numbers of vertices in a leaf save a bit for each that is named again, and cost a
-  // vertex that is stored again for each that has no number any more.
-  void choose_own_bits() {
-    std::array<std::uint32_t, kMostLeafReferences> named{};  // vertices, by their largest number
-    std::uint32_t places = 0;
-    is_named_.assign(vertices_->count(), false);
-    for (const Leaf& leaf : leaves_) {
-      for (const Reference& each : leaf.references) {
-        if (each.is_new) continue;
-        ++places;
-        if (is_named_[each.vertex]) continue;
-        is_named_[each.vertex] = true;
-        ++named[each.number];
-      }
-    }
-    std::uint32_t again = 0;
-    std::uint64_t least = ~std::uint64_t{0};
-    std::uint32_t number = most_owned();
-    for (std::uint32_t bits = width_below(number) + 1; bits-- > 0;) {
-      while (number > 1u << bits) again += named[--number];
-      const std::uint64_t cost = std::uint64_t{places} * bits + std::uint64_t{again} * stride_;
-      if (cost > least) break;
-      least = cost;
-      header_.own_bits = static_cast<std::uint8_t>(bits);
-    }
-  }
-
-  [[nodiscard]] std::uint64_t offset_of(std::uint16_t vertex, std::size_t axis) const {
-    // Unsigned: the difference of two numbers of 64 bits may not fit with a sign.
-    return static_cast<std::uint64_t>((*vertices_)[vertex][axis]) -
-           static_cast<std::uint64_t>(origin_[axis]);
-  }
-
-  void choose_fields() {
-    ranges_.assign(3 * leaves_.size(), {});
+  void choose_groups() {
+    offsets_.assign(order_.size(), {});
     for (std::size_t k = 0; k < 3; ++k) {
       header_.trailing[k] = vertices_->take_trailing_zeros(k, are_floats_);
       origin_[k] = (*vertices_)[0][k];
       for (std::size_t v = 0; v < vertices_->count(); ++v) {
         origin_[k] = std::min(origin_[k], (*vertices_)[v][k]);
       }
-      for (std::size_t i = 0; i < leaves_.size(); ++i) {
-        AxisRange& range = ranges_[k * leaves_.size() + i];
-        range.low = ~std::uint64_t{0};
-        range.vertices = leaves_[i].owned;
-        leaves_[i].for_owned([&](std::uint16_t vertex) {
-          range.low = std::min(range.low, offset_of(vertex, k));
-          range.high = std::max(range.high, offset_of(vertex, k));
-        });
+      for (std::size_t i = 0; i < order_.size(); ++i) {
+        // Unsigned: the difference of two numbers of 64 bits may not fit with a sign.
+        offsets_[i][k] = static_cast<std::uint64_t>((*vertices_)[order_[i]][k]) -
+                         static_cast<std::uint64_t>(origin_[k]);
       }
-      const AxisFields fields =
-          best_fields(std::span(ranges_).subspan(k * leaves_.size(), leaves_.size()));
-      header_.base_bits[k] = fields.base_bits;
-      base_shift_[k] = fields.base_shift;
-      header_.base_shift[k] = fields.base_bits == 0 ? std::uint8_t{0} : fields.base_shift;
-      header_.width[k] = fields.width;
-      header_.wider_bits[k] = fields.wider_bits;
     }
+    groups_ = best_groups(offsets_);
+    header_.base_shift = groups_.base_shift;
+    header_.width = groups_.narrowest;
+    header_.group_size = static_cast<std::uint8_t>(groups_.size);
+    header_.vertex_count = static_cast<std::uint16_t>(order_.size());
   }
 
-  [[nodiscard]] const AxisRange& range(std::size_t leaf, std::size_t axis) const {
-    return ranges_[axis * leaves_.size() + leaf];
-  }
-  // How many bits more than the narrowest leaf.
-  [[nodiscard]] std::uint32_t wider(std::size_t leaf, std::size_t axis) const {
-    const std::uint32_t width = range(leaf, axis).width(base_shift_[axis]);
-    return std::max<std::uint32_t>(width, header_.width[axis]) - header_.width[axis];
+  void write_vertices() {
+    vertex_bytes_.clear();
+    for (std::size_t i = 0; i < offsets_.size(); i += groups_.size) {
+      const VertexGroup& group = groups_.group[i / groups_.size];
+      BitWriter bits(vertex_bytes_);
+      for (std::size_t v = i; v < std::min<std::size_t>(i + groups_.size, offsets_.size()); ++v) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          bits.put(offsets_[v][k] - (group.base[k] << groups_.base_shift[k]), group.width[k]);
+        }
+      }
+    }
   }
 
   void write_leaves() {
-    bytes_.clear();
-    std::size_t last_bit = 0;
-    std::uint64_t vertex_bits = 0, vertices = 0;
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      Leaf& leaf = leaves_[i];
-      std::array<std::uint32_t, 3> width;
-      std::uint32_t stride = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        width[k] = header_.width[k] + wider(i, k);
-        stride += width[k];
+    leaf_bytes_.clear();
+    starts_.clear();
+    for (const Leaf& leaf : leaves_) {
+      starts_.push_back(static_cast<std::uint32_t>(leaf_bytes_.size()));
+      BitWriter bits(leaf_bytes_);
+      if (may_have_quads_) bits.put(leaf.quads, leaf.faces);
+      for (std::size_t f = 1; f < leaf.faces; ++f) bits.put(leaf.steps[f].code, StripStep::kBits);
+      const auto all = leaf.all();
+      for (const Reference& each : all.first(leaf.faces)) bits.put(each.is_new ? 1 : 0, 1);
+      const std::uint32_t old_bits = std::max<std::uint32_t>(leaf.old_bits, header_.old_bits);
+      bits.put(old_bits - header_.old_bits, kOldWiderBits);
+      for (const Reference& each : all.subspan(leaf.faces)) bits.put(each.is_new ? 1 : 0, 1);
+      for (const Reference& each : all) {
+        if (!each.is_new) bits.put(leaf.end - 1 - each.number, old_bits);
       }
-      const std::size_t bits_of_vertices = std::size_t{leaf.owned} * stride;
-      vertex_bits += bits_of_vertices;
-      vertices += leaf.owned;
-      leaf.start = (last_bit + bits_of_vertices + 7) / 8;
-      bytes_.resize(leaf.start);
-      std::size_t end = leaf.start * 8;
-      leaf.for_owned([&](std::uint16_t vertex) {
-        end -= stride;
-        std::size_t at = end;
-        for (std::size_t k = 0; k < 3; ++k) {
-          const std::uint32_t shift = base_shift_[k];
-          const std::uint64_t offset = offset_of(vertex, k) - (range(i, k).base(shift) << shift);
-          write_bits(bytes_.data(), at, width[k], offset);
-          at += width[k];
-        }
-      });
-      BitWriter bits(bytes_);
-      write_faces(static_cast<std::uint32_t>(i), bits);
-      last_bit = bits.position();
     }
-    if (vertices != 0) stride_ = vertex_bits / vertices;
-  }
-
-  void write_faces(std::uint32_t number, BitWriter& bits) {
-    const Leaf& leaf = leaves_[number];
-    if (may_have_quads_) bits.put(leaf.quads, leaf.faces);
-    for (std::size_t f = 1; f < leaf.faces; ++f) bits.put(leaf.steps[f].code, StripStep::kBits);
-    for (std::size_t r = 0; r < leaf.faces; ++r) bits.put(leaf.references[r].is_new ? 1 : 0, 1);
-    bits.put(leaf.others.size(), kOtherBits);
-    for (const std::uint32_t other : leaf.others) bits.put(other, width_below(number));
-    for (std::size_t r = leaf.faces; r < leaf.references.size(); ++r) {
-      bits.put(leaf.references[r].is_new ? 1 : 0, 1);
-    }
-    for (const Reference& each : leaf.references) {
-      if (each.is_new) continue;
-      bits.put(each.slot, width_below(leaf.others.size() + 1));
-      bits.put(each.number, header_.own_bits);
-    }
+    start_line_ = best_line(starts_, std::numeric_limits<std::uint16_t>::max());
+    header_.start_slope = static_cast<std::uint16_t>(start_line_.slope);
+    header_.start_bias = static_cast<std::uint16_t>(start_line_.bias);
+    header_.start_bits = static_cast<std::uint8_t>(start_line_.bits);
+    assert(header_.start_bits <= ClusterHeader::kMostStartBits);
   }
 
   void write_header() {
-    std::size_t least = std::numeric_limits<std::uint16_t>::max();
-    for (std::size_t i = 1; i < leaves_.size(); ++i) least = std::min(least, leaves_[i].start / i);
-    if (leaves_.size() == 1) least = 0;
-    std::size_t most = 0;
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      most = std::max(most, leaves_[i].start - i * least);
-    }
-    header_.leaf_bytes = static_cast<std::uint16_t>(least);
-    header_.start_bits = static_cast<std::uint8_t>(std::bit_width(most));
-    assert(header_.start_bits <= ClusterHeader::kMostStartBits);
     append(header_);
     append(origin_);
   }
@@ -348,14 +310,25 @@ class ClusterEncoder {
     out_.insert(out_.end(), bytes.begin(), bytes.end());
   }
 
+  void write_groups() {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (const VertexGroup& group : groups_.group) {
+        append(static_cast<std::uint8_t>(group.base[k]));
+      }
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      BitWriter bits(out_);
+      for (const VertexGroup& group : groups_.group) {
+        bits.put(group.width[k] - groups_.narrowest[k], ClusterHeader::kWiderBits);
+      }
+    }
+  }
+
   void write_table() {
     BitWriter bits(out_);
-    for (std::size_t i = 0; i < leaves_.size(); ++i) {
-      bits.put(leaves_[i].start - i * header_.leaf_bytes, header_.start_bits);
-      for (std::size_t k = 0; k < 3; ++k) {
-        bits.put(range(i, k).base(base_shift_[k]), header_.base_bits[k]);
-        bits.put(wider(i, k), header_.wider_bits[k]);
-      }
+    for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
+      bits.put(start_line_.rest(starts_[i], i), start_line_.bits);
+      bits.put(first_line_.rest(firsts_[i], i), first_line_.bits);
     }
   }
 
@@ -365,13 +338,16 @@ class ClusterEncoder {
   ClusterVertices<Number>* vertices_ = nullptr;
   ClusterHeader header_{};
   std::array<Number, 3> origin_{};
-  std::array<std::uint32_t, 3> base_shift_{};  // also where no leaf has a base but 0
-  std::vector<Owner> owner_;                   // of each vertex
-  std::vector<bool> is_named_;                 // by vertex
-  std::uint64_t stride_ = 32;                  // mean bits of a vertex in the cluster before
+  std::vector<std::uint32_t> number_;  // of each vertex, in the order in which leaves use them
+  std::vector<std::uint16_t> order_;   // the vertex of each number
+  std::vector<std::array<std::uint64_t, 3>> offsets_;  // by number
+  VertexGroups groups_;
   std::vector<Leaf> leaves_;
-  std::vector<AxisRange> ranges_;  // [axis][leaf]
-  std::vector<std::byte> bytes_;   // of leaves
+  std::vector<std::uint32_t> firsts_;  // by leaf: the first number that it may use first
+  std::vector<std::uint32_t> starts_;  // by leaf: its byte
+  Line first_line_, start_line_;
+  std::vector<std::byte> vertex_bytes_;
+  std::vector<std::byte> leaf_bytes_;
 };
 
 // Clusters encoded by one task.

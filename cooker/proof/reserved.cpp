@@ -44,11 +44,20 @@ class Check {
                                                     std::to_string(kMaxFaces - 1)});
   }
 
-  void missing_vertex(std::uint32_t leaf, std::uint32_t other) {
+  void misplaced_vertex(std::uint32_t leaf, std::uint32_t first, std::uint32_t expected) {
     if (findings_.size() >= kMaxFindings) return;
     findings_.push_back(
-        {Errc::kVertexOutOfRange, "leaf " + std::to_string(leaf) + " names a vertex of leaf " +
-                                      std::to_string(other) + " that is not stored there"});
+        {Errc::kVertexOutOfRange, "leaf " + std::to_string(leaf) + " says that vertex " +
+                                      std::to_string(first) +
+                                      " of its cluster is the first that it uses first, expected " +
+                                      std::to_string(expected)});
+  }
+
+  void unused_vertices(std::uint32_t cluster, std::uint32_t count, std::uint32_t used) {
+    if (findings_.size() >= kMaxFindings) return;
+    findings_.push_back({Errc::kVertexOutOfRange,
+                         "cluster " + std::to_string(cluster) + " has " + std::to_string(count) +
+                             " vertices, of which its leaves use " + std::to_string(used)});
   }
 
  private:
@@ -145,40 +154,62 @@ void check_packed(Bytes nodes, Check& check) {
                "the bits behind it");
 }
 
-// Checks the bits between the fields of cluster n, and that the vertices it names are stored. False
-// if it or a leaf cannot be read. `end`: the bit after the last cluster, and on return after this
-// one.
+// Checks the bits between the groups of a cluster. `start`: the bit where it begins.
+void check_groups(const ClusterView& clusters, const Cluster& cluster, const ClusterGroups& groups,
+                  std::uint32_t n, std::uint64_t start, Check& check) {
+  const std::uint32_t wider_bits = ClusterHeader::kWiderBits * cluster.groups;
+  std::uint64_t at = start + std::uint64_t{8} * cluster.wider_at;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::uint64_t next = at + std::uint64_t{8} * cluster.wider_bytes();
+    check.expect(are_zero(clusters.bytes, at + wider_bits, next), "cluster ", n,
+                 "the bits after the widths of its groups");
+    at = next;
+  }
+  for (std::uint32_t g = 0; g < cluster.groups; ++g) {
+    const std::uint32_t vertices =
+        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+    const std::uint64_t end = start + std::uint64_t{8} * (cluster.vertices_at + groups.start[g]) +
+                              vertices * groups.stride[g];
+    check.expect(are_zero(clusters.bytes, end, align_up(end, 8)), "cluster ", n,
+                 "the bits after the vertices of a group");
+  }
+}
+
+// Checks the bits between the fields of cluster n, and that its leaves use its vertices in order.
+// False if it or a leaf cannot be read. `end`: the bit after the last cluster, and on return after
+// this one.
 bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& end, Check& check) {
   Cluster cluster;
-  if (!find_cluster(clusters, n, cluster)) return false;
+  ClusterGroups groups;
+  if (!find_cluster(clusters, n, cluster) || !find_groups(cluster, groups)) return false;
   const std::uint64_t start = static_cast<std::uint64_t>(cluster.bytes - clusters.bytes.data()) * 8;
-  check.expect(cluster.header.reserved == 0, "cluster ", n, "the last byte of its header");
   check.expect(
       start >= end && start - end < kClusterUnit * 8 && are_zero(clusters.bytes, end, start),
       "cluster ", n, "the bits between it and the one before");
+  check_groups(clusters, cluster, groups, n, start, check);
   const auto leaves = static_cast<std::uint32_t>(leaves_of(clusters.face_count));
   const std::uint32_t first = n * kClusterLeaves;
   const std::uint32_t last = std::min(leaves, first + kClusterLeaves);
   const std::uint64_t table_end =
       start + cluster.table + std::uint64_t{last - first} * cluster.entry_bits;
-  const std::uint64_t leaves_at = start + std::uint64_t{cluster.leaves_at} * 8;
-  check.expect(are_zero(clusters.bytes, table_end, leaves_at), "cluster ", n,
+  check.expect(are_zero(clusters.bytes, table_end, align_up(table_end, 8)), "cluster ", n,
                "the bits after its table");
-  end = leaves_at;
-  std::array<std::uint32_t, kClusterLeaves> stored{};  // vertices, by leaf
+  end = start + std::uint64_t{cluster.header().leaves_at} * 8;
+  std::uint32_t used = 0;  // vertices
   for (std::uint32_t i = first; i < last; ++i) {
     ClusterLeaf leaf;
     ClusterLeafFields fields;
     if (!decode_cluster_leaf(clusters, i, leaf, &fields)) return false;
     check.expect(fields.begin >= end && are_zero(clusters.bytes, end, fields.begin), "leaf ", i,
                  "the bits before it");
-    for (std::uint32_t k = 0; k < fields.other_count; ++k) {
-      const ClusterLeafFields::Other& other = fields.others[k];
-      if (other.named > stored[other.leaf]) check.missing_vertex(i, first + other.leaf);
-    }
-    if (fields.self.named > fields.stored) check.missing_vertex(i, i);
-    stored[i - first] = fields.stored;
+    check.expect(!fields.has_width_of_none, "leaf ", i,
+                 "the bits of the width of its old references, of which it has none,");
+    if (fields.first != used) check.misplaced_vertex(i, fields.first, used);
+    used = fields.first + fields.new_vertices;
     end = std::max(end, fields.end);
+  }
+  if (used != cluster.header().vertex_count) {
+    check.unused_vertices(n, cluster.header().vertex_count, used);
   }
   return true;
 }

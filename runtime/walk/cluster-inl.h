@@ -34,32 +34,37 @@ class ClusterReader {
   explicit ClusterReader(const ClusterView& view) : view_(view) {}
 
   /// Decodes a leaf of 8 triangles: coordinates as floats times `scale`, [corner][axis][triangle].
-  /// Corners are those of the source but for a turn, which position() undoes. False when its bytes
-  /// are corrupt, or when decode_cluster_leaf has to read it.
+  /// Corners are those of the source but for a turn, which read_corners() undoes. False when its
+  /// bytes are corrupt, or when decode_cluster_leaf has to read it.
   template <std::size_t kStride>
   HWY_INLINE bool read(std::uint32_t leaf, float scale, float (&out)[3][3][kStride]) {
     if (!enter(leaf / kClusterLeaves)) return false;
-    // In an order in which the longest chain begins first: two gathers, the second of which waits
-    // for the first.
     Faces faces;
     if (!find_faces(leaf % kClusterLeaves, faces)) return false;
-    const Slots slots = find_slots(faces);
-    Places places;
-    if (!find_places(faces, places)) return false;
-    const Named thirds =
-        read_places(places, lanes_with(faces.word, kThirdBits), ranks(faces.new_thirds), 0);
+    const Vertices thirds =
+        find_vertices(faces, lanes_with(faces.word, kThirdBits), ranks(faces.new_thirds), 0);
     const auto new_thirds = static_cast<std::uint32_t>(std::popcount(faces.new_thirds));
     const std::uint32_t new_aparts = faces.new_aparts & 0xffu;
-    const Named aparts = read_places(places, lanes_with(small(new_aparts), kLaneBits),
-                                     hn::Add(ranks(new_aparts), small(new_thirds)), kLeafFaces);
+    const Vertices aparts =
+        find_vertices(faces, lanes_with(small(new_aparts), kLaneBits),
+                      hn::Add(ranks(new_aparts), small(new_thirds)), kLeafFaces);
     const FloatVector scales = hn::Set(Floats(), scale);
     FloatVector third[3], apart[3];
-    auto corrupt = read_vertices(slots, thirds, 0, scales, third);
-    const auto of_aparts = read_vertices(slots, aparts, kLeafFaces, scales, apart);
-    corrupt =
-        hn::Or(corrupt, hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts)), of_aparts));
+    if (HWY_LIKELY(layout_ == Layout::kLong)) {
+      read_vertices<Layout::kLong>(thirds, 0, scales, third);
+      read_vertices<Layout::kLong>(aparts, kLeafFaces, scales, apart);
+    } else if (layout_ == Layout::kShort) {
+      read_vertices<Layout::kShort>(thirds, 0, scales, third);
+      read_vertices<Layout::kShort>(aparts, kLeafFaces, scales, apart);
+    } else {
+      read_vertices<Layout::kAny>(thirds, 0, scales, third);
+      read_vertices<Layout::kAny>(aparts, kLeafFaces, scales, apart);
+    }
+    auto corrupt =
+        hn::Or(thirds.corrupt,
+               hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts)), aparts.corrupt));
     const Corners corners = join_faces(faces);
-    corrupt = hn::Or(corrupt, hn::Or(corners.corrupt, slots.corrupt));
+    corrupt = hn::Or(corrupt, corners.corrupt);
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) hn::Store(third[k], Floats(), out[2][k]);
     if (HWY_LIKELY(faces.aparts <= kWideChildren / 2)) {
@@ -72,53 +77,57 @@ class ClusterReader {
     } else {
       // Copies, so that the usual case may keep them in registers.
       const Faces faces_copy = faces;
-      const Slots slots_copy = slots;
-      const Places places_copy = places;
       const FloatVector third_copy[3] = {third[0], third[1], third[2]};
       const FloatVector apart_copy[3] = {apart[0], apart[1], apart[2]};
-      corrupt = hn::Or(corrupt, read_more(faces_copy, places_copy, slots_copy, scales, third_copy,
-                                          apart_copy, out));
+      corrupt = hn::Or(corrupt, read_more(faces_copy, scales, third_copy, apart_copy, out));
     }
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
-  /// Corner `corner` of lane `lane`: steps of the grid, or the floats of the source.
-  [[nodiscard]] HWY_INLINE std::array<double, 3> position(std::uint32_t lane,
-                                                          std::size_t corner) const {
-    // The corner after the turn, and its reference.
-    const std::uint32_t turn = step_[lane] == StripStep::kApart ? 0 : step_[lane] % 3;
-    const std::size_t turned = (corner + 3 - turn) % 3;
-    const std::uint32_t r = turned == 2 ? lane : corner_[turned][lane];
+  /// Calls set(corner, x, y, z) for the corners of lane `lane`: steps of the grid, or the floats of
+  /// the source.
+  template <class Setter>
+  HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
+    // Its references, and the corner of the source that the first of them is.
+    const std::uint32_t references[3] = {corner_[0][lane], corner_[1][lane], lane};
+    static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
+    static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+    static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
+    const std::uint8_t* const place = kNext + kTurn[step_[lane]];
+    const auto fill = [&](const auto& real) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t r = references[i];
+        set(place[i], real(number_[0][r]), real(number_[1][r]), real(number_[2][r]));
+      }
+    };
     if (view_.numbers == ClusterNumbers::kGrid) {
-      return {static_cast<double>(static_cast<std::int32_t>(number_[0][r])),
-              static_cast<double>(static_cast<std::int32_t>(number_[1][r])),
-              static_cast<double>(static_cast<std::int32_t>(number_[2][r]))};
+      fill([](std::uint32_t number) { return double{static_cast<std::int32_t>(number)}; });
+    } else {
+      fill([](std::uint32_t number) { return double{std::bit_cast<float>(number)}; });
     }
-    return {double{std::bit_cast<float>(number_[0][r])},
-            double{std::bit_cast<float>(number_[1][r])},
-            double{std::bit_cast<float>(number_[2][r])}};
   }
 
  private:
   using Words = hn::Rebind<std::uint32_t, Floats>;
   using Integers = hn::Rebind<std::int32_t, Floats>;
+  using Halves = hn::Repartition<std::uint16_t, Floats>;
   using Bytes = hn::Repartition<std::uint8_t, Floats>;
+  using Pairs = hn::Repartition<std::uint64_t, Floats>;
   using WordVector = hn::Vec<Words>;
   using WordMask = hn::Mask<Words>;
   // Third corners of all faces, a lane each; after them, the other two of those that are apart.
   static constexpr std::size_t kReferences = std::size_t{3} * kLeafFaces;
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  // The faces of a leaf, and where its vertices are.
+  // The faces of a leaf, and where the vertices are that it refers to.
   struct Faces {
-    std::uint32_t self = 0;        // number of the leaf in its cluster
     std::uint32_t aparts = 0;      // faces that share nothing with the one before
-    std::uint32_t new_thirds = 0;  // bit f: the leaf stores the third corner of face f
+    std::uint32_t new_thirds = 0;  // bit f: the third corner of face f is new
     std::uint32_t new_aparts = 0;  // bit r: the same for other references, two for each of `aparts`
-    std::uint32_t others = 0;      // leaves whose vertices it names
-    std::uint32_t leaf_bits = 0;   // of a number of one before it
-    std::uint32_t numbers_at = 0;  // byte of their numbers
-    std::uint32_t places_at = 0;   // bit of the places of references that are not new
+    std::uint32_t before = 0;      // vertices that leaves before use, less 1
+    std::uint32_t last = 0;        // number of the last new vertex
+    std::uint32_t old_bits = 0;    // of each reference that is not new
+    hn::Vec<Bytes> bytes;          // with new_aparts and these references, in each half
     WordVector word;               // has the bits of new_thirds, see kThirdBits
   };
 
@@ -128,35 +137,31 @@ class ClusterReader {
     WordVector corrupt;  // 0 if nothing is
   };
 
-  // The leaf itself and the others whose vertices it names, a lane each.
-  struct Slots {
-    WordVector middle;             // bit; beyond the cluster in unused lanes
-    WordVector stride;             // bits of a vertex
-    WordVector base[3];            // of its numbers
-    WordVector width[3], mask[3];  // of their offsets
-    WordVector corrupt;            // 0 if nothing is
-    bool is_narrow = false;        // no offset has more than 25 bits
+  // Where eight vertices are.
+  struct Vertices {
+    WordVector group;    // as an index for look_up
+    WordVector byte;     // of the cluster
+    WordVector shift;    // the bit of that byte
+    WordVector corrupt;  // 0 if nothing is
   };
 
-  // The places of references to vertices that are not new.
-  struct Places {
-    hn::Vec<Bytes> bytes;
-    WordVector first;                 // bit of `bytes` where the first begins
-    WordVector bits;                  // of each
-    WordVector slot_bits, slot_mask;  // of its first field
+  // Eight words of 128 bits: words of 32 bits of each, the lowest first.
+  struct LongWords {
+    WordVector part[4];
   };
 
-  // Vertices that eight references lead to: the slots of their leaves, and how many vertices before
-  // the middle of the leaf they begin.
-  struct Named {
-    WordVector slot, back;
+  // Where the offsets of all vertices of a cluster lie, by which they are cut out of the words that
+  // hold them. In the first two, that of x is in the first 32 bits, and that of y in the first 64.
+  enum class Layout : std::uint8_t {
+    kShort,  // z, too
+    kLong,   // z begins after the first 32 bits
+    kAny,
   };
 
-  // Of the fields of a leaf: steps, a bit for each third corner, and how many other leaves there
-  // are. The numbers of these follow.
+  // Of the fields of a leaf: steps, a bit for each third corner, and how many bits more than
+  // ClusterHeader::old_bits references have.
   static constexpr std::uint32_t kStepBits = StripStep::kBits * (kLeafFaces - 1);
-  static constexpr std::uint32_t kNumbersAt = kStepBits + kLeafFaces + kOtherBits;
-  static_assert(kNumbersAt == 32);
+  static_assert(kStepBits + kLeafFaces + kOldWiderBits == 32);
   HWY_ALIGN static constexpr std::uint32_t kThirdBits[kWideChildren] = {
       1u << 21, 1u << 22, 1u << 23, 1u << 24, 1u << 25, 1u << 26, 1u << 27, 1u << 28};
   static_assert(kThirdBits[0] == 1u << kStepBits);
@@ -165,42 +170,133 @@ class ClusterReader {
   // Finds the cluster that the last leaf was in at once: neighbours are read one after another.
   HWY_INLINE bool enter(std::uint32_t number) {
     if (HWY_LIKELY(number == cluster_number_)) return true;
+    return find(number);
+  }
+
+  HWY_NOINLINE bool find(std::uint32_t number) {
     cluster_number_ = kNone;
-    if (!find_cluster(view_, number, cluster_)) return false;
-    const ClusterHeader& header = cluster_.header;
-    // Bits fit into 32 bits; corrupt places beyond that are not in any cluster.
-    constexpr std::uint64_t kMostBytes = 1u << 28;
-    most_bits_ = static_cast<std::uint32_t>(std::min(cluster_.size, kMostBytes)) * 8;
-    static_assert(offsetof(ClusterHeader, start_bits) < 2 * kWideChildren);
+    Cluster cluster;
+    if (!find_cluster(view_, number, cluster)) return false;
+    const ClusterHeader header = cluster.header();
+    if (header.group_size > ClusterHeader::kFastGroupSize || !find_groups(cluster)) return false;
+    bytes_ = cluster.bytes;
+    size_ = static_cast<std::uint32_t>(std::min<std::uint64_t>(cluster.size, 0xffffffffu));
+    table_ = cluster.table;
+    entry_bits_ = cluster.entry_bits;
+    start_bits_ = header.start_bits;
+    start_slope_ = header.start_slope;
+    starts_at_ = header.leaves_at - std::uint32_t{header.start_bias};
+    first_slope_ = header.first_slope;
+    first_bias_ = header.first_bias + 1u;
+    old_bits_ = header.old_bits;
+    bases_ = cluster.bytes + cluster.bases_at;
+    groups_ = cluster.groups;
+    last_vertex_ = header.vertex_count - 1u;
+    group_size_ = header.group_size;
+    per_group_ = 0xffffu / header.group_size + 1;
     const hn::Rebind<std::uint8_t, Words> small;
-    for (std::size_t half = 0; half < 2; ++half) {
-      const std::size_t at = half * kWideChildren;
-      const auto* const bytes = reinterpret_cast<const std::uint8_t*>(cluster_.bytes) + at;
-      const auto field = hn::PromoteTo(Words(), hn::LoadU(small, bytes));
-      hn::Store(field, Words(), field_ + at);
-      hn::Store(low_bits_of(field), Words(), mask_ + at);
-    }
-    are_narrow_ = true;
+    HWY_ALIGN std::uint32_t field[kWideChildren];  // the first bytes of the header
+    hn::Store(
+        hn::PromoteTo(Words(), hn::LoadU(small, reinterpret_cast<const std::uint8_t*>(bytes_))),
+        Words(), field);
+    constexpr std::size_t kTrailing = offsetof(ClusterHeader, trailing);
+    constexpr std::size_t kBaseShift = offsetof(ClusterHeader, base_shift);
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
-      are_narrow_ &= field_[kWidth + k] + mask_[kWiderBits + k] <= kGatheredBits;
+      hn::Store(set(field[kTrailing + k]), Words(), trailing_[k]);
+      hn::Store(set(field[kBaseShift + k]), Words(), base_shift_[k]);
+      const auto origin = boxtree::load<std::uint32_t>(bytes_ + sizeof(ClusterHeader), k);
+      hn::Store(set(origin), Words(), origin_[k]);
     }
-    own_mask_ = (1u << header.own_bits) - 1;
     cluster_number_ = number;
     return true;
   }
-  // A word of 32 bits at the byte of a field has so many of its bits, or more.
-  static constexpr std::uint32_t kGatheredBits = 25;
-  // Indices of fields of a header.
-  static constexpr std::size_t kTrailing = offsetof(ClusterHeader, trailing);
-  static constexpr std::size_t kBaseBits = offsetof(ClusterHeader, base_bits);
-  static constexpr std::size_t kBaseShift = offsetof(ClusterHeader, base_shift);
-  static constexpr std::size_t kWidth = offsetof(ClusterHeader, width);
-  static constexpr std::size_t kWiderBits = offsetof(ClusterHeader, wider_bits);
-  static constexpr std::size_t kStartBits = offsetof(ClusterHeader, start_bits);
+  // With up to 7 bits before, in the first 32 and 64.
+  static constexpr std::uint8_t kWord = 32, kNarrow = kMostBitsRead, kOfX = 25;
+  HWY_ALIGN static constexpr std::uint8_t kMostOfX[] = {kOfX, kOfX, kOfX, kOfX, kOfX, kOfX,
+                                                        kOfX, kOfX, kOfX, kOfX, kOfX, kOfX,
+                                                        kOfX, kOfX, kOfX, kOfX};
+  HWY_ALIGN static constexpr std::uint8_t kWordBits[] = {kWord, kWord, kWord, kWord, kWord, kWord,
+                                                         kWord, kWord, kWord, kWord, kWord, kWord,
+                                                         kWord, kWord, kWord, kWord};
+  HWY_ALIGN static constexpr std::uint8_t kMostOfTwo[] = {
+      kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow,
+      kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow, kNarrow};
+  HWY_ALIGN static constexpr std::uint8_t kNibble[] = {15, 15, 15, 15, 15, 15, 15, 15,
+                                                       15, 15, 15, 15, 15, 15, 15, 15};
+
+  // The same as boxtree::find_groups. Precondition: groups have at most kFastGroupSize vertices.
+  HWY_INLINE bool find_groups(const Cluster& cluster) {
+    const ClusterHeader header = cluster.header();
+    const hn::FixedTag<std::uint8_t, ClusterHeader::kMostGroups> bytes;
+    using ByteVector = hn::Vec<decltype(bytes)>;
+    const hn::FixedTag<std::uint8_t, ClusterHeader::kMostGroups / 2> half;
+    const auto is_group = hn::FirstN(bytes, cluster.groups);
+    ByteVector width[3];
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto* const at = reinterpret_cast<const std::uint8_t*>(cluster.bytes) +
+                             cluster.wider_at + k * cluster.wider_bytes();
+      const ByteVector pairs{hn::LoadU(half, at).raw};
+      const hn::Repartition<std::uint16_t, decltype(bytes)> halves;
+      const auto high = hn::BitCast(bytes, hn::ShiftRight<4>(hn::BitCast(halves, pairs)));
+      const auto wider = hn::And(hn::InterleaveLower(bytes, pairs, high), hn::Load(bytes, kNibble));
+      width[k] = hn::IfThenElseZero(is_group, hn::Add(wider, hn::Set(bytes, header.width[k])));
+      hn::Store(width[k], bytes, width_[k]);
+    }
+    const auto two = hn::Add(width[0], width[1]);
+    const auto stride = hn::Add(two, width[2]);
+    hn::Store(stride, bytes, stride_);
+    // How much numbers are above what they may be.
+    const auto above = [&](ByteVector numbers, const std::uint8_t(&most)[16]) {
+      return hn::SaturatedSub(numbers, hn::Load(bytes, most));
+    };
+    const auto is_zero = [&](ByteVector numbers) {
+      return hn::AllTrue(bytes, hn::Eq(numbers, hn::Zero(bytes)));
+    };
+    const auto widest = hn::Max(hn::Max(width[0], width[1]), width[2]);
+    if (!is_zero(above(widest, kWordBits))) return false;
+    layout_ = Layout::kAny;
+    if (is_zero(hn::Or(above(width[0], kMostOfX), above(two, kMostOfTwo)))) {
+      const auto least = hn::IfThenElseZero(is_group, hn::Load(bytes, kWordBits));
+      if (is_zero(hn::SaturatedSub(least, two))) {
+        layout_ = Layout::kLong;
+      } else if (is_zero(above(stride, kMostOfTwo))) {
+        layout_ = Layout::kShort;
+      }
+    }
+    // Where they start: sums of what those before take.
+    HWY_ALIGN static constexpr std::uint16_t kIota[ClusterHeader::kMostGroups] = {
+        0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+    const auto half_words = [](std::uint32_t value) {
+      return hn::Set(Halves(), static_cast<std::uint16_t>(value));
+    };
+    const auto is_last = hn::Eq(hn::Load(Halves(), kIota), half_words(cluster.groups - 1));
+    const auto vertices = hn::IfThenElse(is_last, half_words(cluster.last_group_size()),
+                                         half_words(header.group_size));
+    const auto taken = hn::ShiftRight<3>(
+        hn::Add(hn::Mul(hn::PromoteTo(Halves(), stride), vertices), half_words(7)));
+    auto end = taken;
+    end = hn::Add(end, hn::ShiftLeftLanes<1>(Halves(), end));
+    end = hn::Add(end, hn::ShiftLeftLanes<2>(Halves(), end));
+    end = hn::Add(end, hn::ShiftLeftLanes<4>(Halves(), end));
+    const auto carried = hn::Broadcast<7>(end);
+    end = hn::Add(end, hn::ConcatLowerLower(Halves(), carried, hn::Zero(Halves())));
+    const auto start = hn::Add(hn::Sub(end, taken), half_words(cluster.vertices_at));
+    const auto low = hn::And(start, half_words(0xff));
+    const auto high = hn::ShiftRight<8>(start);
+    hn::Store(pack(low), bytes, start_low_);
+    hn::Store(pack(high), bytes, start_high_);
+    const std::uint32_t all = hn::ExtractLane(hn::UpperHalf(hn::Half<Halves>(), end), 7);
+    return cluster.vertices_at + all == header.leaves_at;
+  }
+  static HWY_INLINE hn::Vec128<std::uint8_t> pack(hn::Vec<Halves> halves) {
+    return hn::Vec128<std::uint8_t>{_mm_packus_epi16(_mm256_castsi256_si128(halves.raw),
+                                                     _mm256_extracti128_si256(halves.raw, 1))};
+  }
 
   static HWY_INLINE WordVector iota() { return hn::Iota(Words(), 0u); }
-  static HWY_INLINE WordVector set(std::uint32_t value) { return hn::Set(Words(), value); }
+  static HWY_INLINE WordVector set(const std::uint32_t& value) { return hn::Set(Words(), value); }
   static HWY_INLINE WordMask is_less(WordVector a, WordVector b) {
     return hn::RebindMask(Words(), hn::Lt(hn::BitCast(Integers(), a), hn::BitCast(Integers(), b)));
   }
@@ -244,11 +340,9 @@ class ClusterReader {
     return hn::PromoteTo(
         Words(), hn::LoadU(small, reinterpret_cast<const std::uint8_t*>(&kRanksOfBits[bits])));
   }
-  // Products below 2^16, in half the time of those of words: not of leaf_bytes, which alone may
-  // take 16 bits.
+  // Products below 2^16, in half the time of those of words.
   static HWY_INLINE WordVector multiply(WordVector a, WordVector b) {
-    const hn::Repartition<std::uint16_t, Words> halves;
-    return hn::BitCast(Words(), hn::Mul(hn::BitCast(halves, a), hn::BitCast(halves, b)));
+    return hn::BitCast(Words(), hn::Mul(hn::BitCast(Halves(), a), hn::BitCast(Halves(), b)));
   }
 
   // Lane i: the highest of `bits` up to i that is set. Precondition: bit 0 is; less than 2^8.
@@ -260,32 +354,37 @@ class ClusterReader {
     return hn::Sub(exponent, constant<127>());
   }
 
+  // False if the leaf is corrupt, or its references take more bytes than a vector has.
   HWY_INLINE bool find_faces(std::uint32_t self, Faces& faces) const {
-    const ClusterHeader& header = cluster_.header;
-    const std::byte* const bytes = cluster_.bytes;
-    const auto start = static_cast<std::uint32_t>(
-                           read_bits(bytes, cluster_.table + self * cluster_.entry_bits, 25)) &
-                       mask_[kStartBits];
-    const std::uint32_t middle = cluster_.leaves_at + self * header.leaf_bytes + start;
-    if (middle * 8 > most_bits_) return false;
-    const auto fields = load<std::uint32_t>(bytes + middle);
+    const std::byte* const bytes = bytes_;
+    const std::uint32_t bit = table_ + self * entry_bits_;
+    const auto entry =
+        static_cast<std::uint32_t>(boxtree::load<std::uint64_t>(bytes + bit / 8) >> (bit % 8)) &
+        ((1u << entry_bits_) - 1);
+    constexpr std::uint32_t kSlopeBits = ClusterHeader::kSlopeBits;
+    const std::uint32_t byte =
+        starts_at_ + (self * start_slope_ >> kSlopeBits) + (entry & ((1u << start_bits_) - 1));
+    if (byte > size_) return false;
+    const auto fields = boxtree::load<std::uint32_t>(bytes + byte);
+    const auto* const after = reinterpret_cast<const std::uint8_t*>(bytes) + byte + sizeof(fields);
     faces.word = set(fields);
-    faces.self = self;
-    faces.leaf_bits = static_cast<std::uint32_t>(std::bit_width(self - (self != 0 ? 1u : 0u)));
+    faces.bytes = hn::LoadDup128(Bytes(), after);
     faces.new_thirds = (fields >> kStepBits) & 0xffu;
-    faces.others = fields >> (kStepBits + kLeafFaces);
-    faces.numbers_at = middle + kNumbersAt / 8;
+    faces.old_bits = old_bits_ + (fields >> (kStepBits + kLeafFaces));
     constexpr std::uint32_t kEachStep = 0x49249u;  // the first bit of each
     faces.aparts =
         1 + static_cast<std::uint32_t>(std::popcount((fields >> 1) & (fields >> 2) & kEachStep));
-    const std::uint32_t aparts_at = faces.numbers_at * 8 + faces.others * faces.leaf_bits;
-    faces.new_aparts = static_cast<std::uint32_t>(read_bits(bytes, aparts_at, 2 * kLeafFaces)) &
+    faces.new_aparts = boxtree::load<std::uint32_t>(bytes + byte + sizeof(fields)) &
                        ((1u << (2 * faces.aparts)) - 1);
-    faces.places_at = aparts_at + 2 * faces.aparts;
-    return true;
+    const auto new_vertices = static_cast<std::uint32_t>(
+        std::popcount(faces.new_aparts << kLeafFaces | faces.new_thirds));
+    faces.before = (entry >> start_bits_) + (self * first_slope_ >> kSlopeBits) - first_bias_;
+    faces.last = faces.before + new_vertices;
+    const std::uint32_t olds = kLeafFaces + 2 * faces.aparts - new_vertices;
+    return HWY_LIKELY(2 * faces.aparts + olds * faces.old_bits <= 128);
   }
 
-  // The corners of faces, and those of the source, which position() needs.
+  // The corners of faces, and those of the source, which read_corners() needs.
   HWY_INLINE Corners join_faces(const Faces& faces) {
     // The step to each face; the first is apart.
     HWY_ALIGN static constexpr std::uint32_t kShift[kWideChildren] = {0, 0, 3, 6, 9, 12, 15, 18};
@@ -320,147 +419,132 @@ class ClusterReader {
     return corners;
   }
 
-  // The words of 32 bits that begin at the bytes of some bits, shifted so that the field is lowest.
-  // A field of up to kGatheredBits is whole.
-  HWY_INLINE WordVector fields_at(WordVector bit) const {
-    return hn::Shr(words_at(hn::ShiftRight<3>(bit)), hn::And(bit, constant<7>()));
+  // The byte of a table that each lane of `group` names.
+  static HWY_INLINE WordVector look_up(hn::Vec<Bytes> table, WordVector group) {
+    return hn::BitCast(Words(), hn::TableLookupBytes(table, hn::BitCast(Bytes(), group)));
   }
-  // The same for fields of up to 32 bits.
-  HWY_INLINE WordVector wide_fields_at(WordVector bit) const {
-    const auto byte = hn::ShiftRight<3>(bit);
-    const auto shift = hn::And(bit, constant<7>());
-    const auto above = words_at(hn::Add(byte, constant<4>()));
-    return hn::Or(hn::Shr(words_at(byte), shift),
-                  hn::Shl(hn::ShiftLeft<1>(above), hn::Sub(small(31), shift)));
-  }
-  HWY_INLINE WordVector words_at(WordVector byte) const {
-    return hn::GatherOffset(Words(), reinterpret_cast<const std::uint32_t*>(cluster_.bytes),
-                            hn::BitCast(Integers(), byte));
+  static HWY_INLINE WordVector look_up(const std::uint8_t (&table)[ClusterHeader::kMostGroups],
+                                       WordVector group) {
+    return look_up(hn::LoadDup128(Bytes(), table), group);
   }
 
-  // False if places take more bytes than a vector has.
-  HWY_INLINE bool find_places(const Faces& faces, Places& places) const {
-    const auto slot_bits = static_cast<std::uint32_t>(std::bit_width(faces.others));
-    const std::uint32_t bits = slot_bits + cluster_.header.own_bits;
-    const std::uint32_t is_new = faces.new_aparts << kLeafFaces | faces.new_thirds;
-    const std::uint32_t count =
-        kLeafFaces + 2 * faces.aparts - static_cast<std::uint32_t>(std::popcount(is_new));
-    if (HWY_UNLIKELY(faces.places_at % 8 + count * bits > 128)) return false;
-    places.bytes = hn::LoadDup128(
-        Bytes(), reinterpret_cast<const std::uint8_t*>(cluster_.bytes) + faces.places_at / 8);
-    places.first = small(faces.places_at % 8);
-    places.bits = small(bits);
-    places.slot_bits = small(slot_bits);
-    places.slot_mask = small((1u << slot_bits) - 1);
-    return true;
+  // The vertices of references `first` to `first` + 7. `rank`: how many up to each are new.
+  HWY_INLINE Vertices find_vertices(const Faces& faces, WordMask is_new, WordVector rank,
+                                    std::uint32_t first) const {
+    // Those that are not new have their fields one after another, each in up to three bytes.
+    HWY_ALIGN static constexpr std::uint8_t kFirstByte[32] = {
+        0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12,
+        0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
+    const auto old = hn::Sub(hn::Iota(Words(), first), rank);
+    const auto place = hn::Add(multiply(old, small(faces.old_bits)), small(2 * faces.aparts));
+    const auto byte = hn::TableLookupBytes(hn::BitCast(Bytes(), hn::ShiftRight<3>(place)),
+                                           hn::Load(Bytes(), kFirstByte));
+    const auto three = hn::Add(hn::BitCast(Words(), byte), constant<kThreeBytes>());
+    const auto field = hn::And(
+        hn::Shr(
+            hn::BitCast(Words(), hn::TableLookupBytes(faces.bytes, hn::BitCast(Bytes(), three))),
+            hn::And(place, constant<7>())),
+        set(kLaneConstants.low_bits[faces.old_bits]));
+    const auto number =
+        hn::IfThenElse(is_new, hn::Add(set(faces.before), rank), hn::Sub(set(faces.last), field));
+    const auto inside = hn::Min(number, set(last_vertex_));
+    const auto group = hn::BitCast(Words(), hn::MulHigh(hn::BitCast(Halves(), inside),
+                                                        hn::BitCast(Halves(), set(per_group_))));
+    const auto in_group = hn::Sub(inside, multiply(group, set(group_size_)));
+    Vertices out;
+    out.group = hn::Or(group, constant<kLowByte>());
+    const auto start =
+        hn::Or(look_up(start_low_, out.group), hn::ShiftLeft<8>(look_up(start_high_, out.group)));
+    const auto bit = multiply(in_group, look_up(stride_, out.group));
+    out.byte = hn::Add(start, hn::ShiftRight<3>(bit));
+    out.shift = hn::And(bit, constant<7>());
+    out.corrupt = hn::Xor(number, inside);
+    return out;
   }
-
-  // Eight references from `first` on. `is_own`: the leaf stores their vertices. `rank`: how many
-  // references up to each are such.
-  HWY_INLINE Named read_places(const Places& places, WordMask is_own, WordVector rank,
-                               std::uint32_t first) const {
-    // Places of references that are not new follow each other. Each has at most 8 bits.
-    const auto count = hn::Sub(hn::Iota(Words(), first), rank);
-    const auto place = hn::Add(multiply(count, places.bits), places.first);
-    const auto two_bytes =
-        hn::Add(multiply(hn::ShiftRight<3>(place), constant<0x0101>()), constant<0x0100>());
-    const auto field = hn::Shr(
-        hn::BitCast(Words(), hn::TableLookupBytes(places.bytes, hn::BitCast(Bytes(), two_bytes))),
-        hn::And(place, constant<7>()));
-    const auto number = hn::And(hn::Shr(field, places.slot_bits), set(own_mask_));
-    return {hn::IfThenZeroElse(is_own, hn::And(field, places.slot_mask)),
-            hn::IfThenElse(is_own, rank, hn::Add(number, constant<1>()))};
-  }
-
-  HWY_INLINE Slots find_slots(const Faces& faces) const {
-    const ClusterHeader& header = cluster_.header;
-    Slots slots;
-    // Lane 0 is the leaf itself; lane i has the i-th number, (i - 1) leaf_bits on.
-    const hn::Repartition<std::uint64_t, Words> pairs;
-    const auto all = hn::Set(pairs, load<std::uint64_t>(cluster_.bytes + faces.numbers_at));
-    HWY_ALIGN static constexpr std::uint32_t kEven[kWideChildren] = {0, 0, 1, 0, 3, 0, 5, 0};
-    HWY_ALIGN static constexpr std::uint32_t kOdd[kWideChildren] = {0, 0, 2, 0, 4, 0, 6, 0};
-    HWY_ALIGN static constexpr std::uint32_t kItself[kWideChildren] = {~0u};
-    const auto width = small(faces.leaf_bits);
-    const auto even = hn::Shr(all, hn::MulEven(hn::Load(Words(), kEven), width));
-    const auto odd = hn::Shr(all, hn::MulEven(hn::Load(Words(), kOdd), width));
-    const auto number = hn::And(
-        hn::OddEven(hn::BitCast(Words(), hn::ShiftLeft<32>(odd)), hn::BitCast(Words(), even)),
-        small((1u << faces.leaf_bits) - 1));
-    const auto self = small(faces.self);
-    const auto itself = hn::Load(Words(), kItself);
-    const auto leaf = hn::Or(hn::AndNot(itself, number), hn::And(itself, self));
-    const auto inside = hn::Min(leaf, self);
-    const auto is_listed = is_less(iota(), small(faces.others + 1));
-    const auto is_before = is_less(leaf, hn::Sub(self, itself));
-    const auto entry = hn::Add(multiply(inside, set(cluster_.entry_bits)), set(cluster_.table));
-    const auto start = hn::And(fields_at(entry), set(mask_[kStartBits]));
-    auto fields = fields_at(hn::Add(entry, set(field_[kStartBits])));
-    HWY_UNROLL(3)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto base = hn::And(fields, set(mask_[kBaseBits + k]));
-      fields = shift_right(fields, field_[kBaseBits + k]);
-      const auto wider = hn::And(fields, set(mask_[kWiderBits + k]));
-      fields = shift_right(fields, field_[kWiderBits + k]);
-      slots.width[k] = hn::Add(wider, set(field_[kWidth + k]));
-      slots.base[k] = hn::Add(shift_left(base, field_[kBaseShift + k]),
-                              set(static_cast<std::uint32_t>(cluster_.origin[k])));
-      slots.mask[k] = low_bits_of(slots.width[k]);
-    }
-    slots.stride = hn::Add(hn::Add(slots.width[0], slots.width[1]), slots.width[2]);
-    const auto middle = hn::ShiftLeft<3>(
-        hn::Add(start, hn::Add(hn::Mul(inside, set(header.leaf_bytes)), set(cluster_.leaves_at))));
-    const auto is_place = hn::And(is_before, hn::Eq(middle, hn::Min(middle, set(most_bits_))));
-    slots.corrupt = hn::VecFromMask(Words(), hn::AndNot(is_place, is_listed));
-    slots.middle = hn::Or(middle, hn::VecFromMask(Words(), hn::Not(is_listed)));
-    slots.is_narrow = HWY_LIKELY(are_narrow_);
-    if (!slots.is_narrow) {
-      const auto widest = hn::Max(hn::Max(slots.width[0], slots.width[1]), slots.width[2]);
-      const auto is_wide = hn::AndNot(is_less(widest, set(kGatheredBits + 1)), is_listed);
-      slots.is_narrow = hn::AllFalse(Words(), is_wide);
-    }
-    return slots;
-  }
+  static constexpr std::uint32_t kThreeBytes = 0x80020100u;  // added to the first, in each
+  static constexpr std::uint32_t kLowByte = 0x80808000u;     // other bytes name nothing
 
   // The low bits of words, up to 32 of them: a shift by 32 gives 0 here.
   static HWY_INLINE WordVector low_bits_of(WordVector width) {
     return hn::Not(hn::Shl(set(~0u), width));
   }
-  static HWY_INLINE WordVector shift_right(WordVector words, const std::uint32_t& bits) {
-    return hn::Shr(words, set(bits));
+  static HWY_INLINE WordVector shift_left(WordVector words,
+                                          const std::uint32_t (&bits)[kWideChildren]) {
+    return hn::Shl(words, hn::Load(Words(), bits));
   }
-  static HWY_INLINE WordVector shift_left(WordVector words, const std::uint32_t& bits) {
-    return hn::Shl(words, set(bits));
+  // One load each: gathers take longer on most processors, and these have all bits of a vertex.
+  HWY_INLINE LongWords words_at(WordVector byte) const {
+    const auto* const bytes = reinterpret_cast<const std::uint8_t*>(bytes_);
+    HWY_ALIGN std::uint32_t at[kWideChildren];
+    hn::Store(byte, Words(), at);
+    const auto two = [&](std::size_t i) {
+      const auto low = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes + at[i]));
+      const auto high = _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes + at[i + 4]));
+      return hn::Vec<Pairs>{_mm256_setr_m128i(low, high)};
+    };
+    const auto a = two(0), b = two(1), c = two(2), d = two(3);
+    // Of each block of four words: 0 0 1 1, 2 2 3 3 of two lanes, and so on.
+    const auto low_ab = hn::BitCast(Words(), hn::InterleaveLower(Pairs(), a, b));
+    const auto low_cd = hn::BitCast(Words(), hn::InterleaveLower(Pairs(), c, d));
+    const auto high_ab = hn::BitCast(Words(), hn::InterleaveUpper(Pairs(), a, b));
+    const auto high_cd = hn::BitCast(Words(), hn::InterleaveUpper(Pairs(), c, d));
+    return {{every_second<0>(low_ab, low_cd), every_second<1>(low_ab, low_cd),
+             every_second<0>(high_ab, high_cd), every_second<1>(high_ab, high_cd)}};
+  }
+  // Within each block, words kFirst and kFirst + 2 of `a`, then of `b`.
+  template <int kFirst>
+  static HWY_INLINE WordVector every_second(WordVector a, WordVector b) {
+    return WordVector{_mm256_castps_si256(
+        _mm256_shuffle_ps(_mm256_castsi256_ps(a.raw), _mm256_castsi256_ps(b.raw),
+                          _MM_SHUFFLE(kFirst + 2, kFirst, kFirst + 2, kFirst)))};
   }
 
-  // The vertices of references `first` and on. Returns a vector that is 0 but for lanes whose bytes
-  // are corrupt.
-  HWY_INLINE WordVector read_vertices(const Slots& slots, const Named& named, std::uint32_t first,
-                                      FloatVector scale, FloatVector (&out)[3]) {
-    const auto slot = named.slot;
-    const auto begin =
-        hn::Sub(permute(slots.middle, slot), multiply(named.back, permute(slots.stride, slot)));
-    WordVector bit[3];
-    bit[0] = hn::Min(begin, set(most_bits_));
-    bit[1] = hn::Add(bit[0], permute(slots.width[0], slot));
-    bit[2] = hn::Add(bit[1], permute(slots.width[1], slot));
+  // The 32 bits from `bit` on of two words, `bit` at most 32. Shifts by 32 and more, which negative
+  // numbers are here, give 0.
+  static HWY_INLINE WordVector funnel(WordVector low, WordVector high, WordVector bit) {
+    return hn::Or(hn::Shr(low, bit), hn::Shl(high, hn::Sub(small(32), bit)));
+  }
+  // The same of three words, `bit` at most 64.
+  static HWY_INLINE WordVector funnel(WordVector low, WordVector middle, WordVector high,
+                                      WordVector bit) {
+    return hn::Or(funnel(low, middle, bit), funnel(middle, high, hn::Sub(bit, small(32))));
+  }
+
+  // The vertices of references `first` and on.
+  template <Layout kLayout>
+  HWY_INLINE void read_vertices(const Vertices& vertices, std::uint32_t first, FloatVector scale,
+                                FloatVector (&out)[3]) {
+    WordVector width[3];
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) width[k] = look_up(width_[k], vertices.group);
+    const auto [word] = words_at(vertices.byte);
+    const auto x = vertices.shift;
+    const auto y = hn::Add(x, width[0]);
+    const auto z = hn::Add(y, width[1]);
     WordVector stored[3];
-    if (HWY_LIKELY(slots.is_narrow)) {
-      HWY_UNROLL(3)
-      for (std::size_t k = 0; k < 3; ++k) stored[k] = fields_at(bit[k]);
+    if constexpr (kLayout == Layout::kAny) {
+      stored[0] = funnel(word[0], word[1], x);
+      stored[1] = funnel(word[0], word[1], word[2], y);
+      stored[2] = hn::Or(funnel(word[0], word[1], word[2], z),
+                         funnel(word[2], word[3], hn::Sub(z, small(64))));
     } else {
-      HWY_UNROLL(3)
-      for (std::size_t k = 0; k < 3; ++k) stored[k] = wide_fields_at(bit[k]);
+      stored[0] = hn::Shr(word[0], x);
+      stored[1] = funnel(word[0], word[1], y);
+      stored[2] = kLayout == Layout::kLong ? funnel(word[1], word[2], hn::Sub(z, small(32)))
+                                           : hn::Or(funnel(word[0], word[1], z),
+                                                    hn::Shr(word[1], hn::Sub(z, small(32))));
     }
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
-      stored[k] =
-          hn::Add(hn::And(stored[k], permute(slots.mask[k], slot)), permute(slots.base[k], slot));
+      const auto* const bases = reinterpret_cast<const std::uint8_t*>(bases_) + k * groups_;
+      const auto base = look_up(hn::LoadDup128(Bytes(), bases), vertices.group);
+      stored[k] = hn::Add(hn::And(stored[k], low_bits_of(width[k])),
+                          hn::Add(shift_left(base, base_shift_[k]), hn::Load(Words(), origin_[k])));
     }
     if (view_.numbers == ClusterNumbers::kGrid) {
       HWY_UNROLL(3)
       for (std::size_t k = 0; k < 3; ++k) {
-        const auto whole = shift_left(stored[k], field_[kTrailing + k]);
+        const auto whole = shift_left(stored[k], trailing_[k]);
         hn::Store(whole, Words(), number_[k] + first);
         out[k] = hn::Mul(hn::ConvertTo(Floats(), hn::BitCast(Integers(), whole)), scale);
       }
@@ -469,28 +553,28 @@ class ClusterReader {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto sign = hn::BroadcastSignBit(hn::BitCast(Integers(), stored[k]));
         const auto signs = hn::BitCast(Words(), sign);
-        const auto magnitude = shift_left(hn::Xor(stored[k], signs), field_[kTrailing + k]);
+        const auto magnitude = shift_left(hn::Xor(stored[k], signs), trailing_[k]);
         const auto bits = hn::Or(magnitude, hn::ShiftLeft<31>(signs));
         hn::Store(bits, Words(), number_[k] + first);
         out[k] = hn::Mul(hn::BitCast(Floats(), bits), scale);
       }
     }
-    return hn::Xor(bit[0], begin);
   }
 
-  // The vertices of more than four faces that are apart, and the corners of the leaf.
+  // The vertices of more than four faces that are apart, and the corners of the leaf. Returns a
+  // vector that is 0 but for lanes whose bytes are corrupt.
   template <std::size_t kStride>
-  HWY_NOINLINE WordVector read_more(const Faces& faces, const Places& places, const Slots& slots,
-                                    FloatVector scale, const FloatVector (&third)[3],
-                                    const FloatVector (&apart)[3], float (&out)[3][3][kStride]) {
+  HWY_NOINLINE WordVector read_more(const Faces& faces, FloatVector scale,
+                                    const FloatVector (&third)[3], const FloatVector (&apart)[3],
+                                    float (&out)[3][3][kStride]) {
     const std::uint32_t before = faces.new_thirds | (faces.new_aparts & 0xffu) << kWideChildren;
     const std::uint32_t is_new = faces.new_aparts >> kWideChildren;
     const auto rank =
         hn::Add(ranks(is_new), small(static_cast<std::uint32_t>(std::popcount(before))));
-    const Named named =
-        read_places(places, lanes_with(small(is_new), kLaneBits), rank, 2 * kWideChildren);
     FloatVector more[3];
-    const auto corrupt = read_vertices(slots, named, 2 * kWideChildren, scale, more);
+    const Vertices vertices =
+        find_vertices(faces, lanes_with(small(is_new), kLaneBits), rank, 2 * kWideChildren);
+    read_vertices<Layout::kAny>(vertices, 2 * kWideChildren, scale, more);
     HWY_ALIGN float all[kReferences];
     for (std::size_t k = 0; k < 3; ++k) {
       hn::Store(third[k], Floats(), all);
@@ -501,18 +585,34 @@ class ClusterReader {
         out[1][k][i] = all[corner_[1][i]];
       }
     }
-    return hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts - kWideChildren)), corrupt);
+    return hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts - kWideChildren)),
+                              vertices.corrupt);
   }
 
   const ClusterView& view_;
   std::uint32_t cluster_number_ = kNone;
-  Cluster cluster_;
-  std::uint32_t most_bits_ = 0;  // at which a field may begin
-  bool are_narrow_ = false;      // no offset of a vertex can have more than 25 bits
-  std::uint32_t own_mask_ = 0;
-  // The first bytes of the header, a word each, and as many set bits as each says.
-  HWY_ALIGN std::uint32_t field_[2 * kWideChildren];
-  HWY_ALIGN std::uint32_t mask_[2 * kWideChildren];
+  const std::byte* bytes_ = nullptr;
+  std::uint32_t size_ = 0;  // at which a leaf may begin
+  std::uint32_t table_ = 0, entry_bits_ = 0;
+  std::uint32_t start_bits_ = 0, starts_at_ = 0, start_slope_ = 0;
+  std::uint32_t first_slope_ = 0, first_bias_ = 0;  // with 1 more
+  std::uint32_t old_bits_ = 0;
+  std::uint32_t groups_ = 0;
+  const std::byte* bases_ = nullptr;
+  std::uint32_t last_vertex_ = 0;
+  std::uint32_t group_size_ = 0;
+  std::uint32_t per_group_ = 0;  // 2^16 / group_size_, rounded up
+  Layout layout_ = Layout::kAny;
+  // Each in all lanes.
+  HWY_ALIGN std::uint32_t origin_[3][kWideChildren];
+  HWY_ALIGN std::uint32_t base_shift_[3][kWideChildren];
+  HWY_ALIGN std::uint32_t trailing_[3][kWideChildren];
+  // Of each group: the widths of offsets, the bits of a vertex, the byte of the cluster where it
+  // starts.
+  HWY_ALIGN std::uint8_t width_[3][ClusterHeader::kMostGroups];
+  HWY_ALIGN std::uint8_t stride_[ClusterHeader::kMostGroups];
+  HWY_ALIGN std::uint8_t start_low_[ClusterHeader::kMostGroups];
+  HWY_ALIGN std::uint8_t start_high_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint32_t step_[kLeafFaces];        // to each face
   HWY_ALIGN std::uint32_t corner_[2][kLeafFaces];   // references of its first two corners
   HWY_ALIGN std::uint32_t number_[3][kReferences];  // [axis]: whole numbers, or bits of floats

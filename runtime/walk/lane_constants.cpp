@@ -9,6 +9,9 @@ const LaneConstants kLaneConstants = [] {
     constants.lanes[row].fill(LaneConstants::kInLanes[row]);
   }
   for (std::uint32_t i = 0; i < constants.number.size(); ++i) constants.number[i] = i;
+  for (std::uint32_t i = 0; i < constants.low_bits.size(); ++i) {
+    constants.low_bits[i] = (1u << i) - 1;
+  }
   return constants;
 }();
 

@@ -12,15 +12,17 @@ namespace boxtree {
 
 struct LaneConstants {
   /// The largest number that is in `number`.
-  static constexpr std::uint32_t kMost = 0x101;
+  static constexpr std::uint32_t kMost = 0xff;
   /// Numbers of `lanes`, in order.
-  static constexpr std::array<std::uint32_t, 11> kInLanes = {0, 1, 2,   3,     4,    5,
-                                                             6, 7, 127, 0x100, 0x101};
+  static constexpr std::array<std::uint32_t, 11> kInLanes = {0, 1, 2,   3,          4,         5,
+                                                             6, 7, 127, 0x80020100, 0x80808000};
 
   /// Row i: number kInLanes[i] in each lane.
   alignas(32) std::array<std::array<std::uint32_t, 8>, kInLanes.size()> lanes;
   /// Element i: i.
   std::array<std::uint32_t, kMost + 1> number;
+  /// Element i: i low bits.
+  std::array<std::uint32_t, 16> low_bits;
 };
 
 extern const LaneConstants kLaneConstants;

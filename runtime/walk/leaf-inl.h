@@ -108,11 +108,11 @@ class LeafFloats {
     const bool is_grid = reader_.is_grid();
     const double scale = is_grid ? reader_.grid_step() : reader_.frame().inverse_scale;
     bool is_finite = true;
-    for (std::size_t c = 0; c < 3; ++c) {
-      const std::array<double, 3> p = position(lane, c);
-      triangle.corner[c] = {p[0] * scale, p[1] * scale, p[2] * scale};
-      is_finite &= is_grid || is_within_range(triangle.corner[c]);
-    }
+    read_corners(lane, [&](std::size_t corner, double x, double y, double z) {
+      const Eigen::Vector3d position(x * scale, y * scale, z * scale);
+      is_finite &= is_grid || is_within_range(position);
+      triangle.corner[corner] = position;
+    });
     if (!is_finite) {
       error_ = Errc::kVertexNotFinite;
       return false;
@@ -139,14 +139,16 @@ class LeafFloats {
 
 #endif
 
-  [[nodiscard]] HWY_INLINE std::array<double, 3> position(std::uint32_t lane,
-                                                          std::size_t corner) const {
+  template <class Setter>
+  HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.position(lane, corner);
+    if (reader_.has_clusters()) return clusters_.read_corners(lane, set);
 #endif
-    const auto p = boxtree::load<std::array<float, 3>>(
-        mesh_.positions + start_[std::size_t{3} * lane + corner] * sizeof(float));
-    return {p[0], p[1], p[2]};
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto p = boxtree::load<std::array<float, 3>>(
+          mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
+      set(c, double{p[0]}, double{p[1]}, double{p[2]});
+    }
   }
 
   // The common case: three corners per face, in floats, in the tree's order, and scaled without

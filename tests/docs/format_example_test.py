@@ -7,6 +7,7 @@ row of its tables is what is at that bit, and the second reader finds the same c
 """
 import pathlib
 import re
+import struct
 import subprocess
 import sys
 import tempfile
@@ -46,36 +47,48 @@ class Example:
         self.number = trees.index(self.tree)
         self.bytes = bytes.fromhex(shown)
         table = bytes([1, 0, 0, 0])  # the only cluster begins at byte 4
-        assert self.tree.vertices == table + self.bytes + bytes(64), self.tree.vertices.hex(" ")
+        assert self.tree.vertices == table + self.bytes + bytes(72), self.tree.vertices.hex(" ")
         self.read = self.record_strips(reader)
 
     def record_strips(self, reader):
-        """Of each leaf, what the second reader makes of it: corners as [(leaf, vertex)] of each face."""
+        """Of each leaf, what the second reader makes of it: the vertices of each face."""
         strips = []
 
         class Recorded(reader.Clusters):
             def strip(self, *arguments):
-                faces, own, named = super().strip(*arguments)
-                strips.append([[named[reference] for reference in face] for face in faces])
-                return faces, own, named
+                faces, references, end = super().strip(*arguments)
+                strips.append([[references[reference] for reference in face] for face in faces])
+                return faces, references, end
 
         Recorded(self.tree)
         return strips
 
     def check_fields(self, is_whole):
         whole = int.from_bytes(self.bytes, "little")
-        covered = 0
+        covered, fields = 0, {}
         for row in sum(rows_of(self.text, "from"), []):
             byte, bit = row[0].split(".")
-            count, width = (int(part) for part in row[1].split(" x "))
-            shown, at = numbers(row[3]), 8 * int(byte) + int(bit)
-            found = [(whole >> (at + width * i)) & ((1 << width) - 1) for i in range(count)]
-            if width == SIGN_BITS:
-                origin = found = [value - (value >> (width - 1) << width) for value in found]
+            if " x " in row[1]:
+                count, width = (int(part) for part in row[1].split(" x "))
+                widths = [width] * count
+            else:
+                widths = [int(part) for part in row[1].split(" + ")]
+            shown, at, found, bits = numbers(row[3]), 8 * int(byte) + int(bit), [], 0
+            for width in widths:
+                found.append((whole >> at) & ((1 << width) - 1))
+                bits |= ((1 << width) - 1) << at
+                at += width
+            if widths[0] == SIGN_BITS:
+                found = [value - (value >> (SIGN_BITS - 1) << SIGN_BITS) for value in found]
             assert found == shown, (row, found)
-            if len(row) == 5:  # base is 0 in both examples
-                assert numbers(row[4]) == [low + field for low, field in zip(origin, shown)], row
-            bits = ((1 << (count * width)) - 1) << at
+            fields[row[2]] = found
+            if len(row) == 5:
+                group = int(row[2].split()[1]) // fields["group_size"][0]
+                for k, axis in enumerate("xyz"):
+                    base = fields.get(f"base of {axis}", [0])[group] << fields.get("base_shift", [0] * 3)[k]
+                    assert numbers(row[4])[k] == fields["origin"][k] + base + found[k], row
+                    wider = fields.get(f"wider of {axis}", [0])[group]
+                    assert widths[k] == fields["width"][k] + wider, row
             assert covered & bits == 0, f"two rows have bits of {row}"
             covered |= bits
         assert not is_whole or whole & ~covered == 0, "bits that no row shows"
@@ -85,9 +98,7 @@ class Example:
         assert len(tables) == len(self.read), (len(tables), len(self.read))
         for rows, faces in zip(tables, self.read):
             entered = 0
-            assert [numbers(row[3 if len(row) == 5 else 1]) for row in rows] == [
-                [vertex for _, vertex in face] for face in faces], (rows, faces)
-            assert all(leaf == 0 for face in faces for leaf, _ in face)
+            assert [numbers(row[3 if len(row) == 5 else 1]) for row in rows] == faces, (rows, faces)
             for row in rows:
                 if len(row) != 5:
                     continue
@@ -125,8 +136,9 @@ def main():
     assert not any(level.tree.origin)
     assert {abs(x) * 2.0 ** -16 for face in level.tree.clusters.faces for point in face for x in point} == {
         0.399993896484375}
-    assert (quads.tree.geometry, quads.tree.corners_per_face, quads.tree.face_count) == (read_bxt.EXACT, 4, 6)
-    assert [quads.tree.clusters.faces[0][i] for i in (0, 2)] == [(-0.5, -0.5, 0), (0.5, 0.5, 0)]
+    assert (quads.tree.geometry, quads.tree.corners_per_face, quads.tree.face_count) == (read_bxt.GRID, 4, 6)
+    assert struct.pack(">f", 0.5).hex() == f"{63 << 24:08x}" == "3f000000"
+    assert struct.pack(">f", -0.5).hex() == f"{(-1 - -64) << 24 | 1 << 31:08x}" == "bf000000"
     print("the examples are as cooked")
 
 

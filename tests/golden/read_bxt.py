@@ -269,7 +269,7 @@ class Clusters:
     """Geometry exact and grid (section 8.1): faces as lists of corners, which are floats of object
     space, or places on the grid."""
 
-    CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 20, 64
+    CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 24, 72
 
     def __init__(self, tree):
         self.exact = tree.geometry == EXACT
@@ -290,68 +290,70 @@ class Clusters:
 
     def cluster(self, data, faces):
         """Appends the faces of a cluster."""
-        axes, start_bits, leaf_bytes, own_bits, zero = struct.unpack_from("<15sBHBB", data)
-        trailing, base_bits, shift, width, wider_bits = (axes[i:i + 3] for i in range(0, 15, 3))
+        (axes, group_size, vertex_count, leaves_at, start_slope, start_bias, first_bias, first_slope,
+         start_bits, first_bits, old_bits) = struct.unpack_from("<9sB5H4B", data)
+        trailing, shift, width = (axes[i:i + 3] for i in range(0, 9, 3))
         for k in range(3):
-            expect(max(trailing[k], shift[k]) < self.bits and base_bits[k] + wider_bits[k] <= 8
-                   and width[k] + 2 ** wider_bits[k] - 1 <= self.bits, "header of a cluster")
-        expect(start_bits <= 16 and own_bits <= 5 and zero == 0, "header of a cluster")
+            expect(max(trailing[k], shift[k]) < self.bits and width[k] <= self.bits,
+                   "header of a cluster")
+        expect(start_bits <= 16 and first_bits <= 11 and old_bits <= 4, "header of a cluster")
+        expect(2 <= group_size <= 128 and 1 <= vertex_count <= 16 * group_size, "groups of a cluster")
         bits = Bits(data, 8 * self.HEADER)
         origin = [bits.take(self.bits) for _ in range(3)]
-        table = [(bits.take(start_bits),
-                  [(bits.take(base_bits[k]), bits.take(wider_bits[k])) for k in range(3)])
+        table = [(bits.take(start_bits), bits.take(first_bits))
                  for _ in range(-(-faces // self.LEAF_FACES))]
-        bits.zeros((bits.at + 7) // 8 * 8)
+        bits.zeros(-(-bits.at // 8) * 8)
+        groups = -(-vertex_count // group_size)
+        base = [[bits.take(8) for _ in range(groups)] for _ in range(3)]
+        widths = []
+        for k in range(3):
+            widths.append([width[k] + bits.take(4) for _ in range(groups)])
+            bits.zeros(-(-bits.at // 8) * 8)
+            expect(max(widths[k]) <= self.bits, "width of a group")
 
-        def coordinate(k, base, field):
-            m = self.signed(origin[k] + (base << shift[k]) + field)
+        def coordinate(k, group):
+            m = self.signed(origin[k] + (base[k][group] << shift[k]) + bits.take(widths[k][group]))
             if not self.exact:
                 return self.signed(m << trailing[k])
             return -self.real((-1 - m) << trailing[k]) if m < 0 else self.real(m << trailing[k])
 
-        table_end, stored = bits.at // 8, []
-        for i, (start, fields) in enumerate(table):
-            widths = [width[k] + fields[k][1] for k in range(3)]
-            middle = 8 * (table_end + i * leaf_bytes + start)
-            leaf = Bits(data, middle)
+        vertices = []
+        for group in range(groups):
+            for _ in range(min(group_size, vertex_count - len(vertices))):
+                vertices.append(tuple(coordinate(k, group) for k in range(3)))
+            bits.zeros(-(-bits.at // 8) * 8)
+        expect(bits.at == 8 * leaves_at, "leaves behind the vertices")
+        used = 0
+        for i, (start, first) in enumerate(table):
+            bits.zeros(8 * (leaves_at + (i * start_slope >> 3) + start - start_bias))
+            expect((i * first_slope >> 3) + first - first_bias == used, "the first vertex of a leaf")
             count = min(self.LEAF_FACES, faces - self.LEAF_FACES * i)
-            corners, own, named = self.strip(leaf, count, i, own_bits)
-            bits.zeros(middle - own * sum(widths))
-            points = [tuple(coordinate(k, fields[k][0], bits.take(widths[k])) for k in range(3))
-                      for _ in range(own)]
-            stored.append(points[::-1])
-            bits = leaf  # the next vertices come behind these faces
-            for other, place in named:
-                expect(place < len(stored[other]), "a vertex that exists")
-            points = [stored[other][place] for other, place in named]
-            self.faces += [[points[vertex] for vertex in face] for face in corners]
+            corners, references, used = self.strip(bits, count, used, old_bits)
+            expect(0 <= min(references) and max(references) < vertex_count, "a vertex that exists")
+            self.faces += [[vertices[references[corner]] for corner in face] for face in corners]
+        expect(used == vertex_count, "every vertex is used")
         end = (bits.at + 31) // 32 * 32
         bits.zeros(end)
         expect(end == 8 * len(data), "clusters follow each other")
 
-    def strip(self, bits, count, leaf, own_bits):
-        """The fields of a leaf: its faces as numbers of vertices, how many vertices it stores,
-        and of each vertex the leaf that stores it and the number there."""
+    def strip(self, bits, count, first, old_bits):
+        """The fields of a leaf: its faces as numbers of references, the vertex of each of these, and
+        the first vertex of the next leaf."""
         is_quad = [self.has_quads and bits.take(1) for _ in range(count)]
         steps = [6] + [bits.take(3) for _ in range(count - 1)]
         expect(7 not in steps, "step of a strip")
         aparts = steps.count(6)
         is_new = [bits.take(1) for _ in range(count)]
-        others = [bits.below(leaf) for _ in range(bits.take(3))]
-        expect(all(other < leaf for other in others), "a leaf before this one")
+        wider = bits.take(3)
+        old_bits += wider
         is_new += [bits.take(1) for _ in range(2 * aparts + sum(is_quad))]
-        named, own = [], 0
-        for new in is_new:
-            if new:
-                named.append((leaf, own))
-                own += 1
-            else:
-                slot = bits.below(len(others) + 1)
-                expect(slot <= len(others), "one of the leaves that are named")
-                named.append((others[slot - 1] if slot else leaf, bits.take(own_bits)))
+        expect(wider == 0 or not all(is_new), "no width of old references that are not there")
+        end = first + sum(is_new)
+        new = iter(range(first, end))
+        references = [next(new) if each else end - 1 - bits.take(old_bits) for each in is_new]
         thirds = iter(range(count))
         apart = iter(range(count, count + 2 * aparts))
-        fourths = iter(range(count + 2 * aparts, len(named)))
+        fourths = iter(range(count + 2 * aparts, len(references)))
         faces, entered = [], 0
         for step, quad in zip(steps, is_quad):
             if step == 6:
@@ -364,7 +366,7 @@ class Clusters:
                 face[(turn + 2) % 3] = next(thirds)
                 entered = turn
             faces.append(face + [next(fourths)] if quad else face)
-        return faces, own, named
+        return faces, references, end
 
     def signed(self, value):
         value &= (1 << self.bits) - 1

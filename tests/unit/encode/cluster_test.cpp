@@ -115,9 +115,8 @@ TEST_P(ExactStore, HoldsFloatsOfEveryExponent) {
   }
 }
 
-// Triangles around one vertex and others that are far apart in the tree's order: leaves name
-// vertices of more than seven others, and store some again.
-TEST_P(ExactStore, NamesVerticesOfManyLeaves) {
+// Triangles of few vertices in no order: leaves refer to vertices of all others.
+TEST_P(ExactStore, RefersToVerticesOfManyLeaves) {
   std::mt19937 random(3);
   SourceMesh mesh = test::soup(1, 1);
   mesh.positions.f32.clear();
@@ -144,9 +143,10 @@ cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16
   const std::size_t leaves = leaves_of(view.face_count);
   bytes.assign(view.bytes.size() + leaves * gap + kClusterUnit, std::byte{0});
   const std::size_t table = cluster_table_bytes(view.face_count);
-  std::copy_n(view.bytes.begin(), table + cluster.leaves_at, bytes.begin());
-  ClusterHeader header = cluster.header;
-  header.leaf_bytes = static_cast<std::uint16_t>(header.leaf_bytes + gap);
+  ClusterHeader header = cluster.header();
+  std::copy_n(view.bytes.begin(), table + header.leaves_at, bytes.begin());
+  header.start_slope =
+      static_cast<std::uint16_t>(header.start_slope + (gap << ClusterHeader::kSlopeBits));
   std::memcpy(bytes.data() + table, &header, sizeof(header));
   std::uint64_t end = 0;
   for (std::uint32_t i = 0; i < leaves; ++i) {
@@ -163,27 +163,52 @@ cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16
   return spread;
 }
 
-// leaf_bytes times the number of a leaf takes more than 16 bits, in which vectors multiplied them.
+void expect_equal_answers(const Tree& found, const Tree& expected) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> place(-2, 2);
+  for (int i = 0; i < 200; ++i) {
+    const Eigen::Vector3d point(place(random), place(random), place(random));
+    const PointResult of_expected = closest_point(expected, point);
+    const PointResult of_found = closest_point(found, point);
+    ASSERT_TRUE(of_expected);
+    ASSERT_EQ(of_found.code(), Errc::kOk);
+    ASSERT_TRUE(of_found);
+    EXPECT_EQ(of_found->distance, of_expected->distance);
+  }
+}
+
+// Leaves lie more than 2^16 bytes after the first.
 TEST_P(ExactStore, LeavesMayLieFarApart) {
   const SourceMesh mesh = test::torus(16, 12);
   ASSERT_LE(mesh.faces.size(), kClusterFaces);
   const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
-  const cooker::EncodedTree spread = with_gaps(mesh, GetParam(), 8192);
+  const cooker::EncodedTree spread = with_gaps(mesh, GetParam(), 4096);
   const std::vector<std::byte> bytes = cooker::serialize(std::span(&spread, 1));
   const File file = test::require(File::open(Bytes(bytes)));
   EXPECT_TRUE(cooker::verify_file(file).empty());
   const Tree tree = test::require(Tree::bind(file));
   EXPECT_EQ(decoded(tree), source(mesh));
-  std::mt19937 random(11);
-  std::uniform_real_distribution<double> place(-2, 2);
-  for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d point(place(random), place(random), place(random));
-    const PointResult expected = closest_point(cooked.tree, point);
-    const PointResult found = closest_point(tree, point);
-    ASSERT_TRUE(expected);
-    ASSERT_EQ(found.code(), Errc::kOk);
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->distance, expected->distance);
+  expect_equal_answers(tree, cooked.tree);
+}
+
+// Offsets of every width, alone and together: vectors cut them out of one, two or three words of 32
+// bits, and leave clusters with more vertices than their products of 16 bits can tell apart to the
+// decoder of one leaf.
+TEST_P(ExactStore, AnswersAreThoseOfArrays) {
+  std::mt19937 random(5);
+  for (const float span : {0x1p-20f, 0x1p-12f, 0x1p-4f, 1.0f}) {
+    for (const float at : {1.0f, 0.0f, -1.0f}) {
+      for (const bool is_welded : {true, false}) {
+        // No face of the soup shares a vertex: three for each.
+        SourceMesh mesh = is_welded ? test::torus(24, 12) : test::soup(600, 9);
+        std::uniform_real_distribution<float> noise(-span / 16, span / 16);
+        for (float& x : mesh.positions.f32) x = at + x * span + noise(random);
+        cooker::CookOptions arrays;
+        arrays.geometry = GeometryId::kArrays;
+        expect_equal_answers(test::cook_tree(mesh, GetParam()).tree,
+                             test::cook_tree(mesh, GetParam(), arrays).tree);
+      }
+    }
   }
 }
 

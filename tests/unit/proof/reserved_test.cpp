@@ -3,11 +3,13 @@
 // and none in files as they are written.
 #include <algorithm>
 #include <cstring>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
 #include "format/cluster.h"
+#include "format/cluster_leaf.h"
 #include "format/codec_packed.h"
 #include "format/codec_plain.h"
 #include "format/codec_wide.h"
@@ -126,15 +128,6 @@ TEST(ReservedBits, OfClustersAreFound) {
   options.grid.bits = 16;
   const FileBytes bytes = test::cook_bytes(test::torus(48, 24), CodecId::kWide8, options);
   const SectionEntry vertices = test::entry_of(bytes, SectionKind::kVertices);
-  const std::byte* const table = bytes.data() + vertices.offset;
-  // The first begins where the table ends.
-  const std::uint64_t clusters = load<std::uint32_t>(table) * kClusterUnit / sizeof(std::uint32_t);
-  ASSERT_GT(clusters, 2u);
-  for (std::uint64_t n = 0; n < clusters; ++n) {
-    const std::uint64_t cluster = load<std::uint32_t>(table, n) * kClusterUnit;
-    const std::uint64_t at = cluster + offsetof(ClusterHeader, reserved);
-    EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, at, 1));
-  }
   const std::uint64_t size = vertices.size;
   for (std::uint64_t at = size - kClusterPadding; at < size; ++at) {
     EXPECT_TRUE(is_found_at(bytes, SectionKind::kVertices, at, 1)) << at;
@@ -253,65 +246,95 @@ TEST(ReservedBits, OfMissingChildrenInPackedNodesAreFound) {
   }
 }
 
-// Found by the second reader: leaves begin in whole bytes and end in any bit.
-TEST(ReservedBits, BetweenLeavesOfClustersAreFound) {
+// Found by the second reader: leaves begin in whole bytes and end in any bit. So do tables, widths
+// of groups and the vertices of a group.
+TEST(ReservedBits, BetweenPartsOfClustersAreFound) {
   for (const GeometryId geometry : {GeometryId::kGrid, GeometryId::kExact}) {
     cooker::CookOptions options;
     options.geometry = geometry;
     options.grid.bits = 16;
-    std::size_t gaps = 0;
+    std::size_t gaps = 0, gaps_of_groups = 0;
     for (const cooker::SourceMesh& mesh : {test::torus(24, 12), test::city(4, 1)}) {
       const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8, options);
       const ClusterView& clusters = BoundTree::of(cooked.tree).leaves().clusters();
+      const auto expect_found = [&](std::uint64_t from, std::uint64_t to, std::uint32_t where) {
+        for (std::uint64_t bit = from; bit < to; ++bit) {
+          EXPECT_TRUE(is_found_at(cooked.bytes, SectionKind::kVertices, bit / 8, 1u << (bit % 8)))
+              << where;
+        }
+        return to - from;
+      };
       std::uint64_t end = 0;
       for (std::uint32_t leaf = 0; leaf < leaves_of(clusters.face_count); ++leaf) {
         ClusterLeaf decoded;
         ClusterLeafFields place;
         ASSERT_TRUE(decode_cluster_leaf(clusters, leaf, decoded, &place));
-        for (std::uint64_t bit = end; leaf % kClusterLeaves != 0 && bit < place.begin; ++bit) {
-          ++gaps;
-          EXPECT_TRUE(is_found_at(cooked.bytes, SectionKind::kVertices, bit / 8, 1u << (bit % 8)))
-              << leaf;
-        }
+        if (leaf % kClusterLeaves != 0) gaps += expect_found(end, place.begin, leaf);
         end = place.end;
+      }
+      for (std::uint32_t n = 0; n < clusters_of(clusters.face_count); ++n) {
+        Cluster cluster;
+        ClusterGroups groups;
+        ASSERT_TRUE(find_cluster(clusters, n, cluster) && find_groups(cluster, groups));
+        const auto start = static_cast<std::uint64_t>(cluster.bytes - clusters.bytes.data()) * 8;
+        const std::uint32_t leaves =
+            std::min(kClusterLeaves, static_cast<std::uint32_t>(leaves_of(clusters.face_count)) -
+                                         n * kClusterLeaves);
+        gaps_of_groups += expect_found(start + cluster.table + leaves * cluster.entry_bits,
+                                       start + 8 * cluster.bases_at, n);
+        for (std::uint32_t k = 0; k < 3; ++k) {
+          const std::uint64_t widths = start + 8 * (cluster.wider_at + k * cluster.wider_bytes());
+          gaps_of_groups += expect_found(widths + ClusterHeader::kWiderBits * cluster.groups,
+                                         widths + 8 * cluster.wider_bytes(), n);
+        }
+        for (std::uint32_t g = 0; g < cluster.groups; ++g) {
+          const std::uint32_t size =
+              g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+          const std::uint64_t after =
+              start + 8 * (cluster.vertices_at + groups.start[g]) + size * groups.stride[g];
+          gaps_of_groups += expect_found(after, align_up(after, 8), g);
+        }
       }
     }
     EXPECT_GT(gaps, 0u);
+    EXPECT_GT(gaps_of_groups, 0u);
   }
 }
 
-// Found by the second reader: a leaf that names a vertex of another which does not store so many.
-// Readers decode some bits of the cluster there.
-TEST(ReservedBits, AVertexThatAnotherLeafDoesNotStoreIsFound) {
+bool say(const cooker::Findings& findings, std::string_view text) {
+  return std::any_of(findings.begin(), findings.end(), [&](const Error& finding) {
+    return finding.detail.find(text) != std::string::npos;
+  });
+}
+
+// What verify finds after `change` was added to a byte of the header of the first cluster.
+cooker::Findings findings_after(const test::CookedTree& cooked, std::size_t field, int change) {
+  const std::uint32_t face_count = BoundTree::of(cooked.tree).leaves().clusters().face_count;
+  FileBytes bytes = cooked.bytes;
+  std::byte& low = bytes[test::entry_of(bytes, SectionKind::kVertices).offset +
+                         cluster_table_bytes(face_count) + field];
+  low = static_cast<std::byte>(std::to_integer<int>(low) + change);
+  test::repair_checksums(bytes);
+  return cooker::verify_file(test::require(File::open(Bytes(bytes))));
+}
+
+// Readers decode other vertices of the cluster.
+TEST(ReservedBits, VerticesThatAreNotUsedInOrderAreFound) {
   const test::CookedTree cooked = test::cook_tree(test::torus(24, 12), CodecId::kWide8);
-  const ClusterView& clusters = BoundTree::of(cooked.tree).leaves().clusters();
-  const SectionEntry vertices = test::entry_of(cooked.bytes, SectionKind::kVertices);
-  std::size_t found = 0;
-  for (std::uint32_t i = 1; i < kClusterLeaves; ++i) {
-    ClusterLeaf leaf;
-    ClusterLeafFields fields;
-    ASSERT_TRUE(decode_cluster_leaf(clusters, i, leaf, &fields));
-    if (fields.other_count == 0) continue;
-    // The last field of a leaf is a number of a vertex of another one, or of itself.
-    FileBytes bytes = cooked.bytes;
-    const std::uint64_t bit = fields.end - 1;
-    const std::uint32_t own_bits =
-        load<ClusterHeader>(clusters.bytes.data() + cluster_table_bytes(clusters.face_count))
-            .own_bits;
-    for (std::uint64_t b = bit + 1 - own_bits; b <= bit; ++b) {
-      bytes[vertices.offset + b / 8] |= std::byte{1} << (b % 8);
-    }
-    test::repair_checksums(bytes);
-    const cooker::Findings findings = cooker::verify_file(test::require(File::open(Bytes(bytes))));
-    found +=
-        std::any_of(findings.begin(), findings.end(),
-                    [](const Error& finding) {
-                      return finding.detail.find("that is not stored there") != std::string::npos;
-                    })
-            ? 1u
-            : 0u;
-  }
-  EXPECT_GT(found, 0u);
+  // That of leaf 1 is one more.
+  EXPECT_TRUE(say(
+      findings_after(cooked, offsetof(ClusterHeader, first_slope), 1 << ClusterHeader::kSlopeBits),
+      "of its cluster is the first that it uses first, expected"));
+}
+
+TEST(ReservedBits, AVertexThatNoLeafUsesIsFound) {
+  // One place, so that vertices take no bits.
+  cooker::SourceMesh mesh = test::soup(1, 1);
+  std::fill(mesh.positions.f32.begin(), mesh.positions.f32.end(), 1.0f);
+  const test::CookedTree cooked = test::cook_tree(mesh, CodecId::kWide8);
+  EXPECT_TRUE(findings_after(cooked, offsetof(ClusterHeader, vertex_count), 0).empty());
+  EXPECT_TRUE(say(findings_after(cooked, offsetof(ClusterHeader, vertex_count), 1),
+                  "cluster 0 has 2 vertices, of which its leaves use 1"));
 }
 
 // Found by the second reader: bytes behind the last cluster that are no one's.
