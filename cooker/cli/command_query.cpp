@@ -101,8 +101,9 @@ class BatchLines {
   bool is_too_long_ = false;
 };
 
-// Answers each line of the batch: JSON lines as they come, or one document with --json. A line that
-// cannot be answered gets an error in its place; the exit status is that of the first such line.
+// Answers each line of the batch: JSON lines as they come, or one document with --json, each with
+// the number of its line, since empty lines have no answer. A line that cannot be answered gets an
+// error in its place; the exit status is that of the first such line.
 using AnswerRequest = std::function<Result<Json>(const QueryRequest& request, TreeCache& others)>;
 int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
               const RequestDefaults& defaults) {
@@ -122,10 +123,12 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
       if (status == 0) status = error_info(error.code).exit_status;
       answer = Json{{"error", error_info(error.code).name}, {"detail", error.detail}};
     }
+    Json numbered = {{"line", lines.number()}};
+    numbered.update(*answer);
     if (arguments.json) {
-      answers.push_back(*answer);
+      answers.push_back(std::move(numbered));
     } else {
-      fmt::print("{}\n", line_of(*answer));
+      fmt::print("{}\n", line_of(numbered));
     }
   }
   if (arguments.json) print({{"answers", answers}});
@@ -325,11 +328,11 @@ void add_query_command(Command& program, int& status) {
       ->type_name("INSTANCE=POSE");
   Option* batch = command.add_file(
       "--batch", arguments->batch, Values::kFiles,
-      "Query every line of a file (- for standard input): JSON objects with the names "
-      "of the options as keys, \"file\", \"tree\" and \"mesh\" for FILE2, --tree2 and --mesh2, and "
-      "\"kind\" if no kind of query is given here. What lines of a kind that is given here do not "
-      "say "
-      "is taken from its options");
+      "Query every line of a file (- for standard input): JSON objects with the names of the "
+      "options as keys, without -- and with - or _ between words, \"file\", \"tree\" and \"mesh\" "
+      "for FILE2, --tree2 and --mesh2, and \"kind\" if no kind of query is given here. What lines "
+      "of a kind that is given here do not say is taken from its options. Answers are JSON, too, "
+      "each with the number of its \"line\"");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,

@@ -14,6 +14,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
+#include "cooker/text/nearest_name.h"
 #include "cooker/text/pose_fault.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -203,8 +204,9 @@ class KeyFields {
     for (const auto& [key, value] : json_.items()) {
       const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
       if (!known && key != "kind" && error_.empty()) {
-        error_ = fmt::format("{}: expected the keys {}{}kind, found \"{}\"", kind_,
-                             fmt::join(known_, ", "), known_.empty() ? "" : " or ", key);
+        error_ = fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_,
+                             fmt::join(known_, ", "), known_.empty() ? "" : " or ", key,
+                             suggestion(key, known_));
       }
     }
     return error_.empty() ? Status() : Status(invalid(error_));
@@ -347,13 +349,58 @@ std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
   return 0;
 }
 
-// "ray, box or point", of all kinds.
-std::string names_of_kinds() {
+std::vector<std::string> kind_names() {
   std::vector<std::string> names;
   for_each_kind([&]<class Kind>() { names.emplace_back(Kind::kKind); });
+  return names;
+}
+
+// "ray, box or point", of all kinds.
+std::string names_of_kinds() {
+  std::vector<std::string> names = kind_names();
   const std::string last = names.back();
   names.pop_back();
   return fmt::format("{} or {}", fmt::join(names, ", "), last);
+}
+
+// The object of a line. What nests deeper than any request would overflow the stack when a message
+// shows it.
+Result<Json> parse_line(std::string_view line) {
+  constexpr int kDeepest = 2;  // an array of numbers in the object
+  bool is_too_deep = false;
+  const auto watch = [&is_too_deep](int depth, Json::parse_event_t /*event*/, const Json&) {
+    is_too_deep = is_too_deep || depth > kDeepest;
+    return !is_too_deep;
+  };
+  try {
+    Json json = Json::parse(line, watch);
+    if (is_too_deep) {
+      return invalid(
+          "expected a JSON object of numbers, texts and arrays of numbers, found an "
+          "array or an object in another");
+    }
+    if (!json.is_object()) return invalid("expected a JSON object, found " + found_text(json));
+    return json;
+  } catch (const Json::parse_error& error) {
+    return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", error.byte));
+  } catch (const Json::out_of_range&) {
+    return invalid(
+        "expected a JSON object of finite numbers, found one beyond what a double holds");
+  }
+}
+
+// Names of options have hyphens, keys of answers underscores: keys of lines have either.
+Result<Json> with_underscores(const Json& json) {
+  Json named = Json::object();
+  for (const auto& [key, value] : json.items()) {
+    std::string name = key;
+    std::replace(name.begin(), name.end(), '-', '_');
+    if (named.contains(name)) {
+      return invalid(fmt::format("\"{}\": expected once, found twice: - and _ are the same", name));
+    }
+    named[name] = value;
+  }
+  return named;
 }
 
 Result<QueryRequest> request_of(std::string_view kind, const Json& json,
@@ -369,7 +416,13 @@ Result<QueryRequest> request_of(std::string_view kind, const Json& json,
     request.describe(fields);
     result = request;
   });
-  if (!result) return invalid(fmt::format("kind \"{}\": expected {}", kind, names_of_kinds()));
+  if (!result) {
+    if (kind.empty()) {
+      return invalid(fmt::format("\"kind\": expected {}, found no such key", names_of_kinds()));
+    }
+    return invalid(fmt::format("\"kind\": expected {}, found \"{}\"{}", names_of_kinds(), kind,
+                               suggestion(kind, kind_names())));
+  }
   if (Status status = fields.finish(); !status) return status.error();
   return *result;
 }
@@ -465,8 +518,11 @@ Error explained(const Error& error, const QueryRequest& request) {
 }
 
 Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults& defaults) {
-  const Json json = Json::parse(line, nullptr, false);
-  if (!json.is_object()) return invalid("expected one JSON object a line");
+  const Result<Json> parsed = parse_line(line);
+  if (!parsed) return parsed.error();
+  const Result<Json> named = with_underscores(*parsed);
+  if (!named) return named.error();
+  const Json& json = *named;
   std::string kind = defaults.kind;
   if (const auto given = json.find("kind"); given != json.end()) {
     if (!given->is_string())

@@ -435,6 +435,27 @@ names 'point: "at": expected [X,Y,Z], found no such key' '{"kind":"point"}'
 names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
 names 'contacts: expected the keys first or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
+kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
+names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'
+names "\"kind\": expected $kinds, found \"rya\"; did you mean 'ray'?" '{"kind":"rya"}'
+names 'point: expected the keys at, max_distance, relative_error, absolute_error, budget or kind, found "max_distence"; '\
+"did you mean 'max_distance'?" '{"kind":"point","at":[0,0,0],"max-distence":1}'
+names 'expected a JSON object, found no JSON at byte 31' '{"kind":"point","at":[1,0,0]} x'
+names 'expected a JSON object, found [1]' '[1]'
+names 'expected a JSON object of finite numbers, found one beyond what a double holds' '{"kind":"point","at":[1e999,0,0]}'
+names '"t_max": expected once, found twice: - and _ are the same' \
+  '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"t-max":1,"t_max":2}'
+# What nests deeply overflows no stack.
+names 'expected a JSON object of numbers, texts and arrays of numbers, found an array or an object in another' \
+  "{\"kind\":$(printf '[%.0s' {1..200000})$(printf ']%.0s' {1..200000})}"
+# Keys are the names of options, with - or _.
+printf '%s\n' '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t-max":3}' '' \
+  '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t_max":4}' '{}' >keys.jsonl
+expect 1 "$boxtree" query cube.bxt --batch keys.jsonl
+same "$(jq -cs 'map([.line, .hit, .error])' out)" '[[1,false,null],[3,true,null],[4,null,"invalid_query"]]'
+same "$(head -1 out)" '{"line":1,"hit":false}'
+expect 1 "$boxtree" query cube.bxt --batch keys.jsonl --json
+same "$(jq -c '.answers | map(.line)' out)" '[1,3,4]'
 for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
   names "pair: \"pose\": expected X,Y,Z or 12 numbers, as an array or as text, found $pose" \
     "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":$pose}"
