@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cooker/cli/command_app.h"
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/help_format.h"
@@ -43,6 +45,11 @@ std::vector<const Command*> parsed_commands(const Command& program) {
 // Whether the commands that were parsed have all that they need.
 void check_needed(const Command& program) {
   for (const Command* command : parsed_commands(program)) {
+    if (command->stands_too_early()) {
+      throw CLI::ArgumentMismatch(fmt::format("{} comes before {}, as in {}",
+                                              positionals_of(*command->parent()).front().metavar,
+                                              command->name(), call_of(*command)));
+    }
     for (const CLI::Option* option : command->app().get_options()) {
       const OptionFacts facts = command->facts(option);
       const bool is_excused = facts.unless != nullptr && facts.unless->count() > 0;
@@ -147,6 +154,13 @@ Command::Command(const std::string& name, const std::string& description, Comman
       parent_(&parent),
       app_(std::make_shared<CommandApp>(*this, description, parent.app_.get())) {
   app_->set_help_all_flag(kHelpAllFlag, "Print every option");
+  app_->preparse_callback([this](std::size_t /*arguments*/) {
+    stands_too_early_ = false;
+    for (const auto& option : parent_->options_) {
+      const bool is_needed = option->facts().is_needed && option->parsed()->get_positional();
+      stands_too_early_ = stands_too_early_ || (is_needed && option->count() == 0);
+    }
+  });
 }
 
 Command::~Command() = default;
@@ -237,10 +251,6 @@ Option* Command::add_flag(const std::string& name, bool& out, const std::string&
 void Command::takes_kinds() {
   app_->require_subcommand(0, 1);
   app_->fallthrough();
-}
-
-void Command::before_parsing(const std::function<void()>& then) {
-  app_->preparse_callback([then](std::size_t /*arguments*/) { then(); });
 }
 
 void Command::callback(const std::function<void()>& then) {

@@ -142,10 +142,11 @@ class Command {
 
   /// At most one of its commands is given, and takes the options of this one, too.
   void takes_kinds();
-  /// Before its own words are parsed.
-  void before_parsing(const std::function<void()>& then);
   /// When all was parsed.
   void callback(const std::function<void()>& then);
+  /// Whether it was given before what its parent needs, as in `query ray FILE`. Then `query pair A
+  /// B` would leave B for the parent's FILE.
+  [[nodiscard]] bool stands_too_early() const { return stands_too_early_; }
   /// Whether one of its commands was given.
   [[nodiscard]] bool has_parsed_command() const;
 
@@ -164,6 +165,7 @@ class Command {
   std::vector<std::unique_ptr<Command>> commands_;
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<Example> examples_;
+  bool stands_too_early_ = false;
 };
 
 /// Of a callback: `what` is required and was not given.

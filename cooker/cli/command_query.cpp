@@ -272,7 +272,6 @@ class OptionFields {
 // What a kind needs of the command around it.
 struct Around {
   Command& query;
-  const Option* file;
   const Option* batch;
   std::shared_ptr<Arguments> arguments;
 };
@@ -284,22 +283,13 @@ void add_kind(const Around& around, int& status) {
   OptionFields options(command, around.batch);
   request->describe(options);
   for (const KindExample& example : Kind::kExamples) command.example(example.what, example.line);
-  // `query pair A B` would leave B for the first file.
-  const auto is_file_first = std::make_shared<bool>(false);
-  command.before_parsing(
-      [is_file_first, file = around.file] { *is_file_first = file->count() > 0; });
-  command.callback(
-      [is_file_first, request, needed = options.needed(), arguments = around.arguments, &status] {
-        if (!*is_file_first) {
-          status = usage(fmt::format("query: FILE comes before {}", Kind::kKind));
-          return;
-        }
-        RequestDefaults defaults{Kind::kKind, *request, {}};
-        for (const auto& [key, option] : needed) {
-          if (option->count() > 0) defaults.given.push_back(key);
-        }
-        status = run(*arguments, defaults);
-      });
+  command.callback([request, needed = options.needed(), arguments = around.arguments, &status] {
+    RequestDefaults defaults{Kind::kKind, *request, {}};
+    for (const auto& [key, option] : needed) {
+      if (option->count() > 0) defaults.given.push_back(key);
+    }
+    status = run(*arguments, defaults);
+  });
 }
 
 }  // namespace
@@ -311,10 +301,10 @@ void add_query_command(Command& program, int& status) {
                                          "Queries one tree or a scene, or two trees against each "
                                          "other. The options of query may also stand "
                                          "behind the kind.");
-  Option* file = command
-                     .add_file("FILE", arguments->file, Values::kCookedFiles,
-                               "The file to query; - is standard input")
-                     ->needed();
+  command
+      .add_file("FILE", arguments->file, Values::kCookedFiles,
+                "The file to query; - is standard input")
+      ->needed();
   command
       .add_option("--tree", arguments->tree,
                   "Which tree, by name or number [the scene of the file, or else tree 0]")
@@ -339,7 +329,7 @@ void add_query_command(Command& program, int& status) {
                 "The source mesh of a tree cooked with --external")
       ->group(kRareOptions);
   command.takes_kinds();
-  const Around around{command, file, batch, arguments};
+  const Around around{command, batch, arguments};
   for_each_kind([&]<class Kind>() { add_kind<Kind>(around, status); });
   command.example("Many queries, one per line, from standard input",
                   "echo '{\"kind\":\"point\",\"at\":[1,2,3]}' | boxtree query bunny.bxt --batch -");

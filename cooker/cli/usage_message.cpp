@@ -2,7 +2,7 @@
 #include "cooker/cli/usage_message.h"
 
 #include <algorithm>
-#include <string_view>
+#include <cstddef>
 #include <vector>
 
 #include "cooker/cli/command_app.h"
@@ -19,6 +19,12 @@ const Command& innermost(const CLI::App& program) {
   return command_of(*at);
 }
 
+std::vector<std::string> command_names(const Command& command) {
+  std::vector<std::string> names;
+  for (const Command* inner : command.commands()) names.push_back(inner->name());
+  return names;
+}
+
 // A command takes the options of those around it, too.
 std::vector<std::string> option_names(const Command& command) {
   std::vector<std::string> names;
@@ -30,35 +36,90 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-// The first argument that nobody took, an option if there is one; empty if all were taken.
-std::string unexpected(const CLI::App& app) {
-  const std::vector<std::string> rest = app.remaining(true);
-  const auto option = std::find_if(rest.begin(), rest.end(),
-                                   [](const std::string& word) { return word.starts_with('-'); });
-  if (option != rest.end()) return option->substr(0, option->find('='));
-  return rest.empty() ? std::string() : rest.front();
+// Of `names`: "'ray', 'box' or 'point'".
+std::string listed(const std::vector<std::string>& names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+    text += "'" + names[i] + "'";
+  }
+  return text;
+}
+
+// What a command calls the commands below it.
+std::string below(const Command& command) {
+  return command.parent() == nullptr ? "command" : "kind of " + command.name();
+}
+
+bool is_option(const std::string& word) {
+  return word.size() > 1 && word.front() == '-';
+}
+
+std::string without_value(const std::string& option) {
+  return option.substr(0, option.find('='));
+}
+
+// Where a command or a kind of query should be and none was recognised: the word that was probably
+// meant to be one, whatever options follow it. `rest`: what nobody took, in order. The name of the
+// file may have been put behind the kind, so that it is the kind that was taken for it.
+std::string misspelt_command(const Command& command, const std::vector<std::string>& rest) {
+  std::vector<std::string> words;
+  for (const CLI::Option* option : command.app().get_options()) {
+    if (!option->get_positional()) continue;
+    words.insert(words.end(), option->results().begin(), option->results().end());
+  }
+  const auto first_option = std::find_if(rest.begin(), rest.end(), is_option);
+  words.insert(words.end(), rest.begin(), first_option);
+  const std::vector<std::string> names = command_names(command);
+  for (const std::string& word : words) {
+    if (!suggestion(word, names).empty()) return word;
+  }
+  return rest.empty() || is_option(rest.front()) ? std::string() : rest.front();
+}
+
+bool has_option(const Command& command, const std::string& name) {
+  const std::vector<OptionText> options = options_of(command);
+  return std::any_of(options.begin(), options.end(), [&](const OptionText& option) {
+    return std::find(option.names.begin(), option.names.end(), name) != option.names.end();
+  });
+}
+
+// An option that nobody took.
+std::string unknown_option(const Command& command, const std::string& word) {
+  const std::string start = "'" + word + "' is ";
+  if (has_option(command, word)) return start + "an option that comes after " + command.name();
+  std::vector<std::string> owners;
+  for (const Command* inner : command.commands()) {
+    if (has_option(*inner, word)) owners.push_back(inner->name());
+  }
+  if (!owners.empty()) return start + "an option of " + listed(owners) + ", which comes before it";
+  return start + "no option" + suggestion(word, option_names(command));
 }
 
 // What was misspelt comes before what is missing because of it.
 std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  const std::string word = is_missing || is_extra ? unexpected(app) : std::string();
-  if (word.starts_with('-')) {
-    return "'" + word + "' is no option" + suggestion(word, option_names(command));
+  if (!is_missing && !is_extra) return error.what();
+  const std::vector<std::string> rest = app.remaining(true);
+  if (!rest.empty() && !command.commands().empty()) {
+    const std::string word = misspelt_command(command, rest);
+    if (!word.empty()) return unknown_command(command, word);
   }
-  if (!word.empty() && !command.commands().empty()) return unknown_command(command, word);
-  if (!word.empty() && is_extra) return "'" + word + "' was not expected";
-  return is_missing && app.get_subcommands().empty() ? "a command is required" : error.what();
+  const auto option = std::find_if(rest.begin(), rest.end(), is_option);
+  if (option != rest.end()) return unknown_option(command, without_value(*option));
+  if (is_extra) return "'" + rest.front() + "' was not expected";
+  return app.get_subcommands().empty() ? "a command is required" : error.what();
 }
 
 }  // namespace
 
 std::string unknown_command(const Command& command, const std::string& word) {
-  std::vector<std::string> names;
-  for (const Command* inner : command.commands()) names.push_back(inner->name());
-  const std::string kind = command.parent() == nullptr ? "command" : "kind of " + command.name();
-  return "'" + word + "' is no " + kind + suggestion(word, names);
+  const std::string start = "'" + word + "' is no " + below(command);
+  for (const Command* inner : command.commands()) {
+    if (inner->find(word) != nullptr) return start + " but a " + below(*inner);
+  }
+  return start + suggestion(word, command_names(command));
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {

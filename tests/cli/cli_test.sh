@@ -297,6 +297,22 @@ See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
 misspelt "boxtree: query ray: --origin: expected X,Y,Z, found \"1,2\"
 See 'boxtree query ray --help'." query cube.bxt ray --origin 1,2
 misspelt "boxtree: 'quary' is no command; did you mean 'query'?" help quary
+# Options that follow a misspelt command or kind are not what is wrong.
+misspelt "boxtree: 'cok' is no command; did you mean 'cook'?
+See 'boxtree --help'." cok cube.obj -o cube.bxt
+misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+See 'boxtree query --help'." query cube.bxt rya --origin 0,0,9
+misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+See 'boxtree query --help'." query rya cube.bxt --origin 0,0,9
+misspelt "boxtree: query: '--origin' is an option of 'ray', which comes before it
+See 'boxtree query --help'." query cube.bxt --origin 0,0,9
+misspelt "boxtree: query: '--first' is an option of 'pair' or 'contacts', which comes before it
+See 'boxtree query --help'." query cube.bxt --first
+misspelt "boxtree: cook: '-o' is an option that comes after cook
+See 'boxtree cook --help'." -o cube.bxt cook cube.obj
+misspelt "boxtree: 'ray' is no command but a kind of query
+See 'boxtree --help'." ray cube.bxt --origin 0,0,9
+misspelt "boxtree: 'ray' is no command but a kind of query" help ray
 
 # help says what --help says, in lines that a terminal holds.
 help_of() {
@@ -339,8 +355,13 @@ cp cube.bxt ray
 expect 0 "$boxtree" query ./ray ray --origin 0.25,0.5,5 --direction 0,0,-1
 misspelt "boxtree: query ray: FILE is required
 See 'boxtree query ray --help'." query ray --origin 0,0,9 --direction 0,0,-1
-expect 1 "$boxtree" query pair cube.bxt cube.bxt
-grep -q 'FILE comes before pair' err
+misspelt "boxtree: query pair: FILE comes before pair, as in boxtree query FILE pair
+See 'boxtree query pair --help'." query pair cube.bxt cube.bxt
+for options in '' '--origin 0,0,9 --direction 0,0,-1'; do
+  # shellcheck disable=SC2086
+  misspelt "boxtree: query ray: FILE comes before ray, as in boxtree query FILE ray
+See 'boxtree query ray --help'." query ray cube.bxt $options
+done
 expect 0 "$boxtree" --help-all # of every command, rare ones too
 grep -q -- '--depfile' out
 expect 0 "$boxtree" --help
