@@ -206,7 +206,8 @@ std::vector<std::string> Command::details() const {
 }
 
 std::string Command::help() const {
-  return app_->help();
+  // CLI::App::help() prints that of the command that was parsed, which may be `help` itself.
+  return app_->get_formatter()->make_help(app_.get(), name_, CLI::AppFormatMode::Normal);
 }
 
 Option* Command::add(CLI::Option* parsed) {

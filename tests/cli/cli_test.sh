@@ -321,6 +321,9 @@ help_of() {
   cmp out help
   same "$(awk 'length > 79' help)" ""
 }
+expect 0 "$boxtree" help
+help_of
+grep -q '^  query ' help
 for command in cook info verify query bench report export completion help; do
   expect 0 "$boxtree" help $command
   help_of $command
