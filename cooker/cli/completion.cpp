@@ -16,30 +16,54 @@ namespace {
 // A command, and what may follow its name.
 struct Place {
   std::string path;  // "query ray"; empty for the program
-  const Command* command;
+  std::vector<const Command*> commands;
   std::vector<OptionText> options;  // a kind takes those of its command, too
+  std::vector<OptionText> positionals;
+  std::size_t commands_after = 0;  // how many positionals come before a command
 };
 
-void add_places(const Command& command, const std::string& path,
+std::string path_below(const std::string& path, const Command& command) {
+  return path + (path.empty() ? "" : " ") + command.name();
+}
+
+// What `help` takes, "help query ray", as if commands were its own.
+void add_names(const Command& command, const Place& of, std::vector<Place>& places) {
+  for (const Command* inner : command.commands()) {
+    Place place{path_below(of.path, *inner), inner->commands(), of.options, {}};
+    places.push_back(place);
+    add_names(*inner, place, places);
+  }
+}
+
+void add_places(const Command& program, const Command& command, const std::string& path,
                 const std::vector<OptionText>& inherited, std::vector<Place>& places) {
-  Place place{path, &command, options_of(command)};
+  Place place{path, command.commands(), options_of(command), {}};
   const std::vector<OptionText> own = place.options;
   for (const OptionText& option : inherited) {
     bool is_own = false;
     for (const OptionText& other : own) is_own = is_own || other.names == option.names;
     if (!is_own) place.options.push_back(option);
   }
+  for (const OptionText& positional : positionals_of(command)) {
+    if (positional.facts.values == Values::kCommands) {
+      place.commands = program.commands();
+      places.push_back(place);
+      return add_names(program, place, places);
+    }
+    place.positionals.push_back(positional);
+  }
+  place.commands_after = place.positionals.size();
   places.push_back(std::move(place));
   const bool is_program = command.parent() == nullptr;
   for (const Command* inner : command.commands()) {
-    add_places(*inner, path + (path.empty() ? "" : " ") + inner->name(),
+    add_places(program, *inner, path_below(path, *inner),
                is_program ? std::vector<OptionText>() : own, places);
   }
 }
 
 std::vector<Place> places_of(const Command& program) {
   std::vector<Place> places;
-  add_places(program, "", {}, places);
+  add_places(program, program, "", {}, places);
   return places;
 }
 
@@ -64,7 +88,7 @@ constexpr const char* kFishQuote = "\\'";
 
 std::vector<std::string> command_names(const Place& place) {
   std::vector<std::string> names;
-  for (const Command* inner : place.command->commands()) names.push_back(inner->name());
+  for (const Command* inner : place.commands) names.push_back(inner->name());
   return names;
 }
 
@@ -78,22 +102,12 @@ std::vector<std::string> names_with_values(const Place& place) {
   return names;
 }
 
-// Names of commands and, behind them, of their kinds.
-std::vector<std::string> all_names(const Command& program) {
-  std::vector<std::string> names, kinds;
-  for (const Command* command : program.commands()) {
-    names.push_back(command->name());
-    for (const Command* kind : command->commands()) kinds.push_back(kind->name());
-  }
-  names.insert(names.end(), kinds.begin(), kinds.end());
-  return names;
-}
-
 // The call of a helper of the scripts that offers values; empty if there is nothing to offer.
-std::string offer(const OptionText& option, const Command& program) {
+std::string offer(const OptionText& option) {
   if (!option.choices.empty()) return "__boxtree_words " + joined(option.choices);
   switch (option.facts.values) {
     case Values::kOther:
+    case Values::kCommands:  // are among the commands of the place
       break;
     case Values::kFiles:
       return "__boxtree_files";
@@ -107,8 +121,6 @@ std::string offer(const OptionText& option, const Command& program) {
       return "__boxtree_folders";
     case Values::kMeshEndings:
       return "__boxtree_words " + joined(mesh_endings());
-    case Values::kCommands:
-      return "__boxtree_words " + joined(all_names(program));
   }
   return {};
 }
@@ -117,19 +129,18 @@ std::string offer(const OptionText& option, const Command& program) {
 // both; a positional that repeats stands for its number and all later ones.
 template <class Line>
 std::string value_table(const std::vector<Place>& places, const Line& line) {
-  const Command& program = *places.front().command;
   std::string table;
   for (const Place& place : places) {
     for (const OptionText& option : place.options) {
-      const std::string offered = offer(option, program);
+      const std::string offered = offer(option);
       if (offered.empty() || option.metavar.empty()) continue;
       for (const std::string& name : option.names) {
         table += line(place.path + " " + name, false, offered);
       }
     }
     std::size_t number = 0;
-    for (const OptionText& positional : positionals_of(*place.command)) {
-      const std::string offered = offer(positional, program);
+    for (const OptionText& positional : place.positionals) {
+      const std::string offered = offer(positional);
       const std::string key = place.path + " " + std::to_string(number++);
       if (!offered.empty()) table += line(key, positional.repeats, offered);
     }
@@ -176,9 +187,9 @@ std::string bash_script(const Command& program) {
     for (const OptionText& option : place.options) {
       options.insert(options.end(), option.names.begin(), option.names.end());
     }
-    table += fmt::format("    {})\n      commands={} takes={}\n      options={} ;;\n",
+    table += fmt::format("    {})\n      commands={} after={} takes={}\n      options={} ;;\n",
                          quoted(place.path, kPosixQuote),
-                         quoted(joined(command_names(place)), kPosixQuote),
+                         quoted(joined(command_names(place)), kPosixQuote), place.commands_after,
                          quoted(joined(names_with_values(place)), kPosixQuote),
                          quoted(joined(options), kPosixQuote));
   }
@@ -226,7 +237,7 @@ __boxtree_value() {
 
 _boxtree() {
   local cur=${COMP_WORDS[COMP_CWORD]} command='' option='' given=0 word i
-  local commands='' options='' takes=''
+  local commands='' after=0 options='' takes=''
   local -a words=("${COMP_WORDS[@]}")
   COMPREPLY=()
 )sh" + posix_walk("1", "COMP_CWORD") +
@@ -236,7 +247,7 @@ _boxtree() {
   elif [[ $cur == -* ]]; then
     __boxtree_words "$options"
   else
-    [[ -n $commands ]] && __boxtree_words "$commands"
+    ((given >= after)) && __boxtree_words "$commands"
     __boxtree_value "$command $given"
   fi
 }
@@ -259,11 +270,11 @@ std::string zsh_script(const Command& program) {
   const std::vector<Place> places = places_of(program);
   std::string table;
   for (const Place& place : places) {
-    table += fmt::format("    {})\n      commands={} takes={}\n      described_commands=(",
+    table += fmt::format("    {})\n      commands={} after={} takes={}\n      described_commands=(",
                          quoted(place.path, kPosixQuote),
-                         quoted(joined(command_names(place)), kPosixQuote),
+                         quoted(joined(command_names(place)), kPosixQuote), place.commands_after,
                          quoted(joined(names_with_values(place)), kPosixQuote));
-    for (const Command* inner : place.command->commands()) {
+    for (const Command* inner : place.commands) {
       table += "\n        " + described(inner->name(), inner->summary());
     }
     table += ")\n      options=(";
@@ -301,7 +312,7 @@ __boxtree_value() {
 _boxtree() {
   emulate -L zsh
   setopt extended_glob
-  local cur=${words[CURRENT]} command='' option='' given=0 word i commands='' takes=''
+  local cur=${words[CURRENT]} command='' option='' given=0 word i commands='' after=0 takes=''
   local -a described_commands options
 )sh" + posix_walk("2", "CURRENT") +
          R"sh(  if [[ -n $option ]]; then
@@ -313,7 +324,7 @@ _boxtree() {
   elif [[ $cur == -* ]]; then
     _describe -o option options
   else
-    (( $#described_commands )) && _describe command described_commands
+    (( $#described_commands && given >= after )) && _describe command described_commands
     __boxtree_value "$command $given"
   fi
 }
@@ -329,12 +340,12 @@ std::string fish_script(const Command& program) {
     table += fmt::format("        case {}\n            set commands {}\n            set takes {}\n",
                          quoted(place.path, kFishQuote), joined(command_names(place)),
                          joined(names_with_values(place)));
-    const std::string here =
-        "complete -c boxtree -n " +
-        quoted("__boxtree_is_at " + quoted(place.path, kFishQuote), kFishQuote);
-    for (const Command* inner : place.command->commands()) {
-      rules += fmt::format("{} -a {} -d {}\n", here, inner->name(),
-                           quoted(inner->summary(), kFishQuote));
+    const std::string at = "__boxtree_is_at " + quoted(place.path, kFishQuote);
+    const std::string here = "complete -c boxtree -n " + quoted(at, kFishQuote);
+    for (const Command* inner : place.commands) {
+      rules += fmt::format("complete -c boxtree -n {} -a {} -d {}\n",
+                           quoted(fmt::format("{} {} more", at, place.commands_after), kFishQuote),
+                           inner->name(), quoted(inner->summary(), kFishQuote));
     }
     for (const OptionText& option : place.options) {
       std::string names;
@@ -342,8 +353,8 @@ std::string fish_script(const Command& program) {
         names += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
       }
       std::string values = option.metavar.empty() ? "" : " -x";
-      if (!values.empty() && !offer(option, program).empty()) {
-        values += " -a " + quoted("(" + offer(option, program) + ")", kFishQuote);
+      if (!values.empty() && !offer(option).empty()) {
+        values += " -a " + quoted("(" + offer(option) + ")", kFishQuote);
       }
       rules += here + names + values + " -d " + quoted(option.description, kFishQuote) + "\n";
     }
