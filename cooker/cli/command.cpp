@@ -2,8 +2,10 @@
 #include "cooker/cli/command.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <sstream>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,6 +14,7 @@
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/help_format.h"
 #include "cooker/cli/usage_message.h"
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -99,18 +102,53 @@ Option* Option::excludes(Option* other) {
 }
 
 Option* Option::one_of(const std::vector<std::string>& values) {
-  parsed_->check(CLI::IsMember(values));
+  CLI::IsMember member(values);  // help shows the values by its description
+  member.operation([values](std::string& value) {
+    const bool is_one = std::find(values.begin(), values.end(), value) != values.end();
+    return is_one ? std::string()
+                  : fmt::format("expected {}, found \"{}\"{}", listed(values), value,
+                                suggestion(value, values));
+  });
+  parsed_->check(member);
+  return this;
+}
+
+Option* Option::number(const std::string& expected, const std::function<bool(double)>& is_allowed,
+                       const std::string& shown) {
+  expected_ = expected;
+  is_allowed_ = is_allowed;
+  parsed_->get_validator(0)->description(shown);
   return this;
 }
 
 Option* Option::between(int low, int high, const std::string& shown) {
-  parsed_->check(CLI::Range(low, high).description(shown));
-  return this;
+  return number(
+      fmt::format("a whole number from {} to {}", low, high),
+      [low, high](double value) { return value >= low && value <= high; }, shown);
 }
 
-Option* Option::not_negative() {
-  parsed_->check(CLI::Validator(CLI::NonNegativeNumber).description(""));
-  return this;
+Option* Option::above_zero(const std::string& what) {
+  return number(what + " above 0", [](double value) { return value > 0 && std::isfinite(value); });
+}
+
+template <class T>
+void Option::expect_number() {
+  expected_ = std::is_floating_point_v<T> ? "a number"
+              : std::is_signed_v<T>       ? "a whole number"
+                                          : "a whole number of 0 or more";
+  // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
+  is_allowed_ = [](double value) { return !std::is_unsigned_v<T> || value >= 0; };
+  parsed_->check(CLI::Validator(
+      [this](std::string& text) {
+        T converted{};
+        double value = 0;
+        const bool is_number =
+            CLI::detail::lexical_cast(text, converted) && CLI::detail::lexical_cast(text, value);
+        return is_number && is_allowed_(value)
+                   ? std::string()
+                   : fmt::format("expected {}, found \"{}\"", expected_, text);
+      },
+      ""));
 }
 
 Option* Option::check(const std::function<std::string(const std::string& value)>& fault,
@@ -216,7 +254,13 @@ Option* Command::add(CLI::Option* parsed) {
 
 template <class T>
 Option* Command::add_option(const std::string& name, T& out, const std::string& help) {
-  return add(app_->add_option(name, out, help));
+  Option* const option = add(app_->add_option(name, out, help));
+  if constexpr (std::is_arithmetic_v<T>) {
+    option->expect_number<T>();
+  } else if constexpr (std::is_same_v<T, std::optional<double>>) {
+    option->expect_number<double>();
+  }
+  return option;
 }
 
 // What values of options may be.

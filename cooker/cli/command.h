@@ -69,9 +69,14 @@ class Option {
   Option* needed(const Option* unless = nullptr);
   Option* excludes(Option* other);
   Option* one_of(const std::vector<std::string>& values);
+  /// Of a number, which is any of its type otherwise: what it has to be. `expected` is for
+  /// messages, "a length above 0"; help shows `shown`.
+  Option* number(const std::string& expected, const std::function<bool(double)>& is_allowed,
+                 const std::string& shown = "");
   /// Whole numbers from `low` to `high`, which help shows as `shown`.
   Option* between(int low, int high, const std::string& shown = "");
-  Option* not_negative();
+  /// Finite numbers above 0; `what`: "a length".
+  Option* above_zero(const std::string& what);
   /// `fault` says what is wrong with a value, or nothing.
   Option* check(const std::function<std::string(const std::string& value)>& fault,
                 const std::string& shown = "");
@@ -84,8 +89,15 @@ class Option {
   [[nodiscard]] const CLI::Option* parsed() const { return parsed_; }
 
  private:
+  friend class Command;
+  /// Checks numbers before CLI11 converts them, whose errors do not name what was expected.
+  template <class T>
+  void expect_number();
+
   CLI::Option* const parsed_;
   OptionFacts facts_;
+  std::string expected_;
+  std::function<bool(double)> is_allowed_;
 };
 
 /// The command as CLI11 has it: cooker/cli/command_app.h.

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
-#include <cmath>
 #include <cstdio>
-#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
@@ -49,12 +47,6 @@ struct Arguments {
   int jobs = tbb::task_arena::automatic;
 };
 
-// What is wrong with a length or a budget, for CLI11, whose own PositiveNumber lets NaN pass.
-std::string positive_fault(const std::string& text) {
-  const double number = std::strtod(text.c_str(), nullptr);
-  return number > 0 && std::isfinite(number) ? "" : text + " is not above zero";
-}
-
 Json report_json(const Arguments& arguments, const Summary& summary, double seconds) {
   Json json = {{"output", arguments.job.output.string()}};
   if (!arguments.job.reordered.empty()) json["reordered"] = arguments.job.reordered.string();
@@ -80,12 +72,6 @@ std::string report_text(const Arguments& arguments, const std::string& output,
                     "wrote {}, {} bytes, in {:.2f} s; every triangle proven inside every "
                     "box above it\n",
                     shown(output), summary.file_bytes, seconds);
-}
-
-// The same of a share, for which CLI11's Range lets NaN pass.
-std::string share_fault(const std::string& text) {
-  const double number = std::strtod(text.c_str(), nullptr);
-  return number >= 0.01 && number <= 1 ? "" : text + " is not from 0.01 to 1";
 }
 
 // It becomes part of a file's name.
@@ -243,7 +229,7 @@ void add_cook_command(Command& program, int& status) {
   Option* tolerance = command.add_option(
       "--tolerance", arguments->job.options.grid.tolerance,
       "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
-  tolerance->type_name("LENGTH")->check(positive_fault)->excludes(exact);
+  tolerance->type_name("LENGTH")->above_zero("a length")->excludes(exact);
   Option* grid_bits = command.add_option(
       "--grid-bits", arguments->job.options.grid.bits,
       "Round positions to a grid of 2^N steps over the largest extent of all inputs");
@@ -256,15 +242,15 @@ void add_cook_command(Command& program, int& status) {
                                    arguments->job.options.wishes.max_bytes_per_triangle,
                                    "Choose nothing larger, nodes and geometry together")
                        ->type_name("BYTES")
-                       ->check(positive_fault);
+                       ->above_zero("a number of bytes");
   Option* slowdown =
       command
           .add_option(
               "--max-slowdown", arguments->job.options.wishes.max_slowdown,
               "Choose nothing with a larger slowdown: time over that of wide8 with arrays, mean "
-              "over the kinds of queries")
+              "over the kinds of queries; below 1 is faster than that")
           ->type_name("FACTOR")
-          ->check(positive_fault);
+          ->above_zero("a factor");
   Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
                                          "Leave the source face numbers out");
   command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
@@ -286,7 +272,9 @@ void add_cook_command(Command& program, int& status) {
            "Codecs with one triangle per leaf cut off empty slabs from this share of a box "
            "on; 1: never"))
       ->type_name("SHARE")
-      ->check(share_fault, "0.01 to 1")
+      ->number(
+          "a share from 0.01 to 1", [](double share) { return share >= 0.01 && share <= 1; },
+          "0.01 to 1")
       ->shows_default();
   rare(command.add_file("--costs", arguments->job.costs, Values::kFiles,
                         "Choose by the constants of your own machine, as `bench --calibrate "

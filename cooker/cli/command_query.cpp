@@ -218,8 +218,7 @@ class OptionFields {
     note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
   }
   void optional(const char* key, std::uint64_t& out, const char* help, bool* given = nullptr) {
-    // Unsigned numbers of CLI11 take "-1" for 2^64 - 1.
-    note(command_.add_option(option_name(key), out, help)->type_name("N")->not_negative(), given);
+    note(command_.add_option(option_name(key), out, help)->type_name("N"), given);
   }
   void optional(const char* key, bool& out, const char* help) {
     command_.add_flag(option_name(key), out, help);

@@ -355,14 +355,6 @@ std::vector<std::string> kind_names() {
   return names;
 }
 
-// "ray, box or point", of all kinds.
-std::string names_of_kinds() {
-  std::vector<std::string> names = kind_names();
-  const std::string last = names.back();
-  names.pop_back();
-  return fmt::format("{} or {}", fmt::join(names, ", "), last);
-}
-
 // The object of a line. What nests deeper than any request would overflow the stack when a message
 // shows it.
 Result<Json> parse_line(std::string_view line) {
@@ -418,9 +410,9 @@ Result<QueryRequest> request_of(std::string_view kind, const Json& json,
   });
   if (!result) {
     if (kind.empty()) {
-      return invalid(fmt::format("\"kind\": expected {}, found no such key", names_of_kinds()));
+      return invalid(fmt::format("\"kind\": expected {}, found no such key", listed(kind_names())));
     }
-    return invalid(fmt::format("\"kind\": expected {}, found \"{}\"{}", names_of_kinds(), kind,
+    return invalid(fmt::format("\"kind\": expected {}, found \"{}\"{}", listed(kind_names()), kind,
                                suggestion(kind, kind_names())));
   }
   if (Status status = fields.finish(); !status) return status.error();

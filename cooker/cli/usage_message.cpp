@@ -36,16 +36,6 @@ std::vector<std::string> option_names(const Command& command) {
   return names;
 }
 
-// Of `names`: "'ray', 'box' or 'point'".
-std::string listed(const std::vector<std::string>& names) {
-  std::string text;
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
-    text += "'" + names[i] + "'";
-  }
-  return text;
-}
-
 // What a command calls the commands below it.
 std::string below(const Command& command) {
   return command.parent() == nullptr ? "command" : "kind of " + command.name();

@@ -196,7 +196,7 @@ void ProfileReader::read_budget(const Header& header) {
   Fields fields(*header.table, "[budget]", header.line, complaints_);
   profile_.budget.bytes = fields.count("bytes");
   profile_.budget.bytes_per_triangle = fields.number("bytes_per_triangle", kAboveZero);
-  profile_.budget.slowdown = fields.number("slowdown", kAtLeastOne);
+  profile_.budget.slowdown = fields.number("slowdown", kAboveZero);
   fields.finish();
 }
 

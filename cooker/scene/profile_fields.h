@@ -43,7 +43,6 @@ struct NumberRange {
 inline constexpr NumberRange kAnyNumber = {"a finite number", std::numeric_limits<double>::lowest(),
                                            true};
 inline constexpr NumberRange kAboveZero = {"a number above 0", 0, false};
-inline constexpr NumberRange kAtLeastOne = {"a number of 1 or more", 1, true};
 
 /// The keys of one table. Each reader returns nothing if the key is missing or its value is
 /// invalid; invalid values are reported.

@@ -35,6 +35,15 @@ std::string nearest_name(std::string_view name, std::span<const std::string> nam
   return nearest == names.end() ? std::string() : *nearest;
 }
 
+std::string listed(std::span<const std::string> names) {
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (i > 0) text += i + 1 == names.size() ? " or " : ", ";
+    text += names[i];
+  }
+  return text;
+}
+
 std::string suggestion(std::string_view name, std::span<const std::string> names) {
   const std::string nearest = nearest_name(name, names);
   const bool is_near = edit_distance(name, nearest) <= std::max<std::size_t>(name.size() / 3, 1);

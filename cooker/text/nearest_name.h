@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Finds the name that a misspelt one was probably meant to be.
+// Names in messages: those that there are, and the one that a misspelt one was probably meant to
+// be.
 #pragma once
 
 #include <cstddef>
@@ -16,6 +17,9 @@ namespace boxtree::cooker {
 
 /// The first of `names` with the least distance; empty if there are none.
 [[nodiscard]] std::string nearest_name(std::string_view name, std::span<const std::string> names);
+
+/// "ray, box or point".
+[[nodiscard]] std::string listed(std::span<const std::string> names);
 
 /// "; did you mean 'query'?" with the nearest of `names`; empty if more than a third of the letters
 /// would change.

@@ -76,6 +76,13 @@ expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-bytes-per-triangle 1
 grep -q 'budget_unreachable: wanted at most 1 B/tri; .* takes .* B/tri' err
 [ ! -e refused.bxt ]
 for budget in 0 -1 nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --max-slowdown=$budget; done
+# Slowdowns below 1 are faster than wide8 with arrays, on the command line and in a profile.
+expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-slowdown 0.5
+grep -q 'budget_unreachable: wanted a slowdown of at most 0.5; .*, slowdown 0\.9' err
+printf '[budget]\nslowdown = 0.5\n' >fast.toml
+expect 1 "$boxtree" cook cube.obj -o refused.bxt --profile fast.toml
+grep -q 'budget_unreachable: .*wanted a slowdown of at most 0.5; .*, slowdown 0\.9' err
+[ ! -e refused.bxt ]
 
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --json
 same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
@@ -304,15 +311,40 @@ misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya --origin 0,0,9
 misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query rya cube.bxt --origin 0,0,9
-misspelt "boxtree: query: '--origin' is an option of 'ray', which comes before it
+misspelt "boxtree: query: '--origin' is an option of ray, which comes before it
 See 'boxtree query --help'." query cube.bxt --origin 0,0,9
-misspelt "boxtree: query: '--first' is an option of 'pair' or 'contacts', which comes before it
+misspelt "boxtree: query: '--first' is an option of pair or contacts, which comes before it
 See 'boxtree query --help'." query cube.bxt --first
 misspelt "boxtree: cook: '-o' is an option that comes after cook
 See 'boxtree cook --help'." -o cube.bxt cook cube.obj
 misspelt "boxtree: 'ray' is no command but a kind of query
 See 'boxtree --help'." ray cube.bxt --origin 0,0,9
 misspelt "boxtree: 'ray' is no command but a kind of query" help ray
+
+# Values name what was expected and what was found.
+misvalued() {
+  local said=$1
+  shift
+  expect 1 "$boxtree" "$@"
+  same "$(head -1 err)" "boxtree: $said"
+}
+for value in abc 0 -1 inf nan 1x; do
+  misvalued "cook: --tolerance: expected a length above 0, found \"$value\"" cook cube.obj -o x.bxt --tolerance="$value"
+done
+misvalued 'cook: --max-slowdown: expected a factor above 0, found "0"' cook cube.obj -o x.bxt --max-slowdown 0
+misvalued 'cook: --max-bytes-per-triangle: expected a number of bytes above 0, found "few"' \
+  cook cube.obj -o x.bxt --max-bytes-per-triangle few
+for value in 7 31 8.5 many; do
+  misvalued "cook: --grid-bits: expected a whole number from 8 to 30, found \"$value\"" cook cube.obj -o x.bxt --grid-bits $value
+done
+misvalued 'cook: --shrink-share: expected a share from 0.01 to 1, found "2"' cook cube.obj -o x.bxt --shrink-share 2
+misvalued 'cook: --jobs: expected a whole number from 1 to 1024, found "0"' cook cube.obj -o x.bxt --jobs 0
+misvalued "cook: --for: expected memory, speed or balance, found \"sped\"; did you mean 'speed'?" cook cube.obj -o x.bxt --for sped
+misvalued 'query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
+for value in 1.5 -1 x; do
+  misvalued "query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
+done
+expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --max-distance inf --budget 18446744073709551615
 
 # help says what --help says, in lines that a terminal holds.
 help_of() {

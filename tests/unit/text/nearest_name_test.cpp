@@ -29,5 +29,13 @@ TEST(NearestName, IsTheFirstOfThoseWithTheLeastDistance) {
   EXPECT_EQ(nearest_name("x", {}), "");
 }
 
+TEST(Listed, SeparatesTheLastByOr) {
+  const std::array<std::string, 3> names = {"cook", "book", "query"};
+  EXPECT_EQ(listed(names), "cook, book or query");
+  EXPECT_EQ(listed(std::span(names).first(2)), "cook or book");
+  EXPECT_EQ(listed(std::span(names).first(1)), "cook");
+  EXPECT_EQ(listed({}), "");
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
