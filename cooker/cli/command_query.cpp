@@ -181,9 +181,8 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const Result<OpenedTree> tree =
       bind_tree(std::move(opened->file), arguments.file, arguments.tree, arguments.mesh);
   if (!tree) return fail(tree.error());
-  return answer_all([&](const QueryRequest& each, TreeCache& others) {
-    return answer(tree->tree, each, others);
-  });
+  return answer_all(
+      [&](const QueryRequest& each, TreeCache& others) { return answer(*tree, each, others); });
 }
 
 // A value like "1,-2.5,3e4". `out` has to live until the command line has been parsed.

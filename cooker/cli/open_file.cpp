@@ -51,7 +51,14 @@ Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
   const auto [parsed, error] = std::from_chars(which.data(), end, index);
   if (error == std::errc() && parsed == end) return index;
   std::vector<std::string> names;
-  for (std::uint32_t i = 0; i < file.tree_count(); ++i) names.emplace_back(file.tree_name(i));
+  for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
+    if (!file.tree_name(i).empty()) names.emplace_back(file.tree_name(i));
+  }
+  if (names.empty() && file.tree_count() > 0) {
+    return Error{named.code(), fmt::format("no tree is called \"{}\": trees have no names in this "
+                                           "file; expected a number from 0 to {}",
+                                           which, file.tree_count() - 1)};
+  }
   return Error{named.code(),
                fmt::format("no tree is called \"{}\"{}", which, suggestion(which, names))};
 }

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/open_file.h"
+#include "cooker/cli/tree_kinds.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/text/nearest_name.h"
@@ -141,6 +142,29 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapReq
 
 Result<Json> answer(const Tree& /*tree*/, const ContactsRequest& /*request*/) {
   return Error{Errc::kNoScene, "contacts are those of a scene, and this is one tree"};
+}
+
+QueryKinds kind_of(const RayRequest&) {
+  return kRayQueries;
+}
+QueryKinds kind_of(const BoxRequest&) {
+  return kBoxQueries;
+}
+QueryKinds kind_of(const SphereRequest&) {
+  return kBoxQueries;
+}
+QueryKinds kind_of(const PointRequest&) {
+  return kPointQueries;
+}
+QueryKinds kind_of(const ContactsRequest&) {
+  return kPairQueries;
+}
+template <class AboutTwo>
+requires requires(const AboutTwo& request) {
+  request.second;
+}
+QueryKinds kind_of(const AboutTwo&) {
+  return kPairQueries;
 }
 
 Error invalid(std::string what) {
@@ -448,7 +472,9 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
   }
   Result<Tree> tree = Tree::bind(*file, *index, options);
   if (!tree) return Error{tree.code(), path.string() + ": " + tree.error().detail};
-  return OpenedTree{std::move(*file), std::move(source), std::move(*tree)};
+  const Result<QueryKinds> kinds = kinds_of_tree(*file, *index);
+  if (!kinds) return kinds.error();
+  return OpenedTree{std::move(*file), std::move(source), std::move(*tree), *index, *kinds};
 }
 
 Result<const Tree*> TreeCache::get(const SecondTree& second) {
@@ -456,9 +482,17 @@ Result<const Tree*> TreeCache::get(const SecondTree& second) {
   if (place == nullptr) {
     Result<OpenedTree> opened = open_tree(second.file, second.tree, second.mesh);
     if (!opened) return opened.error();
+    if ((opened->kinds & kPairQueries) == 0) {
+      const Error error = kind_left_out(opened->file, opened->index, kPairQueries);
+      return Error{error.code, second.file.string() + ": " + error.detail};
+    }
     place = std::make_unique<OpenedTree>(std::move(*opened));
   }
   return &place->tree;
+}
+
+QueryKinds kind_of(const QueryRequest& request) {
+  return std::visit([](const auto& q) { return kind_of(q); }, request);
 }
 
 std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {
@@ -528,6 +562,12 @@ Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& ot
   return query_one_or_two(
       request, others, [&](const auto& q) { return answer(tree, q); },
       [&](const Tree& second, const auto& q) { return answer_pair(tree, second, q); });
+}
+
+Result<Json> answer(const OpenedTree& opened, const QueryRequest& request, TreeCache& others) {
+  const QueryKinds kind = kind_of(request);
+  if ((opened.kinds & kind) == 0) return kind_left_out(opened.file, opened.index, kind);
+  return answer(opened.tree, request, others);
 }
 
 }  // namespace boxtree::cooker

@@ -237,7 +237,12 @@ struct OpenedTree {
   File file;
   std::unique_ptr<SourceMesh> mesh;
   Tree tree;
+  std::uint32_t index;  // of the tree in the file
+  QueryKinds kinds;     // that the scene's profile left to it; all of them without a scene
 };
+
+/// The kind that a scene needs for a query.
+[[nodiscard]] QueryKinds kind_of(const QueryRequest& request);
 
 /// Opens `path` and binds the tree with that name or number. `mesh` names the source of trees that
 /// were cooked with --external; it is imported and compared by content.
@@ -247,7 +252,8 @@ Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::strin
 Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
                              const std::string& which, const std::filesystem::path& mesh);
 
-/// Second trees of queries about two, each opened once.
+/// Second trees of queries about two, each opened once. Errors: kPartLeftOut, too, if its profile
+/// left pair queries out.
 class TreeCache {
  public:
   Result<const Tree*> get(const SecondTree& second);
@@ -326,5 +332,7 @@ Result<Json> answer_ray(const Target& target, const RayRequest& request, const A
 
 /// The answer in the form that `boxtree query --json` prints.
 Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others);
+/// The same; kPartLeftOut if the tree is one of a scene whose profile left such queries out.
+Result<Json> answer(const OpenedTree& opened, const QueryRequest& request, TreeCache& others);
 
 }  // namespace boxtree::cooker

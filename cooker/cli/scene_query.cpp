@@ -2,10 +2,14 @@
 // Moving, querying, and the JSON of answers.
 #include "cooker/cli/scene_query.h"
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -112,36 +116,40 @@ Result<Json> answer_pair(const Scene&, const Tree&, const OverlapRequest&) {
   return not_for_scenes("whether two trees touch within a distance");
 }
 
-QueryKinds kind_of(const RayRequest&) {
-  return kRayQueries;
-}
-QueryKinds kind_of(const BoxRequest&) {
-  return kBoxQueries;
-}
-QueryKinds kind_of(const SphereRequest&) {
-  return kBoxQueries;
-}
-QueryKinds kind_of(const PointRequest&) {
-  return kPointQueries;
-}
-QueryKinds kind_of(const ContactsRequest&) {
-  return kPairQueries;
-}
-template <class AboutTwo>
-requires requires(const AboutTwo& request) {
-  request.second;
-}
-QueryKinds kind_of(const AboutTwo&) {
-  return kPairQueries;
-}
-
 struct Move {
   std::string name;
   std::uint32_t instance;
   Pose pose;
 };
 
-Result<Move> parse_move(const Scene& scene, const std::string& text) {
+// A name may not be found because it is misspelt, or names or the instance were left out.
+Error no_instance(const File& file, const Scene& scene, const std::string& name) {
+  std::vector<std::string> names;
+  std::uint32_t source_instances = 0;  // at least; ids are their numbers in the source
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const Result<InstanceInfo> info = scene.info(i);
+    if (!info) continue;
+    if (!info->name.empty()) names.emplace_back(info->name);
+    source_instances = std::max(source_instances, info->id + 1);
+  }
+  if (names.empty()) {
+    SceneOptions needed;
+    needed.require_names = true;
+    const Result<Scene> bound = Scene::bind(file, needed);
+    if (!bound) {
+      return {bound.code(), fmt::format("--move {}: {}; give the number of the instance", name,
+                                        bound.error().detail)};
+    }
+  }
+  std::string detail = fmt::format("--move: no instance is named \"{}\"", name);
+  if (source_instances > scene.instance_count()) {
+    detail += fmt::format(", and {} or more instances of the source were left out of the file",
+                          source_instances - scene.instance_count());
+  }
+  return {Errc::kInstanceIndex, detail + suggestion(name, names)};
+}
+
+Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {
   const std::size_t at = text.rfind('=');
   const std::optional<Pose> pose =
       at == std::string::npos ? std::nullopt : parse_pose(std::string_view(text).substr(at + 1));
@@ -156,8 +164,11 @@ Result<Move> parse_move(const Scene& scene, const std::string& text) {
   if (found) return Move{name, *found, *pose};
   std::uint32_t number = 0;
   const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
-  if (error == std::errc() && end == name.data() + name.size()) return Move{name, number, *pose};
-  return found.error();
+  if (error != std::errc() || end != name.data() + name.size())
+    return no_instance(file, scene, name);
+  if (number < scene.instance_count()) return Move{name, number, *pose};
+  return Error{Errc::kInstanceIndex, fmt::format("--move {}: expected a number from 0 to {}", name,
+                                                 scene.instance_count() - 1)};
 }
 
 }  // namespace
@@ -169,7 +180,7 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
   std::vector<Move> parsed;
   std::vector<std::uint32_t> moving;
   for (const std::string& text : moves) {
-    const Result<Move> move = parse_move(*scene, text);
+    const Result<Move> move = parse_move(file, *scene, text);
     if (!move) return move.error();
     parsed.push_back(*move);
     moving.push_back(move->instance);
@@ -196,7 +207,7 @@ Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, Tree
   if (answered.code() != Errc::kPartLeftOut) return answered;
   // A query answers with a code alone; binding says by which line of the profile.
   SceneOptions needed;
-  needed.queries = std::visit([](const auto& q) { return kind_of(q); }, request);
+  needed.queries = kind_of(request);
   const Result<Scene> bound = Scene::bind(opened.file, needed);
   return bound ? answered : bound.error();
 }

@@ -43,12 +43,11 @@ MeshArrays absent_arrays(const TreeRecord& record) {
   return absent;
 }
 
-Result<Scene> bind_without_meshes(const File& file) {
+Result<Scene> bind_without_meshes(const File& file, SceneOptions options) {
   std::vector<SceneMeshArrays> absent;
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
     absent.push_back({i, absent_arrays(OpenFile::of(file).tree_record(i))});
   }
-  SceneOptions options;
   options.meshes = absent;
   return Scene::bind(file, options);
 }

@@ -23,8 +23,9 @@ namespace boxtree::cooker {
 /// bound and its boxes walked.
 [[nodiscard]] MeshArrays absent_arrays(const TreeRecord& record);
 
-/// Binds a scene whose leaves are not read; external geometry need not be given. Errors: as for
+/// Binds a scene whose leaves are not read; external geometry need not be given, and the meshes of
+/// `options` are not used. Errors: as for
 /// Scene::bind.
-[[nodiscard]] Result<Scene> bind_without_meshes(const File& file);
+[[nodiscard]] Result<Scene> bind_without_meshes(const File& file, SceneOptions options = {});
 
 }  // namespace boxtree::cooker

@@ -178,6 +178,55 @@ expect 5 "$boxtree" query profiled.bxt point --at 0,0,0
 grep -q 'part_left_out: .* left out by scene.toml:[0-9]*: queries' err # the line that did it
 expect 0 "$boxtree" info profiled.bxt
 grep -q 'left out: point queries, by scene.toml:[0-9]*: queries' out
+# A tree that is queried by itself, or is the second one, lacks what the profile left out of its scene or its objects.
+cat >parts.toml <<'TOML'
+[scene]
+source = "level.gltf"
+queries = ["ray", "box"]
+[[object]]
+name = "gone"
+match = ["Barrel 8"]
+leave_out = true
+[[object]]
+name = "targets"
+match = ["Crate"]
+queries = ["ray"]
+TOML
+expect 0 "$boxtree" cook --profile parts.toml -o parts.bxt -q
+says() {
+  local status=$1 said=$2
+  shift 2
+  expect "$status" "$boxtree" query "$@"
+  same "$(head -1 err)" "boxtree: $said"
+}
+by='were left out by parts.toml:3: queries = ["ray", "box"]'
+says 5 "part_left_out: the scene: point queries $by" parts.bxt --tree barrel point --at 0,0,0
+says 5 "part_left_out: the scene: pair queries $by" parts.bxt --tree barrel pair flat.bxt
+says 5 "part_left_out: parts.bxt: the scene: pair queries $by" flat.bxt distance parts.bxt --tree2 barrel
+says 5 'part_left_out: tree "crate": box queries were left out for the objects that place it: targets' \
+  parts.bxt --tree crate box --min 0,0,0 --max 1,1,1
+expect 0 "$boxtree" query parts.bxt --tree crate ray --origin 0,0,4 --direction 0,0,-1
+expect 0 "$boxtree" query parts.bxt --tree barrel box --min 0,0,0 --max 1,1,1
+echo '{"kind":"point","at":[0,0,0]}' >batch
+expect 5 "$boxtree" query parts.bxt --tree crate --batch batch
+same "$(jq -r .error out)" part_left_out
+# So does an instance that is moved.
+ray='ray --origin 0,10,0 --direction 0,-1,0'
+# shellcheck disable=SC2086
+says 1 'instance_index: parts.bxt: --move: no instance is named "Barrel 8", and 1 or more instances of the source were '\
+"left out of the file; did you mean 'Barrel 7'?" parts.bxt $ray --move 'Barrel 8=0,0,0'
+# shellcheck disable=SC2086
+says 1 'instance_index: level.bxt: --move: no instance is named "Crata"; did you mean '"'Crate'?" level.bxt $ray --move Crata=0,0,0
+# shellcheck disable=SC2086
+says 1 'instance_index: parts.bxt: --move 52: expected a number from 0 to 51' parts.bxt $ray --move 52=0,0,0
+sed '3s/.*/names = false/' parts.toml >unnamed.toml
+expect 0 "$boxtree" cook --profile unnamed.toml -o unnamed.bxt -q
+# shellcheck disable=SC2086
+says 5 'part_left_out: unnamed.bxt: --move Crate: the scene: names were left out by unnamed.toml:3: names = false; '\
+'give the number of the instance' unnamed.bxt $ray --move Crate=0,0,0
+# shellcheck disable=SC2086
+says 1 'tree_index: no tree is called "crate": trees have no names in this file; expected a number from 0 to 7' \
+  unnamed.bxt --tree crate $ray
 # Names that are left out are counted once.
 sed 's/^face_ids = false.*/names = false/' scene.toml >nameless.toml
 expect 0 "$boxtree" cook --profile nameless.toml -o nameless.bxt --json
