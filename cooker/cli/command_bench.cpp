@@ -160,7 +160,7 @@ int run_calibration(const Arguments& arguments) {
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
   if (arguments.json) {
-    fmt::print("{}\n", costs_to_json(*calibration));
+    print(Json::parse(costs_to_json(*calibration)));
     return 0;
   }
   for (const CodecCost& cost : calibration->costs) print_row(cost);

@@ -13,8 +13,8 @@ namespace boxtree::cooker {
 using Json = nlohmann::ordered_json;
 
 /// Prints one JSON document to standard output, behind the number of the schema that all documents
-/// of this program follow: keys may be added under it, none is renamed. Bytes that are no UTF-8
-/// become U+FFFD.
+/// of this program follow (docs/JSON.md): keys may be added under it, none is renamed. Bytes that
+/// are no UTF-8 become U+FFFD.
 void print(const Json& document);
 /// What print() prints.
 [[nodiscard]] std::string document_text(const Json& document);
