@@ -59,8 +59,10 @@ Result<std::uint32_t> find_tree(const File& file, const std::string& which) {
                                            "file; expected a number from 0 to {}",
                                            which, file.tree_count() - 1)};
   }
-  return Error{named.code(),
-               fmt::format("no tree is called \"{}\"{}", which, suggestion(which, names))};
+  constexpr std::size_t kMostListed = 8;
+  std::string meant = suggestion(which, names);
+  if (meant.empty() && names.size() <= kMostListed) meant = "; expected " + listed(names);
+  return Error{named.code(), fmt::format("no tree is called \"{}\"{}", which, meant)};
 }
 
 }  // namespace boxtree::cooker

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/open_file.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/cli/tree_kinds.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
@@ -456,7 +457,8 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
                              const std::string& which, const std::filesystem::path& mesh) {
   File* const file = &opened;
   const Result<std::uint32_t> index = find_tree(*file, which);
-  if (!index) return index.error();
+  const std::string name = is_standard_stream(path) ? "standard input" : path.string();
+  if (!index) return Error{index.code(), name + ": " + index.error().detail};
   BindOptions options;
   std::unique_ptr<SourceMesh> source;
   if (!mesh.empty()) {
@@ -471,7 +473,7 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
     options.verify_mesh = true;
   }
   Result<Tree> tree = Tree::bind(*file, *index, options);
-  if (!tree) return Error{tree.code(), path.string() + ": " + tree.error().detail};
+  if (!tree) return Error{tree.code(), name + ": " + tree.error().detail};
   const Result<QueryKinds> kinds = kinds_of_tree(*file, *index);
   if (!kinds) return kinds.error();
   return OpenedTree{std::move(*file), std::move(source), std::move(*tree), *index, *kinds};

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <string_view>
 #include <vector>
 
 #include "cooker/cli/command_app.h"
@@ -86,11 +87,28 @@ std::string unknown_option(const Command& command, const std::string& word) {
   return start + "no option" + suggestion(word, option_names(command));
 }
 
+// What CLI11 says of an option that has too few values or is there too often, by counts: "--at: 1
+// required X,Y,Z missing", "--at: At Most 1 required but received 2".
+std::string mismatch(const std::string& said) {
+  constexpr std::string_view kMissing = ": 1 required ";
+  constexpr std::string_view kRepeated = ": At Most 1 required but received ";
+  if (const std::size_t at = said.find(kMissing); at != std::string::npos) {
+    const std::size_t type = at + kMissing.size();
+    return said.substr(0, at) + ": expected " +
+           said.substr(type, said.find_first_of(": ", type) - type) + ", found no value";
+  }
+  if (const std::size_t at = said.find(kRepeated); at != std::string::npos) {
+    return said.substr(0, at) + ": expected once, found " + said.substr(at + kRepeated.size()) +
+           " times";
+  }
+  return said;
+}
+
 // What was misspelt comes before what is missing because of it.
 std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
-  if (!is_missing && !is_extra) return error.what();
+  if (!is_missing && !is_extra) return mismatch(error.what());
   const std::vector<std::string> rest = app.remaining(true);
   if (!rest.empty() && !command.commands().empty()) {
     const std::string word = misspelt_command(command, rest);

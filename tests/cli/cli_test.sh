@@ -340,6 +340,9 @@ done
 misvalued 'cook: --shrink-share: expected a share from 0.01 to 1, found "2"' cook cube.obj -o x.bxt --shrink-share 2
 misvalued 'cook: --jobs: expected a whole number from 1 to 1024, found "0"' cook cube.obj -o x.bxt --jobs 0
 misvalued "cook: --for: expected memory, speed or balance, found \"sped\"; did you mean 'speed'?" cook cube.obj -o x.bxt --for sped
+misvalued 'query point: --at: expected X,Y,Z, found no value' query cube.bxt point --at
+misvalued 'cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
+misvalued 'query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
 misvalued 'query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
 for value in 1.5 -1 x; do
   misvalued "query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
@@ -603,7 +606,8 @@ for tree in 1 flat; do
   same "$(jq -c '[.distance,.face]' out)" '[1,1]'
 done
 expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree 2
-expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree nobody
+misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query both.bxt point --at 0,0,0 --tree nobody
+misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query cube.bxt pair both.bxt --tree2 nobody
 
 # Blobs: smaller on disk, the same answers, refused when truncated.
 for method in lzma zstd; do

@@ -225,7 +225,7 @@ expect 0 "$boxtree" cook --profile unnamed.toml -o unnamed.bxt -q
 says 5 'part_left_out: unnamed.bxt: --move Crate: the scene: names were left out by unnamed.toml:3: names = false; '\
 'give the number of the instance' unnamed.bxt $ray --move Crate=0,0,0
 # shellcheck disable=SC2086
-says 1 'tree_index: no tree is called "crate": trees have no names in this file; expected a number from 0 to 7' \
+says 1 'tree_index: unnamed.bxt: no tree is called "crate": trees have no names in this file; expected a number from 0 to 7' \
   unnamed.bxt --tree crate $ray
 # Names that are left out are counted once.
 sed 's/^face_ids = false.*/names = false/' scene.toml >nameless.toml
