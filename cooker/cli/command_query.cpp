@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -81,16 +82,19 @@ class BatchLines {
   }
 
   [[nodiscard]] std::size_t number() const { return number_; }
+  [[nodiscard]] std::string name() const {
+    return is_standard_stream(path_) ? "standard input" : path_.string();
+  }
 
   // Why there is no next line, unless the file simply ended.
   [[nodiscard]] Status status() const {
     if (is_too_long_) {
-      return Error{Errc::kInvalidQuery, fmt::format("{}: line {} has more than {} bytes",
-                                                    path_.string(), number_, kLongestLine)};
+      return Error{Errc::kInvalidQuery, fmt::format("{}: line {} has more than {} bytes", name(),
+                                                    number_, kLongestLine)};
     }
     if (error_ == 0) return {};
     return Error{Errc::kFileUnreadable,
-                 fmt::format("{}: {}", path_.string(), std::generic_category().message(error_))};
+                 fmt::format("{}: {}", name(), std::generic_category().message(error_))};
   }
 
  private:
@@ -103,25 +107,30 @@ class BatchLines {
 
 // Answers each line of the batch: JSON lines as they come, or one document with --json, each with
 // the number of its line, since empty lines have no answer. A line that cannot be answered gets an
-// error in its place; the exit status is that of the first such line.
+// error in its place; at the end the first is told with the number of all, and its exit status.
 using AnswerRequest = std::function<Result<Json>(const QueryRequest& request, TreeCache& others)>;
 int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
               const RequestDefaults& defaults) {
   BatchLines lines(arguments.batch);
   TreeCache others;
   Json answers = Json::array();
-  int status = 0;
+  std::optional<Error> first_error;
+  std::size_t queries = 0, errors = 0;
   std::string line;
   while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
+    ++queries;
     const Result<QueryRequest> request = parse_request(line, defaults);
     Result<Json> answer =
         request ? answer_request(*request, others) : Result<Json>(request.error());
     if (!answer) {
-      const Error error{answer.code(),
-                        fmt::format("line {}: {}", lines.number(), answer.error().detail)};
-      if (status == 0) status = error_info(error.code).exit_status;
-      answer = Json{{"error", error_info(error.code).name}, {"detail", error.detail}};
+      const ErrcInfo& info = error_info(answer.code());
+      const std::string& detail = answer.error().detail;
+      const Error error{answer.code(), fmt::format("line {}: {}", lines.number(),
+                                                   detail.empty() ? info.meaning : detail)};
+      ++errors;
+      if (!first_error) first_error = error;
+      answer = Json{{"error", info.name}, {"detail", error.detail}};
     }
     Json numbered = {{"line", lines.number()}};
     numbered.update(*answer);
@@ -133,7 +142,9 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   }
   if (arguments.json) print({{"answers", answers}});
   if (const Status read = lines.status(); !read.ok()) return fail(read.error());
-  return status;
+  if (!first_error) return 0;
+  return fail({first_error->code, fmt::format("{}: {} of {} queries have no answer; the first: {}",
+                                              lines.name(), errors, queries, first_error->detail)});
 }
 
 // Empty for a query about one tree.

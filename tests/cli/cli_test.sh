@@ -513,6 +513,9 @@ printf '%s\n' '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t-max":
 expect 1 "$boxtree" query cube.bxt --batch keys.jsonl
 same "$(jq -cs 'map([.line, .hit, .error])' out)" '[[1,false,null],[3,true,null],[4,null,"invalid_query"]]'
 same "$(head -1 out)" '{"line":1,"hit":false}'
+same "$(cat err)" "boxtree: invalid_query: keys.jsonl: 1 of 3 queries have no answer; the first: line 4: \"kind\": expected $kinds, found no such key"
+expect 1 sh -c "'$boxtree' query cube.bxt --batch - <keys.jsonl"
+grep -q '^boxtree: invalid_query: standard input: 1 of 3 queries have no answer; ' err
 expect 1 "$boxtree" query cube.bxt --batch keys.jsonl --json
 same "$(jq -c '.answers | map(.line)' out)" '[1,3,4]'
 for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
