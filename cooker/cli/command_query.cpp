@@ -249,7 +249,7 @@ class OptionFields {
             },
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
-    command_.add_option("--tree2", tree.tree, "Its tree, by name or number")
+    command_.add_option("--tree2", tree.tree, "Its tree, by name or number [tree 0]")
         ->type_name("TREE")
         ->group(kRareOptions);
     command_
