@@ -17,6 +17,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
@@ -27,12 +28,9 @@
 #include "cooker/import/text_ends.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/import/trial.h"
-#include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
 namespace {
-
-namespace fs = std::filesystem;
 
 enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
 
@@ -58,17 +56,24 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
 }
 
-// Records the files read in `files`. Errors do not name the file. No post-processing flags: each
+// Records the files read in `use`. Errors do not name the source. No post-processing flags: each
 // may drop, reorder, merge or generate data.
-Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, FaceOrder order,
-                                            std::vector<fs::path>& files) {
+Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder order,
+                                            SourceUse& use) {
   const CLocaleScope numbers_in_c_locale;
   Assimp::Importer importer;
   configure(importer, order);
-  importer.SetIOHandler(new RecordingIo(files));  // the importer owns it from here
-  if (importer.ReadFile(path.string(), 0) == nullptr) {
+  importer.SetIOHandler(new RecordingIo(source, use));  // the importer owns it from here
+  if (importer.ReadFile(source.path().string(), 0) == nullptr) {
     const std::string why = importer.GetErrorString();
     if (why == std::bad_alloc().what()) throw std::bad_alloc();  // as when we run out of memory
+    if (!use.inaccessible.empty()) {
+      return Error{
+          Errc::kImportFailed,
+          fmt::format("it refers to {}, which only a file can that has a name: name it, or "
+                      "give it in one piece, as glTF in .glb",
+                      use.inaccessible.string())};
+    }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());
@@ -76,14 +81,14 @@ Result<std::unique_ptr<aiScene>> read_scene(const fs::path& path, FaceOrder orde
 
 // Runs of materials; the materials themselves are added to `scene`. If assimp cannot read the
 // materials, there are none; it has read the geometry before.
-std::vector<MeshMaterials> read_fbx_materials(const fs::path& path, aiScene& scene) {
-  std::vector<fs::path> read_already;
-  const auto sorted = read_scene(path, FaceOrder::kByMaterial, read_already);
+std::vector<MeshMaterials> read_fbx_materials(const SourceFile& source, aiScene& scene) {
+  SourceUse read_already;
+  const auto sorted = read_scene(source, FaceOrder::kByMaterial, read_already);
   return sorted.ok() ? match_materials(scene, *sorted.value()) : std::vector<MeshMaterials>();
 }
 
-Status take_over(const fs::path& path, ImportWanted wanted, aiScene& scene, SourceContext context,
-                 ImportReport&& report, ImportedFile& out) {
+Status take_over(const SourceFile& source, ImportWanted wanted, aiScene& scene,
+                 SourceContext context, ImportReport&& report, ImportedFile& out) {
   const Placements placements = find_placements(scene);
   const bool is_scene = wanted == ImportWanted::kScene ||
                         (wanted == ImportWanted::kFitting && places_several(scene, placements));
@@ -96,21 +101,20 @@ Status take_over(const fs::path& path, ImportWanted wanted, aiScene& scene, Sour
   SourceScene& whole = out.emplace<SourceScene>();
   whole.report = std::move(report);
   std::vector<MeshMaterials> materials;
-  if (has_extension(path, "fbx")) materials = read_fbx_materials(path, scene);
+  if (has_extension(source.path(), "fbx")) materials = read_fbx_materials(source, scene);
   context.materials = materials;
   return take_scene(scene, placements, context, whole);
 }
 
 // Runs all of assimp's reading in a copy of this process.
-Status try_reading(const fs::path& path) {
-  std::error_code unknown;
-  const std::uintmax_t bytes = fs::file_size(path, unknown);
-  return try_in_child(trial_limits(unknown ? 0 : bytes), [&path] {
-    std::vector<fs::path> files;
-    const auto scene = read_scene(path, FaceOrder::kOfFile, files);
+Status try_reading(const SourceFile& source) {
+  const Result<std::uint64_t> size = source.size();
+  return try_in_child(trial_limits(size ? *size : 0), [&source] {
+    SourceUse use;
+    const auto scene = read_scene(source, FaceOrder::kOfFile, use);
     if (!scene.ok()) return Status(scene.error());
-    if (has_extension(path, "fbx")) {  // once more for its materials
-      static_cast<void>(read_scene(path, FaceOrder::kByMaterial, files));
+    if (has_extension(source.path(), "fbx")) {  // once more for its materials
+      static_cast<void>(read_scene(source, FaceOrder::kByMaterial, use));
     }
     return Status();
   });
@@ -129,42 +133,45 @@ constexpr std::array kTextFormats = {
 };
 
 // Whether the last line has no end, in formats in which a truncated file is otherwise valid.
-Result<bool> check_text(const fs::path& path) {
-  const TextFormat* const format = find_extension(kTextFormats, path);
+Result<bool> check_text(const SourceFile& source) {
+  const TextFormat* const format = find_extension(kTextFormats, source.path());
   if (format == nullptr) return false;
-  const Result<std::string> file = read_whole_file(path, kAnyBytes);
+  const Result<std::string> file = source.read();
   if (!file.ok()) return file.error();
   if (format->check_end == nullptr) return has_open_end(*file);
   const Status status = format->check_end(*file);
-  if (!status.ok()) return in_file(path, status.error());
+  if (!status.ok()) return in_file(source.title(), status.error());
   return false;
 }
 
 }  // namespace
 
-Status import_with_assimp(const fs::path& path, const ImportOptions& options, ImportWanted wanted,
-                          ImportedFile& out) {
-  const Result<bool> is_open = check_text(path);
+Status import_with_assimp(const SourceFile& source, const ImportOptions& options,
+                          ImportWanted wanted, ImportedFile& out) {
+  const Result<bool> is_open = check_text(source);
   if (!is_open.ok()) return is_open.error();
-  const Result<StatedFaces> stated = read_stated_faces(path);
+  const Result<StatedFaces> stated = read_stated_faces(source);
   if (!stated.ok()) return stated.error();
   if (options.try_first) {
-    const Status tried = try_reading(path);
-    if (!tried.ok()) return in_file(path, tried.error());
+    const Status tried = try_reading(source);
+    if (!tried.ok()) return in_file(source.title(), tried.error());
   }
   ImportReport report;
   report.has_open_end = *is_open;
-  auto scene = read_scene(path, FaceOrder::kOfFile, report.files_read);
-  if (!scene.ok()) return in_file(path, scene.error());
+  SourceUse use;
+  auto scene = read_scene(source, FaceOrder::kOfFile, use);
+  if (!scene.ok()) return in_file(source.title(), scene.error());
   if (Status status = check_stated_faces(*stated, *scene.value()); !status.ok()) {
-    return in_file(path, status.error());
+    return in_file(source.title(), status.error());
   }
-  const std::vector<fs::path> files = report.files_read;
+  report.files_read = use.files;
   Status status =
-      take_over(path, wanted, *scene.value(), {options, path.string()}, std::move(report), out);
+      take_over(source, wanted, *scene.value(), {options, source.title()}, std::move(report), out);
   if (!status.ok()) return status;
   // Hashed last, so that a refused file is not read twice.
-  const Result<std::uint64_t> hash = hash_source_files(files);
+  const Result<std::uint64_t> hash = source.bytes()
+                                         ? Result<std::uint64_t>(hash_source_bytes(*source.bytes()))
+                                         : hash_source_files(use.files);
   if (!hash.ok()) return hash.error();
   std::visit([&](auto& imported) { imported.report.content_hash = hash.value(); }, out);
   return {};

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,8 @@ namespace boxtree::cooker {
 /// The result of an import: one mesh, a scene, or the one of these that fits the node graph.
 enum class ImportWanted : std::uint8_t { kMesh, kScene, kFitting };
 
-/// Reads `path` into `out`, except the name, as import.h and source_scene.h specify.
-Status import_with_assimp(const std::filesystem::path& path, const ImportOptions& options,
+/// Reads `source` into `out`, except the name, as import.h and source_scene.h specify.
+Status import_with_assimp(const SourceFile& source, const ImportOptions& options,
                           ImportWanted wanted, ImportedFile& out);
 
 /// Endings of the names of files that assimp reads, in lower case.

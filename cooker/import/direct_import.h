@@ -2,7 +2,6 @@
 // Shared steps of boxtree's own readers: one file, one mesh, hashed while it is read.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,10 +16,10 @@ namespace boxtree::cooker {
 /// Calls `read` with the positions of `out` in the precision of `options`. `read` takes the rest of
 /// `stream` into `out` and returns a Status. Fills in the file's part of the report.
 template <class Read>
-Status read_into(SourceStream& stream, const std::filesystem::path& path,
-                 const ImportOptions& options, Imported& out, const Read& read) {
+Status read_into(SourceStream& stream, const SourceFile& source, const ImportOptions& options,
+                 Imported& out, const Read& read) {
   out.report.meshes = 1;
-  out.report.files_read = {path.lexically_normal()};
+  if (!source.bytes()) out.report.files_read = {source.path().lexically_normal()};
   Positions& positions = out.mesh.positions;
   positions.precision = options.precision;
   Status status = options.precision == Precision::kF32 ? read(positions.f32) : read(positions.f64);
@@ -33,18 +32,17 @@ Status read_into(SourceStream& stream, const std::filesystem::path& path,
 
 /// The same for a text file: calls `read` with the whole text, the file's name and the positions.
 template <class Read>
-Status read_text_into(const std::filesystem::path& path, const ImportOptions& options,
-                      Imported& out, const Read& read) {
-  Result<SourceStream> stream = SourceStream::open(path);
+Status read_text_into(const SourceFile& source, const ImportOptions& options, Imported& out,
+                      const Read& read) {
+  Result<SourceStream> stream = SourceStream::open(source);
   if (!stream.ok()) return stream.error();
   const Result<std::string> bytes = stream->take_rest();
   if (!bytes.ok()) return bytes.error();
   const Result<std::string_view> text = text_of(*bytes);
-  if (!text.ok()) return in_file(path, text.error());
+  if (!text.ok()) return in_file(source.title(), text.error());
   out.report.has_open_end = has_open_end(*bytes);
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) {
-    return read(*text, file, positions);
+  return read_into(*stream, source, options, out, [&]<class T>(std::vector<T>& positions) {
+    return read(*text, source.title(), positions);
   });
 }
 

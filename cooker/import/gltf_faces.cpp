@@ -14,7 +14,6 @@
 #include "cooker/import/glb.h"
 #include "cooker/import/gltf_nesting.h"
 #include "cooker/import/text_tokens.h"
-#include "cooker/import/whole_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -69,13 +68,13 @@ StatedFaces stated_faces(const Json& document) {
   return stated;
 }
 
-Result<StatedFaces> read_stated_faces(const std::filesystem::path& path) {
-  const bool is_binary = has_extension(path, "glb");
-  if (!is_binary && !has_extension(path, "gltf")) return StatedFaces();
-  const Result<std::string> file = read_whole_file(path, kAnyBytes);
+Result<StatedFaces> read_stated_faces(const SourceFile& source) {
+  const bool is_binary = has_extension(source.path(), "glb");
+  if (!is_binary && !has_extension(source.path(), "gltf")) return StatedFaces();
+  const Result<std::string> file = source.read();
   if (!file.ok()) return file.error();
   const Result<Json> document = parse_gltf(is_binary ? glb_json(*file) : std::string_view(*file));
-  if (!document.ok()) return in_file(path, document.error());
+  if (!document.ok()) return in_file(source.title(), document.error());
   return stated_faces(*document);
 }
 

@@ -4,13 +4,14 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <set>
 #include <utility>
 
 #include <nlohmann/json_fwd.hpp>
 
 #include <boxtree/error.h>
+
+#include "cooker/import/source_file.h"
 
 struct aiScene;
 
@@ -24,7 +25,7 @@ using StatedFaces = std::set<std::pair<std::uint64_t, std::uint64_t>>;
 [[nodiscard]] StatedFaces stated_faces(const nlohmann::json& document);
 
 /// The counts in a .gltf or .glb file; empty for others. Errors: as parse_gltf.
-Result<StatedFaces> read_stated_faces(const std::filesystem::path& path);
+Result<StatedFaces> read_stated_faces(const SourceFile& source);
 
 /// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);

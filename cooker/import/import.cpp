@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct Request {
-  const fs::path& path;
+  const SourceFile source;
   const ImportOptions& options;
   ImportWanted wanted;
 };
@@ -33,14 +33,14 @@ struct Request {
 // Formats with one mesh and no nodes. Only OBJ has materials.
 struct MeshReader {
   const char* extension;
-  Status (*read)(const fs::path& path, const ImportOptions& options, Imported& out,
+  Status (*read)(const SourceFile& source, const ImportOptions& options, Imported& out,
                  FaceMaterials& materials);
 };
 
-template <Status (*read)(const fs::path&, const ImportOptions&, Imported&)>
-Status without_materials(const fs::path& path, const ImportOptions& options, Imported& out,
+template <Status (*read)(const SourceFile&, const ImportOptions&, Imported&)>
+Status without_materials(const SourceFile& source, const ImportOptions& options, Imported& out,
                          FaceMaterials& /*materials*/) {
-  return read(path, options, out);
+  return read(source, options, out);
 }
 
 constexpr std::array kMeshReaders = {
@@ -64,11 +64,11 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
 Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile& out) {
   Imported mesh;
   FaceMaterials materials;
-  if (Status status = reader.read(request.path, request.options, mesh, materials); !status.ok()) {
+  if (Status status = reader.read(request.source, request.options, mesh, materials); !status.ok()) {
     return status;
   }
   if (request.wanted == ImportWanted::kScene) {
-    out = scene_of(std::move(mesh), std::move(materials), request.path.stem().string());
+    out = scene_of(std::move(mesh), std::move(materials), request.source.path().stem().string());
   } else {
     out = std::move(mesh);
   }
@@ -76,24 +76,25 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
 }
 
 Result<ImportedFile> import_checked(const Request& request) {
-  const fs::path& path = request.path;
-  if (Status status = check_source_file(path); !status.ok()) return status.error();
+  const fs::path& path = request.source.path();
+  if (Status status = check_source_file(request.source); !status.ok()) return status.error();
   const MeshReader* const reader = find_extension(kMeshReaders, path);
   ImportedFile out;
-  const Status status = reader != nullptr
-                            ? read_mesh(*reader, request, out)
-                            : import_with_assimp(path, request.options, request.wanted, out);
+  const Status status =
+      reader != nullptr ? read_mesh(*reader, request, out)
+                        : import_with_assimp(request.source, request.options, request.wanted, out);
   if (!status.ok()) return status.error();
   if (auto* mesh = std::get_if<Imported>(&out)) mesh->mesh.name = path.stem().string();
   if (auto* scene = std::get_if<SourceScene>(&out)) scene->name = path.stem().string();
   return out;
 }
 
-Result<ImportedFile> import_guarded(const Request& request) {
+Result<ImportedFile> import_guarded(const fs::path& path, const ImportOptions& options,
+                                    ImportWanted wanted) {
   try {
-    return import_checked(request);
+    return import_checked({SourceFile(path, options.bytes), options, wanted});
   } catch (...) {
-    return in_file(request.path, error_of_exception());
+    return in_file(SourceFile(path, options.bytes).title(), error_of_exception());
   }
 }
 
@@ -107,15 +108,15 @@ Result<T> only(Result<ImportedFile>&& file) {
 }  // namespace
 
 Result<Imported> import_mesh(const fs::path& path, const ImportOptions& options) {
-  return only<Imported>(import_guarded({path, options, ImportWanted::kMesh}));
+  return only<Imported>(import_guarded(path, options, ImportWanted::kMesh));
 }
 
 Result<SourceScene> import_scene(const fs::path& path, const ImportOptions& options) {
-  return only<SourceScene>(import_guarded({path, options, ImportWanted::kScene}));
+  return only<SourceScene>(import_guarded(path, options, ImportWanted::kScene));
 }
 
 Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& options) {
-  return import_guarded({path, options, ImportWanted::kFitting});
+  return import_guarded(path, options, ImportWanted::kFitting);
 }
 
 bool has_node_graph(const fs::path& path) {

@@ -6,11 +6,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <boxtree/error.h>
 
+#include "cooker/import/source_file.h"
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
@@ -29,6 +31,8 @@ struct ImportOptions {
   bool try_first = false;
   /// [false] Fill in SourceMesh::polygon_corners.
   bool keep_polygon_corners = false;
+  /// [none] An input that is not a file. It can refer to no other.
+  std::optional<SourceBytes> bytes;
 };
 
 /// SkippedFace::mesh: no face of the mesh is left.
@@ -58,10 +62,12 @@ struct ImportReport {
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
-  std::vector<std::filesystem::path> files_read;  // the file itself and every file it refers to
+  /// The file itself and every file it refers to; none for ImportOptions::bytes.
+  std::vector<std::filesystem::path> files_read;
   /// Material libraries that the source names and that cannot be read; it is imported without them.
   std::vector<std::filesystem::path> files_missing;
-  std::uint64_t content_hash = 0;  // XXH3 over the bytes of files_read, in order of first read
+  /// XXH3 over the bytes of files_read, in order of first read, or over ImportOptions::bytes.
+  std::uint64_t content_hash = 0;
 };
 
 struct Imported {

@@ -190,15 +190,16 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
 
 // Adds the libraries that can be read to the files read and the others to those that are missing,
 // without duplicates.
-void find_libraries(const fs::path& path, const std::vector<std::string>& names,
+void find_libraries(const SourceFile& source, const std::vector<std::string>& names,
                     ImportReport& report) {
   const auto path_of = [&](std::string_view name) {
-    return (path.parent_path() / fs::path(name)).lexically_normal();
+    return (source.path().parent_path() / fs::path(name)).lexically_normal();
   };
   const auto add_to = [](std::vector<fs::path>& files, const fs::path& library) {
     if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);
   };
   const auto add = [&](std::string_view name) {
+    if (source.bytes()) return false;  // beside no file
     const fs::path library = path_of(name);
     std::error_code ignored;
     if (!fs::is_regular_file(library, ignored) || !SourceStream::open(library).ok()) return false;
@@ -217,7 +218,7 @@ void find_libraries(const fs::path& path, const std::vector<std::string>& names,
 
 }  // namespace
 
-Status import_obj(const fs::path& path, const ImportOptions& options, Imported& out,
+Status import_obj(const SourceFile& source, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials) {
   std::vector<std::string> libraries;
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
@@ -228,9 +229,9 @@ Status import_obj(const fs::path& path, const ImportOptions& options, Imported& 
     libraries = reader.libraries();
     return status;
   };
-  if (Status status = read_text_into(path, options, out, read); !status.ok()) return status;
-  find_libraries(path, libraries, out.report);
-  if (out.report.files_read.size() == 1) return {};
+  if (Status status = read_text_into(source, options, out, read); !status.ok()) return status;
+  find_libraries(source, libraries, out.report);
+  if (out.report.files_read.size() <= 1) return {};
   const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);
   if (!hash.ok()) return hash.error();
   out.report.content_hash = hash.value();

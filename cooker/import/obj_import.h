@@ -15,7 +15,7 @@ namespace boxtree::cooker {
 /// the order of the file, whatever their objects and groups. `materials` gets the names in
 /// `usemtl`. Existing material libraries count among the files read, but nothing is imported from
 /// them. Free-form curves and surfaces are skipped.
-Status import_obj(const std::filesystem::path& path, const ImportOptions& options, Imported& out,
+Status import_obj(const SourceFile& source, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials);
 
 }  // namespace boxtree::cooker

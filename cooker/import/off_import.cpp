@@ -237,13 +237,13 @@ Result<std::optional<FaceFault>> Reader<T>::read_corners() {
 
 }  // namespace
 
-Status import_off(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
+Status import_off(const SourceFile& source, const ImportOptions& options, Imported& out) {
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
                                  std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out);
     return Reader<T>(text, file, options, mesh).read();
   };
-  return read_text_into(path, options, out, read);
+  return read_text_into(source, options, out, read);
 }
 
 }  // namespace boxtree::cooker

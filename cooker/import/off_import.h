@@ -12,6 +12,6 @@ namespace boxtree::cooker {
 
 /// Reads the OFF file `path`, with or without normals, colours, texture and homogeneous
 /// coordinates, into `out`, except the name, as specified for import_mesh.
-Status import_off(const std::filesystem::path& path, const ImportOptions& options, Imported& out);
+Status import_off(const SourceFile& source, const ImportOptions& options, Imported& out);
 
 }  // namespace boxtree::cooker

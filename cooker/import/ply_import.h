@@ -10,6 +10,6 @@ namespace boxtree::cooker {
 
 /// Reads the PLY file `path` into `out`, except the name, as specified for import_mesh. Positions
 /// keep all digits of the file; polygons and triangle strips are imported in the order of the file.
-Status import_ply(const std::filesystem::path& path, const ImportOptions& options, Imported& out);
+Status import_ply(const SourceFile& source, const ImportOptions& options, Imported& out);
 
 }  // namespace boxtree::cooker

@@ -11,6 +11,7 @@
 #include <system_error>
 #include <type_traits>
 
+#include <assimp/MemoryIOWrapper.h>
 #include <xxhash.h>
 
 #include "cooker/import/whole_file.h"
@@ -31,7 +32,10 @@ std::string system_message(int error) {
 
 }  // namespace
 
-Status check_source_file(const fs::path& path) {
+Status check_source_file(const SourceFile& source) {
+  const Error empty{Errc::kImportFailed, source.title() + ": the file is empty"};
+  if (source.bytes()) return source.bytes()->empty() ? Status(empty) : Status();
+  const fs::path& path = source.path();
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (status.type() == fs::file_type::not_found) {
@@ -45,7 +49,7 @@ Status check_source_file(const fs::path& path) {
   if (!file) return unreadable(path, system_message(errno));
   if (std::fgetc(file.get()) != EOF) return {};
   if (std::ferror(file.get()) != 0) return unreadable(path, system_message(errno));
-  return Error{Errc::kImportFailed, path.string() + ": the file is empty"};
+  return empty;
 }
 
 Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
@@ -65,21 +69,34 @@ Result<std::uint64_t> hash_source_files(std::span<const fs::path> files) {
   return XXH3_64bits_digest(state.get());
 }
 
+std::uint64_t hash_source_bytes(Bytes bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
 bool RecordingIo::Exists(const char* path) const {
+  if (source_.bytes()) return is_source(path);
   std::error_code error;
   return fs::is_regular_file(path, error) && DefaultIOSystem::Exists(path);
 }
 
 Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
+  if (source_.bytes()) {
+    if (is_source(path)) {
+      const auto* const data = reinterpret_cast<const std::uint8_t*>(source_.bytes()->data());
+      return new Assimp::MemoryIOStream(data, source_.bytes()->size());
+    }
+    if (use_.inaccessible.empty()) use_.inaccessible = fs::path(path).lexically_normal();
+    return nullptr;
+  }
   // fopen opens directories too; a pipe would block.
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return nullptr;
   Assimp::IOStream* stream = DefaultIOSystem::Open(path, mode);
   if (stream == nullptr) return nullptr;
   fs::path normal = fs::path(path).lexically_normal();
-  if (std::find(files_.begin(), files_.end(), normal) == files_.end()) {
-    files_.push_back(std::move(normal));
+  if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
+    use_.files.push_back(std::move(normal));
   }
   return stream;
 }

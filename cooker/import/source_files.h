@@ -13,20 +13,34 @@
 
 #include <boxtree/error.h>
 
+#include "cooker/import/source_file.h"
+
 namespace boxtree::cooker {
 
-/// Whether `path` is a regular file that can be opened and has at least one byte.
-Status check_source_file(const std::filesystem::path& path);
+/// Whether the source has at least one byte and, if it is a named file, is a regular one that can
+/// be opened.
+Status check_source_file(const SourceFile& source);
 
 /// XXH3 (64 bits) over the bytes of the files, one after the other. Does not depend on their paths.
 Result<std::uint64_t> hash_source_files(std::span<const std::filesystem::path> files);
 
+/// The same over bytes.
+[[nodiscard]] std::uint64_t hash_source_bytes(Bytes bytes);
+
+/// What a reader opened.
+struct SourceUse {
+  std::vector<std::filesystem::path> files;  // by their names
+  /// The first file that could not be, because the source is bytes, beside no file; empty if none.
+  std::filesystem::path inaccessible;
+};
+
 /// Lets assimp read but not write, and records each file that it opens, in order of first use.
-/// Files that it only looks for are not recorded.
+/// Files that it only looks for are not recorded. Of a source that is bytes, nothing else can be
+/// opened.
 class RecordingIo final : public Assimp::DefaultIOSystem {
  public:
-  /// Records into `files`, which must outlive this object (assimp's Importer owns this object).
-  explicit RecordingIo(std::vector<std::filesystem::path>& files) : files_(files) {}
+  /// Both must outlive this object, which assimp's Importer owns.
+  RecordingIo(const SourceFile& source, SourceUse& use) : source_(source), use_(use) {}
 
   bool Exists(const char* path) const override;
   Assimp::IOStream* Open(const char* path, const char* mode = "rb") override;
@@ -35,7 +49,10 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   bool DeleteFile(const std::string&) override { return false; }
 
  private:
-  std::vector<std::filesystem::path>& files_;
+  [[nodiscard]] bool is_source(const char* path) const { return source_.path() == path; }
+
+  const SourceFile& source_;
+  SourceUse& use_;
 };
 
 /// While it exists, this thread reads numbers in the "C" locale, whatever the process has set: some

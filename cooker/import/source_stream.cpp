@@ -23,17 +23,17 @@ void SourceStream::FreeHash::operator()(Hash* hash) const {
   delete hash;
 }
 
-Result<SourceStream> SourceStream::open(const std::filesystem::path& path) {
+Result<SourceStream> SourceStream::open(const SourceFile& source) {
   SourceStream stream;
-  stream.path_ = path;
-  stream.file_.reset(std::fopen(path.c_str(), "rb"));
-  std::error_code failed;
-  if (stream.file_) {
-    stream.unread_ = std::filesystem::file_size(path, failed);
-  } else {
-    failed = std::error_code(errno, std::generic_category());
+  stream.title_ = source.title();
+  stream.file_ = source.open();
+  if (!stream.file_) {
+    return Error{Errc::kFileUnreadable,
+                 source.title() + ": " + std::generic_category().message(errno)};
   }
-  if (failed) return Error{Errc::kFileUnreadable, path.string() + ": " + failed.message()};
+  const Result<std::uint64_t> size = source.size();
+  if (!size) return size.error();
+  stream.unread_ = *size;
   stream.hash_.reset(new Hash);
   XXH3_64bits_reset(&stream.hash_->state);
   stream.buffer_.resize(kBufferBytes);
@@ -89,10 +89,9 @@ bool SourceStream::skip(std::uint64_t count) {
 
 Error SourceStream::ended_in(std::string_view what) const {
   if (error_ != 0) {
-    return Error{Errc::kFileUnreadable,
-                 path_.string() + ": " + std::generic_category().message(error_)};
+    return Error{Errc::kFileUnreadable, title_ + ": " + std::generic_category().message(error_)};
   }
-  return Error{Errc::kImportFailed, path_.string() + ": the file ends in " + std::string(what)};
+  return Error{Errc::kImportFailed, title_ + ": the file ends in " + std::string(what)};
 }
 
 Result<std::uint64_t> SourceStream::finish() {

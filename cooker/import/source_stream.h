@@ -13,6 +13,7 @@
 
 #include <boxtree/error.h>
 
+#include "cooker/import/source_file.h"
 #include "cooker/system/file_handle.h"
 
 namespace boxtree::cooker {
@@ -24,7 +25,7 @@ class SourceStream {
   /// The most that `take` returns at once, and that `ahead` returns of a longer file.
   static constexpr std::size_t kBufferBytes = std::size_t{1} << 18;
 
-  static Result<SourceStream> open(const std::filesystem::path& path);
+  static Result<SourceStream> open(const SourceFile& source);
 
   /// The part of the file in memory and not yet taken: at the start kBufferBytes, or the whole
   /// file.
@@ -67,7 +68,7 @@ class SourceStream {
   SourceStream() = default;
   bool refill(std::size_t count);
 
-  std::filesystem::path path_;
+  std::string title_;
   FileHandle file_;
   std::unique_ptr<Hash, FreeHash> hash_;
   std::vector<char> buffer_;

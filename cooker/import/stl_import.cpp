@@ -10,20 +10,21 @@
 
 namespace boxtree::cooker {
 
-Status import_stl(const std::filesystem::path& path, const ImportOptions& options, Imported& out) {
-  Result<SourceStream> stream = SourceStream::open(path);
+Status import_stl(const SourceFile& source, const ImportOptions& options, Imported& out) {
+  Result<SourceStream> stream = SourceStream::open(source);
   if (!stream.ok()) return stream.error();
   // A text hardly ever has by chance the length that its bytes, read as a count, require.
   const bool is_text = !is_binary_stl(*stream) && is_text_stl(stream->ahead());
 
-  const std::string file = path.string();
-  return read_into(*stream, path, options, out, [&]<class T>(std::vector<T>& positions) -> Status {
-    StlMesh<T> mesh(file, options, positions, out);
-    if (!is_text) return read_binary_stl(*stream, file, mesh);
-    const Result<std::string> text = stream->take_rest();
-    if (!text.ok()) return text.error();
-    return read_text_stl(*text, file, mesh);
-  });
+  const std::string& file = source.title();
+  return read_into(*stream, source, options, out,
+                   [&]<class T>(std::vector<T>& positions) -> Status {
+                     StlMesh<T> mesh(file, options, positions, out);
+                     if (!is_text) return read_binary_stl(*stream, file, mesh);
+                     const Result<std::string> text = stream->take_rest();
+                     if (!text.ok()) return text.error();
+                     return read_text_stl(*text, file, mesh);
+                   });
 }
 
 }  // namespace boxtree::cooker

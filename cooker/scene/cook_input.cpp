@@ -151,11 +151,11 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
       profile.source ? std::span(&profile.source->value, 1) : inputs;
   std::optional<SceneJoin> join;  // of the first and all others
   for (const fs::path& file : files) {
-    const std::string name = file.filename().string();
-    announce(progress, "import " + name);
+    const SourceFile source(file, options.bytes);
+    announce(progress, "import " + source.short_title());
     Result<SourceScene> scene = import_scene(file, options);
     if (!scene) return scene.error();
-    note_import(input, std::move(scene->report), name);
+    note_import(input, std::move(scene->report), source.path().filename().string());
     if (join) {
       join->add(std::move(*scene));
     } else {
@@ -168,8 +168,8 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
 
 Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
                             const Progress& progress) {
-  const std::string name = path.filename().string();
-  announce(progress, "import " + name);
+  const SourceFile source(path, options.bytes);
+  announce(progress, "import " + source.short_title());
   Result<ImportedFile> file = import_file(path, options);
   if (!file) return file.error();
   CookInput input;
@@ -179,7 +179,7 @@ Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
     input.scene.meshes.push_back({std::move(mesh->mesh), {}});
   } else {
     input.scene = std::move(std::get<SourceScene>(*file));
-    note_import(input, std::move(input.scene.report), name);
+    note_import(input, std::move(input.scene.report), source.path().filename().string());
   }
   return input;
 }
@@ -194,10 +194,12 @@ Result<CookInput> load_trees(std::span<const fs::path> inputs, const ImportOptio
   CookInput input;
   input.has_top_level = false;
   input.scene.meshes.resize(inputs.size());
-  for (const fs::path& path : inputs) input.import_names.push_back(path.stem().string());
+  for (const fs::path& path : inputs) {
+    input.import_names.push_back(SourceFile(path, options.bytes).path().stem().string());
+  }
   input.importer = [paths = std::vector(inputs.begin(), inputs.end()), options,
                     progress](std::size_t mesh) {
-    announce(progress, "import " + paths[mesh].filename().string());
+    announce(progress, "import " + SourceFile(paths[mesh], options.bytes).short_title());
     return import_mesh(paths[mesh], options);
   };
   return input;

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: MIT
+// Bytes are read by stdio, too, so that readers need not know the difference.
+#include "cooker/import/source_file.h"
+
+#include <cstddef>
+#include <cstdio>
+#include <system_error>
+
+#include "cooker/import/whole_file.h"
+
+namespace boxtree::cooker {
+
+SourceFile::SourceFile(const std::filesystem::path& input, const std::optional<SourceBytes>& bytes)
+    : SourceFile(input) {
+  if (!bytes || bytes->input != input) return;
+  path_ = bytes->file_name;
+  title_ = bytes->title;
+  bytes_ = bytes->bytes;
+}
+
+std::string SourceFile::short_title() const {
+  return bytes_ ? title_ : path_.filename().string();
+}
+
+FileHandle SourceFile::open() const {
+  if (!bytes_) return FileHandle(std::fopen(path_.c_str(), "rb"));
+  // fmemopen takes void*, but a stream for reading does not write.
+  return FileHandle(::fmemopen(const_cast<std::byte*>(bytes_->data()), bytes_->size(), "rb"));
+}
+
+Result<std::uint64_t> SourceFile::size() const {
+  if (bytes_) return std::uint64_t{bytes_->size()};
+  std::error_code failed;
+  const std::uintmax_t size = std::filesystem::file_size(path_, failed);
+  if (failed) return Error{Errc::kFileUnreadable, title_ + ": " + failed.message()};
+  return std::uint64_t{size};
+}
+
+Result<std::string> SourceFile::read() const {
+  if (!bytes_) return read_whole_file(path_, kAnyBytes);
+  return std::string(reinterpret_cast<const char*>(bytes_->data()), bytes_->size());
+}
+
+}  // namespace boxtree::cooker

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: MIT
+// Bytes without a file are imported like a file of those bytes, which has nothing beside it.
+#include "cooker/import/source_file.h"
+
+#include <array>
+#include <span>
+
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using SourceFileTest = ImportTest;
+
+constexpr std::string_view kObj = "mtllib beside.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+constexpr std::string_view kOff = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+constexpr std::string_view kGltf = R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+  "nodes":[{"mesh":0}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"accessors":[{
+  "bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],
+  "bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":"three.bin"}]})";
+
+ImportOptions with_bytes(std::string_view text, const char* file_name) {
+  ImportOptions options;
+  options.bytes = SourceBytes{"-", "standard input", file_name, std::as_bytes(std::span(text))};
+  return options;
+}
+
+TEST_F(SourceFileTest, BytesAreImportedLikeAFile) {
+  const Imported file = load("stdin.off", kOff);
+  const Result<Imported> bytes = import_mesh("-", with_bytes(kOff, "stdin.off"));
+  ASSERT_TRUE(bytes.ok()) << bytes.error().message();
+  EXPECT_EQ(bytes->mesh.name, "stdin");
+  EXPECT_EQ(bytes->mesh.positions.f32, file.mesh.positions.f32);
+  EXPECT_EQ(bytes->report.content_hash, file.report.content_hash);
+  EXPECT_TRUE(bytes->report.files_read.empty());
+}
+
+TEST_F(SourceFileTest, OtherInputsAreFilesAllTheSame) {
+  const std::filesystem::path path =
+      write("two.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 3 2\n");
+  const Result<Imported> file = import_mesh(path, with_bytes(kOff, "stdin.off"));
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  EXPECT_EQ(file->mesh.faces.size(), 2u);
+}
+
+TEST_F(SourceFileTest, BytesHaveNothingBesideThem) {
+  const auto before = std::filesystem::current_path();
+  write("beside.mtl", "newmtl a\n");
+  write("three.bin", std::string(36, '\0'));
+  std::filesystem::current_path(folder_);
+  const Result<Imported> obj = import_mesh("-", with_bytes(kObj, "stdin.obj"));
+  std::array<Result<Imported>, 2> gltf{Errc::kOk, Errc::kOk};
+  for (const bool try_first : {false, true}) {
+    ImportOptions options = with_bytes(kGltf, "stdin.gltf");
+    options.try_first = try_first;
+    gltf.at(try_first ? 1 : 0) = import_mesh("-", options);
+  }
+  std::filesystem::current_path(before);
+  ASSERT_TRUE(obj.ok()) << obj.error().message();
+  EXPECT_EQ(obj->report.files_missing, std::vector<std::filesystem::path>{"beside.mtl"});
+  for (const Result<Imported>& refused : gltf) {
+    ASSERT_EQ(refused.code(), Errc::kImportFailed);
+    EXPECT_TRUE(has(refused.error().detail, "standard input: it refers to three.bin"))
+        << refused.error().detail;
+  }
+}
+
+TEST_F(SourceFileTest, ErrorsNameTheInput) {
+  const Result<Imported> empty = import_mesh("-", with_bytes({}, "stdin.obj"));
+  EXPECT_EQ(empty.error().detail, "standard input: the file is empty");
+  const Result<Imported> bad = import_mesh("-", with_bytes("v zero 0 0\n", "stdin.obj"));
+  EXPECT_EQ(bad.error().detail, "standard input: line 1: 'zero' is no number");
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
