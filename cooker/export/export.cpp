@@ -163,8 +163,8 @@ Result<Shown> choose_scene(const Scene& scene, std::span<const Tree> trees,
   return shown;
 }
 
-Result<ExportReport> write_file(const Shown& shown, const std::filesystem::path& output,
-                                bool is_glb, bool solid_boxes) {
+Result<ExportReport> write_file(const Shown& shown, const OutputTarget& output, bool is_glb,
+                                bool solid_boxes) {
   Result<AtomicFile> file = AtomicFile::create(output);
   if (!file) return file.error();
   ByteSink sink(*file);
@@ -182,9 +182,9 @@ Result<ExportReport> write_file(const Shown& shown, const std::filesystem::path&
 
 }  // namespace
 
-Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesystem::path& output,
+Result<ExportReport> export_trees(std::span<const Tree> trees, const OutputTarget& output,
                                   const ExportOptions& options) {
-  const Result<bool> is_glb = is_glb_name(output);
+  const Result<bool> is_glb = is_glb_name(output.path);
   if (!is_glb) return is_glb.error();
   Result<std::vector<ShownTree>> chosen =
       choose_trees(trees, options, [](std::size_t) { return true; });
@@ -193,9 +193,8 @@ Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesy
 }
 
 Result<ExportReport> export_scene(const Scene& scene, std::span<const Tree> trees,
-                                  const std::filesystem::path& output,
-                                  const ExportOptions& options) {
-  const Result<bool> is_glb = is_glb_name(output);
+                                  const OutputTarget& output, const ExportOptions& options) {
+  const Result<bool> is_glb = is_glb_name(output.path);
   if (!is_glb) return is_glb.error();
   const Result<Shown> shown = choose_scene(scene, trees, options);
   if (!shown) return shown.error();

@@ -2,7 +2,6 @@
 // Exports decoded triangles and boxes to a file for viewers, to inspect the work of a codec.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
@@ -12,6 +11,7 @@
 
 #include "cooker/export/decoded_faces.h"
 #include "cooker/export/tree_boxes.h"
+#include "cooker/write/output_target.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/tree/bound_tree.h"
 
@@ -43,14 +43,14 @@ struct ExportReport {
   std::uint64_t placed_triangles = 0;      // of all instances
 };
 
-/// Writes `trees` to `output`, as Wavefront OBJ or binary glTF 2.0 depending on its extension
-/// (.obj, .glb). Positions are in object space. On any error `output` is unchanged. Trees with
-/// external geometry must be bound to their mesh, unless `triangles` is false.
+/// Writes `trees` to `output`, as Wavefront OBJ or binary glTF 2.0 depending on the extension of
+/// its path (.obj, .glb). Positions are in object space. On any error `output` is unchanged. Trees
+/// with external geometry must be bound to their mesh, unless `triangles` is false.
 ///
 /// Errors: kInvalidQuery for another extension, and for a range of levels that begins below the
 /// deepest level of all trees; those of DecodedFaces::decode, walk_boxes and write_glb;
 /// kWriteFailed.
-Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesystem::path& output,
+Result<ExportReport> export_trees(std::span<const Tree> trees, const OutputTarget& output,
                                   const ExportOptions& options);
 
 /// Writes the instances of `scene` in the order of their ids, placed by their poses. In glTF, an
@@ -64,7 +64,6 @@ Result<ExportReport> export_trees(std::span<const Tree> trees, const std::filesy
 /// kRecordInvalid with the instance for corrupt bytes, and for poses that move shapes beyond the
 /// range of doubles.
 Result<ExportReport> export_scene(const Scene& scene, std::span<const Tree> trees,
-                                  const std::filesystem::path& output,
-                                  const ExportOptions& options);
+                                  const OutputTarget& output, const ExportOptions& options);
 
 }  // namespace boxtree::cooker

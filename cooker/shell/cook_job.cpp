@@ -18,6 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Those that are not given are empty.
+std::array<fs::path, 3> output_files(const CookJob& job) {
+  return {job.output_stream ? fs::path() : job.output, job.depfile, job.reordered};
+}
+
 class Job {
  public:
   Job(const CookJob& job, const Progress& progress)
@@ -70,8 +75,8 @@ class Job {
                                 import.files_read.end());
     }
     if (!job_.costs.empty()) summary.files_read.push_back(job_.costs);
-    const std::array outputs{job_.output, job_.depfile, job_.reordered};
-    if (Status status = check_outputs(outputs, summary.files_read); !status) return status.error();
+    if (Status status = check_outputs(output_files(job_), summary.files_read); !status)
+      return status.error();
     // Written first, so that an error in it leaves no new output without a depfile.
     if (!job_.depfile.empty()) {
       const Status status = write_depfile(job_.depfile, job_.output, summary.files_read);
@@ -88,7 +93,8 @@ class Job {
       reordered.emplace(std::move(*mesh));
       cooked.tree_order = {};
     }
-    announce(progress_, "write " + job_.output.filename().string());
+    announce(progress_, "write " + (job_.output_stream ? job_.output_stream->title
+                                                       : job_.output.filename().string()));
     const Result<std::uint64_t> bytes = write_parts(cooked.parts());
     if (!bytes) return bytes.error();
     if (reordered) {
@@ -111,8 +117,9 @@ class Job {
   }
 
   [[nodiscard]] Result<std::uint64_t> write_parts(const FileParts& parts) const {
-    if (options_.blob) return write_blob(job_.output, parts, *options_.blob);
-    return write_file(job_.output, parts);
+    const OutputTarget to(job_.output, job_.output_stream);
+    if (options_.blob) return write_blob(to, parts, *options_.blob);
+    return write_file(to, parts);
   }
 
   // Moves the facts about a tree to `told` and frees its bytes.
@@ -148,7 +155,8 @@ Status check_job(const CookJob& job) {
     const Status status = check_reordered_names(job.inputs.front(), job.reordered);
     if (!status) return status;
   }
-  return check_outputs(std::array{job.output, job.depfile, job.reordered}, inputs);
+  if (job.options.import.bytes) std::erase(inputs, job.options.import.bytes->input);
+  return check_outputs(output_files(job), inputs);
 }
 
 Result<Summary> cook_job(const CookJob& job, const Progress& progress) {

@@ -4,16 +4,21 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
 #include "cooker/cook.h"
+#include "cooker/write/output_target.h"
 
 namespace boxtree::cooker {
 
 /// One output and its inputs; paths that are not given are empty.
 struct CookJob {
-  std::vector<std::filesystem::path> inputs;  // may be empty if the profile states the input
+  /// May be empty if the profile states the input; options.import.bytes may stand in for one.
+  std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
+  /// [none] Takes what would be written to `output`, which is then no file.
+  std::optional<OutputStream> output_stream = {};
   std::filesystem::path profile = {};  // a scene.toml; makes the inputs one scene
   std::filesystem::path costs = {};    // constants of the user's machine
   std::filesystem::path depfile = {};  // to write: all files that were read, in make syntax

@@ -12,6 +12,7 @@
 
 #include "cooker/system/write_all.h"
 #include "cooker/system/write_failure.h"
+#include "runtime/file/mapping.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -57,6 +58,7 @@ AtomicFile::AtomicFile(TemporaryFile temporary, fs::path target, bool replaces)
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : temporary_(std::move(other.temporary_)),
       target_(std::move(other.target_)),
+      stream_(std::move(other.stream_)),
       replaces_(other.replaces_),
       directory_(std::exchange(other.directory_, -1)) {}
 
@@ -64,7 +66,15 @@ AtomicFile::~AtomicFile() {
   if (directory_ >= 0) ::close(directory_);
 }
 
-Result<AtomicFile> AtomicFile::create(const fs::path& given) {
+Result<AtomicFile> AtomicFile::create(const OutputTarget& to) {
+  if (to.stream) {
+    Result<TemporaryFile> memory = TemporaryFile::create_in_memory(to.title());
+    if (!memory) return memory.error();
+    AtomicFile file(std::move(*memory), to.title(), false);
+    file.stream_ = to.stream;
+    return file;
+  }
+  const fs::path& given = to.path;
   const Result<fs::path> target = follow_links(given);
   if (!target) return target.error();
   struct stat old {};
@@ -97,6 +107,7 @@ Status AtomicFile::write(Bytes bytes) {
 // The old file keeps a name until the new one is durable. Where names cannot be exchanged, it loses
 // its name, and cannot be restored.
 Status AtomicFile::commit() {
+  if (stream_) return send();
   if (::fsync(descriptor()) != 0) return write_failure(target_, "cannot flush");
   if (Status status = temporary_.add_name(); !status) return status;
   const char* const temporary = temporary_.path().c_str();
@@ -124,6 +135,13 @@ Status AtomicFile::commit() {
     ::unlink(target_.c_str());
   }
   return error;
+}
+
+Status AtomicFile::send() const {
+  const Result<Mapping> collected = Mapping::map(descriptor(), stream_->title);
+  if (!collected) return collected.error();
+  if (write_all(stream_->descriptor, collected->bytes())) return {};
+  return write_failure(stream_->title, "cannot be written");
 }
 
 }  // namespace boxtree::cooker

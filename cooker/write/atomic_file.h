@@ -3,9 +3,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 
 #include <boxtree/error.h>
 
+#include "cooker/write/output_target.h"
 #include "cooker/write/temporary_file.h"
 #include "format/bytes.h"
 
@@ -20,10 +22,13 @@ Result<std::filesystem::path> follow_links(const std::filesystem::path& target);
 /// link, the file that it leads to is replaced. An existing file keeps its mode, and its owner if
 /// the process may set owners. Two processes may write one target; the last one wins. Not for use
 /// by several threads at once.
+///
+/// The bytes for a stream are collected in memory, and commit() writes them to it: all of them or,
+/// if an error comes before, none. Nothing but the stream is touched.
 class AtomicFile {
  public:
   /// Error: kWriteFailed, as for all other functions; the detail has the path and the cause.
-  static Result<AtomicFile> create(const std::filesystem::path& given);
+  static Result<AtomicFile> create(const OutputTarget& to);
 
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&&) = delete;
@@ -38,14 +43,18 @@ class AtomicFile {
   [[nodiscard]] int descriptor() const { return temporary_.descriptor(); }
 
   /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
-  /// After an error the target is the old file, or missing if there was none.
+  /// After an error the target is the old file, or missing if there was none. A stream may have
+  /// taken a part of the bytes.
   Status commit();
 
  private:
   AtomicFile(TemporaryFile temporary, std::filesystem::path target, bool replaces);
 
+  [[nodiscard]] Status send() const;
+
   TemporaryFile temporary_;
   std::filesystem::path target_;
+  std::optional<OutputStream> stream_;
   bool replaces_;       // whether the target existed
   int directory_ = -1;  // also after a move
 };

@@ -189,9 +189,9 @@ std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
   return bytes_of_file(Layout({trees, cook_record, nullptr}, nullptr, tree_names(trees)));
 }
 
-Result<std::uint64_t> write_file(const std::filesystem::path& path, const FileParts& parts) {
+Result<std::uint64_t> write_file(const OutputTarget& to, const FileParts& parts) {
   if (Status status = check_tree_count(parts.trees.size()); !status) return status.error();
-  Result<AtomicFile> file = AtomicFile::create(path);
+  Result<AtomicFile> file = AtomicFile::create(to);
   if (!file) return file.error();
   if (Status status =
           with_layout(parts,
@@ -201,7 +201,7 @@ Result<std::uint64_t> write_file(const std::filesystem::path& path, const FilePa
       !status) {
     return status.error();
   }
-  const Result<Mapping> written = Mapping::map(file->descriptor(), path.string());
+  const Result<Mapping> written = Mapping::map(file->descriptor(), to.title());
   if (!written) return written.error();
   const Result<File> opened = File::open(written->bytes());
   if (!opened) return opened.error();

@@ -2,7 +2,6 @@
 // Writes encoded trees as a .bxt file.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <string>
 #include <vector>
@@ -35,10 +34,10 @@ Result<FileLayout> layout_of(const FileParts& parts);
 [[nodiscard]] std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                                const std::string& cook_record = {});
 
-/// Writes the file, maps it, proves every tree of it (cooker/proof/proof.h), and then renames it to
-/// `path`. On any error the old file is unchanged. Returns its size. Errors: kWriteFailed;
+/// Writes the file, maps it, proves every tree of it (cooker/proof/proof.h), and then commits it
+/// to `to`: on any error before, the old file is unchanged. Returns its size. Errors: kWriteFailed;
 /// kMeshTooLarge for more trees than a file can hold; those of encode_scene; the first finding if
 /// the proof fails, which is an internal error.
-Result<std::uint64_t> write_file(const std::filesystem::path& path, const FileParts& parts);
+Result<std::uint64_t> write_file(const OutputTarget& to, const FileParts& parts);
 
 }  // namespace boxtree::cooker

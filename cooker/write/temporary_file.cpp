@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <sys/file.h>
+#include <sys/mman.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <system_error>
@@ -94,6 +95,13 @@ Result<TemporaryFile> TemporaryFile::create(const fs::path& folder, std::string_
   } else if (Status status = file.create_named(mode); !status) {
     return status.error();
   }
+  return file;
+}
+
+Result<TemporaryFile> TemporaryFile::create_in_memory(const std::string& title) {
+  TemporaryFile file;
+  file.descriptor_ = ::memfd_create("boxtree", MFD_CLOEXEC);
+  if (file.descriptor_ < 0) return write_failure(title, "cannot be collected in memory");
   return file;
 }
 

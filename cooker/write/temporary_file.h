@@ -22,6 +22,9 @@ class TemporaryFile {
   static Result<TemporaryFile> create(const std::filesystem::path& folder, std::string_view name,
                                       mode_t mode);
 
+  /// In memory, without a folder; it cannot be given a name. Error: kWriteFailed, with `title`.
+  static Result<TemporaryFile> create_in_memory(const std::string& title);
+
   TemporaryFile(TemporaryFile&& other) noexcept;
   TemporaryFile& operator=(TemporaryFile&&) = delete;
   TemporaryFile(const TemporaryFile&) = delete;

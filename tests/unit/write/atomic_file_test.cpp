@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: MIT
 // What is left behind when writing fails, is abandoned or is killed: the old file and nothing else.
+#include <array>
 #include <csignal>
 #include <fcntl.h>
+#include <filesystem>
+#include <span>
 #include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -155,6 +158,43 @@ TEST(AtomicFile, CommitNeedsNoMoreDescriptors) {
   const Status status = file->commit();
   ::setrlimit(RLIMIT_NOFILE, &old);
   EXPECT_TRUE(status.ok());
+}
+
+// What is written to a stream is whole before its first byte is there.
+TEST(AtomicFile, StreamGetsTheBytesWhenTheyAreCommitted) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(::pipe2(ends.data(), O_CLOEXEC | O_NONBLOCK), 0);
+  const OutputTarget target("out.bxt", OutputStream{ends[1], "standard output"});
+  EXPECT_EQ(target.title(), "standard output");
+  std::array<char, 8> read{};
+  {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    ASSERT_TRUE(file.ok()) << file.error().message();
+    ASSERT_TRUE(file->write(std::as_bytes(std::span("abc", 3))).ok());
+  }
+  EXPECT_LT(::read(ends[0], read.data(), read.size()), 0) << "an abandoned file was sent";
+  Result<AtomicFile> file = AtomicFile::create(target);
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  ASSERT_TRUE(file->write(std::as_bytes(std::span("abc", 3))).ok());
+  EXPECT_LT(::read(ends[0], read.data(), read.size()), 0);
+  ASSERT_TRUE(file->commit().ok());
+  EXPECT_EQ(::read(ends[0], read.data(), read.size()), 3);
+  EXPECT_STREQ(read.data(), "abc");
+  ::close(ends[0]);
+  ::close(ends[1]);
+  EXPECT_FALSE(std::filesystem::exists("out.bxt"));
+}
+
+TEST(AtomicFile, StreamThatTakesNothingIsNamed) {
+  const int closed = ::open("/dev/null", O_RDONLY | O_CLOEXEC);  // not for writing
+  Result<AtomicFile> file =
+      AtomicFile::create(OutputTarget("out.bxt", OutputStream{closed, "standard output"}));
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  ASSERT_TRUE(file->write(std::as_bytes(std::span("abc", 3))).ok());
+  const Status sent = file->commit();
+  EXPECT_EQ(sent.code(), Errc::kWriteFailed);
+  EXPECT_EQ(sent.error().detail.find("standard output: cannot be written: "), 0u);
+  ::close(closed);
 }
 
 TEST(AtomicFile, NoFolderNoFile) {
