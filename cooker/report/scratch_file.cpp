@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The file has no name. Its path is that of its descriptor, so no other process, in any namespace,
-// can find it.
+// Memory as a file: no folder is needed, and a process that is killed leaves nothing behind.
 #include "cooker/report/scratch_file.h"
 
 #include <string>
-#include <system_error>
-#include <unistd.h>
 #include <utility>
 
 #include "cooker/system/write_all.h"
@@ -14,18 +11,10 @@
 namespace boxtree::cooker {
 
 Result<ScratchFile> ScratchFile::create(std::span<const std::byte> bytes) {
-  std::error_code error;
-  const std::filesystem::path folder = std::filesystem::temp_directory_path(error);
-  if (error) return Error{Errc::kWriteFailed, "no temporary folder: " + error.message()};
-  constexpr mode_t kOwnerOnly = 0600;
-  Result<TemporaryFile> file = TemporaryFile::create(folder, "boxtree-scratch", kOwnerOnly);
+  static constexpr const char* kTitle = "a temporary file";
+  Result<TemporaryFile> file = TemporaryFile::create_in_memory(kTitle);
   if (!file) return file.error();
-  file->remove_name();
-  const int descriptor = file->descriptor();
-  // Pages that are not on disk cannot be dropped, and the measurements need cold reads.
-  if (!write_all(descriptor, bytes) || ::fsync(descriptor) != 0) {
-    return write_failure(folder, "cannot write a temporary file");
-  }
+  if (!write_all(file->descriptor(), bytes)) return write_failure(kTitle, "cannot write");
   return ScratchFile(std::move(*file));
 }
 

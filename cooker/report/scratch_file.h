@@ -11,10 +11,9 @@
 
 namespace boxtree::cooker {
 
-/// A file without a name in the system's temporary folder, removed with its process. Its path goes
-/// through the process's descriptors and is invalid in other processes. Where the system cannot
-/// make a file without a name, it has one between two system calls; the next ScratchFile removes a
-/// file left by a process killed there.
+/// A file in memory that can be opened and mapped like any other. Its path goes through the
+/// process's descriptors and is invalid in other processes. What is measured on it is not changed
+/// by the disk: times are of cached pages anyway, and pages are counted by reads of memory.
 class ScratchFile {
  public:
   /// Writes it. Error: kWriteFailed.
