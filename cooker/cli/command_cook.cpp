@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -19,7 +18,9 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
+#include "cooker/import/text_tokens.h"
 #include "cooker/shell/cook_job.h"
+#include "cooker/text/nearest_name.h"
 #include "format/grid.h"
 
 namespace boxtree::cooker {
@@ -74,11 +75,12 @@ std::string report_text(const Arguments& arguments, const std::string& output,
                     shown(output), summary.file_bytes, seconds);
 }
 
-// It becomes part of a file's name.
+// Refused here, because assimp looks for a reader by the first bytes if it does not know an ending.
 std::string ending_fault(const std::string& text) {
-  const bool is_word =
-      std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isalnum(c) != 0; });
-  return !text.empty() && text.size() <= 16 && is_word ? "" : text + " is no ending like obj";
+  const std::vector<std::string> endings = mesh_endings();
+  if (std::find(endings.begin(), endings.end(), in_lower_case(text)) != endings.end()) return {};
+  return fmt::format("expected the ending of a mesh file, as obj, found \"{}\"{}", text,
+                     suggestion(text, endings));
 }
 
 // The options of the cook that names on the command line stand for.
@@ -116,7 +118,9 @@ std::string stream_fault(const Arguments& arguments) {
     return "- (standard input): --format says what it is, as in --format obj";
   }
   if (count > 1) return "- (standard input) can be read once";
-  if (count == 0 && !arguments.format.empty()) return "--format goes with the input -";
+  if (count == 0 && !arguments.format.empty()) {
+    return "--format is of the input - (standard input): a file is read by the ending of its name";
+  }
   if ((count > 0 || is_to_standard) && !arguments.job.depfile.empty()) {
     return "--depfile lists files by their names: - has none";
   }
@@ -132,20 +136,17 @@ std::string stream_fault(const Arguments& arguments) {
 int run(Arguments& arguments) {
   set_options(arguments);
   if (const std::string fault = stream_fault(arguments); !fault.empty()) return usage(fault);
-  std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
+  const std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(), is_standard_stream);
-  std::optional<StandardMesh> mesh;
   if (input != inputs.end()) {
-    Result<StandardMesh> read = StandardMesh::read(arguments.format);
-    if (!read) return fail(read.error());
-    *input = mesh.emplace(std::move(*read)).path();
+    const Result<SourceBytes> mesh = standard_mesh(arguments.format);
+    if (!mesh) return fail(mesh.error());
+    arguments.job.options.import.bytes = *mesh;
   }
-  Result<OutputFile> output = OutputFile::make(arguments.job.output, "bxt");
+  const Result<OutputTarget> output = output_target(arguments.job.output, "bxt");
   if (!output) return fail(output.error());
-  arguments.job.output = output->path();
-  const auto fail_to_cook = [&](const Error& error) {
-    return fail(mesh ? mesh->named(error) : error);
-  };
+  arguments.job.output = output->path;
+  arguments.job.output_stream = output->stream;
 
   if (Status status = check_job(arguments.job); !status) return usage(status.error().detail);
   const Clock::time_point start = Clock::now();
@@ -158,22 +159,16 @@ int run(Arguments& arguments) {
     });
   }
   if (!cooked && cooked.code() == Errc::kInvalidPose) {
-    return fail_to_cook(
+    return fail(
         {cooked.code(),
          cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
   }
-  if (!cooked) return fail_to_cook(cooked.error());
-  for (ImportReport& import : cooked->imports) {
-    for (std::filesystem::path& file : import.files_missing) {
-      if (mesh) file = mesh->named(file);
-    }
-  }
-  if (const Status sent = output->send(); !sent) return fail(sent.error());
+  if (!cooked) return fail(cooked.error());
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   if (arguments.json) {
     print(report_json(arguments, *cooked, seconds));
   } else if (!arguments.quiet) {
-    output->report(report_text(arguments, output->name(), *cooked, seconds));
+    tell(*output, report_text(arguments, output->title(), *cooked, seconds));
   }
   return 0;
 }

@@ -173,14 +173,15 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
 }
 
 // The scene of the file, unless trees are requested.
-Result<ExportReport> export_file(const Arguments& arguments, const File& file,
-                                 std::span<const Tree> trees, const ExportOptions& options) {
+Result<ExportReport> export_file(const Arguments& arguments, const OutputTarget& output,
+                                 const File& file, std::span<const Tree> trees,
+                                 const ExportOptions& options) {
   if (!file.has_scene() || arguments.trees || !arguments.tree.empty()) {
-    return export_trees(trees, arguments.output, options);
+    return export_trees(trees, output, options);
   }
   const Result<Scene> scene = bind_without_meshes(file);
   if (!scene) return Error{scene.code(), arguments.file.string() + ": " + scene.error().detail};
-  return export_scene(*scene, trees, arguments.output, options);
+  return export_scene(*scene, trees, output, options);
 }
 
 Json tree_json(const ExportedTree& tree, bool is_placed) {
@@ -241,7 +242,7 @@ std::string report_text(const std::string& output, const ExportReport& report) {
   return text;
 }
 
-int run(Arguments& arguments) {
+int run(const Arguments& arguments) {
   const std::optional<ExportOptions> options = options_of(arguments);
   if (!options) {
     return usage(
@@ -253,14 +254,14 @@ int run(Arguments& arguments) {
   if (is_standard_stream(arguments.output) && arguments.json) {
     return usage("--json and -o - cannot share standard output");
   }
-  Result<OutputFile> output =
-      OutputFile::make(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
+  const Result<OutputTarget> output =
+      output_target(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
   if (!output) return fail(output.error());
-  arguments.output = output->path();
   std::vector<std::filesystem::path> inputs{arguments.file};
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
-  if (Status status = check_outputs(std::span(&arguments.output, 1), inputs); !status) {
-    return usage(status.error().detail);
+  if (!output->stream) {
+    const Status status = check_outputs(std::span(&output->path, 1), inputs);
+    if (!status) return usage(status.error().detail);
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
@@ -268,13 +269,13 @@ int run(Arguments& arguments) {
   const Result<std::vector<Tree>> trees =
       bind_trees(arguments, opened->file, options->triangles, meshes);
   if (!trees) return fail(trees.error());
-  const Result<ExportReport> exported = export_file(arguments, opened->file, *trees, *options);
+  const Result<ExportReport> exported =
+      export_file(arguments, *output, opened->file, *trees, *options);
   if (!exported) return fail(exported.error());
-  if (const Status sent = output->send(); !sent) return fail(sent.error());
   if (arguments.json) {
     print(report_json(arguments, *exported));
   } else if (!arguments.quiet) {
-    output->report(report_text(output->name(), *exported));
+    tell(*output, report_text(output->title(), *exported));
   }
   return 0;
 }

@@ -4,11 +4,12 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 
 #include <boxtree/error.h>
 
+#include "cooker/import/source_file.h"
+#include "cooker/write/output_target.h"
 #include "format/bytes.h"
 
 namespace boxtree::cooker {
@@ -25,67 +26,17 @@ inline constexpr std::uint64_t kMaxStandardInput = std::uint64_t{1} << 34;
 /// kMaxStandardInput.
 Result<Bytes> standard_input();
 
-/// A folder for this process alone, removed with all that is in it; also where SIGHUP, SIGINT or
-/// SIGTERM ends the process. The thread that makes the first one, and those that it starts later,
-/// block these signals from then on: a thread of their own waits for them. Move-only.
-class ScratchFolder {
- public:
-  /// In the system's folder for temporary files. Error: kWriteFailed.
-  static Result<ScratchFolder> make();
-  ScratchFolder(ScratchFolder&& other) noexcept;
-  ScratchFolder& operator=(ScratchFolder&&) = delete;
-  ~ScratchFolder();
+/// A mesh from standard input. `format`: the ending of a mesh file's name, "obj". Errors: those of
+/// standard_input.
+Result<SourceBytes> standard_mesh(const std::string& format);
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// Before the end of its life. What is open in it can still be read.
-  void remove();
+/// Where a command writes: the file that was named or, for "-", standard output. `format`: the
+/// ending of the name that the writer expects. Error: kInvalidQuery if standard output is a
+/// terminal. A reader of it that goes away ends the process by SIGPIPE, as it ends others.
+Result<OutputTarget> output_target(const std::filesystem::path& requested,
+                                   const std::string& format);
 
- private:
-  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {}
-  std::filesystem::path path_;
-};
-
-/// A mesh from standard input as the file "stdin.FORMAT", for readers that want a name.
-class StandardMesh {
- public:
-  /// `format`: the ending of a mesh file's name, "obj". Errors: kFileUnreadable, kWriteFailed.
-  static Result<StandardMesh> read(const std::string& format);
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// An error of reading it, about "stdin.FORMAT".
-  [[nodiscard]] Error named(Error error) const;
-  /// A file that it refers to, as it names it.
-  [[nodiscard]] std::filesystem::path named(const std::filesystem::path& file) const;
-
- private:
-  StandardMesh(ScratchFolder folder, std::filesystem::path path)
-      : folder_(std::move(folder)), path_(std::move(path)) {}
-  ScratchFolder folder_;
-  std::filesystem::path path_;
-};
-
-/// Where a command writes: the file that was named or, for "-", one that send() copies to standard
-/// output once it is whole.
-class OutputFile {
- public:
-  /// `format`: the ending of the name that the writer expects. Errors: kInvalidQuery if standard
-  /// output is a terminal, kWriteFailed.
-  static Result<OutputFile> make(const std::filesystem::path& requested, const std::string& format);
-
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  /// As people are told: "standard output" for "-".
-  [[nodiscard]] std::string name() const { return folder_ ? "standard output" : path_.string(); }
-  /// Prints text for people to standard output, or to standard error where that is the file.
-  void report(const std::string& text) const;
-  /// Error: kWriteFailed. Nothing to do for a named file. A reader that goes away ends the process
-  /// by SIGPIPE, as it ends others; nothing is left then.
-  [[nodiscard]] Status send();
-
- private:
-  OutputFile(std::optional<ScratchFolder> folder, std::filesystem::path path)
-      : folder_(std::move(folder)), path_(std::move(path)) {}
-  std::optional<ScratchFolder> folder_;
-  std::filesystem::path path_;
-};
+/// Prints text for people to standard output, or to standard error where that is the target.
+void tell(const OutputTarget& target, const std::string& text);
 
 }  // namespace boxtree::cooker
