@@ -21,6 +21,7 @@
 #include "cooker/cli/query_request.h"
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
+#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -93,8 +94,7 @@ class BatchLines {
                                                     number_, kLongestLine)};
     }
     if (error_ == 0) return {};
-    return Error{Errc::kFileUnreadable,
-                 fmt::format("{}: {}", name(), std::generic_category().message(error_))};
+    return read_failure(name(), error_);
   }
 
  private:

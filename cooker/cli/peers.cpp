@@ -12,6 +12,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "runtime/file/read_failure.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -38,8 +40,7 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
   ::close(ends[1]);
   if (failed != 0) {
     ::close(ends[0]);
-    return Error{Errc::kFileUnreadable,
-                 command[0] + ": " + std::generic_category().message(failed)};
+    return read_failure(command[0], failed);
   }
   std::string text;
   std::array<char, 65536> block;

@@ -43,7 +43,7 @@ class SourceFile {
   /// Opens it for reading; null, with the reason in errno, if that fails. Precondition: bytes are
   /// not empty.
   [[nodiscard]] FileHandle open() const;
-  /// Error: kFileUnreadable.
+  /// Errors: as read_failure.
   [[nodiscard]] Result<std::uint64_t> size() const;
   /// All of it. Errors: as read_whole_file.
   [[nodiscard]] Result<std::string> read() const;

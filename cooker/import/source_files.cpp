@@ -16,6 +16,7 @@
 
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
+#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -26,10 +27,6 @@ Error unreadable(const fs::path& path, const std::string& why) {
   return Error{Errc::kFileUnreadable, path.string() + ": " + why};
 }
 
-std::string system_message(int error) {
-  return std::generic_category().message(error);
-}
-
 }  // namespace
 
 Status check_source_file(const SourceFile& source) {
@@ -38,17 +35,14 @@ Status check_source_file(const SourceFile& source) {
   const fs::path& path = source.path();
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (status.type() == fs::file_type::not_found) {
-    return Error{Errc::kFileNotFound, path.string() + ": no such file"};
-  }
-  if (status.type() == fs::file_type::none) return unreadable(path, error.message());
+  if (!fs::exists(status)) return read_failure(path.string(), error.value());
   if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
   // A pipe or a device cannot be read twice, and assimp reads most files more than once.
   if (!fs::is_regular_file(status)) return unreadable(path, "is not a regular file");
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return unreadable(path, system_message(errno));
+  if (!file) return read_failure(path.string(), errno);
   if (std::fgetc(file.get()) != EOF) return {};
-  if (std::ferror(file.get()) != 0) return unreadable(path, system_message(errno));
+  if (std::ferror(file.get()) != 0) return read_failure(path.string(), errno);
   return empty;
 }
 

@@ -8,10 +8,11 @@
 #include <cerrno>
 #include <cstring>
 #include <string>
-#include <system_error>
 #include <utility>
 
 #include <xxhash.h>
+
+#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 
@@ -27,10 +28,7 @@ Result<SourceStream> SourceStream::open(const SourceFile& source) {
   SourceStream stream;
   stream.title_ = source.title();
   stream.file_ = source.open();
-  if (!stream.file_) {
-    return Error{Errc::kFileUnreadable,
-                 source.title() + ": " + std::generic_category().message(errno)};
-  }
+  if (!stream.file_) return read_failure(source.title(), errno);
   const Result<std::uint64_t> size = source.size();
   if (!size) return size.error();
   stream.unread_ = *size;
@@ -88,9 +86,7 @@ bool SourceStream::skip(std::uint64_t count) {
 }
 
 Error SourceStream::ended_in(std::string_view what) const {
-  if (error_ != 0) {
-    return Error{Errc::kFileUnreadable, title_ + ": " + std::generic_category().message(error_)};
-  }
+  if (error_ != 0) return read_failure(title_, error_);
   return Error{Errc::kImportFailed, title_ + ": the file ends in " + std::string(what)};
 }
 

@@ -4,31 +4,24 @@
 
 #include <cerrno>
 #include <cstdio>
-#include <system_error>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cooker/system/file_handle.h"
+#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
 
 constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 
-Error unreadable(const std::filesystem::path& path, int error) {
-  const Errc code = error == ENOENT   ? Errc::kFileNotFound
-                    : error == ENOMEM ? Errc::kOutOfMemory
-                                      : Errc::kFileUnreadable;
-  return {code, path.string() + ": " + std::generic_category().message(error)};
-}
-
 }  // namespace
 
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
                    const std::function<void(const char* bytes, std::size_t count)>& sink) {
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return unreadable(path, errno);
+  if (!file) return read_failure(path.string(), errno);
   std::vector<char> chunk(kChunkBytes);
   std::uint64_t left = most;
   for (;;) {
@@ -41,7 +34,7 @@ Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
     left -= got;
     sink(chunk.data(), got);
     if (got == chunk.size()) continue;
-    return std::ferror(file.get()) != 0 ? Status(unreadable(path, errno)) : Status();
+    return std::ferror(file.get()) != 0 ? Status(read_failure(path.string(), errno)) : Status();
   }
 }
 

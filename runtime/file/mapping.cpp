@@ -11,6 +11,8 @@
 #include <unistd.h>
 #include <utility>
 
+#include "runtime/file/read_failure.h"
+
 namespace boxtree {
 namespace {
 
@@ -37,11 +39,9 @@ Error system_error(Errc code, const std::string& path, int number) {
 
 // Size of a regular file; directories, pipes and devices cannot be mapped and are refused here.
 Result<std::size_t> regular_file_size(int file, const std::string& path) {
-  if (file < 0) {
-    return system_error(errno == ENOENT ? Errc::kFileNotFound : Errc::kFileUnreadable, path, errno);
-  }
+  if (file < 0) return read_failure(path, errno);
   struct stat info {};
-  if (::fstat(file, &info) != 0) return system_error(Errc::kFileUnreadable, path, errno);
+  if (::fstat(file, &info) != 0) return read_failure(path, errno);
   if (!S_ISREG(info.st_mode)) {
     return Error{Errc::kFileUnreadable, path + ": not a regular file"};
   }
@@ -117,7 +117,7 @@ Result<Mapping> Mapping::copy(const std::string& path) {
   for (std::size_t done = 0; done < *size;) {
     const ssize_t got = ::pread(file.value(), data + done, *size - done, static_cast<off_t>(done));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) return system_error(Errc::kFileUnreadable, path, errno);
+    if (got < 0) return read_failure(path, errno);
     if (got == 0) return Error{Errc::kFileUnreadable, path + ": shrank while being read"};
     done += static_cast<std::size_t>(got);
   }

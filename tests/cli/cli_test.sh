@@ -268,7 +268,31 @@ expect 2 "$boxtree" cook cube.obj -o no/such/folder/out.bxt
 expect 1 "$boxtree" cook cube.obj
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0 --direction 0,0,1
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0 --direction 0,0,0
-expect 2 "$boxtree" info missing.bxt
+# A file that is not there has one name and one message, whatever it was to be.
+printf '[scene]\nsource = "missing"\n' >missing_source.toml
+printf '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}\n' >one.jsonl
+missing() {
+  expect 2 "$boxtree" "$@"
+  grep -qx 'boxtree: file_not_found: missing: no such file; check the name, which is relative to the current folder' err ||
+    { echo "$*"; cat err; exit 1; }
+}
+missing cook missing -o none.bxt
+missing cook missing cube.obj -o none.bxt
+missing cook cube.obj --costs missing -o none.bxt
+missing cook --profile missing -o none.bxt
+missing cook --profile missing_source.toml -o none.bxt
+missing info missing
+missing verify missing
+missing verify cube.bxt --mesh missing
+missing export missing -o none.obj
+missing bench missing --quick
+missing query missing ray --origin 0,0,9 --direction 0,0,-1
+missing query cube.bxt pair missing
+missing query cube.bxt --batch missing
+missing report missing --quick --no-times
+missing report cube.obj --include missing --quick --no-times
+missing report cube.obj --peers missing --quick
+test ! -e none.bxt
 expect 3 "$boxtree" info cube.obj
 head -c 200 cube.bxt >short.bxt
 expect 3 "$boxtree" verify short.bxt

@@ -56,6 +56,20 @@ TEST(FileOpen, NamesThePathOfWhatItRefuses) {
   }
 }
 
+// The same name and words wherever a file is looked for, also where a file is in the place of a
+// folder.
+TEST(FileOpen, MissingFileHasOneMessage) {
+  const test::TempFolder folder;
+  const std::filesystem::path file = folder.write("file", "x");
+  for (const std::filesystem::path& path : {folder.path() / "missing.bxt", file / "missing.bxt"}) {
+    EXPECT_EQ(File::open(path).error().message(),
+              "file_not_found: " + path.string() + ": no such file; check the name");
+  }
+  EXPECT_EQ(File::open("missing.bxt").error().message(),
+            "file_not_found: missing.bxt: no such file; check the name, which is relative to the "
+            "current folder");
+}
+
 TEST(FileOpen, PipesAreRefusedWithoutWaiting) {
   const test::TempFolder folder;
   const std::filesystem::path pipe = folder.path() / "pipe";

@@ -65,7 +65,7 @@ TEST_F(SourceStreamTest, FileThatIsShortenedMeanwhile) {
 }
 
 TEST_F(SourceStreamTest, FileThatIsNotThere) {
-  EXPECT_EQ(SourceStream::open(folder_ / "none").code(), Errc::kFileUnreadable);
+  EXPECT_EQ(SourceStream::open(folder_ / "none").code(), Errc::kFileNotFound);
 }
 
 }  // namespace

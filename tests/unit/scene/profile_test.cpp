@@ -426,7 +426,7 @@ TEST_F(ProfileTest, FaultsOfLists) {
   EXPECT_EQ(missing,
             "scene.toml:3: hidden_faces: expected the name of a list of faces, found "
             "file_not_found: " +
-                (folder_ / "none.txt").string() + ": No such file or directory");
+                (folder_ / "none.txt").string() + ": no such file; check the name");
 }
 
 TEST_F(ProfileTest, FilesThatCannotBeRead) {

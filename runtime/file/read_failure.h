@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: MIT
+// Makes the error for a file that cannot be read, so that a missing one has the same name and
+// message wherever it is looked for.
+#pragma once
+
+#include <string>
+
+#include <boxtree/error.h>
+
+namespace boxtree {
+
+/// The error for `path` by the system's `reason`, a value of errno: kFileNotFound if there is no
+/// such file, also if something on the way to it is no folder; kOutOfMemory; else kFileUnreadable.
+[[nodiscard]] Error read_failure(const std::string& path, int reason);
+
+}  // namespace boxtree
