@@ -135,7 +135,8 @@ std::string stream_fault(const Arguments& arguments) {
 
 int run(Arguments& arguments) {
   set_options(arguments);
-  if (const std::string fault = stream_fault(arguments); !fault.empty()) return usage(fault);
+  if (const std::string fault = stream_fault(arguments); !fault.empty())
+    return usage("cook: " + fault);
   const std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(), is_standard_stream);
   if (input != inputs.end()) {
@@ -148,7 +149,8 @@ int run(Arguments& arguments) {
   arguments.job.output = output->path;
   arguments.job.output_stream = output->stream;
 
-  if (Status status = check_job(arguments.job); !status) return usage(status.error().detail);
+  if (Status status = check_job(arguments.job); !status)
+    return usage("cook: " + status.error().detail);
   const Clock::time_point start = Clock::now();
   Result<Summary> cooked = Errc::kInternal;
   {

@@ -245,14 +245,14 @@ std::string report_text(const std::string& output, const ExportReport& report) {
 int run(const Arguments& arguments) {
   const std::optional<ExportOptions> options = options_of(arguments);
   if (!options) {
-    return usage(
-        fmt::format("--levels: expected levels as in 0-3,6, found \"{}\"", arguments.levels));
+    return usage(fmt::format("export: --levels: expected levels as in 0-3,6, found \"{}\"",
+                             arguments.levels));
   }
   if (!is_standard_stream(arguments.output) && !arguments.format.empty()) {
-    return usage("--format goes with the output -");
+    return usage("export: --format goes with the output -");
   }
   if (is_standard_stream(arguments.output) && arguments.json) {
-    return usage("--json and -o - cannot share standard output");
+    return usage("export: --json and -o - cannot share standard output");
   }
   const Result<OutputTarget> output =
       output_target(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
@@ -261,7 +261,7 @@ int run(const Arguments& arguments) {
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
   if (!output->stream) {
     const Status status = check_outputs(std::span(&output->path, 1), inputs);
-    if (!status) return usage(status.error().detail);
+    if (!status) return usage("export: " + status.error().detail);
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());

@@ -162,13 +162,13 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
       is_standard_stream(arguments.file) || is_standard_stream(second_file(defaults.request));
   if (is_file && is_standard_stream(arguments.batch)) {
-    return usage("standard input is the file or the batch, not both");
+    return usage("query: standard input is the file or the batch, not both");
   }
   Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());
   const File& file = opened->file;
   if (!arguments.moves.empty() && (!file.has_scene() || !arguments.tree.empty())) {
-    return usage("--move is for instances of a scene");
+    return usage("query: --move is for instances of a scene");
   }
   const auto answer_all = [&](const AnswerRequest& answer_request) {
     if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
@@ -344,7 +344,7 @@ void add_query_command(Command& program, int& status) {
                   "echo '{\"kind\":\"point\",\"at\":[1,2,3]}' | boxtree query bunny.bxt --batch -");
   command.callback([&command, arguments, &status] {
     if (command.has_parsed_command()) return;
-    status = arguments->batch.empty() ? usage("a kind of query or --batch is required")
+    status = arguments->batch.empty() ? usage("query: a kind of query or --batch is required")
                                       : run(*arguments, RequestDefaults());
   });
 }

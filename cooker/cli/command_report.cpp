@@ -303,10 +303,10 @@ int run(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs = arguments.meshes;
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
-    return usage(status.error().detail);
+    return usage("report: " + status.error().detail);
   }
   if (count_standard_outputs(arguments) + (arguments.json ? 1 : 0) > 1) {
-    return usage("standard output takes one of the page, --json, --json-out and CSV");
+    return usage("report: standard output takes one of the page, --json, --json-out and CSV");
   }
   int status = 0;
   tbb::task_arena arena(arguments.jobs);

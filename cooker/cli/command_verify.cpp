@@ -18,6 +18,8 @@
 #include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
@@ -101,12 +103,13 @@ Json to_json(const std::filesystem::path& file, const Verification& verification
 void print_verification(const std::filesystem::path& file, const Verification& verification,
                         bool quiet) {
   if (verification.is_reported) return;
-  const std::string name = shown(file.string());
+  const std::string name = is_standard_stream(file) ? "standard input" : file.string();
   for (const Error& finding : verification.findings) {
-    fmt::print("{}: {:04} {}\n", name, static_cast<unsigned>(finding.code),
-               shown(finding.message()));
+    static_cast<void>(fail(in_file(name, finding)));
   }
-  if (verification.findings.empty() && !quiet) fmt::print("{}: {}\n", name, verification.summary);
+  if (verification.findings.empty() && !quiet) {
+    fmt::print("{}: {}\n", shown(name), verification.summary);
+  }
 }
 
 int run(const Arguments& arguments) {
@@ -143,7 +146,7 @@ void add_verify_command(Command& program, int& status) {
                 "Files to verify; - is standard input")
       ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
-  command.add_flag("-q,--quiet", arguments->quiet, "Print findings only");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
   command.add_option("-j,--jobs", arguments->jobs, "Threads [all]")
       ->type_name("N")
       ->between(1, 1024);

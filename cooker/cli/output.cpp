@@ -38,14 +38,13 @@ int fail(const Error& error) {
 }
 
 int usage(const std::string& what) {
-  complain(what);
+  complain("usage: " + what);
   return kExitUsage;
 }
 
 int fail_to_print() {
   const int error = errno;
-  complain("standard output: " + std::generic_category().message(error));
-  return kExitInputOutput;
+  return fail({Errc::kWriteFailed, "standard output: " + std::generic_category().message(error)});
 }
 
 std::string shown(std::string_view text) {

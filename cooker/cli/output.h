@@ -12,10 +12,11 @@ namespace boxtree::cooker {
 /// Prints "boxtree: WHAT" to standard error.
 void complain(std::string_view what) noexcept;
 
-/// Prints "boxtree: CODE: DETAIL" to standard error and returns the exit status of the code.
+/// Prints "boxtree: NAME: DETAIL" to standard error and returns the exit status of the error.
 int fail(const Error& error);
 
-/// The same for a command line that contradicts itself, without a code: kExitUsage.
+/// The same for a command line that contradicts itself, which is called usage: kExitUsage. `what`
+/// begins with the command, "cook: ".
 int usage(const std::string& what);
 
 /// Says that standard output takes no more; kExitInputOutput.

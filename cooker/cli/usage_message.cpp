@@ -133,11 +133,11 @@ std::string unknown_command(const Command& command, const std::string& word) {
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {
   const Command& command = innermost(*app);
   const std::string name = name_of(command);
-  // "boxtree: query ray: --origin is required"
+  // "boxtree: usage: query ray: --origin is required"
   const std::string place = name.size() > app->get_name().size()
                                 ? name.substr(app->get_name().size() + 1) + ": "
                                 : std::string();
-  return "boxtree: " + place + shown(fault(*app, command, error)) + "\nSee '" + name +
+  return "boxtree: usage: " + place + shown(fault(*app, command, error)) + "\nSee '" + name +
          " --help'.\n";
 }
 

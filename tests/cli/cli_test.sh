@@ -299,6 +299,29 @@ expect 3 "$boxtree" verify short.bxt
 cp cube.bxt damaged.bxt
 printf '\377' | dd of=damaged.bxt bs=1 seek=700 conv=notrunc status=none
 expect 3 "$boxtree" verify damaged.bxt
+# What verify finds is an error like any other, "boxtree: NAME: PLACE: ...", on standard error.
+cp cube.bxt found.bxt
+printf '\377' | dd of=found.bxt bs=1 seek=150 conv=notrunc status=none
+expect 3 "$boxtree" verify found.bxt cube.bxt
+same "$(head -1 err)" 'boxtree: checksum_mismatch: found.bxt: section 0 (trees): checksum differs'
+same "$(grep -vc '^boxtree: [a-z_]*: found.bxt: ' err)" 0
+same "$(cat out)" 'cube.bxt: valid: 1 tree, every triangle inside every box above it'
+got=0
+"$boxtree" verify - <found.bxt 2>err || got=$?
+same "$got" 3
+same "$(head -1 err)" 'boxtree: checksum_mismatch: standard input: section 0 (trees): checksum differs'
+# So is what is wrong with a command line: its name is usage, its place the command.
+for words in 'cook cube.obj -o cube.obj' 'cook cube.obj --format ply -o x' 'cook cube.obj -o x --depfile -' \
+  'verify cube.bxt found.bxt --mesh cube.obj' 'export cube.bxt -o x.obj --levels 3-' 'export cube.bxt -o cube.bxt' \
+  'report cube.obj -o cube.obj' 'cook cube.obj --jobs x -o y' 'query cube.bxt'; do
+  # shellcheck disable=SC2086 # a list of words
+  expect 1 "$boxtree" $words
+  grep -q "^boxtree: usage: ${words%% *}: " err || { echo "$words"; cat err; exit 1; }
+done
+got=0
+"$boxtree" info cube.bxt >/dev/full 2>err || got=$?
+same "$got" 2
+same "$(cat err)" 'boxtree: write_failed: standard output: No space left on device'
 expect 0 "$boxtree" --help
 expect 0 "$boxtree" --version
 mv out version
@@ -313,37 +336,37 @@ misspelt() {
   same "$(cat err)" "$said"
   same "$(wc -c <out)" 0
 }
-misspelt "boxtree: 'quary' is no command; did you mean 'query'?
+misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?
 See 'boxtree --help'." quary
-misspelt "boxtree: 'xyzzy' is no command
+misspelt "boxtree: usage: 'xyzzy' is no command
 See 'boxtree --help'." xyzzy cube.bxt
-misspelt "boxtree: a command is required
+misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
-misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
-misspelt "boxtree: query ray: '--orgin' is no option; did you mean '--origin'?
+misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--origin'?
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
-misspelt "boxtree: cook: '--outptu' is no option; did you mean '--output'?
+misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
-misspelt "boxtree: query ray: --origin: expected X,Y,Z, found \"1,2\"
+misspelt "boxtree: usage: query ray: --origin: expected X,Y,Z, found \"1,2\"
 See 'boxtree query ray --help'." query cube.bxt ray --origin 1,2
-misspelt "boxtree: 'quary' is no command; did you mean 'query'?" help quary
+misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?" help quary
 # Options that follow a misspelt command or kind are not what is wrong.
-misspelt "boxtree: 'cok' is no command; did you mean 'cook'?
+misspelt "boxtree: usage: 'cok' is no command; did you mean 'cook'?
 See 'boxtree --help'." cok cube.obj -o cube.bxt
-misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya --origin 0,0,9
-misspelt "boxtree: query: 'rya' is no kind of query; did you mean 'ray'?
+misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query rya cube.bxt --origin 0,0,9
-misspelt "boxtree: query: '--origin' is an option of ray, which comes before it
+misspelt "boxtree: usage: query: '--origin' is an option of ray, which comes before it
 See 'boxtree query --help'." query cube.bxt --origin 0,0,9
-misspelt "boxtree: query: '--first' is an option of pair or contacts, which comes before it
+misspelt "boxtree: usage: query: '--first' is an option of pair or contacts, which comes before it
 See 'boxtree query --help'." query cube.bxt --first
-misspelt "boxtree: cook: '-o' is an option that comes after cook
+misspelt "boxtree: usage: cook: '-o' is an option that comes after cook
 See 'boxtree cook --help'." -o cube.bxt cook cube.obj
-misspelt "boxtree: 'ray' is no command but a kind of query
+misspelt "boxtree: usage: 'ray' is no command but a kind of query
 See 'boxtree --help'." ray cube.bxt --origin 0,0,9
-misspelt "boxtree: 'ray' is no command but a kind of query" help ray
+misspelt "boxtree: usage: 'ray' is no command but a kind of query" help ray
 
 # Values name what was expected and what was found.
 misvalued() {
@@ -353,23 +376,23 @@ misvalued() {
   same "$(head -1 err)" "boxtree: $said"
 }
 for value in abc 0 -1 inf nan 1x; do
-  misvalued "cook: --tolerance: expected a length above 0, found \"$value\"" cook cube.obj -o x.bxt --tolerance="$value"
+  misvalued "usage: cook: --tolerance: expected a length above 0, found \"$value\"" cook cube.obj -o x.bxt --tolerance="$value"
 done
-misvalued 'cook: --max-slowdown: expected a factor above 0, found "0"' cook cube.obj -o x.bxt --max-slowdown 0
-misvalued 'cook: --max-bytes-per-triangle: expected a number of bytes above 0, found "few"' \
+misvalued 'usage: cook: --max-slowdown: expected a factor above 0, found "0"' cook cube.obj -o x.bxt --max-slowdown 0
+misvalued 'usage: cook: --max-bytes-per-triangle: expected a number of bytes above 0, found "few"' \
   cook cube.obj -o x.bxt --max-bytes-per-triangle few
 for value in 7 31 8.5 many; do
-  misvalued "cook: --grid-bits: expected a whole number from 8 to 30, found \"$value\"" cook cube.obj -o x.bxt --grid-bits $value
+  misvalued "usage: cook: --grid-bits: expected a whole number from 8 to 30, found \"$value\"" cook cube.obj -o x.bxt --grid-bits $value
 done
-misvalued 'cook: --shrink-share: expected a share from 0.01 to 1, found "2"' cook cube.obj -o x.bxt --shrink-share 2
-misvalued 'cook: --jobs: expected a whole number from 1 to 1024, found "0"' cook cube.obj -o x.bxt --jobs 0
-misvalued "cook: --for: expected memory, speed or balance, found \"sped\"; did you mean 'speed'?" cook cube.obj -o x.bxt --for sped
-misvalued 'query point: --at: expected X,Y,Z, found no value' query cube.bxt point --at
-misvalued 'cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
-misvalued 'query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
-misvalued 'query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
+misvalued 'usage: cook: --shrink-share: expected a share from 0.01 to 1, found "2"' cook cube.obj -o x.bxt --shrink-share 2
+misvalued 'usage: cook: --jobs: expected a whole number from 1 to 1024, found "0"' cook cube.obj -o x.bxt --jobs 0
+misvalued "usage: cook: --for: expected memory, speed or balance, found \"sped\"; did you mean 'speed'?" cook cube.obj -o x.bxt --for sped
+misvalued 'usage: query point: --at: expected X,Y,Z, found no value' query cube.bxt point --at
+misvalued 'usage: cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
+misvalued 'usage: query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
+misvalued 'usage: query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
 for value in 1.5 -1 x; do
-  misvalued "query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
+  misvalued "usage: query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
 done
 expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --max-distance inf --budget 18446744073709551615
 
@@ -415,13 +438,13 @@ expect 0 "$boxtree" query --help
 grep -q '^Usage: boxtree query FILE \[OPTION...\] KIND ...$' out
 cp cube.bxt ray
 expect 0 "$boxtree" query ./ray ray --origin 0.25,0.5,5 --direction 0,0,-1
-misspelt "boxtree: query ray: FILE is required
+misspelt "boxtree: usage: query ray: FILE is required
 See 'boxtree query ray --help'." query ray --origin 0,0,9 --direction 0,0,-1
-misspelt "boxtree: query pair: FILE comes before pair, as in boxtree query FILE pair
+misspelt "boxtree: usage: query pair: FILE comes before pair, as in boxtree query FILE pair
 See 'boxtree query pair --help'." query pair cube.bxt cube.bxt
 for options in '' '--origin 0,0,9 --direction 0,0,-1'; do
   # shellcheck disable=SC2086
-  misspelt "boxtree: query ray: FILE comes before ray, as in boxtree query FILE ray
+  misspelt "boxtree: usage: query ray: FILE comes before ray, as in boxtree query FILE ray
 See 'boxtree query ray --help'." query ray cube.bxt $options
 done
 expect 0 "$boxtree" --help-all # of every command, rare ones too

@@ -38,7 +38,7 @@ done
 "$boxtree" info crate.bxt --json >named
 cmp piped named
 "$boxtree" verify - <crate.bxt >out
-grep -q '^-: valid: 1 tree' out
+grep -q '^standard input: valid: 1 tree' out
 "$boxtree" cook crate.obj -o crate.blob --codec blob-zstd -q
 "$boxtree" verify - <crate.blob >out
 "$boxtree" query - pair - --pose 0.5,0,0 --json <crate.bxt >out # read once, used twice
