@@ -84,7 +84,8 @@ struct Imported {
 /// coordinates; other polygons are split into triangles that share a face id. Degenerate faces
 /// stay.
 ///
-/// Errors name the file and the face or vertex: kFileNotFound, kFileUnreadable (a directory, a
+/// Errors name the file and the face or vertex, all counted from 0 in every format, corners too;
+/// lines are counted from 1: kFileNotFound, kFileUnreadable (a directory, a
 /// pipe, no permission), kImportFailed (empty or malformed file; often assimp's own message),
 /// kNoFaces, kMeshNotFinite, kMeshIndexOutOfRange, kMeshTooLarge (more than 2^31-1 faces),
 /// kOutOfMemory. Throws nothing, prints nothing and uses no global state: safe to call from several

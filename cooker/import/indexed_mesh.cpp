@@ -133,7 +133,7 @@ template <class T>
 std::string IndexedMesh<T>::name_of(std::uint32_t vertex) const {
   const auto at =
       std::lower_bound(bad_lines_.begin(), bad_lines_.end(), std::pair(vertex, std::size_t{0}));
-  std::string name = fmt::format("vertex {}", std::uint64_t{vertex} + first_number_);
+  std::string name = fmt::format("vertex {}", vertex);
   if (at != bad_lines_.end() && at->first == vertex) name += fmt::format(" (line {})", at->second);
   return name;
 }

@@ -20,15 +20,13 @@ namespace boxtree::cooker {
 template <class T>
 class IndexedMesh {
  public:
-  /// `first_number`: the file's number of its first vertex, used in messages.
   IndexedMesh(std::string file, const ImportOptions& options, std::vector<T>& positions,
-              Imported& out, std::uint32_t first_number = 0)
+              Imported& out)
       : file_(std::move(file)),
         options_(options),
         positions_(positions),
         out_(out),
-        intake_(positions, options, out),
-        first_number_(first_number) {}
+        intake_(positions, options, out) {}
   IndexedMesh(const IndexedMesh&) = delete;
   IndexedMesh& operator=(const IndexedMesh&) = delete;
 
@@ -74,7 +72,6 @@ class IndexedMesh {
   std::vector<T>& positions_;
   Imported& out_;
   FaceIntake<T> intake_;
-  const std::uint32_t first_number_;
   std::vector<std::uint32_t> numbers_;  // of vertices, for weld_in_place
   bool all_finite_ = true;
   std::vector<std::pair<std::uint32_t, std::size_t>> bad_lines_;  // of vertices that are not finite

@@ -173,18 +173,15 @@ std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
   return std::nullopt;
 }
 
-// The fault of a corner that refers to no vertex.
+// The fault of a corner that refers to no vertex. Its word is quoted, since we count from 0.
 template <class T>
 FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
   const std::int64_t number = corner_number(word);
-  std::string why = fmt::format("corner {} (line {}) names ", corner, statement_.line);
-  if (number > 0) {
-    why += fmt::format("vertex {}, but there are {} vertices", number, mesh_.vertices());
-  } else if (number < 0) {
-    why += fmt::format("vertex {}, but {} vertices come before it", number, vertices_so_far_);
-  } else {
-    why += fmt::format("vertex '{}', but vertices are numbered from 1", word);
-  }
+  const std::string limit =
+      number < 0 ? fmt::format("{} vertices come before it", vertices_so_far_)
+                 : fmt::format("OBJ counts the {} vertices from 1", mesh_.vertices());
+  std::string why =
+      fmt::format("corner {} (line {}) says '{}', but {}", corner, statement_.line, word, limit);
   return {Errc::kMeshIndexOutOfRange, std::move(why)};
 }
 
@@ -223,7 +220,7 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
   std::vector<std::string> libraries;
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
                                  std::vector<T>& positions) {
-    IndexedMesh<T> mesh(file, options, positions, out, 1);
+    IndexedMesh<T> mesh(file, options, positions, out);
     Reader<T> reader(statements_of(text), file, options, mesh, out.report, materials);
     Status status = reader.read();
     libraries = reader.libraries();

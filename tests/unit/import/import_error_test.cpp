@@ -108,7 +108,7 @@ TEST_F(ImportErrorTest, IndexOutOfRangeInPly) {
 }
 
 // Assimp refuses such OBJ files without a place, and numbers the vertices of OBJ files anew.
-TEST_F(ImportErrorTest, ObjFaultsAreNamedAsInTheFile) {
+TEST_F(ImportErrorTest, ObjFaultsCountFromZeroAndQuoteTheFile) {
   const std::string obj = std::string(kTriangle) +
                           "v 0 0 nan\n"       // 4, line 4
                           "f 1 2 3\n"         // 0
@@ -121,8 +121,8 @@ TEST_F(ImportErrorTest, ObjFaultsAreNamedAsInTheFile) {
                           "v 5 5 5\n";
   const Error error = fail("a.obj", obj);
   EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
-  EXPECT_TRUE(
-      has(error.detail, "face 1: corner 2 (line 6) names vertex 9, but there are 5 vertices"));
+  EXPECT_TRUE(has(error.detail,
+                  "face 1: corner 2 (line 6) says '9/1', but OBJ counts the 5 vertices from 1"));
 
   const Imported rest = load("a.obj", obj, {.skip_bad = true});
   expect_invariants(rest);
@@ -130,10 +130,11 @@ TEST_F(ImportErrorTest, ObjFaultsAreNamedAsInTheFile) {
   EXPECT_EQ(rest.mesh.face_ids, (std::vector<std::uint32_t>{0, 2, 6}));
   ASSERT_EQ(rest.report.skipped.size(), 4u);
   EXPECT_EQ(rest.report.skipped[1].face_id, 3u);
-  EXPECT_TRUE(has(rest.report.skipped[1].reason, "(line 8) names vertex -5"));
-  EXPECT_TRUE(has(rest.report.skipped[2].reason, "numbered from 1"));
+  EXPECT_TRUE(
+      has(rest.report.skipped[1].reason, "(line 8) says '-5', but 4 vertices come before it"));
+  EXPECT_TRUE(has(rest.report.skipped[2].reason, "counts the 5 vertices from 1"));
   EXPECT_EQ(rest.report.skipped[3].face_id, 5u);
-  EXPECT_TRUE(has(rest.report.skipped[3].reason, "vertex 4 (line 4) is not finite"));
+  EXPECT_TRUE(has(rest.report.skipped[3].reason, "vertex 3 (line 4) is not finite"));
   EXPECT_EQ(rest.report.files_read.size(), 1u);
 }
 

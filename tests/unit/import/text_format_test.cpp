@@ -263,7 +263,7 @@ TEST_F(TextFormatTest, CornersOfObjHaveThreeNumbersAtMost) {
   for (const char* corner : {"1/1/1/1", "+-1", "1/x", "1//2/"}) {
     const Error error = fail("a.obj", kVertices + "f " + corner + " 2 3\n");
     EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange) << corner;
-    EXPECT_TRUE(has(error.detail, "corner 0 (line 4) names vertex '" + std::string(corner) + "'"));
+    EXPECT_TRUE(has(error.detail, "corner 0 (line 4) says '" + std::string(corner) + "'"));
   }
 }
 
