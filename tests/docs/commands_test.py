@@ -12,6 +12,7 @@ import os
 import pathlib
 import re
 import shutil
+import signal
 import subprocess
 import sys
 import tempfile
@@ -43,6 +44,11 @@ extern boxtree::Pose pose;
 """
 
 
+def take_interrupts():
+    """As in a terminal: what runs in the background of a script ignores them, with all that it starts."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
 def fail(page, line, what):
     sys.exit(f"{page}:{line}: {what}")
 
@@ -68,7 +74,8 @@ class Pages:
 
     def run(self, page, text, line):
         done = subprocess.run(["bash", "-euo", "pipefail", "-c", text], cwd=self.work, text=True,
-                              env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+                              env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+                              preexec_fn=take_interrupts)
         if done.returncode != 0:
             fail(page, line, f"status {done.returncode}:\n{text}\n{done.stdout}")
         self.said = done.stdout
@@ -104,6 +111,13 @@ class Pages:
         (folder / "Makefile").write_text(text, encoding="utf-8")
         self.run(page, "cd make && make crate.bxt && make -q crate.bxt && touch crate.mtl && ! make -q crate.bxt\n", line)
 
+    def ninja(self, page, text, line):
+        """The same with ninja."""
+        folder = self.work / "ninja"
+        shutil.copytree(self.source / "samples/meshes", folder)
+        (folder / "build.ninja").write_text(text, encoding="utf-8")
+        self.run(page, "cd ninja && ninja && ninja | grep 'no work' && touch crate.mtl && ninja -n | grep 'cook crate.obj'\n", line)
+
     def profile(self, page, text, line):
         """Lines of the sample's profile, in its order."""
         lines = iter([re.sub(r"\s*#.*", "", each)
@@ -117,7 +131,7 @@ class Pages:
             if language == "sh" and BUILDS.match(text):
                 continue
             {"sh": self.run, "text": self.check_output, "cpp": self.program, "toml": self.profile,
-             "make": self.makefile, "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
+             "make": self.makefile, "ninja": self.ninja, "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
 
 
 def main():
