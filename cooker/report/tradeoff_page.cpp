@@ -188,7 +188,7 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "{} triangles, {} vertices, a diagonal of {:.4g} units. Every encoding below gives the same "
       "answers as brute force over its own geometry; on a grid that geometry is rounded. Sizes are "
       "those of whole files with face ids, as the commands make them; without --strip a file also "
-      "holds the record of its cook, some 0.4 KB.",
+      "holds the record of its cook, some 0.3 KB.",
       mesh.triangles, mesh.vertices, mesh.diagonal);
   section.conclusions = advice_in_words(mesh);
   const auto advice = advise(mesh);
