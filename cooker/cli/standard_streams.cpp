@@ -33,6 +33,7 @@ Result<std::vector<std::byte>> read_standard_input() {
     }
   }
   bytes.resize(size);
+  bytes.shrink_to_fit();  // held until the program ends
   return bytes;
 }
 
