@@ -16,11 +16,11 @@ static_assert(kClusterPadding >= 416 / 8 + kBitPadding);
 
 class LeafDecoder {
  public:
-  LeafDecoder(const ClusterView& view, ClusterLeaf& out) : view_(view), out_(out) {}
+  LeafDecoder(const ClusterView& view, FoundCluster& found, ClusterLeaf& out)
+      : view_(view), found_(found), cluster_(found.cluster), groups_(found.groups), out_(out) {}
 
   bool run(std::uint32_t leaf, ClusterLeafFields* fields) {
-    if (!find_cluster(view_, leaf / kClusterLeaves, cluster_)) return false;
-    if (!find_groups(cluster_, groups_)) return false;
+    if (!find(leaf / kClusterLeaves)) return false;
     ClusterLeafPlace place;
     if (!find_leaf(cluster_, leaf % kClusterLeaves, place)) return false;
     at_ = std::uint64_t{place.byte} * 8;
@@ -47,6 +47,18 @@ class LeafDecoder {
   }
 
  private:
+  bool find(std::uint32_t number) {
+    if (found_.section == view_.bytes.data() && found_.number == number) return true;
+    found_.section = nullptr;
+    if (!find_cluster(view_, number, found_.cluster) ||
+        !find_groups(found_.cluster, found_.groups)) {
+      return false;
+    }
+    found_.section = view_.bytes.data();
+    found_.number = number;
+    return true;
+  }
+
   // Precondition: width <= kMostBitsRead.
   std::uint32_t take(std::uint32_t width) {
     const std::uint64_t field = read_bits(cluster_.bytes, at_, width);
@@ -146,9 +158,10 @@ class LeafDecoder {
   }
 
   const ClusterView& view_;
+  FoundCluster& found_;
+  const Cluster& cluster_;
+  const ClusterGroups& groups_;
   ClusterLeaf& out_;
-  Cluster cluster_;
-  ClusterGroups groups_;
   std::uint64_t at_ = 0;     // bit of the next field
   std::uint32_t quads_ = 0;  // bit f: face f has a fourth corner
   std::uint32_t steps_ = 0;
@@ -180,9 +193,9 @@ bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept {
   return widest <= cluster.number_bits && cluster.vertices_at + end == cluster.header().leaves_at;
 }
 
-bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, ClusterLeaf& out,
-                         ClusterLeafFields* fields) noexcept {
-  return LeafDecoder(clusters, out).run(leaf, fields);
+bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, FoundCluster& found,
+                         ClusterLeaf& out, ClusterLeafFields* fields) noexcept {
+  return LeafDecoder(clusters, found, out).run(leaf, fields);
 }
 
 }  // namespace boxtree

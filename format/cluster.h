@@ -146,11 +146,4 @@ struct ClusterLeafFields {
   bool has_width_of_none = false;  // says how wide old references are, but has none
 };
 
-/// Decodes leaf `leaf`: faces 8 leaf to 8 leaf + 7, or up to the last. False when its bytes are
-/// corrupt. Reads nothing outside `clusters`, whatever the bytes. `fields` may be null.
-/// Precondition: the leaf exists, and there are cluster_table_bytes.
-[[nodiscard]] bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf,
-                                       ClusterLeaf& out,
-                                       ClusterLeafFields* fields = nullptr) noexcept;
-
 }  // namespace boxtree

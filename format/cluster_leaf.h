@@ -168,6 +168,21 @@ BOXTREE_ALWAYS_INLINE bool find_leaf(const Cluster& cluster, std::uint32_t leaf,
   return out.byte <= cluster.size;
 }
 
+/// The cluster that was read last, so that its other leaves need not find it again.
+struct FoundCluster {
+  const std::byte* section = nullptr;  // null before any was found
+  std::uint32_t number = 0;
+  Cluster cluster;
+  ClusterGroups groups;
+};
+
+/// Decodes leaf `leaf`: faces 8 leaf to 8 leaf + 7, or up to the last. False when its bytes are
+/// corrupt. Reads nothing outside `clusters`, whatever the bytes. `fields` may be null.
+/// Precondition: the leaf exists, and there are cluster_table_bytes.
+[[nodiscard]] bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf,
+                                       FoundCluster& found, ClusterLeaf& out,
+                                       ClusterLeafFields* fields = nullptr) noexcept;
+
 }  // namespace boxtree
 
 #undef BOXTREE_ALWAYS_INLINE

@@ -95,9 +95,10 @@ Status DecodedFaces::weld_clusters(const Tree& tree, std::vector<Scalar>& positi
   const std::uint32_t count = tree.face_count();
   decoded_.faces.reserve(count);
   Welder<Scalar> welder(positions, count / 2);  // as many as a closed surface has
+  FoundCluster found;
   ClusterLeaf leaf;
   for (std::uint32_t i = 0; i < leaves_of(count); ++i) {
-    if (!decode_cluster_leaf(leaves.clusters(), i, leaf)) {
+    if (!decode_cluster_leaf(leaves.clusters(), i, found, leaf)) {
       return Error{Errc::kVertexOutOfRange,
                    fmt::format("{}: leaf {} of its clusters cannot be read", tree.name(), i)};
     }

@@ -196,10 +196,11 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
                "the bits after its table");
   end = start + std::uint64_t{cluster.header().leaves_at} * 8;
   std::uint32_t used = 0;  // vertices
+  FoundCluster found;
   for (std::uint32_t i = first; i < last; ++i) {
     ClusterLeaf leaf;
     ClusterLeafFields fields;
-    if (!decode_cluster_leaf(clusters, i, leaf, &fields)) return false;
+    if (!decode_cluster_leaf(clusters, i, found, leaf, &fields)) return false;
     check.expect(fields.begin >= end && are_zero(clusters.bytes, end, fields.begin), "leaf ", i,
                  "the bits before it");
     check.expect(!fields.has_width_of_none, "leaf ", i,

@@ -75,7 +75,9 @@ Errc LeafReader::read_clusters(std::uint32_t first, std::uint32_t count,
   for (std::uint32_t f = first; f < first + count; ++f) {
     if (f / kLeafFaces != decoded) {
       decoded = f / kLeafFaces;
-      if (!decode_cluster_leaf(clusters_, decoded, leaf)) return Errc::kVertexOutOfRange;
+      if (!decode_cluster_leaf(clusters_, decoded, out.found, leaf)) {
+        return Errc::kVertexOutOfRange;
+      }
       for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
         std::array<double, 3>& p = leaf.position[v];
         const Eigen::Vector3d position = is_grid() ? Eigen::Vector3d(p[0], p[1], p[2]) * grid_step_

@@ -11,6 +11,7 @@
 
 #include "format/bytes.h"
 #include "format/cluster.h"
+#include "format/cluster_leaf.h"
 #include "format/face_ids.h"
 #include "format/limits.h"
 #include "runtime/primitive/rounding.h"
@@ -36,6 +37,7 @@ struct TriangleBatch {
   // coordinate[corner][axis][triangle]
   std::array<std::array<std::array<double, kMaxLeafTriangles>, 3>, 3> coordinate;
   std::array<std::uint32_t, kMaxLeafTriangles> face;  // position of the face in the tree's order
+  FoundCluster found;                                 // by the last read, of any tree
 
   [[nodiscard]] Triangle triangle(std::uint32_t i) const noexcept {
     Triangle result;

@@ -41,9 +41,10 @@ Bits bits_of(const std::array<double, 3>& position) {
 std::map<std::uint32_t, std::vector<Bits>> decoded(const Tree& tree) {
   const ClusterView& clusters = BoundTree::of(tree).leaves().clusters();
   std::map<std::uint32_t, std::vector<Bits>> faces;
+  FoundCluster found;
   ClusterLeaf leaf;
   for (std::uint32_t i = 0; i < leaves_of(clusters.face_count); ++i) {
-    if (!decode_cluster_leaf(clusters, i, leaf)) {
+    if (!decode_cluster_leaf(clusters, i, found, leaf)) {
       ADD_FAILURE() << "leaf " << i;
       return faces;
     }
@@ -149,10 +150,11 @@ cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16
       static_cast<std::uint16_t>(header.start_slope + (gap << ClusterHeader::kSlopeBits));
   std::memcpy(bytes.data() + table, &header, sizeof(header));
   std::uint64_t end = 0;
+  FoundCluster found;
   for (std::uint32_t i = 0; i < leaves; ++i) {
     ClusterLeaf leaf;
     ClusterLeafFields fields;
-    EXPECT_TRUE(decode_cluster_leaf(view, i, leaf, &fields));
+    EXPECT_TRUE(decode_cluster_leaf(view, i, found, leaf, &fields));
     for (std::uint64_t bit = fields.begin; bit < fields.end; ++bit) {
       write_bits(bytes.data(), bit + std::uint64_t{8} * gap * i, 1,
                  read_bits(view.bytes.data(), bit, 1));

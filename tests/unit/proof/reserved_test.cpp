@@ -265,10 +265,11 @@ TEST(ReservedBits, BetweenPartsOfClustersAreFound) {
         return to - from;
       };
       std::uint64_t end = 0;
+      FoundCluster found;
       for (std::uint32_t leaf = 0; leaf < leaves_of(clusters.face_count); ++leaf) {
         ClusterLeaf decoded;
         ClusterLeafFields place;
-        ASSERT_TRUE(decode_cluster_leaf(clusters, leaf, decoded, &place));
+        ASSERT_TRUE(decode_cluster_leaf(clusters, leaf, found, decoded, &place));
         if (leaf % kClusterLeaves != 0) gaps += expect_found(end, place.begin, leaf);
         end = place.end;
       }

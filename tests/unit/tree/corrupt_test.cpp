@@ -14,7 +14,7 @@
 
 #include "cooker/proof/proof.h"
 #include "format/bits.h"
-#include "format/cluster.h"
+#include "format/cluster_leaf.h"
 #include "format/codec_wide.h"
 #include "format/container.h"
 #include "runtime/tree/bound_tree.h"
@@ -239,7 +239,9 @@ TEST(ClusterLeaf, EveryBitMatters) {
   const Section clusters = test::section_of(bytes, SectionKind::kVertices);
   ClusterLeaf leaf;
   ClusterLeafFields place;
-  ASSERT_TRUE(decode_cluster_leaf(BoundTree::of(whole.tree).leaves().clusters(), 0, leaf, &place));
+  FoundCluster found;
+  ASSERT_TRUE(
+      decode_cluster_leaf(BoundTree::of(whole.tree).leaves().clusters(), 0, found, leaf, &place));
   const std::size_t begin = place.begin;
   const std::size_t end = place.end;
   ASSERT_LT(begin, end);
