@@ -38,7 +38,7 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
     constexpr double kMostWhole = 1u << std::numeric_limits<float>::digits;
     if (max_abs > kMostWhole * grid_step_) floats_.direct_rounding = floats_.rounding;
     floats_.scale = static_cast<float>(grid_step_);
-    floats_.is_direct = mesh_.corners_per_face == 3;
+    floats_.is_direct = true;
     return;
   }
   // Three times the number of a vertex fits into 32 bits.
@@ -47,11 +47,11 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
   const bool is_scaled_exactly = double{floats_.scale} == frame_.inverse_scale &&
                                  std::isnormal(floats_.scale) && frame_.origin.isZero(0);
   const bool are_readable = has_clusters() ? clusters_.numbers == ClusterNumbers::kF32
-                                           : !mesh_.positions_f64 &&
+                                           : !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
                                                  mesh_.position_stride == 3 * sizeof(float) &&
                                                  is_in_tree_order() && mesh_.vertex_count > 1 &&
                                                  mesh_.vertex_count <= kMaxVertices32;
-  floats_.is_direct = is_scaled_exactly && are_readable && mesh_.corners_per_face == 3;
+  floats_.is_direct = is_scaled_exactly && are_readable;
 }
 
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {

@@ -31,20 +31,26 @@ namespace boxtree::HWY_NAMESPACE {
 /// Reads leaves of one tree, one at a time.
 class ClusterReader {
  public:
-  explicit ClusterReader(const ClusterView& view) : view_(view) {}
+  explicit ClusterReader(const ClusterView& view)
+      : view_(view), quad_bytes_(view.corners_per_face == 4 ? kLeafFaces / 8 : 0) {}
 
-  /// Decodes a leaf of 8 triangles: coordinates as floats times `scale`, [corner][axis][triangle].
-  /// Corners are those of the source but for a turn, which read_corners() undoes. False when its
-  /// bytes are corrupt, or when decode_cluster_leaf has to read it.
+  /// Decodes a leaf of 8 faces: coordinates as floats times `scale`, [corner][axis][triangle].
+  /// Corners of leaves without quads are those of the source but for a turn, which read_corners()
+  /// undoes. False when its bytes are corrupt, or when decode_cluster_leaf has to read it.
   template <std::size_t kStride>
   HWY_INLINE bool read(std::uint32_t leaf, float scale, float (&out)[3][3][kStride]) {
     if (!enter(leaf / kClusterLeaves)) return false;
     Faces faces;
     if (!find_faces(leaf % kClusterLeaves, faces)) return false;
+    if (HWY_UNLIKELY(faces.quads != 0)) {
+      const Faces faces_copy = faces;  // so that the usual case may keep it in registers
+      return read_quads(faces_copy, scale, out);
+    }
+    triangles_ = kLeafFaces;
     const Vertices thirds =
         find_vertices(faces, lanes_with(faces.word, kThirdBits), ranks(faces.new_thirds), 0);
     const auto new_thirds = static_cast<std::uint32_t>(std::popcount(faces.new_thirds));
-    const std::uint32_t new_aparts = faces.new_aparts & 0xffu;
+    const std::uint32_t new_aparts = faces.new_others & 0xffu;
     const Vertices aparts =
         find_vertices(faces, lanes_with(small(new_aparts), kLaneBits),
                       hn::Add(ranks(new_aparts), small(new_thirds)), kLeafFaces);
@@ -84,16 +90,34 @@ class ClusterReader {
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
+  /// Of the last leaf; a quad is two, one after the other.
+  [[nodiscard]] std::uint32_t triangle_count() const { return triangles_; }
+  [[nodiscard]] HWY_INLINE std::uint32_t face(std::uint32_t lane) const {
+    return triangles_ == kLeafFaces ? lane : of_quads_[lane].face;
+  }
+  /// 1 for the second triangle of a quad.
+  [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
+    return triangles_ == kLeafFaces ? 0 : of_quads_[lane].half;
+  }
+
   /// Calls set(corner, x, y, z) for the corners of lane `lane`: steps of the grid, or the floats of
   /// the source.
   template <class Setter>
   HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
     // Its references, and the corner of the source that the first of them is.
-    const std::uint32_t references[3] = {corner_[0][lane], corner_[1][lane], lane};
-    static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
-    static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+    std::uint32_t references[3] = {0, 0, lane};
+    std::uint32_t turn = 0;
+    if (triangles_ == kLeafFaces) {
+      references[0] = corner_[0][lane];
+      references[1] = corner_[1][lane];
+      static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
+      static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+      turn = kTurn[step_[lane]];
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) references[c] = of_quads_[lane].reference[c];
+    }
     static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
-    const std::uint8_t* const place = kNext + kTurn[step_[lane]];
+    const std::uint8_t* const place = kNext + turn;
     const auto fill = [&](const auto& real) {
       for (std::size_t i = 0; i < 3; ++i) {
         const std::uint32_t r = references[i];
@@ -115,20 +139,30 @@ class ClusterReader {
   using Pairs = hn::Repartition<std::uint64_t, Floats>;
   using WordVector = hn::Vec<Words>;
   using WordMask = hn::Mask<Words>;
-  // Third corners of all faces, a lane each; after them, the other two of those that are apart.
-  static constexpr std::size_t kReferences = std::size_t{3} * kLeafFaces;
+  // Third corners of all faces, a lane each; after them, the other two of those that are apart, and
+  // the fourth corners of quads.
+  static constexpr std::size_t kReferences = kMostLeafReferences;
+  // A triangle of a leaf with quads.
+  struct OfQuads {
+    std::uint8_t face, half;
+    std::array<std::uint8_t, 3> reference;
+  };
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
   // The faces of a leaf, and where the vertices are that it refers to.
   struct Faces {
     std::uint32_t aparts = 0;      // faces that share nothing with the one before
     std::uint32_t new_thirds = 0;  // bit f: the third corner of face f is new
-    std::uint32_t new_aparts = 0;  // bit r: the same for other references, two for each of `aparts`
+    std::uint32_t quads = 0;       // bit f: face f is one
+    std::uint32_t others = 0;      // other references: two for each of `aparts`, one for each quad
+    std::uint32_t new_others = 0;  // bit r: the same for these
     std::uint32_t before = 0;      // vertices that leaves before use, less 1
     std::uint32_t last = 0;        // number of the last new vertex
     std::uint32_t old_bits = 0;    // of each reference that is not new
-    hn::Vec<Bytes> bytes;          // with new_aparts and these references, in each half
-    WordVector word;               // has the bits of new_thirds, see kThirdBits
+    const std::uint8_t* bytes = nullptr;  // new_others, then references that are not new
+    hn::Vec<Bytes> window;                // the first 16 of them, or some later ones, in each half
+    std::uint32_t places_at = 0;          // bit of `window` where the first of these begins
+    WordVector word;                      // has the bits of new_thirds, see kThirdBits
   };
 
   // References of the first two corners of eight faces.
@@ -162,6 +196,7 @@ class ClusterReader {
   // ClusterHeader::old_bits references have.
   static constexpr std::uint32_t kStepBits = StripStep::kBits * (kLeafFaces - 1);
   static_assert(kStepBits + kLeafFaces + kOldWiderBits == 32);
+  static constexpr std::uint32_t kWindowBits = 128;
   HWY_ALIGN static constexpr std::uint32_t kThirdBits[kWideChildren] = {
       1u << 21, 1u << 22, 1u << 23, 1u << 24, 1u << 25, 1u << 26, 1u << 27, 1u << 28};
   static_assert(kThirdBits[0] == 1u << kStepBits);
@@ -354,7 +389,7 @@ class ClusterReader {
     return hn::Sub(exponent, constant<127>());
   }
 
-  // False if the leaf is corrupt, or its references take more bytes than a vector has.
+  // False if the leaf is corrupt, or has no quads and its references take more bytes than a window.
   HWY_INLINE bool find_faces(std::uint32_t self, Faces& faces) const {
     const std::byte* const bytes = bytes_;
     const std::uint32_t bit = table_ + self * entry_bits_;
@@ -365,23 +400,28 @@ class ClusterReader {
     const std::uint32_t byte =
         starts_at_ + (self * start_slope_ >> kSlopeBits) + (entry & ((1u << start_bits_) - 1));
     if (byte > size_) return false;
-    const auto fields = boxtree::load<std::uint32_t>(bytes + byte);
-    const auto* const after = reinterpret_cast<const std::uint8_t*>(bytes) + byte + sizeof(fields);
+    // In a store with quads, a bit for each face tells whether it is one.
+    const std::uint32_t at = byte + quad_bytes_;
+    faces.quads = quad_bytes_ != 0 ? std::to_integer<std::uint32_t>(bytes[byte]) : 0;
+    const auto fields = boxtree::load<std::uint32_t>(bytes + at);
+    faces.bytes = reinterpret_cast<const std::uint8_t*>(bytes) + at + sizeof(fields);
     faces.word = set(fields);
-    faces.bytes = hn::LoadDup128(Bytes(), after);
+    faces.window = hn::LoadDup128(Bytes(), faces.bytes);
     faces.new_thirds = (fields >> kStepBits) & 0xffu;
     faces.old_bits = old_bits_ + (fields >> (kStepBits + kLeafFaces));
     constexpr std::uint32_t kEachStep = 0x49249u;  // the first bit of each
     faces.aparts =
         1 + static_cast<std::uint32_t>(std::popcount((fields >> 1) & (fields >> 2) & kEachStep));
-    faces.new_aparts = boxtree::load<std::uint32_t>(bytes + byte + sizeof(fields)) &
-                       ((1u << (2 * faces.aparts)) - 1);
+    faces.others = 2 * faces.aparts + static_cast<std::uint32_t>(std::popcount(faces.quads));
+    faces.new_others =
+        boxtree::load<std::uint32_t>(bytes + at + sizeof(fields)) & ((1u << faces.others) - 1);
     const auto new_vertices = static_cast<std::uint32_t>(
-        std::popcount(faces.new_aparts << kLeafFaces | faces.new_thirds));
+        std::popcount(faces.new_others << kLeafFaces | faces.new_thirds));
     faces.before = (entry >> start_bits_) + (self * first_slope_ >> kSlopeBits) - first_bias_;
     faces.last = faces.before + new_vertices;
-    const std::uint32_t olds = kLeafFaces + 2 * faces.aparts - new_vertices;
-    return HWY_LIKELY(2 * faces.aparts + olds * faces.old_bits <= 128);
+    faces.places_at = faces.others;
+    const std::uint32_t olds = kLeafFaces + faces.others - new_vertices;
+    return HWY_LIKELY(faces.others + olds * faces.old_bits <= kWindowBits) || faces.quads != 0;
   }
 
   // The corners of faces, and those of the source, which read_corners() needs.
@@ -436,13 +476,13 @@ class ClusterReader {
         0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12,
         0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
     const auto old = hn::Sub(hn::Iota(Words(), first), rank);
-    const auto place = hn::Add(multiply(old, small(faces.old_bits)), small(2 * faces.aparts));
+    const auto place = hn::Add(multiply(old, small(faces.old_bits)), set(faces.places_at));
     const auto byte = hn::TableLookupBytes(hn::BitCast(Bytes(), hn::ShiftRight<3>(place)),
                                            hn::Load(Bytes(), kFirstByte));
     const auto three = hn::Add(hn::BitCast(Words(), byte), constant<kThreeBytes>());
     const auto field = hn::And(
         hn::Shr(
-            hn::BitCast(Words(), hn::TableLookupBytes(faces.bytes, hn::BitCast(Bytes(), three))),
+            hn::BitCast(Words(), hn::TableLookupBytes(faces.window, hn::BitCast(Bytes(), three))),
             hn::And(place, constant<7>())),
         set(kLaneConstants.low_bits[faces.old_bits]));
     const auto number =
@@ -567,8 +607,8 @@ class ClusterReader {
   HWY_NOINLINE WordVector read_more(const Faces& faces, FloatVector scale,
                                     const FloatVector (&third)[3], const FloatVector (&apart)[3],
                                     float (&out)[3][3][kStride]) {
-    const std::uint32_t before = faces.new_thirds | (faces.new_aparts & 0xffu) << kWideChildren;
-    const std::uint32_t is_new = faces.new_aparts >> kWideChildren;
+    const std::uint32_t before = faces.new_thirds | (faces.new_others & 0xffu) << kWideChildren;
+    const std::uint32_t is_new = faces.new_others >> kWideChildren;
     const auto rank =
         hn::Add(ranks(is_new), small(static_cast<std::uint32_t>(std::popcount(before))));
     FloatVector more[3];
@@ -589,7 +629,58 @@ class ClusterReader {
                               vertices.corrupt);
   }
 
+  // A leaf with quads, whose triangles are in the order of decoders of one leaf.
+  template <std::size_t kStride>
+  HWY_NOINLINE bool read_quads(const Faces& faces, float scale, float (&out)[3][3][kStride]) {
+    static_assert(kStride >= 2 * kLeafFaces);
+    const FloatVector scales = hn::Set(Floats(), scale);
+    const std::uint32_t is_new = faces.new_thirds | faces.new_others << kLeafFaces;
+    const std::uint32_t count = kLeafFaces + faces.others;
+    HWY_ALIGN float all[3][kReferences];
+    auto corrupt = join_faces(faces).corrupt;
+    Faces of_group = faces;
+    for (std::uint32_t first = 0; first < count; first += kWideChildren) {
+      const std::uint32_t here = (is_new >> first) & 0xffu;
+      const auto before = static_cast<std::uint32_t>(std::popcount(is_new & ((1u << first) - 1)));
+      // A window for each group: up to 8 references and the bits before them fit into it.
+      static_assert(kWideChildren * (ClusterHeader::kMostOldBits + (1u << kOldWiderBits) - 1) + 7 <=
+                    kWindowBits);
+      const std::uint32_t place = faces.others + (first - before) * faces.old_bits;
+      of_group.window = hn::LoadDup128(Bytes(), faces.bytes + place / 8);
+      of_group.places_at = faces.others - place / 8 * 8;
+      const Vertices vertices = find_vertices(of_group, lanes_with(small(here), kLaneBits),
+                                              hn::Add(ranks(here), small(before)), first);
+      FloatVector position[3];
+      read_vertices<Layout::kAny>(vertices, first, scales, position);
+      for (std::size_t k = 0; k < 3; ++k) hn::Store(position[k], Floats(), all[k] + first);
+      corrupt = hn::Or(corrupt,
+                       hn::IfThenElseZero(is_less(iota(), small(count - first)), vertices.corrupt));
+    }
+    if (!hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
+    std::uint32_t fourth = kLeafFaces + 2 * faces.aparts;
+    triangles_ = 0;
+    for (std::uint32_t f = 0; f < kLeafFaces; ++f) {
+      const std::uint32_t turn = step_[f] == StripStep::kApart ? 0 : step_[f] % 3;
+      std::uint8_t corner[3];
+      corner[turn] = static_cast<std::uint8_t>(corner_[0][f]);
+      corner[(turn + 1) % 3] = static_cast<std::uint8_t>(corner_[1][f]);
+      corner[(turn + 2) % 3] = static_cast<std::uint8_t>(f);
+      const auto face = static_cast<std::uint8_t>(f);
+      of_quads_[triangles_++] = {face, 0, {corner[0], corner[1], corner[2]}};
+      if (((faces.quads >> f) & 1u) == 0) continue;
+      of_quads_[triangles_++] = {
+          face, 1, {corner[0], corner[2], static_cast<std::uint8_t>(fourth++)}};
+    }
+    for (std::uint32_t i = 0; i < triangles_; ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t k = 0; k < 3; ++k) out[c][k][i] = all[k][of_quads_[i].reference[c]];
+      }
+    }
+    return true;
+  }
+
   const ClusterView& view_;
+  const std::uint32_t quad_bytes_;  // that a leaf has in front of its other fields
   std::uint32_t cluster_number_ = kNone;
   const std::byte* bytes_ = nullptr;
   std::uint32_t size_ = 0;  // at which a leaf may begin
@@ -613,6 +704,8 @@ class ClusterReader {
   HWY_ALIGN std::uint8_t stride_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_low_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_high_[ClusterHeader::kMostGroups];
+  std::uint32_t triangles_ = 0;  // of the last leaf; more than 8 if it has quads
+  OfQuads of_quads_[2 * kLeafFaces];
   HWY_ALIGN std::uint32_t step_[kLeafFaces];        // to each face
   HWY_ALIGN std::uint32_t corner_[2][kLeafFaces];   // references of its first two corners
   HWY_ALIGN std::uint32_t number_[3][kReferences];  // [axis]: whole numbers, or bits of floats

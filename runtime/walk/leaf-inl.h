@@ -79,7 +79,7 @@ class LeafFloats {
 
   /// The face that a lane belongs to, in the tree's order.
   [[nodiscard]] std::uint32_t face(std::uint32_t lane) const {
-    return is_direct_ ? first_ + lane : batch_.face[lane];
+    return is_direct_ ? first_ + face_in_leaf(lane) : batch_.face[lane];
   }
 
   /// Calls visit(triangle, face, half) with the exact triangle of a lane. False when its bytes are
@@ -92,7 +92,7 @@ class LeafFloats {
     }
     Triangle triangle;
     if (!exact_triangle(lane, triangle)) return false;
-    visit(triangle, first_ + lane, 0u);
+    visit(triangle, first_ + face_in_leaf(lane), half(lane));
     return true;
   }
 
@@ -133,11 +133,31 @@ class LeafFloats {
 
 #if BOXTREE_HAS_EIGHT_LANES
   HWY_INLINE bool gather_cluster() {
-    return first_ % kLeafFaces == 0 &&
-           clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_);
+    if (first_ % kLeafFaces != 0 ||
+        !clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_)) {
+      return false;
+    }
+    count_ = clusters_.triangle_count();
+    return true;
   }
 
 #endif
+
+  // Of a lane of a leaf that was gathered.
+  [[nodiscard]] HWY_INLINE std::uint32_t face_in_leaf(std::uint32_t lane) const {
+#if BOXTREE_HAS_EIGHT_LANES
+    if (reader_.has_clusters()) return clusters_.face(lane);
+#endif
+    return lane;
+  }
+  [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
+#if BOXTREE_HAS_EIGHT_LANES
+    if (reader_.has_clusters()) return clusters_.half(lane);
+#else
+    (void)lane;
+#endif
+    return 0;
+  }
 
   template <class Setter>
   HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {

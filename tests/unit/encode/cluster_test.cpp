@@ -214,6 +214,89 @@ TEST_P(ExactStore, AnswersAreThoseOfArrays) {
   }
 }
 
+// A torus of quads and, in places, of two triangles instead of one.
+SourceMesh torus_of_quads(std::uint32_t around, std::uint32_t across, std::uint32_t split_every) {
+  SourceMesh mesh = test::soup(1, 1);
+  mesh.positions.f32.clear();
+  mesh.faces.clear();
+  for (std::uint32_t i = 0; i < around; ++i) {
+    for (std::uint32_t j = 0; j < across; ++j) {
+      const float a = 6.2831853f * static_cast<float>(i) / static_cast<float>(around);
+      const float b = 6.2831853f * static_cast<float>(j) / static_cast<float>(across);
+      const float radius = 1 + 0.4f * std::cos(b);
+      mesh.positions.f32.insert(mesh.positions.f32.end(),
+                                {radius * std::cos(a), radius * std::sin(a), 0.4f * std::sin(b)});
+      const auto at = [&](std::uint32_t p, std::uint32_t q) {
+        return p % around * across + q % across;
+      };
+      const std::uint32_t corner[] = {at(i, j), at(i + 1, j), at(i + 1, j + 1), at(i, j + 1)};
+      if ((i * across + j) % split_every != 0) {
+        mesh.faces.push_back({{corner[0], corner[1], corner[2], corner[3]}});
+      } else {
+        mesh.faces.push_back({{corner[0], corner[1], corner[2], kNoCorner}});
+        mesh.faces.push_back({{corner[0], corner[2], corner[3], kNoCorner}});
+      }
+    }
+  }
+  return mesh;
+}
+
+// Vectors read leaves with quads, too, in the order in which others do.
+TEST_P(ExactStore, LeavesWithQuadsAnswerAsThoseOfArrays) {
+  std::mt19937 random(13);
+  std::uniform_real_distribution<double> place(-1.5, 1.5);
+  for (const std::uint32_t split_every : {1u, 2u, 5u, 9u, 100u}) {
+    const SourceMesh mesh = torus_of_quads(24, 20, split_every);
+    cooker::CookOptions options;
+    options.geometry = GeometryId::kArrays;
+    const test::CookedTree expected = test::cook_tree(mesh, GetParam(), options);
+    const test::CookedTree found = test::cook_tree(mesh, GetParam());
+    ASSERT_EQ(decoded(found.tree), source(mesh));
+    expect_equal_answers(found.tree, expected.tree);
+    std::size_t hits = 0, halves = 0;
+    for (int i = 0; i < 300; ++i) {
+      const Ray ray{{place(random), place(random), 3}, {place(random) / 9, place(random) / 9, -1}};
+      const RayResult of_expected = closest_hit(expected.tree, ray);
+      const RayResult of_found = closest_hit(found.tree, ray);
+      ASSERT_EQ(of_found.has_value(), of_expected.has_value());
+      if (!of_found) continue;
+      ++hits;
+      halves += of_found->triangle;
+      EXPECT_EQ(of_found->t, of_expected->t);
+      EXPECT_EQ(of_found->face.id, of_expected->face.id);
+      EXPECT_EQ(of_found->triangle, of_expected->triangle);
+      const auto faces_in_box = [&](const Tree& tree) {
+        std::vector<std::uint32_t> ids;
+        const Eigen::Vector3d at = ray.origin + of_found->t * ray.direction;
+        EXPECT_TRUE(
+            overlap_box(tree, {at.array() - 0.1, at.array() + 0.1}, [&](const FaceRef& face) {
+              ids.push_back(face.id);
+              return true;
+            }).ok());
+        std::sort(ids.begin(), ids.end());
+        return ids;
+      };
+      EXPECT_EQ(faces_in_box(found.tree), faces_in_box(expected.tree));
+    }
+    EXPECT_GT(hits, 50u);
+    EXPECT_EQ(halves == 0, split_every == 1);
+    Pose pose = Pose::Identity();
+    pose.translation() = Eigen::Vector3d(0.9, 0.1, 0.2);
+    const auto pairs = [&](const Tree& tree) {
+      std::vector<std::pair<std::uint32_t, std::uint32_t>> ids;
+      EXPECT_TRUE(overlap_pairs(tree, Pose::Identity(), tree, pose, [&](const FacePair& pair) {
+                    ids.emplace_back(pair.first.id, pair.second.id);
+                    return true;
+                  }).ok());
+      std::sort(ids.begin(), ids.end());
+      return ids;
+    };
+    const auto of_found = pairs(found.tree);
+    EXPECT_EQ(of_found, pairs(expected.tree));
+    EXPECT_FALSE(of_found.empty());
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(WideCodecs, ExactStore, testing::Values(CodecId::kWide8, CodecId::kWide4),
                          [](const auto& test) { return std::string(codec_name(test.param)); });
 
