@@ -196,8 +196,9 @@ int run(const Arguments& arguments) {
       print_file(*json);
     }
   }
-  if (arguments.json && !(documents.empty() && arguments.files.size() == 1)) {
-    print_files(std::move(documents));
+  const bool are_several = arguments.files.size() > 1;
+  if (arguments.json && (are_several || !documents.empty())) {
+    print_files(std::move(documents), are_several);
   }
   return status;
 }

@@ -129,7 +129,7 @@ int run(const Arguments& arguments) {
     }
     if (status == 0) status = verification.status;
   }
-  if (arguments.json) print_files(std::move(documents));
+  if (arguments.json) print_files(std::move(documents), arguments.files.size() > 1);
   return status;
 }
 

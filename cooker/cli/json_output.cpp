@@ -22,8 +22,8 @@ void print(const Json& document) {
   fmt::print("{}", document_text(document));
 }
 
-void print_files(std::vector<Json> documents) {
-  if (documents.size() == 1) return print(documents.front());
+void print_files(std::vector<Json> documents, bool are_several) {
+  if (!are_several) return print(documents.front());
   print(Json{{"files", std::move(documents)}});
 }
 

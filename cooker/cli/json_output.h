@@ -18,8 +18,9 @@ using Json = nlohmann::ordered_json;
 void print(const Json& document);
 /// What print() prints.
 [[nodiscard]] std::string document_text(const Json& document);
-/// What is said of each of several files: the only one as it is, several as {"files": [...]}.
-void print_files(std::vector<Json> documents);
+/// What is said of each file that was named: of the only one as it is, of several as
+/// {"files": [...]}, however many there is something to say of.
+void print_files(std::vector<Json> documents, bool are_several);
 /// The same in one line, as text.
 [[nodiscard]] std::string line_of(const Json& value);
 

@@ -225,10 +225,12 @@ class KeyFields {
     read_if_given("pose", tree.pose);
   }
 
+  // A misspelt key is the likely cause where another one is missing.
   [[nodiscard]] Status finish() {
     for (const auto& [key, value] : json_.items()) {
       const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
-      if (!known && key != "kind" && error_.empty()) {
+      if (!known && key != "kind" && (error_.empty() || is_missing_)) {
+        is_missing_ = false;
         error_ = fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_,
                              fmt::join(known_, ", "), known_.empty() ? "" : " or ", key,
                              suggestion(key, known_));
@@ -240,6 +242,7 @@ class KeyFields {
  private:
   void fail(std::string_view key, std::string_view expected, const std::string& found) {
     if (!error_.empty()) return;
+    is_missing_ = found == kNoSuchKey;
     error_ = fmt::format("{}: \"{}\": expected {}, found {}", kind_, key, expected, found);
   }
 
@@ -299,7 +302,7 @@ class KeyFields {
     if (expected == nullptr) expected = form_of(out);
     known_.emplace_back(key);
     const auto found = json_.find(key);
-    if (found == json_.end()) return fail(key, expected, "no such key");
+    if (found == json_.end()) return fail(key, expected, kNoSuchKey);
     if (!convert(*found, out)) fail(key, expected, found_text(*found));
   }
   // The same, but the key may be missing.
@@ -317,7 +320,9 @@ class KeyFields {
   const std::string_view kind_;
   const std::span<const std::string> given_;
   std::vector<std::string> known_;
+  static constexpr const char* kNoSuchKey = "no such key";
   std::string error_;
+  bool is_missing_ = false;  // `error_` is of a key that is not there
 };
 
 // Shows what a request is made of: what is needed, and what differs from the defaults.

@@ -475,6 +475,11 @@ grep -q 'missing.bxt' err
 expect 0 "$boxtree" info cube.bxt second.bxt
 same "$(grep -c ':$' out)" 2
 # Every document says which schema it follows.
+# Of two files `files` is said even if only one can be read.
+expect 2 "$boxtree" info cube.bxt missing.bxt --json
+same "$(jq -r '.files | length' out)" 1
+expect 2 "$boxtree" verify cube.bxt missing.bxt --json
+same "$(jq -r '.files | length' out)" 2
 expect 0 "$boxtree" info cube.bxt --json
 same "$(jq -c '[keys_unsorted[0], .schema]' out)" '["schema",1]'
 expect 0 "$boxtree" verify cube.bxt --json
@@ -542,6 +547,8 @@ names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
 names 'contacts: expected the keys first or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
 kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
+# A misspelt key, not the one that is missing because of it.
+names "box: expected the keys min, max, within, budget or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'
 names "\"kind\": expected $kinds, found \"rya\"; did you mean 'ray'?" '{"kind":"rya"}'
 names 'point: expected the keys at, max_distance, relative_error, absolute_error, budget or kind, found "max_distence"; '\
