@@ -158,7 +158,7 @@ grep -q 'import_failed: standard input: the file is empty' err
 expect 3 "$boxtree" cook - --format fbx -o out.bxt <crate.obj
 grep -q 'import_failed: standard input: ' err
 printf 'x' | expect 3 "$boxtree" info -
-grep -q 'bad_magic: standard input: the first 1 bytes are not a .bxt magic' err
+grep -q 'bad_magic: standard input: the first 1 bytes are not a .bxt magic; a mesh has to be cooked first' err
 head -c 8 crate.bxt | expect 3 "$boxtree" info -
 grep -q 'truncated: standard input: the file has 8 bytes, a header alone has 32' err
 expect 2 script -qec "'$boxtree' info -" /dev/null </dev/null
