@@ -344,9 +344,9 @@ class Search {
       Result<QuantisedMesh> quantised = quantise_mesh();
       if (!quantised) return quantised.error();
       unrounded_.reset();  // a grid is tried last
-      on_grid.emplace(Source(mesh_, std::move(*quantised)));
+      on_grid.emplace(Built{Source(mesh_, std::move(*quantised)), nullptr});
     } else if (!unrounded_) {
-      unrounded_.emplace(Source(mesh_, {}));
+      unrounded_.emplace(Built{Source(mesh_, {}), nullptr});
     }
     Built& built = store == GeometryId::kGrid ? *on_grid : *unrounded_;
     const Source& source = built.source;
