@@ -19,7 +19,7 @@ template <class Read>
 Status read_into(SourceStream& stream, const SourceFile& source, const ImportOptions& options,
                  Imported& out, const Read& read) {
   out.report.meshes = 1;
-  if (!source.bytes()) out.report.files_read = {source.path().lexically_normal()};
+  if (!source.bytes()) out.report.files_read = {tidied(source.path())};
   Positions& positions = out.mesh.positions;
   positions.precision = options.precision;
   Status status = options.precision == Precision::kF32 ? read(positions.f32) : read(positions.f64);

@@ -190,7 +190,7 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
 void find_libraries(const SourceFile& source, const std::vector<std::string>& names,
                     ImportReport& report) {
   const auto path_of = [&](std::string_view name) {
-    return (source.path().parent_path() / fs::path(name)).lexically_normal();
+    return tidied(source.path().parent_path() / fs::path(name));
   };
   const auto add_to = [](std::vector<fs::path>& files, const fs::path& library) {
     if (std::find(files.begin(), files.end(), library) == files.end()) files.push_back(library);

@@ -42,4 +42,12 @@ Result<std::string> SourceFile::read() const {
   return std::string(reinterpret_cast<const char*>(bytes_->data()), bytes_->size());
 }
 
+std::filesystem::path tidied(const std::filesystem::path& path) {
+  std::filesystem::path normal = path.lexically_normal();
+  std::error_code error;
+  return !std::filesystem::exists(path, error) || std::filesystem::equivalent(path, normal, error)
+             ? normal
+             : path;
+}
+
 }  // namespace boxtree::cooker

@@ -54,4 +54,8 @@ class SourceFile {
   std::optional<Bytes> bytes_;
 };
 
+/// The path without "." and "..", unless that names another file: what ".." leads to behind a
+/// symbolic link.
+[[nodiscard]] std::filesystem::path tidied(const std::filesystem::path& path);
+
 }  // namespace boxtree::cooker

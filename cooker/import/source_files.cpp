@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <locale.h>
+#include <string_view>
 #include <system_error>
 #include <type_traits>
 
@@ -25,6 +27,23 @@ namespace fs = std::filesystem;
 
 Error unreadable(const fs::path& path, const std::string& why) {
   return Error{Errc::kFileUnreadable, path.string() + ": " + why};
+}
+
+// Text with the escapes of an URI, as bytes; as it is where one is none.
+std::string unescaped(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned value = 0;
+    const char* const digits = text.data() + i + 1;
+    if (text[i] == '%' && text.size() - i > 2 &&
+        std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2 && value != 0) {
+      out += static_cast<char>(value);
+      i += 2;
+    } else {
+      out += text[i];
+    }
+  }
+  return out;
 }
 
 }  // namespace
@@ -70,7 +89,18 @@ std::uint64_t hash_source_bytes(Bytes bytes) {
 bool RecordingIo::Exists(const char* path) const {
   if (source_.bytes()) return is_source(path);
   std::error_code error;
-  return fs::is_regular_file(path, error) && DefaultIOSystem::Exists(path);
+  const fs::path file = found(path);
+  return fs::is_regular_file(file, error) && DefaultIOSystem::Exists(file.c_str());
+}
+
+fs::path RecordingIo::found(const char* path) const {
+  std::error_code error;
+  const std::string_view name = path;
+  if (name.find('%') == std::string_view::npos || fs::is_regular_file(path, error)) return path;
+  const std::string folder = source_.path().parent_path().string();
+  const std::size_t kept = name.substr(0, folder.size()) == folder ? folder.size() : 0;
+  fs::path file = std::string(name.substr(0, kept)) + unescaped(name.substr(kept));
+  return fs::is_regular_file(file, error) ? file : fs::path(path);
 }
 
 Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
@@ -80,15 +110,16 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
       const auto* const data = reinterpret_cast<const std::uint8_t*>(source_.bytes()->data());
       return new Assimp::MemoryIOStream(data, source_.bytes()->size());
     }
-    if (use_.inaccessible.empty()) use_.inaccessible = fs::path(path).lexically_normal();
+    if (use_.inaccessible.empty()) use_.inaccessible = tidied(path);
     return nullptr;
   }
   // fopen opens directories too; a pipe would block.
   std::error_code error;
-  if (!fs::is_regular_file(path, error)) return nullptr;
-  Assimp::IOStream* stream = DefaultIOSystem::Open(path, mode);
+  const fs::path file = found(path);
+  if (!fs::is_regular_file(file, error)) return nullptr;
+  Assimp::IOStream* stream = DefaultIOSystem::Open(file.c_str(), mode);
   if (stream == nullptr) return nullptr;
-  fs::path normal = fs::path(path).lexically_normal();
+  fs::path normal = tidied(file);
   if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
     use_.files.push_back(std::move(normal));
   }

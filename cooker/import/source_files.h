@@ -50,6 +50,9 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
 
  private:
   [[nodiscard]] bool is_source(const char* path) const { return source_.path() == path; }
+  // The file that `path` names: as it is, or where there is none, without the escapes of an URI
+  // (%20) behind the folder of the source.
+  [[nodiscard]] std::filesystem::path found(const char* path) const;
 
   const SourceFile& source_;
   SourceUse& use_;

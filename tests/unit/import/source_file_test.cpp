@@ -2,6 +2,7 @@
 // Bytes without a file are imported like a file of those bytes, which has nothing beside it.
 #include "cooker/import/source_file.h"
 
+#include <algorithm>
 #include <array>
 #include <span>
 
@@ -62,6 +63,48 @@ TEST_F(SourceFileTest, BytesHaveNothingBesideThem) {
     ASSERT_EQ(refused.code(), Errc::kImportFailed);
     EXPECT_TRUE(has(refused.error().detail, "standard input: it refers to three.bin"))
         << refused.error().detail;
+  }
+}
+
+// Found by a newcomer: exporters write URIs, in which a space is %20.
+TEST_F(SourceFileTest, BuffersHaveNamesWithEscapes) {
+  std::string gltf(kGltf);
+  gltf.replace(gltf.find("three.bin"), 9, "my%20three%2ebin");
+  std::array<float, 9> corners = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+  write("my three.bin", std::string(reinterpret_cast<const char*>(corners.data()), sizeof corners));
+  const std::filesystem::path path = write("escaped.gltf", gltf);
+  for (const bool try_first : {false, true}) {
+    ImportOptions options;
+    options.try_first = try_first;
+    const Result<Imported> imported = import_mesh(path, options);
+    ASSERT_TRUE(imported.ok()) << imported.error().message();
+    EXPECT_EQ(imported->mesh.faces.size(), 1u);
+    EXPECT_EQ(std::count(imported->report.files_read.begin(), imported->report.files_read.end(),
+                         folder_ / "my three.bin"),
+              1);
+  }
+  // A file that has the name as it is comes first.
+  write("my%20three%2ebin", std::string(36, '\0'));
+  const Result<Imported> literal = import_mesh(path);
+  ASSERT_TRUE(literal.ok());
+  EXPECT_EQ(literal->report.files_read.back(), folder_ / "my%20three%2ebin");
+}
+
+// Found by a newcomer: "link/.." is not the folder of the link.
+TEST_F(SourceFileTest, PathsBehindLinksAreWhatTheyAre) {
+  std::filesystem::create_directories(folder_ / "far" / "deep");
+  std::filesystem::create_directory_symlink(folder_ / "far" / "deep", folder_ / "link");
+  write("far/there.gltf", std::string(kGltf));
+  write("far/three.bin", std::string(36, '\0'));
+  write("far/there.obj", "mtllib there.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  write("far/there.mtl", "newmtl a\n");
+  for (const char* const name : {"there.gltf", "there.obj"}) {
+    const Result<Imported> imported = import_mesh(folder_ / "link" / ".." / name);
+    ASSERT_TRUE(imported.ok()) << imported.error().message();
+    EXPECT_EQ(imported->report.files_read.size(), 2u);
+    for (const std::filesystem::path& file : imported->report.files_read) {
+      EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    }
   }
 }
 
