@@ -40,7 +40,9 @@ Status check_magic(Bytes file) {
   const Bytes magic = std::as_bytes(std::span(kMagic));
   const Bytes start = file.first(std::min(file.size(), magic.size()));
   if (std::equal(start.begin(), start.end(), magic.begin())) return {};
-  return error_with(Errc::kBadMagic, {}, "the first # bytes are not a .bxt magic; a mesh has to be cooked first", {start.size()});
+  return error_with(Errc::kBadMagic, {},
+                    "the first # bytes are not a .bxt magic; a mesh has to be cooked first",
+                    {start.size()});
 }
 
 Status check_header(const FileHeader& header, std::uint64_t file_size,

@@ -14,8 +14,8 @@
 namespace boxtree::cooker {
 
 /// Runs `program` with `arguments` and --json. Its messages go where ours do unless `quiet`.
-/// Errors: as read_failure when it does not start, kFileUnreadable when it fails; kDocumentInvalid when it prints no
-/// rows.
+/// Errors: as read_failure when it does not start, kFileUnreadable when it fails; kDocumentInvalid
+/// when it prints no rows.
 Result<std::vector<PeerRow>> run_peers(const std::filesystem::path& program,
                                        const std::vector<std::string>& arguments, bool quiet);
 
