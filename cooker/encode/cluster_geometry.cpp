@@ -95,45 +95,42 @@ class BitWriter {
   std::uint64_t at_;
 };
 
-// Numbers n[i] as (i * slope >> kSlopeBits) - bias + rest[i], where rests have `bits` bits.
+// Numbers n[i] as (i * slope >> kSlopeBits) - bias + rest[i], where rests are from 0 to `range`.
 struct Line {
   std::uint32_t slope = 0;
   std::uint32_t bias = 0;
-  std::uint32_t bits = 0;
+  std::uint32_t range = 0;
 
+  [[nodiscard]] std::uint32_t bits() const {
+    return static_cast<std::uint32_t>(std::bit_width(range));
+  }
   [[nodiscard]] std::uint32_t rest(std::uint32_t number, std::uint32_t i) const {
     return number + bias - (i * slope >> ClusterHeader::kSlopeBits);
   }
 };
 
-Line line_with(std::span<const std::uint32_t> numbers, std::uint32_t slope, std::uint32_t& range) {
+Line line_with(std::span<const std::uint32_t> numbers, std::uint32_t slope) {
   std::int64_t least = 0, most = 0;
   for (std::uint32_t i = 0; i < numbers.size(); ++i) {
     const std::int64_t rest = std::int64_t{numbers[i]} - (i * slope >> ClusterHeader::kSlopeBits);
     least = std::min(least, rest);
     most = std::max(most, rest);
   }
-  range = static_cast<std::uint32_t>(most - least);
-  return {slope, static_cast<std::uint32_t>(-least),
-          static_cast<std::uint32_t>(std::bit_width(range))};
+  return {slope, static_cast<std::uint32_t>(-least), static_cast<std::uint32_t>(most - least)};
 }
 
 // The line with the least range of rests, which is convex over slopes but for what is rounded off:
 // searched in halved steps from the one to the last number. Precondition: numbers rise from 0.
 Line best_line(std::span<const std::uint32_t> numbers, std::uint32_t most_slope) {
   const auto last = static_cast<std::uint32_t>(numbers.size() - 1);
-  std::uint32_t range = 0;
-  if (last == 0) return line_with(numbers, 0, range);
+  if (last == 0) return line_with(numbers, 0);
   const std::uint32_t mean = static_cast<std::uint32_t>(
       (std::uint64_t{numbers[last]} << ClusterHeader::kSlopeBits) / last);
-  Line best = line_with(numbers, std::min(mean, most_slope), range);
+  Line best = line_with(numbers, std::min(mean, most_slope));
   for (std::uint32_t step = 16; step != 0; step /= 2) {
     for (const std::uint32_t slope : {best.slope - std::min(step, best.slope), best.slope + step}) {
-      std::uint32_t other_range = 0;
-      const Line other = line_with(numbers, std::min(slope, most_slope), other_range);
-      if (other_range >= range) continue;
-      range = other_range;
-      best = other;
+      const Line other = line_with(numbers, std::min(slope, most_slope));
+      if (other.range < best.range) best = other;
     }
   }
   return best;
@@ -205,7 +202,7 @@ class ClusterEncoder {
     first_line_ = best_line(firsts_, std::numeric_limits<std::uint8_t>::max());
     header_.first_slope = static_cast<std::uint8_t>(first_line_.slope);
     header_.first_bias = static_cast<std::uint16_t>(first_line_.bias);
-    header_.first_bits = static_cast<std::uint8_t>(first_line_.bits);
+    header_.first_bits = static_cast<std::uint8_t>(first_line_.bits());
     assert(header_.first_bits <= ClusterHeader::kMostFirstBits);
   }
 
@@ -295,7 +292,7 @@ class ClusterEncoder {
     start_line_ = best_line(starts_, std::numeric_limits<std::uint16_t>::max());
     header_.start_slope = static_cast<std::uint16_t>(start_line_.slope);
     header_.start_bias = static_cast<std::uint16_t>(start_line_.bias);
-    header_.start_bits = static_cast<std::uint8_t>(start_line_.bits);
+    header_.start_bits = static_cast<std::uint8_t>(start_line_.bits());
     assert(header_.start_bits <= ClusterHeader::kMostStartBits);
   }
 
@@ -327,8 +324,8 @@ class ClusterEncoder {
   void write_table() {
     BitWriter bits(out_);
     for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
-      bits.put(start_line_.rest(starts_[i], i), start_line_.bits);
-      bits.put(first_line_.rest(firsts_[i], i), first_line_.bits);
+      bits.put(start_line_.rest(starts_[i], i), start_line_.bits());
+      bits.put(first_line_.rest(firsts_[i], i), first_line_.bits());
     }
   }
 

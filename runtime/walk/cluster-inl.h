@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Decodes full leaves of triangles with 32-bit numbers from clusters, by vectors of eight lanes
-// that can be permuted and gathered: the same numbers as decode_cluster_leaf (format/cluster.cpp),
-// which decodes any leaf, and all of them where vectors are shorter.
+// Decodes full leaves with 32-bit numbers from clusters, by vectors of eight lanes that can be
+// permuted: the same numbers as decode_cluster_leaf (format/cluster.cpp), which decodes any leaf,
+// and all of them where vectors are shorter.
 #if defined(BOXTREE_RUNTIME_WALK_CLUSTER_INL_H) == defined(HWY_TARGET_TOGGLE)
 #ifdef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
 #undef BOXTREE_RUNTIME_WALK_CLUSTER_INL_H
@@ -42,9 +42,9 @@ class ClusterReader {
     if (!enter(leaf / kClusterLeaves)) return false;
     Faces faces;
     if (!find_faces(leaf % kClusterLeaves, faces)) return false;
-    if (HWY_UNLIKELY(faces.quads != 0)) {
+    if (HWY_UNLIKELY(!faces.is_usual)) {
       const Faces faces_copy = faces;  // so that the usual case may keep it in registers
-      return read_quads(faces_copy, scale, out);
+      return read_any(faces_copy, scale, out);
     }
     triangles_ = kLeafFaces;
     const Vertices thirds =
@@ -73,19 +73,11 @@ class ClusterReader {
     corrupt = hn::Or(corrupt, corners.corrupt);
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) hn::Store(third[k], Floats(), out[2][k]);
-    if (HWY_LIKELY(faces.aparts <= kWideChildren / 2)) {
-      const TwoVectorLanes first(corners.first), second(corners.second);
-      HWY_UNROLL(3)
-      for (std::size_t k = 0; k < 3; ++k) {
-        hn::Store(first.look_up(third[k], apart[k]), Floats(), out[0][k]);
-        hn::Store(second.look_up(third[k], apart[k]), Floats(), out[1][k]);
-      }
-    } else {
-      // Copies, so that the usual case may keep them in registers.
-      const Faces faces_copy = faces;
-      const FloatVector third_copy[3] = {third[0], third[1], third[2]};
-      const FloatVector apart_copy[3] = {apart[0], apart[1], apart[2]};
-      corrupt = hn::Or(corrupt, read_more(faces_copy, scales, third_copy, apart_copy, out));
+    const TwoVectorLanes first(corners.first), second(corners.second);
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      hn::Store(first.look_up(third[k], apart[k]), Floats(), out[0][k]);
+      hn::Store(second.look_up(third[k], apart[k]), Floats(), out[1][k]);
     }
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
@@ -163,6 +155,7 @@ class ClusterReader {
     hn::Vec<Bytes> window;                // the first 16 of them, or some later ones, in each half
     std::uint32_t places_at = 0;          // bit of `window` where the first of these begins
     WordVector word;                      // has the bits of new_thirds, see kThirdBits
+    bool is_usual = false;  // triangles whose other references are 8 and whose bytes are `window`
   };
 
   // References of the first two corners of eight faces.
@@ -389,7 +382,7 @@ class ClusterReader {
     return hn::Sub(exponent, constant<127>());
   }
 
-  // False if the leaf is corrupt, or has no quads and its references take more bytes than a window.
+  // False if the leaf is corrupt.
   HWY_INLINE bool find_faces(std::uint32_t self, Faces& faces) const {
     const std::byte* const bytes = bytes_;
     const std::uint32_t bit = table_ + self * entry_bits_;
@@ -421,7 +414,9 @@ class ClusterReader {
     faces.last = faces.before + new_vertices;
     faces.places_at = faces.others;
     const std::uint32_t olds = kLeafFaces + faces.others - new_vertices;
-    return HWY_LIKELY(faces.others + olds * faces.old_bits <= kWindowBits) || faces.quads != 0;
+    faces.is_usual = faces.quads == 0 && faces.aparts <= kWideChildren / 2 &&
+                     faces.others + olds * faces.old_bits <= kWindowBits;
+    return true;
   }
 
   // The corners of faces, and those of the source, which read_corners() needs.
@@ -601,37 +596,9 @@ class ClusterReader {
     }
   }
 
-  // The vertices of more than four faces that are apart, and the corners of the leaf. Returns a
-  // vector that is 0 but for lanes whose bytes are corrupt.
+  // Any leaf: its triangles in the order of decoders of one leaf.
   template <std::size_t kStride>
-  HWY_NOINLINE WordVector read_more(const Faces& faces, FloatVector scale,
-                                    const FloatVector (&third)[3], const FloatVector (&apart)[3],
-                                    float (&out)[3][3][kStride]) {
-    const std::uint32_t before = faces.new_thirds | (faces.new_others & 0xffu) << kWideChildren;
-    const std::uint32_t is_new = faces.new_others >> kWideChildren;
-    const auto rank =
-        hn::Add(ranks(is_new), small(static_cast<std::uint32_t>(std::popcount(before))));
-    FloatVector more[3];
-    const Vertices vertices =
-        find_vertices(faces, lanes_with(small(is_new), kLaneBits), rank, 2 * kWideChildren);
-    read_vertices<Layout::kAny>(vertices, 2 * kWideChildren, scale, more);
-    HWY_ALIGN float all[kReferences];
-    for (std::size_t k = 0; k < 3; ++k) {
-      hn::Store(third[k], Floats(), all);
-      hn::Store(apart[k], Floats(), all + kWideChildren);
-      hn::Store(more[k], Floats(), all + 2 * kWideChildren);
-      for (std::size_t i = 0; i < kLeafFaces; ++i) {
-        out[0][k][i] = all[corner_[0][i]];
-        out[1][k][i] = all[corner_[1][i]];
-      }
-    }
-    return hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts - kWideChildren)),
-                              vertices.corrupt);
-  }
-
-  // A leaf with quads, whose triangles are in the order of decoders of one leaf.
-  template <std::size_t kStride>
-  HWY_NOINLINE bool read_quads(const Faces& faces, float scale, float (&out)[3][3][kStride]) {
+  HWY_NOINLINE bool read_any(const Faces& faces, float scale, float (&out)[3][3][kStride]) {
     static_assert(kStride >= 2 * kLeafFaces);
     const FloatVector scales = hn::Set(Floats(), scale);
     const std::uint32_t is_new = faces.new_thirds | faces.new_others << kLeafFaces;

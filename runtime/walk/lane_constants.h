@@ -14,8 +14,8 @@ struct LaneConstants {
   /// The largest number that is in `number`.
   static constexpr std::uint32_t kMost = 0xff;
   /// Numbers of `lanes`, in order.
-  static constexpr std::array<std::uint32_t, 11> kInLanes = {0, 1, 2,   3,          4,         5,
-                                                             6, 7, 127, 0x80020100, 0x80808000};
+  static constexpr std::array<std::uint32_t, 8> kInLanes = {1, 2,   5,          6,
+                                                            7, 127, 0x80020100, 0x80808000};
 
   /// Row i: number kInLanes[i] in each lane.
   alignas(32) std::array<std::array<std::uint32_t, 8>, kInLanes.size()> lanes;
