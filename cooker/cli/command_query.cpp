@@ -83,9 +83,7 @@ class BatchLines {
   }
 
   [[nodiscard]] std::size_t number() const { return number_; }
-  [[nodiscard]] std::string name() const {
-    return is_standard_stream(path_) ? "standard input" : path_.string();
-  }
+  [[nodiscard]] std::string name() const { return input_name(path_); }
 
   // Why there is no next line, unless the file simply ended.
   [[nodiscard]] Status status() const {

@@ -103,7 +103,7 @@ Json to_json(const std::filesystem::path& file, const Verification& verification
 void print_verification(const std::filesystem::path& file, const Verification& verification,
                         bool quiet) {
   if (verification.is_reported) return;
-  const std::string name = is_standard_stream(file) ? "standard input" : file.string();
+  const std::string name = input_name(file);
   for (const Error& finding : verification.findings) {
     static_cast<void>(fail(in_file(name, finding)));
   }

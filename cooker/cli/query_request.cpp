@@ -462,7 +462,7 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
                              const std::string& which, const std::filesystem::path& mesh) {
   File* const file = &opened;
   const Result<std::uint32_t> index = find_tree(*file, which);
-  const std::string name = is_standard_stream(path) ? "standard input" : path.string();
+  const std::string name = input_name(path);
   if (!index) return Error{index.code(), name + ": " + index.error().detail};
   BindOptions options;
   std::unique_ptr<SourceMesh> source;

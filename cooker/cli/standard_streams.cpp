@@ -39,6 +39,10 @@ Result<std::vector<std::byte>> read_standard_input() {
 
 }  // namespace
 
+std::string input_name(const std::filesystem::path& path) {
+  return is_standard_stream(path) ? "standard input" : path.string();
+}
+
 Result<Bytes> standard_input() {
   static const Result<std::vector<std::byte>> input = read_standard_input();
   if (!input) return input.error();
@@ -48,7 +52,7 @@ Result<Bytes> standard_input() {
 Result<SourceBytes> standard_mesh(const std::string& format) {
   const Result<Bytes> input = standard_input();
   if (!input) return input.error();
-  return SourceBytes{"-", "standard input", "stdin." + format, *input};
+  return SourceBytes{"-", input_name("-"), "stdin." + format, *input};
 }
 
 Result<OutputTarget> output_target(const std::filesystem::path& requested,

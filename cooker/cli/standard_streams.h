@@ -21,6 +21,9 @@ inline constexpr std::uint64_t kMaxStandardInput = std::uint64_t{1} << 34;
   return path == "-";
 }
 
+/// What messages call an input: its path, or "standard input".
+[[nodiscard]] std::string input_name(const std::filesystem::path& path);
+
 /// All of standard input. The first call reads it; the bytes stay until the program ends. Not for
 /// several threads at once. Error: kFileUnreadable for a terminal, a read that fails, and more than
 /// kMaxStandardInput.
