@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <cstring>
 #include <fcntl.h>
+#include <optional>
+#include <poll.h>
 #include <span>
 #include <string>
 #include <sys/prctl.h>
@@ -55,9 +57,6 @@ void limit(int resource, std::uint64_t most) {
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, limits.cpu_seconds);
   if (kLimitsMemory) limit(RLIMIT_AS, address_space() + limits.bytes);
-  static_cast<void>(std::signal(SIGALRM, SIG_DFL));
-  static_cast<void>(
-      alarm(static_cast<unsigned>(std::min<std::uint64_t>(10 * limits.cpu_seconds, 1u << 30))));
   const int nowhere = ::open("/dev/null", O_WRONLY);
   if (nowhere >= 0) {
     static_cast<void>(dup2(nowhere, STDOUT_FILENO));
@@ -76,15 +75,22 @@ void limit(int resource, std::uint64_t most) {
   _exit(is_told ? 0 : 1);
 }
 
-std::string read_all(int from) {
+// What the copy says until it ends; nothing if that takes more seconds. Counts the seconds in which
+// this process waits, so that it may itself be stopped (Ctrl-Z) for as long as one likes.
+std::optional<std::string> read_all(int from, std::uint64_t seconds) {
   std::string text;
   std::array<char, 4096> chunk;
-  for (;;) {
+  while (seconds > 0) {
+    pollfd end{from, POLLIN, 0};
+    const int ready = ::poll(&end, 1, 1000);
+    if (ready == 0) --seconds;
+    if (ready <= 0) continue;
     const ssize_t got = ::read(from, chunk.data(), chunk.size());
     if (got < 0 && errno == EINTR) continue;
     if (got <= 0) return text;
     text.append(chunk.data(), static_cast<std::size_t>(got));
   }
+  return std::nullopt;
 }
 
 Error no_child(const char* what, int error) {
@@ -93,11 +99,16 @@ Error no_child(const char* what, int error) {
       fmt::format("no process to try it in: {}: {}", what, std::generic_category().message(error))};
 }
 
+Error ended(const std::string& how, const TrialLimits& limits) {
+  return {Errc::kImportFailed,
+          fmt::format("assimp's reader was ended, {}: it may take {} s of processor time, {} s by "
+                      "the clock and {} MB",
+                      how, limits.cpu_seconds, limits.clock_seconds, limits.bytes >> 20)};
+}
+
 Error crashed(int signal, const TrialLimits& limits) {
-  if (signal == SIGXCPU || signal == SIGKILL || signal == SIGALRM) {
-    return {Errc::kImportFailed,
-            fmt::format("assimp's reader was ended, by signal {}: it may take {} s and {} MB",
-                        signal, limits.cpu_seconds, limits.bytes >> 20)};
+  if (signal == SIGXCPU || signal == SIGKILL) {
+    return ended(fmt::format("by signal {}", signal), limits);
   }
   return {Errc::kImportFailed, fmt::format("assimp's reader crashed on it, by signal {}", signal)};
 }
@@ -108,7 +119,8 @@ TrialLimits trial_limits(std::uint64_t file_bytes) {
   const long pages = sysconf(_SC_PHYS_PAGES);
   const std::uint64_t memory =
       pages > 0 ? static_cast<std::uint64_t>(pages) * page_bytes() : std::uint64_t{1} << 33;
-  return {30 + file_bytes / 100000, memory / 2};
+  const std::uint64_t seconds = 30 + file_bytes / 100000;
+  return {seconds, 10 * seconds, memory / 2};
 }
 
 Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work) {
@@ -126,21 +138,24 @@ Status try_in_child(const TrialLimits& limits, const std::function<Status()>& wo
     be_child(ends[1], limits, work);
   }
   ::close(ends[1]);
-  const std::string said = read_all(ends[0]);
+  const std::optional<std::string> said = read_all(ends[0], limits.clock_seconds);
   ::close(ends[0]);
-  int ended = 0;
-  while (::waitpid(child, &ended, 0) < 0) {
+  // Of no effect on a copy that has ended; one that is stopped, or closed its end, would not end.
+  static_cast<void>(::kill(child, SIGKILL));
+  int how = 0;
+  while (::waitpid(child, &how, 0) < 0) {
     if (errno != EINTR) return no_child("waitpid", errno);
   }
-  if (WIFSIGNALED(ended)) return crashed(WTERMSIG(ended), limits);
-  if (WEXITSTATUS(ended) != 0 || said.size() < sizeof(std::uint16_t)) {
+  if (!said) return ended("since it did not end by itself", limits);
+  if (WIFSIGNALED(how)) return crashed(WTERMSIG(how), limits);
+  if (WEXITSTATUS(how) != 0 || said->size() < sizeof(std::uint16_t)) {
     return Error{
         Errc::kImportFailed,
-        fmt::format("assimp's reader ended the process, with status {}", WEXITSTATUS(ended))};
+        fmt::format("assimp's reader ended the process, with status {}", WEXITSTATUS(how))};
   }
-  const auto code = load<std::uint16_t>(reinterpret_cast<const std::byte*>(said.data()));
+  const auto code = load<std::uint16_t>(reinterpret_cast<const std::byte*>(said->data()));
   if (code == 0) return {};
-  return Error{static_cast<Errc>(code), said.substr(sizeof(code))};
+  return Error{static_cast<Errc>(code), said->substr(sizeof(code))};
 }
 
 }  // namespace boxtree::cooker

@@ -11,7 +11,8 @@ namespace boxtree::cooker {
 
 struct TrialLimits {
   std::uint64_t cpu_seconds;
-  std::uint64_t bytes;  // of address space, in addition to this process's own
+  std::uint64_t clock_seconds;  // while this process waits for it
+  std::uint64_t bytes;          // of address space, in addition to this process's own
 };
 
 /// Whether `bytes` is enforced: sanitizers reserve terabytes of address space.
@@ -25,14 +26,15 @@ inline constexpr bool kLimitsMemory = false;
 inline constexpr bool kLimitsMemory = true;
 #endif
 
-/// Limits for a file of this size: half of the machine's memory, and 30 s plus one second per 100
-/// kB, a tenth of the speed of assimp's slowest readers.
+/// Limits for a file of this size: half of the machine's memory, 30 s of processor time plus one
+/// second per 100 kB, a tenth of the speed of assimp's slowest readers, and ten times that by the
+/// clock, since a machine may have more to do.
 [[nodiscard]] TrialLimits trial_limits(std::uint64_t file_bytes);
 
 /// Runs `work` in a copy of this process and returns its result; other effects are lost, including
 /// what the copy prints. kOutOfMemory if the copy needs more than `limits.bytes`, kImportFailed
-/// with the reason if it crashes, takes more seconds than its limit, sleeps for ten times as long,
-/// or cannot be started. The copy has one thread. It starts with the same memory, so work that
+/// with the reason if it crashes, takes more of either time than its limit, stopped or not, or
+/// cannot be started. The copy has one thread. It starts with the same memory, so work that
 /// succeeds in it succeeds here, unless it depends on clocks or other threads.
 Status try_in_child(const TrialLimits& limits, const std::function<Status()>& work);
 

@@ -7,6 +7,8 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <sys/wait.h>
+#include <unistd.h>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -17,7 +19,7 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr TrialLimits kLimits{10, std::uint64_t{1} << 28};
+constexpr TrialLimits kLimits{10, 100, std::uint64_t{1} << 28};
 
 TEST(Trial, WhatIsReturnedComesBackAndNothingElse) {
   int changed = 0;
@@ -50,12 +52,36 @@ TEST(Trial, CrashesAndExitsAreErrors) {
 }
 
 TEST(Trial, WhatNeverEndsIsEnded) {
-  const Status status = try_in_child({1, kLimits.bytes}, []() -> Status {
+  const Status status = try_in_child({1, 100, kLimits.bytes}, []() -> Status {
     for (std::atomic<unsigned> turns = 0;;) ++turns;
   });
   EXPECT_EQ(status.code(), Errc::kImportFailed);
-  EXPECT_NE(status.error().detail.find("it may take 1 s"), std::string::npos)
+  EXPECT_NE(status.error().detail.find("it may take 1 s of processor time"), std::string::npos)
       << status.error().detail;
+}
+
+TEST(Trial, WhatIsStoppedIsEndedByTheClock) {
+  for (const int signal : {SIGSTOP, 0}) {
+    const Status status = try_in_child({10, 2, kLimits.bytes}, [signal]() -> Status {
+      if (signal != 0) static_cast<void>(std::raise(signal));
+      for (;;) ::pause();
+    });
+    EXPECT_EQ(status.code(), Errc::kImportFailed);
+    EXPECT_EQ(
+        status.error().detail.find("assimp's reader was ended, since it did not end by itself: "
+                                   "it may take 10 s of processor time, 2 s by the clock"),
+        0u)
+        << status.error().detail;
+  }
+  EXPECT_EQ(::waitpid(-1, nullptr, WNOHANG), -1) << "a copy is left";
+}
+
+TEST(Trial, WhatClosesItsEndIsNotWaitedFor) {
+  const Status status = try_in_child({10, 100, kLimits.bytes}, []() -> Status {
+    for (int file = 3; file < 64; ++file) ::close(file);
+    for (;;) ::pause();
+  });
+  EXPECT_EQ(status.code(), Errc::kImportFailed);
 }
 
 TEST(Trial, MemoryHasALimit) {
