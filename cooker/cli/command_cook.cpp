@@ -9,7 +9,6 @@
 #include <sys/resource.h>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
@@ -18,6 +17,7 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
+#include "cooker/cli/worker_threads.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/shell/cook_job.h"
 #include "cooker/text/nearest_name.h"
@@ -45,7 +45,7 @@ struct Arguments {
   bool json = false;
   bool quiet = false;
   std::string format;
-  int jobs = tbb::task_arena::automatic;
+  int jobs = kAllThreads;
 };
 
 Json report_json(const Arguments& arguments, const Summary& summary, double seconds) {
@@ -155,8 +155,7 @@ int run(Arguments& arguments) {
   Result<Summary> cooked = Errc::kInternal;
   {
     StepPrinter steps(!arguments.quiet);
-    tbb::task_arena arena(arguments.jobs);
-    arena.execute([&] {
+    run_on_threads(arguments.jobs, [&] {
       cooked = cook_job(arguments.job, [&steps](const std::string& step) { steps(step); });
     });
   }

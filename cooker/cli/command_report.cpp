@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
@@ -18,6 +17,7 @@
 #include "cooker/cli/peers.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
+#include "cooker/cli/worker_threads.h"
 #include "cooker/import/import.h"
 #include "cooker/report/paper_tables.h"
 #include "cooker/report/tradeoff_page.h"
@@ -40,7 +40,7 @@ struct Arguments {
   bool quick = false;
   bool no_times = false;
   bool quiet = false;
-  int jobs = tbb::task_arena::automatic;
+  int jobs = kAllThreads;
 };
 
 // Those that were not given are empty.
@@ -309,8 +309,9 @@ int run(const Arguments& arguments) {
     return usage("report: standard output takes one of the page, --json, --json-out and CSV");
   }
   int status = 0;
-  tbb::task_arena arena(arguments.jobs);
-  arena.execute([&] { status = arguments.paper ? run_paper(arguments) : run_tradeoff(arguments); });
+  run_on_threads(arguments.jobs, [&] {
+    status = arguments.paper ? run_paper(arguments) : run_tradeoff(arguments);
+  });
   return status;
 }
 

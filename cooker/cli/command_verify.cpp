@@ -8,7 +8,6 @@
 #include <vector>
 
 #include <fmt/format.h>
-#include <oneapi/tbb/task_arena.h>
 
 #include <boxtree/file.h>
 
@@ -19,6 +18,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
+#include "cooker/cli/worker_threads.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
@@ -33,7 +33,7 @@ struct Arguments {
   std::vector<std::filesystem::path> files;
   std::filesystem::path mesh;
   bool quiet = false;
-  int jobs = tbb::task_arena::automatic;
+  int jobs = kAllThreads;
   bool json = false;
 };
 
@@ -118,17 +118,17 @@ int run(const Arguments& arguments) {
   }
   int status = 0;
   std::vector<Json> documents;
-  tbb::task_arena arena(arguments.jobs);
-  for (const std::filesystem::path& file : arguments.files) {
-    Verification verification;
-    arena.execute([&] { verification = verify_one(file, arguments.mesh); });
-    if (arguments.json) {
-      documents.push_back(to_json(file, verification));
-    } else {
-      print_verification(file, verification, arguments.quiet);
+  run_on_threads(arguments.jobs, [&] {
+    for (const std::filesystem::path& file : arguments.files) {
+      const Verification verification = verify_one(file, arguments.mesh);
+      if (arguments.json) {
+        documents.push_back(to_json(file, verification));
+      } else {
+        print_verification(file, verification, arguments.quiet);
+      }
+      if (status == 0) status = verification.status;
     }
-    if (status == 0) status = verification.status;
-  }
+  });
   if (arguments.json) print_files(std::move(documents), arguments.files.size() > 1);
   return status;
 }

@@ -94,9 +94,11 @@ std::optional<std::string> read_all(int from, std::uint64_t seconds) {
 }
 
 Error no_child(const char* what, int error) {
-  return {
-      error == ENOMEM ? Errc::kOutOfMemory : Errc::kImportFailed,
-      fmt::format("no process to try it in: {}: {}", what, std::generic_category().message(error))};
+  const char* const remedy =
+      error == EAGAIN ? " (a limit of processes, as ulimit -u; --trusted needs none)" : "";
+  return {error == ENOMEM ? Errc::kOutOfMemory : Errc::kImportFailed,
+          fmt::format("no process to try it in: {}: {}{}", what,
+                      std::generic_category().message(error), remedy)};
 }
 
 Error ended(const std::string& how, const TrialLimits& limits) {
