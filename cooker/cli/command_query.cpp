@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <sys/stat.h>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -82,6 +83,11 @@ class BatchLines {
     return c != EOF || !line.empty();
   }
 
+  /// Whether someone may wait for an answer before the next line: not where a file has them all.
+  [[nodiscard]] bool is_interactive() const {
+    struct stat status {};
+    return file_ != nullptr && ::fstat(::fileno(file_), &status) == 0 && !S_ISREG(status.st_mode);
+  }
   [[nodiscard]] std::size_t number() const { return number_; }
   [[nodiscard]] std::string name() const { return input_name(path_); }
 
@@ -103,13 +109,15 @@ class BatchLines {
   bool is_too_long_ = false;
 };
 
-// Answers each line of the batch: JSON lines as they come, or one document with --json, each with
-// the number of its line, since empty lines have no answer. A line that cannot be answered gets an
-// error in its place; at the end the first is told with the number of all, and its exit status.
-using AnswerRequest = std::function<Result<Json>(const QueryRequest& request, TreeCache& others)>;
+// Answers each line of the batch: JSON lines as they come, at once where lines come from a program,
+// or one document with --json, each with the number of its line, since empty lines have no answer.
+// A line that cannot be answered gets an error in its place; at the end the first is told with the
+// number of all, and its exit status.
+using AnswerRequest = std::function<Result<Json>(const BatchRequest& line, TreeCache& others)>;
 int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
               const RequestDefaults& defaults) {
   BatchLines lines(arguments.batch);
+  const bool is_interactive = lines.is_interactive();
   TreeCache others;
   Json answers = Json::array();
   std::optional<Error> first_error;
@@ -118,7 +126,7 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
   while (lines.next(line)) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     ++queries;
-    const Result<QueryRequest> request = parse_request(line, defaults);
+    const Result<BatchRequest> request = parse_request(line, defaults);
     Result<Json> answer =
         request ? answer_request(*request, others) : Result<Json>(request.error());
     if (!answer) {
@@ -136,6 +144,7 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
       answers.push_back(std::move(numbered));
     } else {
       fmt::print("{}\n", line_of(numbered));
+      if (is_interactive && std::fflush(stdout) != 0) return fail_to_print();
     }
   }
   if (arguments.json) print({{"answers", answers}});
@@ -171,7 +180,7 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const auto answer_all = [&](const AnswerRequest& answer_request) {
     if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
     TreeCache others;
-    const Result<Json> answer = answer_request(defaults.request, others);
+    const Result<Json> answer = answer_request({defaults.request, {}}, others);
     if (!answer) return fail(answer.error());
     print_answer(arguments, *answer);
     return 0;
@@ -184,14 +193,25 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
                    arguments.file.string() + ": " +
                        (detail.empty() ? std::string(error_info(scene.code()).meaning) : detail)});
     }
-    return answer_all(
-        [&](const QueryRequest& each, TreeCache& others) { return answer(*scene, each, others); });
+    return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
+      if (line.moves.empty()) return answer(scene->file, scene->scene, line.request, others);
+      std::vector<std::string> moves = arguments.moves;
+      moves.insert(moves.end(), line.moves.begin(), line.moves.end());
+      const Result<Scene> moved = move_scene(scene->file, moves);
+      if (!moved) return moved.error();
+      return answer(scene->file, *moved, line.request, others);
+    });
   }
   const Result<OpenedTree> tree =
       bind_tree(std::move(opened->file), arguments.file, arguments.tree, arguments.mesh);
   if (!tree) return fail(tree.error());
-  return answer_all(
-      [&](const QueryRequest& each, TreeCache& others) { return answer(*tree, each, others); });
+  return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
+    if (!line.moves.empty()) {
+      return Error{Errc::kInvalidQuery,
+                   "\"move\": is for instances of a scene, and this is a tree"};
+    }
+    return answer(*tree, line.request, others);
+  });
 }
 
 // A value like "1,-2.5,3e4". `out` has to live until the command line has been parsed.
@@ -327,9 +347,10 @@ void add_query_command(Command& program, int& status) {
       "--batch", arguments->batch, Values::kFiles,
       "Query every line of a file (- for standard input): JSON objects with the names of the "
       "options as keys, without -- and with - or _ between words, \"file\", \"tree\" and \"mesh\" "
-      "for FILE2, --tree2 and --mesh2, and \"kind\" if no kind of query is given here. What lines "
+      "for FILE2, --tree2 and --mesh2, \"move\" for that line alone, and \"kind\" if no kind of "
+      "query is given here. What lines "
       "of a kind that is given here do not say is taken from its options. Answers are JSON, too, "
-      "each with the number of its \"line\"");
+      "each with the number of its \"line\", at once where lines come from a pipe");
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command
       .add_file("--mesh", arguments->mesh, Values::kMeshes,

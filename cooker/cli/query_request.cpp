@@ -225,6 +225,8 @@ class KeyFields {
     read_if_given("pose", tree.pose);
   }
 
+  void moves(std::vector<std::string>& out) { read_if_given("move", out); }
+
   // A misspelt key is the likely cause where another one is missing.
   [[nodiscard]] Status finish() {
     for (const auto& [key, value] : json_.items()) {
@@ -276,6 +278,13 @@ class KeyFields {
     if (value.is_string()) out = value.get<std::string>();
     return value.is_string();
   }
+  static bool convert(const Json& value, std::vector<std::string>& out) {
+    const Json texts = value.is_array() ? value : Json::array({value});
+    const auto is_text = [](const Json& each) { return each.is_string(); };
+    const bool are_texts = std::all_of(texts.begin(), texts.end(), is_text);
+    if (are_texts) out = texts.get<std::vector<std::string>>();
+    return are_texts;
+  }
   static bool convert(const Json& value, std::filesystem::path& out) {
     if (value.is_string()) out = value.get<std::string>();
     return value.is_string();
@@ -293,6 +302,9 @@ class KeyFields {
   static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
   static const char* form_of(double) { return "a number"; }
   static const char* form_of(const std::string&) { return "a text"; }
+  static const char* form_of(const std::vector<std::string>&) {
+    return "INSTANCE=POSE as a text, or an array of such";
+  }
   static const char* form_of(const std::filesystem::path&) { return "a text"; }
   static const char* form_of(bool) { return "true or false"; }
   static const char* form_of(std::uint64_t) { return "a whole number, 0 or more"; }
@@ -388,7 +400,7 @@ std::vector<std::string> kind_names() {
 // The object of a line. What nests deeper than any request would overflow the stack when a message
 // shows it.
 Result<Json> parse_line(std::string_view line) {
-  constexpr int kDeepest = 2;  // an array of numbers in the object
+  constexpr int kDeepest = 2;  // an array in the object
   bool is_too_deep = false;
   const auto watch = [&is_too_deep](int depth, Json::parse_event_t /*event*/, const Json&) {
     is_too_deep = is_too_deep || depth > kDeepest;
@@ -398,7 +410,7 @@ Result<Json> parse_line(std::string_view line) {
     Json json = Json::parse(line, watch);
     if (is_too_deep) {
       return invalid(
-          "expected a JSON object of numbers, texts and arrays of numbers, found an "
+          "expected a JSON object of numbers, texts and arrays of them, found an "
           "array or an object in another");
     }
     if (!json.is_object()) return invalid("expected a JSON object, found " + found_text(json));
@@ -425,7 +437,7 @@ Result<Json> with_underscores(const Json& json) {
   return named;
 }
 
-Result<QueryRequest> request_of(std::string_view kind, const Json& json,
+Result<BatchRequest> request_of(std::string_view kind, const Json& json,
                                 const RequestDefaults& defaults) {
   const bool is_default = kind == defaults.kind;
   KeyFields fields(json, kind,
@@ -445,8 +457,10 @@ Result<QueryRequest> request_of(std::string_view kind, const Json& json,
     return invalid(fmt::format("\"kind\": expected {}, found \"{}\"{}", listed(kind_names()), kind,
                                suggestion(kind, kind_names())));
   }
+  BatchRequest line{*result, {}};
+  fields.moves(line.moves);
   if (Status status = fields.finish(); !status) return status.error();
-  return *result;
+  return line;
 }
 
 }  // namespace
@@ -550,7 +564,7 @@ Error explained(const Error& error, const QueryRequest& request) {
       request);
 }
 
-Result<QueryRequest> parse_request(std::string_view line, const RequestDefaults& defaults) {
+Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults& defaults) {
   const Result<Json> parsed = parse_line(line);
   if (!parsed) return parsed.error();
   const Result<Json> named = with_underscores(*parsed);

@@ -174,9 +174,14 @@ Result<Move> parse_move(const File& file, const Scene& scene, const std::string&
 }  // namespace
 
 Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
-  Result<Scene> scene = Scene::bind(file);
+  Result<Scene> scene = move_scene(file, moves);
   if (!scene) return scene.error();
-  if (moves.empty()) return OpenedScene{std::move(file), std::move(*scene)};
+  return OpenedScene{std::move(file), std::move(*scene)};
+}
+
+Result<Scene> move_scene(const File& file, std::span<const std::string> moves) {
+  Result<Scene> scene = Scene::bind(file);
+  if (!scene || moves.empty()) return scene;
   std::vector<Move> parsed;
   std::vector<std::uint32_t> moving;
   for (const std::string& text : moves) {
@@ -196,11 +201,11 @@ Result<OpenedScene> open_scene(File file, std::span<const std::string> moves) {
     }
     if (!status) return status.error();
   }
-  return OpenedScene{std::move(file), std::move(*scene)};
+  return scene;
 }
 
-Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, TreeCache& others) {
-  const Scene& scene = opened.scene;
+Result<Json> answer(const File& file, const Scene& scene, const QueryRequest& request,
+                    TreeCache& others) {
   Result<Json> answered = query_one_or_two(
       request, others, [&](const auto& q) { return answer(scene, q); },
       [&](const Tree& second, const auto& q) { return answer_pair(scene, second, q); });
@@ -208,7 +213,7 @@ Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, Tree
   // A query answers with a code alone; binding says by which line of the profile.
   SceneOptions needed;
   needed.queries = kind_of(request);
-  const Result<Scene> bound = Scene::bind(opened.file, needed);
+  const Result<Scene> bound = Scene::bind(file, needed);
   return bound ? answered : bound.error();
 }
 

@@ -21,9 +21,13 @@ struct OpenedScene {
 /// by its name or number. Errors: those of Scene::bind; kInvalidQuery for a move that says nothing.
 Result<OpenedScene> open_scene(File file, std::span<const std::string> moves);
 
+/// The same scene with its instances as they are in the file, but for `moves`.
+Result<Scene> move_scene(const File& file, std::span<const std::string> moves);
+
 /// The answer in the form that `boxtree query --json` prints: that for a tree, and the instance.
 /// Errors: kInvalidQuery for kinds that only trees answer; kPartLeftOut with the line of the
 /// profile that left it out.
-Result<Json> answer(const OpenedScene& opened, const QueryRequest& request, TreeCache& others);
+Result<Json> answer(const File& file, const Scene& scene, const QueryRequest& request,
+                    TreeCache& others);
 
 }  // namespace boxtree::cooker

@@ -544,14 +544,14 @@ names 'distance: "file": expected the second .bxt file, here or on the command l
   '{"kind":"distance"}'
 names 'point: "at": expected [X,Y,Z], found no such key' '{"kind":"point"}'
 names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
-names 'contacts: expected the keys first or kind, found "hat"' '{"kind":"contacts","hat":1}'
+names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
 kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.
-names "box: expected the keys min, max, within, budget or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
+names "box: expected the keys min, max, within, budget, move or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'
 names "\"kind\": expected $kinds, found \"rya\"; did you mean 'ray'?" '{"kind":"rya"}'
-names 'point: expected the keys at, max_distance, relative_error, absolute_error, budget or kind, found "max_distence"; '\
+names 'point: expected the keys at, max_distance, relative_error, absolute_error, budget, move or kind, found "max_distence"; '\
 "did you mean 'max_distance'?" '{"kind":"point","at":[0,0,0],"max-distence":1}'
 names 'expected a JSON object, found no JSON at byte 31' '{"kind":"point","at":[1,0,0]} x'
 names 'expected a JSON object, found [1]' '[1]'
@@ -559,8 +559,10 @@ names 'expected a JSON object of finite numbers, found one beyond what a double 
 names '"t_max": expected once, found twice: - and _ are the same' \
   '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"t-max":1,"t_max":2}'
 # What nests deeply overflows no stack.
-names 'expected a JSON object of numbers, texts and arrays of numbers, found an array or an object in another' \
+names 'expected a JSON object of numbers, texts and arrays of them, found an array or an object in another' \
   "{\"kind\":$(printf '[%.0s' {1..200000})$(printf ']%.0s' {1..200000})}"
+names '"move": is for instances of a scene, and this is a tree' '{"kind":"point","at":[0,0,0],"move":"cube=1,0,0"}'
+names 'point: "move": expected INSTANCE=POSE as a text, or an array of such, found [1]' '{"kind":"point","at":[0,0,0],"move":[1]}'
 # Keys are the names of options, with - or _.
 printf '%s\n' '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t-max":3}' '' \
   '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t_max":4}' '{}' >keys.jsonl
@@ -578,6 +580,16 @@ for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
 done
 names 'pair: "pose": expected X,Y,Z or 12 numbers, as an array or as text, found string of 102 bytes' \
   "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":\"$(printf 'x%.0s' {1..100})\"}"
+# A program that asks by a pipe gets each answer before its next question, and ends its batch by closing the pipe.
+coproc asked { exec "$boxtree" query cube.bxt point --batch -; }
+for z in 3 4; do
+  echo "{\"at\":[0.5,0.5,$z]}" >&"${asked[1]}"
+  read -r -t 20 -u "${asked[0]}" answer || { echo "no answer while the pipe is open"; exit 1; }
+  same "$(jq -c '[.line, .distance]' <<<"$answer")" "[$((z - 2)),$((z - 1))]"
+done
+pid=$asked_PID
+eval "exec ${asked[1]}>&-"
+wait "$pid"
 # The second file is that of the line or, with its pose, that of the command line; poses are text or numbers.
 cat >poses.jsonl <<'BATCH'
 {}

@@ -104,6 +104,19 @@ jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
 printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind":"contacts"}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
+# A line moves instances for itself alone, beside those of the command line: as --move does, and from where they are in the file.
+printf '%s\n' '{"kind":"contacts","move":"Crate=0.8,2.1,-6.8"}' '{"kind":"contacts"}' \
+  '{"kind":"contacts","first":true,"move":["Crate=0.8,2.1,-6.8","Step 2=0,50,0"]}' \
+  '{"kind":"contacts","move":"Crat=1,2,3"}' '{"kind":"contacts","move":"Crate"}' >batch
+expect 1 "$boxtree" query level.bxt --batch batch
+same "$(jq -sc 'map(.hit)' out)" '[true,false,true,null,null]'
+same "$(jq -sr '.[3:][].detail' out)" "line 4: --move: no instance is named \"Crat\"; did you mean 'Crate'?
+line 5: --move: expected INSTANCE=X,Y,Z or INSTANCE= and 12 numbers, found \"Crate\""
+jq -c 'select(.line == 1) | del(.line)' out >moved
+expect 0 "$boxtree" query level.bxt contacts --move Crate=0.8,2.1,-6.8 --json
+same "$(jq -c 'del(.schema)' out)" "$(cat moved)"
+expect 1 "$boxtree" query level.bxt --move Crate=0.8,2.1,-6.8 --batch batch
+same "$(jq -sc 'map(.hit)' out)" '[true,true,true,null,null]'
 
 # A file for viewers: every instance where it is, and what is cooked from it is the same place.
 expect 0 "$boxtree" export level.bxt -o shown.glb --json

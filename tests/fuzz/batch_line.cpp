@@ -12,13 +12,13 @@ namespace boxtree::fuzz {
 void run(Bytes input) {
   static const test::CookedTree cooked = test::cook_tree(test::city(2, 1), CodecId::kWide8);
   const std::string_view text(reinterpret_cast<const char*>(input.data()), input.size());
-  const auto query = cooker::parse_request(text, {"ray", {}, {}});
-  if (!query) {
-    if (query.code() != Errc::kInvalidQuery) finding("an error of another kind");
+  const auto line = cooker::parse_request(text, {"ray", {}, {}});
+  if (!line) {
+    if (line.code() != Errc::kInvalidQuery) finding("an error of another kind");
     return;
   }
   cooker::TreeCache others;
-  const auto answer = cooker::answer(cooked.tree, *query, others);
+  const auto answer = cooker::answer(cooked.tree, line->request, others);
   if (!answer && answer.code() == Errc::kInternal) finding("an answer is kInternal");
   if (answer && cooker::line_of(*answer).empty()) finding("an answer without words");
 }
