@@ -166,6 +166,7 @@ int run(Arguments& arguments) {
   }
   if (!cooked) return fail(cooked.error());
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  for (const std::string& warning : warnings_of(*cooked)) warn(warning);
   if (arguments.json) {
     print(report_json(arguments, *cooked, seconds));
   } else if (!arguments.quiet) {
@@ -298,7 +299,7 @@ void add_cook_command(Command& program, int& status) {
   rare(command.add_file("--depfile", arguments->job.depfile, Values::kFiles,
                         "Write the files read, in make syntax"));
   command.add_flag("--json", arguments->json, "Print one JSON document");
-  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors and warnings only");
   rare(command.add_flag("--try-all", arguments->job.options.try_all,
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.

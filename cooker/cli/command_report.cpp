@@ -11,6 +11,7 @@
 
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
+#include "cooker/cli/cook_report.h"
 #include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
@@ -218,6 +219,7 @@ std::string command_of(const Arguments& arguments) {
 Result<SourceMesh> read_mesh(const std::filesystem::path& path) {
   Result<Imported> imported = import_mesh(path, careful_import());
   if (!imported) return imported.error();
+  for (const std::string& warning : warnings_of(imported->report)) warn(warning);
   imported->mesh.name = path.stem().string();
   return std::move(imported->mesh);
 }
@@ -328,7 +330,7 @@ void add_report_command(Command& program, int& status) {
   command.add_option("-j,--jobs", arguments->jobs, "Threads that cook; times are of one [all]")
       ->type_name("N")
       ->between(1, 1024);
-  command.add_flag("-q,--quiet", arguments->quiet, "Print errors only");
+  command.add_flag("-q,--quiet", arguments->quiet, "Print errors and warnings only");
   command.add_flag("--json", arguments->json, "Print all figures as one JSON document");
   command.add_file("--json-out", arguments->json_out, Values::kFiles, "Write the same to a file");
   command.add_file("--csv", arguments->csv, Values::kFiles, "Write a row for each encoding as CSV")

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/cli/surface_text.h"
 
 namespace boxtree::cooker {
@@ -111,13 +112,6 @@ void add_import(const ImportReport& import, std::string& text) {
   if (import.degenerate_faces > 0) {
     notes += fmt::format("{}kept {} faces without area", notes.empty() ? "" : "; ",
                          import.degenerate_faces);
-  }
-  for (const std::filesystem::path& file : import.files_missing) {
-    notes += fmt::format("{}{} is not there: no file of that name can be read",
-                         notes.empty() ? "" : "; ", shown(file.string()));
-  }
-  if (import.has_open_end) {
-    notes += fmt::format("{}the last line has no end, as if cut short", notes.empty() ? "" : "; ");
   }
   if (!notes.empty()) text += fmt::format("  {}\n", notes);
   for (const SkippedFace& face : import.skipped) {
@@ -258,6 +252,34 @@ Json summary_json(const Summary& summary) {
   return json;
 }
 
+std::vector<std::string> warnings_of(const ImportReport& import) {
+  // No file is read where the source is bytes.
+  const std::string source =
+      input_name(import.files_read.empty() ? "-" : import.files_read.front());
+  std::vector<std::string> warnings;
+  for (const std::filesystem::path& file : import.files_missing) {
+    warnings.push_back(
+        fmt::format("{}: {} is not there: no file of that name can be read", source,
+                    file.string()));
+  }
+  if (import.has_open_end) {
+    warnings.push_back(source + ": the last line has no end, as if the file was cut short");
+  }
+  return warnings;
+}
+
+std::vector<std::string> warnings_of(const Summary& summary) {
+  std::vector<std::string> all;
+  const auto add = [&all](const std::vector<std::string>& some) {
+    for (const std::string& warning : some) {
+      if (std::find(all.begin(), all.end(), warning) == all.end()) all.push_back(warning);
+    }
+  };
+  for (const ImportReport& import : summary.imports) add(warnings_of(import));
+  if (summary.scene) add(summary.scene->notices);
+  return all;
+}
+
 std::string trees_text(const Summary& summary, bool candidates) {
   std::string text;
   if (candidates) {
@@ -287,7 +309,6 @@ std::string scene_text(const Summary& summary, bool candidates) {
     text += fmt::format("  left out: {} instances, {} meshes\n", scene.instances_left_out,
                         scene.meshes - summary.trees.size());
   }
-  for (const std::string& notice : scene.notices) text += fmt::format("  {}\n", shown(notice));
   return text;
 }
 

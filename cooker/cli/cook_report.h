@@ -17,6 +17,11 @@ namespace boxtree::cooker {
 /// The trees; of a scene its counts and every line of --why, too.
 [[nodiscard]] Json summary_json(const Summary& summary);
 
+/// What is wrong with a source, though it could be read; each begins with its name.
+[[nodiscard]] std::vector<std::string> warnings_of(const ImportReport& import);
+/// Those of all sources, once each, and lines of the profile without effect.
+[[nodiscard]] std::vector<std::string> warnings_of(const Summary& summary);
+
 /// What was chosen for each tree, or the table of its `candidates`; and what import found.
 [[nodiscard]] std::string trees_text(const Summary& summary, bool candidates);
 /// The same, and what the scene has.

@@ -42,6 +42,10 @@ int usage(const std::string& what) {
   return kExitUsage;
 }
 
+void warn(const std::string& what) {
+  complain("warning: " + what);
+}
+
 int fail_to_print() {
   const int error = errno;
   return fail({Errc::kWriteFailed, "standard output: " + std::generic_category().message(error)});

@@ -19,6 +19,10 @@ int fail(const Error& error);
 /// begins with the command, "cook: ".
 int usage(const std::string& what);
 
+/// Prints "boxtree: warning: WHAT" to standard error: what was done may not be what was meant.
+/// Printed with --quiet and --json, too. `what` begins with the file.
+void warn(const std::string& what);
+
 /// Says that standard output takes no more; kExitInputOutput.
 int fail_to_print();
 

@@ -104,6 +104,10 @@ jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
 printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind":"contacts"}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
+# A line of a profile without effect is a warning, which --quiet keeps.
+printf '[[object]]\nname = "rocks"\nmatch = ["Rock*"]\n' >rocks.toml
+expect 0 "$boxtree" cook --profile rocks.toml "$level/level.gltf" -o rocks.bxt --quiet
+same "$(cat err)" 'boxtree: warning: rocks.toml:3: match = ["Rock*"]: no instance is of object "rocks"'
 # A line moves instances for itself alone, beside those of the command line: as --move does, and from where they are in the file.
 printf '%s\n' '{"kind":"contacts","move":"Crate=0.8,2.1,-6.8"}' '{"kind":"contacts"}' \
   '{"kind":"contacts","first":true,"move":["Crate=0.8,2.1,-6.8","Step 2=0,50,0"]}' \
