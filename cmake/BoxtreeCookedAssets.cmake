@@ -5,7 +5,7 @@
 # every file that a mesh refers to: touching one recooks just the meshes that read it.
 #
 #   TARGET      any target; what links an INTERFACE library gets its definition and its order of building
-#   OPTIONS     passed to `boxtree cook`; generator expressions are evaluated
+#   OPTIONS     passed to `boxtree cook`, with --jobs 1 unless they have --jobs; generator expressions are evaluated
 #   OUTPUT_DIR  [default: the current binary directory, which a relative one is below]
 #   DEFINITION  compile definition by which sources know OUTPUT_DIR [default: BOXTREE_ASSET_DIR]; INTERFACE
 #               of an INTERFACE library, otherwise PRIVATE
@@ -66,6 +66,16 @@ function(boxtree_define_asset_dir target name dir)
   set_target_properties(${target} PROPERTIES BOXTREE_DEFINED_${name} ${dir})
 endfunction()
 
+# Called when the current folder has been read, since a later command may make the mesh. A warning, since one of
+# another folder may, too.
+function(boxtree_expect_mesh mesh)
+  get_source_file_property(is_generated "${mesh}" GENERATED)
+  if(NOT is_generated AND NOT EXISTS "${mesh}")
+    message(WARNING "boxtree_add_cooked_assets: ${mesh} is not there, and no command of this folder makes it; "
+                    "expected a mesh file. Relative names are below ${CMAKE_CURRENT_SOURCE_DIR}")
+  endif()
+endfunction()
+
 function(boxtree_add_cooked_assets)
   cmake_parse_arguments(PARSE_ARGV 0 ARG "" "TARGET;OUTPUT_DIR;DEFINITION" "MESHES;OPTIONS")
   if(NOT ARG_TARGET OR NOT ARG_MESHES OR ARG_UNPARSED_ARGUMENTS)
@@ -86,6 +96,17 @@ function(boxtree_add_cooked_assets)
   if(ARG_OUTPUT_DIR MATCHES "\\$<")
     message(FATAL_ERROR "boxtree_add_cooked_assets: OUTPUT_DIR is ${ARG_OUTPUT_DIR}; only OPTIONS may hold "
                         "generator expressions")
+  endif()
+  foreach(option IN LISTS ARG_OPTIONS)
+    if(option MATCHES "^--?[a-z0-9-]+[ \t]")
+      message(FATAL_ERROR "boxtree_add_cooked_assets: OPTIONS has '${option}' in one piece; expected options and "
+                          "their values in pieces: without quotes, or with ; between them")
+    endif()
+  endforeach()
+  # Builds run several cooks at once, each of which would take all processors.
+  set(jobs --jobs 1)
+  if(ARG_OPTIONS MATCHES "(^|;)(-j|--jobs)")
+    set(jobs)
   endif()
   get_filename_component(dir "${ARG_OUTPUT_DIR}" ABSOLUTE BASE_DIR ${CMAKE_CURRENT_BINARY_DIR})
   boxtree_find_tool(tool)
@@ -125,9 +146,10 @@ function(boxtree_add_cooked_assets)
     set_property(GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}" "${mesh}")
     set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
     set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL boxtree_expect_mesh [[${mesh}]])")
     add_custom_command(
       OUTPUT ${output}
-      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${ARG_OPTIONS}
+      COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${jobs} ${ARG_OPTIONS}
       DEPENDS ${mesh} ${tool}
       DEPFILE ${output}.d
       COMMENT "Cooking ${name}.bxt"

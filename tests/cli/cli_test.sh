@@ -580,15 +580,15 @@ for pose in '[1,2]' '"1,2"' '[1,2,"3"]' 3; do
 done
 names 'pair: "pose": expected X,Y,Z or 12 numbers, as an array or as text, found string of 102 bytes' \
   "{\"kind\":\"pair\",\"file\":\"cube.bxt\",\"pose\":\"$(printf 'x%.0s' {1..100})\"}"
-# A program that asks by a pipe gets each answer before its next question, and ends its batch by closing the pipe.
-coproc asked { exec "$boxtree" query cube.bxt point --batch -; }
+# A program that queries through a pipe gets each answer before its next query, and ends its batch by closing the pipe.
+coproc batch { exec "$boxtree" query cube.bxt point --batch -; }
 for z in 3 4; do
-  echo "{\"at\":[0.5,0.5,$z]}" >&"${asked[1]}"
-  read -r -t 20 -u "${asked[0]}" answer || { echo "no answer while the pipe is open"; exit 1; }
+  echo "{\"at\":[0.5,0.5,$z]}" >&"${batch[1]}"
+  read -r -t 20 -u "${batch[0]}" answer || { echo "no answer while the pipe is open"; exit 1; }
   same "$(jq -c '[.line, .distance]' <<<"$answer")" "[$((z - 2)),$((z - 1))]"
 done
-pid=$asked_PID
-eval "exec ${asked[1]}>&-"
+pid=$batch_PID
+eval "exec ${batch[1]}>&-"
 wait "$pid"
 # The second file is that of the line or, with its pose, that of the command line; poses are text or numbers.
 cat >poses.jsonl <<'BATCH'

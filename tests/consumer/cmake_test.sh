@@ -157,6 +157,32 @@ find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
 boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OUTPUT_DIR $<CONFIG>)
 CMAKE
+refused "OPTIONS has '--grid-bits 12' in one piece" <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj OPTIONS "--grid-bits 12")
+CMAKE
+
+# A mesh that is not there is a warning when CMake configures, unless a command makes it, before or after the call.
+project meshes NONE <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets ALL)
+add_custom_command(OUTPUT before.obj COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/../meshes/crate.obj before.obj)
+boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj ${PROJECT_BINARY_DIR}/before.obj
+                          ${PROJECT_BINARY_DIR}/after.obj OPTIONS --codec;wide8 --max-slowdown 100)
+add_custom_command(OUTPUT after.obj COMMAND ${CMAKE_COMMAND} -E copy ${PROJECT_SOURCE_DIR}/../meshes/crate.obj after.obj)
+if(GONE)
+  boxtree_add_cooked_assets(TARGET all_assets MESHES gone.obj OPTIONS -j 2)
+endif()
+CMAKE
+configured meshes
+if grep -q Warning "$work/log"; then cat "$work/log"; fail "a mesh that is there or made is warned of"; fi
+quiet cmake --build "$work/meshes/build"
+for name in level before after; do [ -f "$work/meshes/build/$name.bxt" ] || fail "$name was not cooked"; done
+grep -q -- '--jobs 1 --codec wide8' "$work/meshes/build/build.ninja" || fail "cooks of a build take all processors"
+configured meshes -DGONE=ON
+tr -s ' \n' '  ' <"$work/log" | grep -qF "$work/meshes/gone.obj is not there, and no command" || fail "a mesh is missing without a word"
+if grep -q -- '--jobs 1 -j 2' "$work/meshes/build/build.ninja"; then fail "--jobs is there twice"; fi
 
 # A tool of the machine that builds.
 project tool NONE <<'CMAKE'
