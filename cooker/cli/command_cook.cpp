@@ -18,6 +18,7 @@
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/cli/worker_threads.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/shell/cook_job.h"
 #include "cooker/text/nearest_name.h"
@@ -133,6 +134,19 @@ std::string stream_fault(const Arguments& arguments) {
   return {};
 }
 
+// What the command line adds to an error of a cook: a remedy, and the file that cannot be made,
+// where no line of the profile stands for a budget.
+Error explained(const Error& error, const Arguments& arguments, const std::string& output) {
+  if (error.code == Errc::kInvalidPose) {
+    return {error.code,
+            error.detail + "; --flatten makes one tree of a file, whatever its transforms"};
+  }
+  const std::string& profile = arguments.job.profile;
+  const bool is_of_profile = !profile.empty() && error.detail.starts_with(profile + ":");
+  if (error.code == Errc::kBudgetUnreachable && !is_of_profile) return in_file(output, error);
+  return error;
+}
+
 int run(Arguments& arguments) {
   set_options(arguments);
   if (const std::string fault = stream_fault(arguments); !fault.empty())
@@ -159,12 +173,7 @@ int run(Arguments& arguments) {
       cooked = cook_job(arguments.job, [&steps](const std::string& step) { steps(step); });
     });
   }
-  if (!cooked && cooked.code() == Errc::kInvalidPose) {
-    return fail(
-        {cooked.code(),
-         cooked.error().detail + "; --flatten makes one tree of a file, whatever its transforms"});
-  }
-  if (!cooked) return fail(cooked.error());
+  if (!cooked) return fail(explained(cooked.error(), arguments, output->title()));
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
   for (const std::string& warning : warnings_of(*cooked)) warn(warning);
   if (arguments.json) {

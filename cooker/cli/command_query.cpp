@@ -22,6 +22,7 @@
 #include "cooker/cli/query_request.h"
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
+#include "cooker/import/file_error.h"
 #include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
@@ -164,6 +165,17 @@ std::filesystem::path second_file(const QueryRequest& request) {
       request);
 }
 
+// The error of a query or a scene of the file, behind its name, unless it is that of the second
+// file.
+Error in_queried_file(const Arguments& arguments, const std::filesystem::path& second,
+                      const Error& error) {
+  const bool is_of_second = !second.empty() && error.detail.starts_with(input_name(second) + ": ");
+  if (is_of_second) return error;
+  const std::string what =
+      error.detail.empty() ? std::string(error_info(error.code).meaning) : error.detail;
+  return in_file(input_name(arguments.file), {error.code, what});
+}
+
 // Without a batch, `defaults` is the query.
 int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
@@ -181,18 +193,15 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
     if (!arguments.batch.empty()) return run_batch(arguments, answer_request, defaults);
     TreeCache others;
     const Result<Json> answer = answer_request({defaults.request, {}}, others);
-    if (!answer) return fail(answer.error());
+    if (!answer) {
+      return fail(in_queried_file(arguments, second_file(defaults.request), answer.error()));
+    }
     print_answer(arguments, *answer);
     return 0;
   };
   if (file.has_scene() && arguments.tree.empty()) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
-    if (!scene) {
-      const std::string& detail = scene.error().detail;
-      return fail({scene.code(),
-                   arguments.file.string() + ": " +
-                       (detail.empty() ? std::string(error_info(scene.code()).meaning) : detail)});
-    }
+    if (!scene) return fail(in_queried_file(arguments, {}, scene.error()));
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
       if (line.moves.empty()) return answer(scene->file, scene->scene, line.request, others);
       std::vector<std::string> moves = arguments.moves;

@@ -53,11 +53,14 @@ int main(int argc, char** argv) {
     cooker::add_help_command(app, status);
     if (const std::optional<int> ended = app.run(argc, argv); ended) return *ended;
   } catch (const std::bad_alloc&) {
-    static_cast<void>(std::fputs("boxtree: out_of_memory: there is too little memory\n", stderr));
+    // Not by complain(), which takes memory. The command is what the error is in.
+    static_cast<void>(std::fprintf(stderr,
+                                   "boxtree: out_of_memory: %s: there is too little memory\n",
+                                   argc > 1 ? argv[1] : "boxtree"));
     return cooker::kExitInternal;
   } catch (const std::exception& error) {
     if (std::ferror(stdout) != 0) return boxtree::cooker::fail_to_print();
-    cooker::complain(std::string("internal: ") + error.what());
+    cooker::complain(fmt::format("internal: {}: {}", argc > 1 ? argv[1] : "boxtree", error.what()));
     return cooker::kExitInternal;
   }
   return std::fflush(stdout) == 0 ? status : cooker::fail_to_print();

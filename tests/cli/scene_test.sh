@@ -85,16 +85,18 @@ grep -q 'expected INSTANCE=X,Y,Z' err
 expect 1 "$boxtree" query level.bxt contacts --move 'Crate=1,0,0,0,0,0,0,0,0,0,1,0'
 grep -q 'invalid_pose: level.bxt: --move Crate: the pose is not invertible: it flattens what it places; expected ' err
 expect 1 "$boxtree" query level.bxt pair level.bxt --pose inf,0,0
-grep -q "invalid_pose: pair: the second tree's pose is not finite: row 1, column 4 is inf; " err
+grep -q "invalid_pose: level.bxt: pair: the second tree's pose is not finite: row 1, column 4 is inf; " err
 expect 1 "$boxtree" query level.bxt contacts --move 'Nobody=0,0,0'
 grep -q 'Nobody' err
 expect 1 "$boxtree" query flat.bxt contacts
-grep -q 'no_scene' err
+grep -q '^boxtree: no_scene: flat.bxt: ' err
+expect 2 "$boxtree" query flat.bxt pair gone.bxt
+grep -q '^boxtree: file_not_found: gone.bxt: ' err
 expect 1 "$boxtree" query level.bxt distance flat.bxt
 grep -q -- '--tree' err
 
 expect 1 "$boxtree" query level.bxt sphere --center 0,0,0 --radius=-1
-grep -q 'invalid_query: sphere: expected .* found center \[0,0,0\], radius -1$' err
+grep -q 'invalid_query: level.bxt: sphere: expected .* found center \[0,0,0\], radius -1$' err
 
 # One of its trees alone, in its own coordinates; a body that is no part of the scene.
 expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
@@ -217,10 +219,10 @@ says() {
   same "$(head -1 err)" "boxtree: $said"
 }
 by='were left out by parts.toml:3: queries = ["ray", "box"]'
-says 5 "part_left_out: the scene: point queries $by" parts.bxt --tree barrel point --at 0,0,0
-says 5 "part_left_out: the scene: pair queries $by" parts.bxt --tree barrel pair flat.bxt
+says 5 "part_left_out: parts.bxt: the scene: point queries $by" parts.bxt --tree barrel point --at 0,0,0
+says 5 "part_left_out: parts.bxt: the scene: pair queries $by" parts.bxt --tree barrel pair flat.bxt
 says 5 "part_left_out: parts.bxt: the scene: pair queries $by" flat.bxt distance parts.bxt --tree2 barrel
-says 5 'part_left_out: tree "crate": box queries were left out for the objects that place it: targets' \
+says 5 'part_left_out: parts.bxt: tree "crate": box queries were left out for the objects that place it: targets' \
   parts.bxt --tree crate box --min 0,0,0 --max 1,1,1
 expect 0 "$boxtree" query parts.bxt --tree crate ray --origin 0,0,4 --direction 0,0,-1
 expect 0 "$boxtree" query parts.bxt --tree barrel box --min 0,0,0 --max 1,1,1
