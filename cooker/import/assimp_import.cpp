@@ -74,6 +74,13 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
                       "give it in one piece, as glTF in .glb",
                       use.inaccessible.string())};
     }
+    // Its reader of glTF opens buffers alone, without which there is no mesh; others try files that
+    // need not be there.
+    const bool is_gltf =
+        has_extension(source.path(), "gltf") || has_extension(source.path(), "glb");
+    if (is_gltf && use.failure) {
+      return Error{use.failure->code, "it refers to " + use.failure->detail};
+    }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());

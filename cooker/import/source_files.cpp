@@ -103,6 +103,12 @@ fs::path RecordingIo::found(const char* path) const {
   return fs::is_regular_file(file, error) ? file : fs::path(path);
 }
 
+void RecordingIo::note_failure(const fs::path& file) {
+  if (use_.failure) return;
+  const Status status = check_source_file(SourceFile(tidied(file)));
+  if (!status.ok()) use_.failure = status.error();
+}
+
 Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
   if (source_.bytes()) {
@@ -116,9 +122,12 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   // fopen opens directories too; a pipe would block.
   std::error_code error;
   const fs::path file = found(path);
-  if (!fs::is_regular_file(file, error)) return nullptr;
-  Assimp::IOStream* stream = DefaultIOSystem::Open(file.c_str(), mode);
-  if (stream == nullptr) return nullptr;
+  const bool is_regular = fs::is_regular_file(file, error);
+  Assimp::IOStream* stream = is_regular ? DefaultIOSystem::Open(file.c_str(), mode) : nullptr;
+  if (stream == nullptr) {
+    note_failure(file);
+    return nullptr;
+  }
   fs::path normal = tidied(file);
   if (std::find(use_.files.begin(), use_.files.end(), normal) == use_.files.end()) {
     use_.files.push_back(std::move(normal));

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -32,6 +33,8 @@ struct SourceUse {
   std::vector<std::filesystem::path> files;  // by their names
   /// The first file that could not be, because the source is bytes, beside no file; empty if none.
   std::filesystem::path inaccessible;
+  /// Why the first file that could not be opened beside a named source could not be.
+  std::optional<Error> failure;
 };
 
 /// Lets assimp read but not write, and records each file that it opens, in order of first use.
@@ -53,6 +56,7 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   // The file that `path` names: as it is, or where there is none, without the escapes of an URI
   // (%20) behind the folder of the source.
   [[nodiscard]] std::filesystem::path found(const char* path) const;
+  void note_failure(const std::filesystem::path& file);
 
   const SourceFile& source_;
   SourceUse& use_;

@@ -90,6 +90,27 @@ TEST_F(SourceFileTest, BuffersHaveNamesWithEscapes) {
   EXPECT_EQ(literal->report.files_read.back(), folder_ / "my%20three%2ebin");
 }
 
+// Found by a newcomer: it was an import that failed, by assimp's message.
+TEST_F(SourceFileTest, ABufferThatIsNotThereIsAFileThatIsNotFound) {
+  const std::filesystem::path path = write("bufferless.gltf", std::string(kGltf));
+  const std::string buffer = (folder_ / "three.bin").string();
+  for (const bool try_first : {false, true}) {
+    ImportOptions options;
+    options.try_first = try_first;
+    std::filesystem::remove_all(buffer);
+    const Result<Imported> missing = import_mesh(path, options);
+    ASSERT_EQ(missing.code(), Errc::kFileNotFound);
+    EXPECT_TRUE(has(missing.error().detail,
+                    path.string() + ": it refers to " + buffer + ": no such file; check the name"))
+        << missing.error().detail;
+    std::filesystem::create_directory(buffer);
+    const Result<Imported> folder = import_mesh(path, options);
+    ASSERT_EQ(folder.code(), Errc::kFileUnreadable);
+    EXPECT_TRUE(has(folder.error().detail, buffer)) << folder.error().detail;
+  }
+  std::filesystem::remove_all(buffer);
+}
+
 // Found by a newcomer: "link/.." is not the folder of the link.
 TEST_F(SourceFileTest, PathsBehindLinksAreWhatTheyAre) {
   std::filesystem::create_directories(folder_ / "far" / "deep");
