@@ -55,8 +55,8 @@ bool any_f64(const File& file) {
 struct Verification {
   int status = 0;
   bool is_reported = false;  // the only finding was printed as an error
-  Findings findings;
-  std::string summary;  // of a file without findings
+  Findings findings;         // each begins with the file that it is of
+  std::string summary;       // of a file without findings
 };
 
 // A file or a mesh that cannot be read at all.
@@ -79,7 +79,9 @@ Verification verify_one(const std::filesystem::path& path, const std::filesystem
     arrays = arrays_of(imported.mesh);
   }
   Verification verification;
-  verification.findings = verify_file(*file, arrays);
+  for (const Error& finding : verify_file(*file, arrays)) {
+    verification.findings.push_back(in_file(input_name(path), finding));
+  }
   if (!verification.findings.empty()) verification.status = kExitBadInput;
   verification.summary =
       any_external(*file) && !arrays
@@ -105,7 +107,7 @@ void print_verification(const std::filesystem::path& file, const Verification& v
   if (verification.is_reported) return;
   const std::string name = input_name(file);
   for (const Error& finding : verification.findings) {
-    static_cast<void>(fail(in_file(name, finding)));
+    static_cast<void>(fail(finding));
   }
   if (verification.findings.empty() && !quiet) {
     fmt::print("{}: {}\n", shown(name), verification.summary);

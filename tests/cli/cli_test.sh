@@ -468,6 +468,8 @@ expect 0 "$boxtree" verify -q cube.bxt second.bxt
 same "$(wc -c <out)" 0
 expect 3 "$boxtree" verify short.bxt cube.bxt damaged.bxt --json
 same "$(jq -c '[.schema, [.files[] | [.file, .ok]]]' out)" '[1,[["short.bxt",false],["cube.bxt",true],["damaged.bxt",false]]]'
+# Each finding is told with its file, as on standard error.
+same "$(jq '[.files[] | .file as $file | .findings[].detail | startswith($file + ": ")] | length > 1 and all' out)" true
 expect 1 "$boxtree" verify cube.bxt second.bxt --mesh cube.obj
 expect 2 "$boxtree" info cube.bxt missing.bxt second.bxt --json
 same "$(jq -c '[.schema, [.files[] | [.file, .trees[0].triangles]]]' out)" '[1,[["cube.bxt",12],["second.bxt",12]]]'
