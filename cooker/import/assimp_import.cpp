@@ -81,6 +81,11 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
     if (is_gltf && use.failure) {
       return Error{use.failure->code, "it refers to " + use.failure->detail};
     }
+    if (why.starts_with("No suitable reader found")) {
+      return Error{Errc::kImportFailed,
+                   fmt::format("no reader knows how it begins; expected a file of the format {}",
+                               source.path().extension().string())};
+    }
     return Error{Errc::kImportFailed, why.empty() ? "no scene" : why};
   }
   return std::unique_ptr<aiScene>(importer.GetOrphanedScene());

@@ -36,7 +36,8 @@ FaceFault vertex_not_finite(const std::string& vertex, const std::array<double, 
 Status report_fault(FaceFault fault, std::uint32_t face_id, const std::string& file,
                     const ImportOptions& options, ImportReport& report) {
   if (!options.skip_bad) {
-    return Error{fault.code, fmt::format("{}: face {}: {}", file, face_id, fault.reason)};
+    return Error{fault.code, fmt::format("{}: face {}: {} (cook --skip-bad drops such faces)", file,
+                                         face_id, fault.reason)};
   }
   report.skipped.push_back({face_id, std::move(fault.reason)});
   return {};

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdio>
 #include <utility>
 #include <variant>
+
+#include <fmt/format.h>
 
 #include "cooker/import/assimp_import.h"
 #include "cooker/import/exception_error.h"
@@ -18,6 +21,8 @@
 #include "cooker/import/source_scene.h"
 #include "cooker/import/stl_import.h"
 #include "cooker/import/text_tokens.h"
+#include "cooker/system/file_handle.h"
+#include "format/container.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -50,6 +55,13 @@ constexpr std::array kMeshReaders = {
     MeshReader{"stl", without_materials<import_stl>},
 };
 
+bool starts_like_cooked(const SourceFile& source) {
+  std::array<std::uint8_t, kMagic.size()> first{};
+  const FileHandle file = source.open();
+  return file && std::fread(first.data(), 1, first.size(), file.get()) == first.size() &&
+         first == kMagic;
+}
+
 SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
   SourceScene scene;
   scene.report = std::move(imported.report);
@@ -75,6 +87,26 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
   return {};
 }
 
+// A cooked file, or one whose ending no reader knows, in the place of a mesh. The error of the
+// reader that was chosen by the first bytes would be about a format that nobody meant.
+Error explained(const SourceFile& source, const Error& error) {
+  if (error.code != Errc::kImportFailed && error.code != Errc::kNoFaces) return error;
+  const std::string& title = source.title();
+  if (starts_like_cooked(source)) {
+    return {error.code, title +
+                            ": expected a mesh, found a cooked file, which info, verify, query, "
+                            "bench and export take"};
+  }
+  const std::string ending = source.path().extension().string();
+  if (!ending.empty() && is_mesh_ending(ending.substr(1))) return error;
+  const char* const remedy = ending == ".toml" ? "; cook --profile takes a profile" : "";
+  return {
+      error.code,
+      fmt::format("{}: expected a mesh by its ending: .obj, .off, .ply, .stl, .gltf, .glb, .fbx, "
+                  ".dae or another one that assimp reads; found {}{}",
+                  title, ending.empty() ? "none" : ending, remedy)};
+}
+
 Result<ImportedFile> import_checked(const Request& request) {
   const fs::path& path = request.source.path();
   if (Status status = check_source_file(request.source); !status.ok()) return status.error();
@@ -83,7 +115,7 @@ Result<ImportedFile> import_checked(const Request& request) {
   const Status status =
       reader != nullptr ? read_mesh(*reader, request, out)
                         : import_with_assimp(request.source, request.options, request.wanted, out);
-  if (!status.ok()) return status.error();
+  if (!status.ok()) return explained(request.source, status.error());
   if (auto* mesh = std::get_if<Imported>(&out)) mesh->mesh.name = path.stem().string();
   if (auto* scene = std::get_if<SourceScene>(&out)) scene->name = path.stem().string();
   return out;
@@ -121,6 +153,11 @@ Result<ImportedFile> import_file(const fs::path& path, const ImportOptions& opti
 
 bool has_node_graph(const fs::path& path) {
   return find_extension(kMeshReaders, path) == nullptr;
+}
+
+bool is_mesh_ending(std::string_view ending) {
+  const std::vector<std::string> endings = mesh_endings();
+  return std::binary_search(endings.begin(), endings.end(), in_lower_case(ending));
 }
 
 std::vector<std::string> mesh_endings() {

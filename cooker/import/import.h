@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <boxtree/error.h>
@@ -109,5 +110,7 @@ Result<Imported> import_mesh(const std::filesystem::path& path, const ImportOpti
 
 /// Endings of the names of files that are read, in lower case, in order: "3ds", "obj", ...
 [[nodiscard]] std::vector<std::string> mesh_endings();
+/// Whether it is one of them, in any case.
+[[nodiscard]] bool is_mesh_ending(std::string_view ending);
 
 }  // namespace boxtree::cooker

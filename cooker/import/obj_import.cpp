@@ -95,7 +95,11 @@ Status Reader<T>::read() {
     if (Status status = read_statement(); !status.ok()) return status;
   }
   materials_.finish();
-  return mesh_.finish();
+  const Status status = mesh_.finish();
+  const bool has_elements =
+      mesh_.next_face_id() + report_.points_skipped + report_.lines_skipped > 0;
+  if (status.code() != Errc::kNoFaces || vertices_so_far_ > 0 || has_elements) return status;
+  return Error{Errc::kNoFaces, file_ + ": no faces: no line of it is a vertex or a face of OBJ"};
 }
 
 template <class T>

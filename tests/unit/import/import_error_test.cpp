@@ -2,6 +2,7 @@
 // What import refuses, and that the error says where; what skip_bad drops instead.
 #include <sys/stat.h>
 
+#include "format/container.h"
 #include "temp_files.h"
 
 namespace boxtree::cooker {
@@ -50,6 +51,30 @@ TEST_F(ImportErrorTest, FilesThatAreNoMesh) {
   EXPECT_TRUE(has(two.detail, "line 2: a vertex of 2 numbers"));
 }
 
+// Found by a newcomer: "no faces", or a message of assimp about a format that nobody meant.
+TEST_F(ImportErrorTest, WhatIsNoMeshAtAllIsToldSo) {
+  const std::string script = "#!/bin/sh\necho hello\n";
+  EXPECT_TRUE(has(fail("script.obj", script).detail,
+                  "script.obj: no faces: no line of it is a vertex or a face of OBJ"));
+  for (const char* const name : {"script.sh", "script.txt", "script"}) {
+    const Error error = fail(name, script);
+    EXPECT_EQ(error.code, Errc::kImportFailed);
+    EXPECT_TRUE(has(error.detail, "expected a mesh by its ending: .obj, .off, .ply, .stl, "));
+  }
+  EXPECT_TRUE(has(fail("script.sh", script).detail, "found .sh"));
+  EXPECT_TRUE(has(fail("script", script).detail, "found none"));
+  EXPECT_TRUE(has(fail("scene.toml", "[scene]\nf = 1\n").detail,
+                  "found .toml; cook --profile takes a profile"));
+  EXPECT_TRUE(has(fail("script.glb", script).detail,
+                  "no reader knows how it begins; expected a file of the format .glb"));
+  const std::string cooked(reinterpret_cast<const char*>(kMagic.data()), kMagic.size());
+  for (const char* const name : {"cooked.bxt", "cooked.obj", "cooked"}) {
+    EXPECT_TRUE(has(fail(name, cooked + "and more").detail,
+                    "expected a mesh, found a cooked file, which info, verify, query, bench and "
+                    "export take"));
+  }
+}
+
 TEST_F(ImportErrorTest, NoFaces) {
   EXPECT_EQ(fail("a.obj", "# nothing at all, but long enough\n").code, Errc::kNoFaces);
   const Error points = fail("points.obj", kTriangle);
@@ -77,7 +102,9 @@ TEST_F(ImportErrorTest, NotFiniteNamesVertexAndFace) {
   const std::string mesh = ply("0 0 0\n1 0 0\n0 1 0\nnan 0 0\n", "3 0 1 2\n3 0 3 2\n", 4, 2);
   const Error error = fail("a.ply", mesh);
   EXPECT_EQ(error.code, Errc::kMeshNotFinite);
-  EXPECT_TRUE(has(error.detail, "face 1: vertex 3 is not finite: (nan, 0, 0)"));
+  EXPECT_TRUE(
+      has(error.detail,
+          "face 1: vertex 3 is not finite: (nan, 0, 0) (cook --skip-bad drops such faces)"));
 
   const Imported rest = load("a.ply", mesh, {.skip_bad = true});
   expect_invariants(rest);
