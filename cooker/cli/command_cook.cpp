@@ -129,6 +129,11 @@ std::string stream_fault(const Arguments& arguments) {
       (count > 0 || is_standard_stream(arguments.job.reordered))) {
     return "--write-reordered reads a file again and writes one: - is none";
   }
+  if (is_standard_stream(arguments.job.profile)) {
+    return "--profile needs the name of a file, below whose folder are those that it names: - has "
+           "none";
+  }
+  if (is_standard_stream(arguments.job.costs)) return "--costs needs the name of a file";
   if (is_standard_stream(arguments.job.depfile)) return "--depfile needs the name of a file";
   if (is_to_standard && arguments.json) return "--json and -o - cannot share standard output";
   return {};
@@ -150,6 +155,8 @@ Error explained(const Error& error, const Arguments& arguments, const std::strin
 int run(Arguments& arguments) {
   set_options(arguments);
   if (const std::string fault = stream_fault(arguments); !fault.empty())
+    return usage("cook: " + fault);
+  if (const std::string fault = mesh_name_fault(arguments.job.output, ".bxt"); !fault.empty())
     return usage("cook: " + fault);
   const std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(), is_standard_stream);
@@ -200,7 +207,7 @@ void add_cook_command(Command& program, int& status) {
   Option* inputs = command.add_file(
       "MESH", arguments->job.inputs, Values::kMeshes,
       "Mesh files, one tree each; one file with a node graph that places several is a scene; - is "
-      "standard input");
+      "standard input, whose tree is called stdin");
   command
       .add_file("-o,--output", arguments->job.output, Values::kCookedFiles,
                 "The file to write; - is standard output")

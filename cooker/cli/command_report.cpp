@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@
 #include "cooker/cli/step_printer.h"
 #include "cooker/cli/worker_threads.h"
 #include "cooker/import/import.h"
+#include "cooker/import/text_tokens.h"
 #include "cooker/report/paper_tables.h"
 #include "cooker/report/tradeoff_page.h"
 #include "cooker/write/atomic_file.h"
@@ -307,6 +309,16 @@ int run(const Arguments& arguments) {
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
     return usage("report: " + status.error().detail);
   }
+  for (const auto& [output, ending] :
+       {std::pair(arguments.output, ".html"), std::pair(arguments.json_out, ".json"),
+        std::pair(arguments.csv, ".csv"), std::pair(arguments.approximate_csv, ".csv")}) {
+    if (const std::string fault = mesh_name_fault(output, ending); !fault.empty())
+      return usage("report: " + fault);
+  }
+  const std::string page = in_lower_case(arguments.output.extension().string());
+  if (!page.empty() && page != ".html" && page != ".htm") {
+    warn(arguments.output.string() + ": the page is HTML, whatever its ending: expected .html");
+  }
   if (count_standard_outputs(arguments) + (arguments.json ? 1 : 0) > 1) {
     return usage("report: standard output takes one of the page, --json, --json-out and CSV");
   }
@@ -322,7 +334,9 @@ int run(const Arguments& arguments) {
 void add_report_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   Command& command = program.add_command(
-      "report", "Show which encoding to use for meshes: bytes, times and errors");
+      "report",
+      "Show which encoding to use for meshes: bytes, times and errors\n"
+      "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,

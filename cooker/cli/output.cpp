@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/exit_status.h"
+#include "cooker/import/import.h"
 #include "cooker/text/utf8.h"
 
 namespace boxtree::cooker {
@@ -49,6 +50,14 @@ void warn(const std::string& what) {
 int fail_to_print() {
   const int error = errno;
   return fail({Errc::kWriteFailed, "standard output: " + std::generic_category().message(error)});
+}
+
+std::string mesh_name_fault(const std::filesystem::path& output, const std::string& instead) {
+  const std::string ending = output.extension().string();
+  if (ending.empty() || !is_mesh_ending(ending.substr(1))) return {};
+  return fmt::format("{}: expected another ending than {}, which is that of a mesh, as {}",
+                     output.string(), ending,
+                     std::filesystem::path(output).replace_extension(instead).string());
 }
 
 std::string shown(std::string_view text) {

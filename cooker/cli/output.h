@@ -2,6 +2,7 @@
 // What all commands share: errors on standard error, and text that a terminal may be given.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 
@@ -25,6 +26,11 @@ void warn(const std::string& what);
 
 /// Says that standard output takes no more; kExitInputOutput.
 int fail_to_print();
+
+/// Why an output that is no mesh may not have this name: the ending of a mesh, which a source would
+/// be written over by. Empty if it may. `instead`: an ending to name.
+[[nodiscard]] std::string mesh_name_fault(const std::filesystem::path& output,
+                                          const std::string& instead);
 
 /// Text from a file or a path as a terminal may be given it: control characters, and bytes that are
 /// no UTF-8, as \\xNN.

@@ -488,6 +488,26 @@ expect 0 "$boxtree" verify cube.bxt --json
 same "$(jq -c '[.schema, .ok]' out)" '[1,true]'
 same "$(find . -name '*.cooking' | wc -l)" 0
 
+# No output has the name of a mesh, whose place it could take; a page of another ending than HTML is a warning.
+cp cube.obj source.obj
+for command in 'cook cube.obj -o source.obj' 'cook cube.obj -o new.GLB' 'report cube.obj --quick --no-times -o source.obj' \
+  'report cube.obj --quick --no-times --csv source.obj'; do
+  # shellcheck disable=SC2086
+  expect 1 "$boxtree" $command
+  grep -qE '^boxtree: usage: (cook|report): (source.obj|new.GLB): expected another ending than .*, as (source|new)\.(bxt|html|csv)$' err
+done
+cmp cube.obj source.obj
+[ ! -e new.GLB ]
+expect 0 "$boxtree" cook cube.obj -o cube.collision -q
+expect 0 "$boxtree" report cube.obj --quick --no-times --quiet -o page.pdf
+same "$(cat err)" 'boxtree: warning: page.pdf: the page is HTML, whatever its ending: expected .html'
+expect 0 "$boxtree" report cube.obj --quick --no-times --quiet -o page.html
+same "$(wc -c <err)" 0
+# What has to have a name is no stream.
+expect 1 "$boxtree" cook cube.obj -o x.bxt --profile - </dev/null
+grep -q '^boxtree: usage: cook: --profile needs the name of a file' err
+expect 1 "$boxtree" cook cube.obj -o x.bxt --costs - </dev/null
+
 # External geometry: recognised, refused without its mesh or with another one.
 expect 0 "$boxtree" cook cube.obj -o external.bxt --external
 expect 0 "$boxtree" verify external.bxt
