@@ -7,6 +7,19 @@
 
 namespace boxtree::cooker {
 
+namespace {
+
+// -0 is 0, and reads as if it were something else.
+void drop_signs_of_zero(Json& value) {
+  if (value.is_structured()) {
+    for (Json& each : value) drop_signs_of_zero(each);
+  } else if (value.is_number_float() && value.get<double>() == 0) {
+    value = 0.0;
+  }
+}
+
+}  // namespace
+
 Json to_json(const Eigen::Vector3d& vector) {
   return {vector[0], vector[1], vector[2]};
 }
@@ -15,6 +28,7 @@ std::string document_text(const Json& document) {
   constexpr int kSchema = 1;
   Json whole = {{"schema", kSchema}};
   whole.update(document);
+  drop_signs_of_zero(whole);
   return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -28,7 +42,9 @@ void print_files(std::vector<Json> documents, bool are_several) {
 }
 
 std::string line_of(const Json& value) {
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json line = value;
+  drop_signs_of_zero(line);
+  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace boxtree::cooker

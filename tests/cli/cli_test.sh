@@ -508,6 +508,13 @@ expect 1 "$boxtree" cook cube.obj -o x.bxt --profile - </dev/null
 grep -q '^boxtree: usage: cook: --profile needs the name of a file' err
 expect 1 "$boxtree" cook cube.obj -o x.bxt --costs - </dev/null
 
+# Found by a newcomer: the third weight was -0.0.
+for option in '' --json; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" query cube.bxt ray --origin=0.5,0,5 --direction=0,0,-1 $option
+  same "$(tr -d ' \n' <out | grep -o 'barycentric[^a-z]*]' | tr -d '":')" 'barycentric[0.5,0.5,0.0]'
+done
+
 # External geometry: recognised, refused without its mesh or with another one.
 expect 0 "$boxtree" cook cube.obj -o external.bxt --external
 expect 0 "$boxtree" verify external.bxt
