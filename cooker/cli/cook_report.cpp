@@ -258,9 +258,8 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
       input_name(import.files_read.empty() ? "-" : import.files_read.front());
   std::vector<std::string> warnings;
   for (const std::filesystem::path& file : import.files_missing) {
-    warnings.push_back(
-        fmt::format("{}: {} is not there: no file of that name can be read", source,
-                    file.string()));
+    warnings.push_back(fmt::format("{}: {} is not there: no file of that name can be read", source,
+                                   file.string()));
   }
   if (import.has_open_end) {
     warnings.push_back(source + ": the last line has no end, as if the file was cut short");

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <latch>
+#include <new>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -25,6 +26,7 @@ int startable_threads(int most) {
       threads.emplace_back([&all_started] { all_started.wait(); });
     }
   } catch (const std::system_error&) {  // no more than these
+  } catch (const std::bad_alloc&) {     // nor for want of memory
   }
   all_started.count_down();
   for (std::thread& thread : threads) thread.join();
