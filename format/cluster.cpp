@@ -76,7 +76,7 @@ class LeafDecoder {
   bool read_references(ClusterLeafFields& found) {
     std::uint32_t is_new = take(out_.face_count);
     const std::uint32_t wider = take(kOldWiderBits);
-    const std::uint32_t old_bits = cluster_.header().old_bits + wider;
+    const std::uint32_t old_bits = cluster_.header().old_bits() + wider;
     is_new |= take(out_.vertex_count - out_.face_count) << out_.face_count;
     found.new_vertices = static_cast<std::uint32_t>(std::popcount(is_new));
     found.has_width_of_none = wider != 0 && found.new_vertices == out_.vertex_count;
@@ -85,7 +85,7 @@ class LeafDecoder {
     for (std::uint32_t r = 0; r < out_.vertex_count; ++r) {
       // Wraps where an old vertex would be before the first of the cluster.
       const std::uint32_t number = ((is_new >> r) & 1u) != 0 ? next++ : end - 1 - take(old_bits);
-      if (number >= cluster_.header().vertex_count) return false;
+      if (number >= cluster_.header().vertex_count()) return false;
       read_vertex(number, out_.position[r]);
     }
     return true;
@@ -93,10 +93,10 @@ class LeafDecoder {
 
   // Precondition: the cluster has the vertex.
   void read_vertex(std::uint32_t number, std::array<double, 3>& out) const {
-    const std::uint32_t group = number / cluster_.header().group_size;
+    const std::uint32_t group = number / cluster_.header().group_size();
     const std::uint32_t stride = groups_.stride[group];
     std::uint64_t at = std::uint64_t{8} * (cluster_.vertices_at + groups_.start[group]) +
-                       (number - group * cluster_.header().group_size) * stride;
+                       (number - group * cluster_.header().group_size()) * stride;
     std::array<std::uint64_t, 3> stored;
     if (stride <= kMostBitsRead) {
       std::uint64_t fields = read_bits(cluster_.bytes, at, kMostBitsRead);
@@ -116,8 +116,8 @@ class LeafDecoder {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto base = std::to_integer<std::uint64_t>(
           cluster_.bytes[cluster_.bases_at + k * cluster_.groups + group]);
-      stored[k] += cluster_.origin(k) + (base << cluster_.header().base_shift[k]);
-      out[k] = position_of(stored[k], cluster_.header().trailing[k]);
+      stored[k] += cluster_.origin(k) + (base << cluster_.header().base_shift(k));
+      out[k] = position_of(stored[k], cluster_.header().trailing(k));
     }
   }
 
@@ -175,7 +175,7 @@ bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept {
   for (std::size_t k = 0; k < 3; ++k) {
     auto wider = load<std::uint64_t>(cluster.bytes + cluster.wider_at + k * cluster.wider_bytes());
     for (std::uint32_t g = 0; g < cluster.groups; ++g) {
-      const auto width = static_cast<std::uint32_t>(cluster.header().width[k] +
+      const auto width = static_cast<std::uint32_t>(cluster.header().width(k) +
                                                     (wider & low_bits(ClusterHeader::kWiderBits)));
       wider >>= ClusterHeader::kWiderBits;
       widest = std::max(widest, width);
@@ -187,10 +187,10 @@ bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept {
   for (std::uint32_t g = 0; g < cluster.groups; ++g) {
     out.start[g] = static_cast<std::uint16_t>(end);
     const std::uint32_t vertices =
-        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size();
     end += (vertices * out.stride[g] + 7) / 8;
   }
-  return widest <= cluster.number_bits && cluster.vertices_at + end == cluster.header().leaves_at;
+  return widest <= cluster.number_bits && cluster.vertices_at + end == cluster.header().leaves_at();
 }
 
 bool decode_cluster_leaf(const ClusterView& clusters, std::uint32_t leaf, FoundCluster& found,

@@ -34,6 +34,56 @@ namespace boxtree {
   return std::bit_cast<double>(magnitude | (sign & 0x8000000000000000u));
 }
 
+/// The fields of a header where they lie, at any alignment: each is loaded where it is needed, and
+/// nothing is copied.
+class ClusterHeaderView {
+ public:
+  explicit constexpr ClusterHeaderView(const std::byte* bytes) noexcept : bytes_(bytes) {}
+
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t trailing(std::size_t axis) const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, trailing), axis);
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t base_shift(std::size_t axis) const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, base_shift), axis);
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t width(std::size_t axis) const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, width), axis);
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t group_size() const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, group_size));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t vertex_count() const noexcept {
+    return load<std::uint16_t>(bytes_ + offsetof(ClusterHeader, vertex_count));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t leaves_at() const noexcept {
+    return load<std::uint16_t>(bytes_ + offsetof(ClusterHeader, leaves_at));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t start_slope() const noexcept {
+    return load<std::uint16_t>(bytes_ + offsetof(ClusterHeader, start_slope));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t start_bias() const noexcept {
+    return load<std::uint16_t>(bytes_ + offsetof(ClusterHeader, start_bias));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t first_bias() const noexcept {
+    return load<std::uint16_t>(bytes_ + offsetof(ClusterHeader, first_bias));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t first_slope() const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, first_slope));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t start_bits() const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, start_bits));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t first_bits() const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, first_bits));
+  }
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t old_bits() const noexcept {
+    return load<std::uint8_t>(bytes_ + offsetof(ClusterHeader, old_bits));
+  }
+
+ private:
+  const std::byte* bytes_;
+};
+
 /// Bits by which a leaf tells how many more than ClusterHeader::old_bits its references have.
 inline constexpr std::uint32_t kOldWiderBits = 3;
 
@@ -49,9 +99,8 @@ struct Cluster {
   std::uint32_t wider_at = 0;     // byte, see ClusterHeader::kWiderBits
   std::uint32_t vertices_at = 0;  // byte
 
-  /// Loaded where it is needed: most need few of its fields.
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE ClusterHeader header() const noexcept {
-    return load<ClusterHeader>(bytes);
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE ClusterHeaderView header() const noexcept {
+    return ClusterHeaderView(bytes);
   }
   /// Sign extended.
   [[nodiscard]] std::uint64_t origin(std::size_t axis) const noexcept {
@@ -62,7 +111,7 @@ struct Cluster {
   /// Bytes of the widths of one axis of all groups.
   [[nodiscard]] std::uint32_t wider_bytes() const noexcept { return (groups + 1) / 2; }
   [[nodiscard]] std::uint32_t last_group_size() const noexcept {
-    return header().vertex_count - (groups - 1) * header().group_size;
+    return header().vertex_count() - (groups - 1) * header().group_size();
   }
 };
 
@@ -108,23 +157,23 @@ BOXTREE_ALWAYS_INLINE std::uint64_t above(std::uint64_t fields, std::uint64_t mo
 /// bits or more, and the groups are neither more than kMostGroups nor larger than they may be.
 BOXTREE_ALWAYS_INLINE bool is_valid_header(const std::byte* bytes,
                                            std::uint32_t number_bits) noexcept {
-  const auto header = load<ClusterHeader>(bytes);
+  const ClusterHeaderView header(bytes);
   // trailing, base_shift and two of width; the third, with three fields of bits.
   const std::uint64_t most_first = number_bits == 64 ? 0x40403f3f3f3f3f3fu : 0x20201f1f1f1f1f1fu;
   const std::uint64_t most_second = number_bits == 64 ? 0x40040b10u : 0x20040b10u;
   static_assert(ClusterHeader::kMostStartBits == 0x10 && ClusterHeader::kMostFirstBits == 0xb &&
                 ClusterHeader::kMostOldBits == 0x4);
   const std::uint64_t second =
-      load<std::uint32_t>(bytes + offsetof(ClusterHeader, start_bits) - 1) >> 8 |
-      std::uint32_t{header.width[2]} << 24;
+      load<std::uint32_t>(bytes + offsetof(ClusterHeader, start_bits) - 1) >> 8 | header.width(2)
+                                                                                      << 24;
   using cluster_detail::above;
   const bool are_fields_valid =
       (above(load<std::uint64_t>(bytes), most_first) | above(second, most_second)) == 0;
-  const std::uint32_t size = header.group_size;
+  const std::uint32_t size = header.group_size();
   return are_fields_valid &&
          size - ClusterHeader::kLeastGroupSize <=
              ClusterHeader::kMostGroupSize - ClusterHeader::kLeastGroupSize &&
-         header.vertex_count - 1u < ClusterHeader::kMostGroups * size;
+         header.vertex_count() - 1u < ClusterHeader::kMostGroups * size;
 }
 
 /// Finds cluster `number`, but not its groups. False if it is corrupt. Precondition: it exists, and
@@ -137,17 +186,17 @@ BOXTREE_ALWAYS_INLINE bool find_cluster(const ClusterView& view, std::uint32_t n
   if (!in_range(start, fixed + kClusterPadding, view.bytes.size())) return false;
   out.bytes = view.bytes.data() + start;
   out.size = view.bytes.size() - start - kClusterPadding;
-  const ClusterHeader header = out.header();
+  const ClusterHeaderView header = out.header();
   if (!is_valid_header(out.bytes, out.number_bits)) return false;
   const std::uint32_t faces = std::min(view.face_count - number * kClusterFaces, kClusterFaces);
   const auto leaves = static_cast<std::uint32_t>(leaves_of(faces));
   out.table = 8 * fixed;
-  out.entry_bits = header.start_bits + header.first_bits;
+  out.entry_bits = header.start_bits() + header.first_bits();
   out.bases_at = fixed + (leaves * out.entry_bits + 7) / 8;
-  out.groups = (header.vertex_count + header.group_size - 1u) / header.group_size;
+  out.groups = (header.vertex_count() + header.group_size() - 1) / header.group_size();
   out.wider_at = out.bases_at + 3 * out.groups;
   out.vertices_at = out.wider_at + 3 * out.wider_bytes();
-  return header.leaves_at <= out.size && out.vertices_at <= header.leaves_at;
+  return header.leaves_at() <= out.size && out.vertices_at <= header.leaves_at();
 }
 
 /// Finds the groups of a cluster that was found. False if they are corrupt.
@@ -156,15 +205,16 @@ bool find_groups(const Cluster& cluster, ClusterGroups& out) noexcept;
 /// Finds leaf `leaf` of a cluster. False if its place is corrupt. Precondition: the cluster has it.
 BOXTREE_ALWAYS_INLINE bool find_leaf(const Cluster& cluster, std::uint32_t leaf,
                                      ClusterLeafPlace& out) noexcept {
-  const ClusterHeader header = cluster.header();
+  const ClusterHeaderView header = cluster.header();
   const auto entry = static_cast<std::uint32_t>(
       read_bits(cluster.bytes, cluster.table + leaf * cluster.entry_bits, cluster.entry_bits));
   constexpr std::uint32_t kSlopeBits = ClusterHeader::kSlopeBits;
   // Both wrap where they would be negative.
-  out.first =
-      (entry >> header.start_bits) + (leaf * header.first_slope >> kSlopeBits) - header.first_bias;
-  out.byte = header.leaves_at + (leaf * header.start_slope >> kSlopeBits) +
-             static_cast<std::uint32_t>(entry & low_bits(header.start_bits)) - header.start_bias;
+  out.first = (entry >> header.start_bits()) + (leaf * header.first_slope() >> kSlopeBits) -
+              header.first_bias();
+  out.byte = header.leaves_at() + (leaf * header.start_slope() >> kSlopeBits) +
+             static_cast<std::uint32_t>(entry & low_bits(header.start_bits())) -
+             header.start_bias();
   return out.byte <= cluster.size;
 }
 

@@ -167,7 +167,7 @@ void check_groups(const ClusterView& clusters, const Cluster& cluster, const Clu
   }
   for (std::uint32_t g = 0; g < cluster.groups; ++g) {
     const std::uint32_t vertices =
-        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+        g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size();
     const std::uint64_t end = start + std::uint64_t{8} * (cluster.vertices_at + groups.start[g]) +
                               vertices * groups.stride[g];
     check.expect(are_zero(clusters.bytes, end, align_up(end, 8)), "cluster ", n,
@@ -194,7 +194,7 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
       start + cluster.table + std::uint64_t{last - first} * cluster.entry_bits;
   check.expect(are_zero(clusters.bytes, table_end, align_up(table_end, 8)), "cluster ", n,
                "the bits after its table");
-  end = start + std::uint64_t{cluster.header().leaves_at} * 8;
+  end = start + std::uint64_t{cluster.header().leaves_at()} * 8;
   std::uint32_t used = 0;  // vertices
   FoundCluster found;
   for (std::uint32_t i = first; i < last; ++i) {
@@ -209,8 +209,8 @@ bool check_cluster(const ClusterView& clusters, std::uint32_t n, std::uint64_t& 
     used = fields.first + fields.new_vertices;
     end = std::max(end, fields.end);
   }
-  if (used != cluster.header().vertex_count) {
-    check.unused_vertices(n, cluster.header().vertex_count, used);
+  if (used != cluster.header().vertex_count()) {
+    check.unused_vertices(n, cluster.header().vertex_count(), used);
   }
   return true;
 }

@@ -19,6 +19,16 @@ std::array<std::uint32_t, 4> face_of(const MeshArrays& mesh, std::uint32_t face)
   return corner;
 }
 
+void TriangleBatch::round_to_floats(float (&out)[3][3][kMaxLeafTriangles]) const noexcept {
+  for (std::size_t c = 0; c < 3; ++c) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      for (std::uint32_t i = 0; i < count; ++i) {
+        out[c][k][i] = static_cast<float>(coordinate[c][k][i]);
+      }
+    }
+  }
+}
+
 Eigen::Vector3d position_of(const MeshArrays& mesh, std::uint32_t vertex) noexcept {
   const std::byte* place = mesh.positions + std::size_t{vertex} * mesh.position_stride;
   if (mesh.positions_f64) {

@@ -47,6 +47,9 @@ struct TriangleBatch {
     }
     return result;
   }
+
+  /// To the nearest; out[corner][axis][triangle].
+  void round_to_floats(float (&out)[3][3][kMaxLeafTriangles]) const noexcept;
 };
 
 /// What walks by vectors read of a store once per query, computed when a tree is bound.

@@ -4,6 +4,7 @@
 // that moves lanes, which is the busiest where leaves are decoded.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -14,8 +15,8 @@ struct LaneConstants {
   /// The largest number that is in `number`.
   static constexpr std::uint32_t kMost = 0xff;
   /// Numbers of `lanes`, in order.
-  static constexpr std::array<std::uint32_t, 8> kInLanes = {1, 2,   5,          6,
-                                                            7, 127, 0x80020100, 0x80808000};
+  static constexpr std::array<std::uint32_t, 11> kInLanes = {
+      1, 2, 5, 6, 7, 31, 63, 127, 0x80000000, 0x80020100, 0x80808000};
 
   /// Row i: number kInLanes[i] in each lane.
   alignas(32) std::array<std::array<std::uint32_t, 8>, kInLanes.size()> lanes;
@@ -26,5 +27,14 @@ struct LaneConstants {
 };
 
 extern const LaneConstants kLaneConstants;
+
+/// Eight lanes of one of LaneConstants::kInLanes.
+template <std::uint32_t kNumber>
+[[nodiscard]] inline const std::array<std::uint32_t, 8>& lane_constant() noexcept {
+  constexpr auto& kAll = LaneConstants::kInLanes;
+  constexpr auto kRow = std::find(kAll.begin(), kAll.end(), kNumber) - kAll.begin();
+  static_assert(kRow < static_cast<std::ptrdiff_t>(kAll.size()));
+  return kLaneConstants.lanes[kRow];
+}
 
 }  // namespace boxtree

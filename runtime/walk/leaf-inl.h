@@ -34,12 +34,19 @@ class LeafFloats {
 
   /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
   /// error().
-  bool load(std::uint32_t first, std::uint32_t count) {
+  HWY_INLINE bool load(std::uint32_t first, std::uint32_t count) {
     first_ = first;
     count_ = count;
-    is_direct_ = floats_.is_direct && count == kLeafFaces &&
-                 in_range(first, count, mesh_.face_count) && gather();
-    return is_direct_ || convert();
+    is_direct_ =
+        floats_.is_direct && count == kLeafFaces && in_range(first, count, mesh_.face_count);
+#if BOXTREE_HAS_EIGHT_LANES
+    // The usual case without another call.
+    if (is_direct_ && first % kLeafFaces == 0 &&
+        clusters_.read_by_avx512(first / kLeafFaces, floats_.scale, coordinate_)) {
+      return true;
+    }
+#endif
+    return load_any();
   }
 
   /// Bounds how far the coordinates of a leaf are off: mostly by underflow alone when they were
@@ -103,6 +110,11 @@ class LeafFloats {
  private:
   static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
 
+  HWY_NOINLINE bool load_any() {
+    is_direct_ = is_direct_ && gather();
+    return is_direct_ || convert();
+  }
+
   // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
     const bool is_grid = reader_.is_grid();
@@ -137,7 +149,7 @@ class LeafFloats {
         !clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_)) {
       return false;
     }
-    count_ = clusters_.triangle_count();
+    count_ = clusters_.triangles().count;
     return true;
   }
 
@@ -146,13 +158,13 @@ class LeafFloats {
   // Of a lane of a leaf that was gathered.
   [[nodiscard]] HWY_INLINE std::uint32_t face_in_leaf(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.face(lane);
+    if (reader_.has_clusters()) return clusters_.triangles().face(lane);
 #endif
     return lane;
   }
   [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.half(lane);
+    if (reader_.has_clusters()) return clusters_.triangles().half(lane);
 #else
     (void)lane;
 #endif
@@ -162,7 +174,8 @@ class LeafFloats {
   template <class Setter>
   HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.read_corners(lane, set);
+    if (reader_.has_clusters())
+      return clusters_.triangles().read_corners(lane, reader_.clusters().numbers, set);
 #endif
     for (std::size_t c = 0; c < 3; ++c) {
       const auto p = boxtree::load<std::array<float, 3>>(
@@ -241,13 +254,7 @@ class LeafFloats {
     error_ = reader_.read(first_, count_, batch_);
     count_ = batch_.count;
     if (error_ != Errc::kOk) return false;
-    for (std::size_t c = 0; c < 3; ++c) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        for (std::uint32_t i = 0; i < count_; ++i) {
-          coordinate_[c][k][i] = static_cast<float>(batch_.coordinate[c][k][i]);
-        }
-      }
-    }
+    batch_.round_to_floats(coordinate_);
     return true;
   }
 
@@ -258,8 +265,8 @@ class LeafFloats {
   std::uint32_t first_ = 0;
   std::uint32_t count_ = 0;
   Errc error_ = Errc::kOk;
-  HWY_ALIGN std::uint32_t start_[kCorners];              // of each corner's position, in floats
-  HWY_ALIGN float coordinate_[3][3][kMaxLeafTriangles];  // [corner][axis][triangle]
+  HWY_ALIGN std::uint32_t start_[kCorners];  // of each corner's position, in floats
+  HWY_ALIGN LeafCoordinates coordinate_;
   TriangleBatch batch_;
 #if BOXTREE_HAS_EIGHT_LANES
   ClusterReader clusters_;

@@ -10,6 +10,8 @@
 
 #include <boxtree/configuration.h>
 
-#define HWY_DISABLED_TARGETS                                                             \
-  (HWY_SSSE3 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | \
-   BOXTREE_LEFT_OUT_TARGETS)
+#define BOXTREE_NO_WALK_TARGETS \
+  (HWY_SSSE3 | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV | BOXTREE_LEFT_OUT_TARGETS)
+#define HWY_DISABLED_TARGETS (HWY_AVX3_DL | BOXTREE_NO_WALK_TARGETS)
+/// Those of walk/cluster_avx512.cpp, which walks by AVX2 or AVX-512 call.
+#define BOXTREE_LEAF_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX2 | HWY_AVX3 | BOXTREE_NO_WALK_TARGETS)

@@ -144,7 +144,7 @@ cooker::EncodedTree with_gaps(const SourceMesh& mesh, CodecId codec, std::uint16
   const std::size_t leaves = leaves_of(view.face_count);
   bytes.assign(view.bytes.size() + leaves * gap + kClusterUnit, std::byte{0});
   const std::size_t table = cluster_table_bytes(view.face_count);
-  ClusterHeader header = cluster.header();
+  auto header = load<ClusterHeader>(cluster.bytes);
   std::copy_n(view.bytes.begin(), table + header.leaves_at, bytes.begin());
   header.start_slope =
       static_cast<std::uint16_t>(header.start_slope + (gap << ClusterHeader::kSlopeBits));

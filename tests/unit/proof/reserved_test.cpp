@@ -290,7 +290,7 @@ TEST(ReservedBits, BetweenPartsOfClustersAreFound) {
         }
         for (std::uint32_t g = 0; g < cluster.groups; ++g) {
           const std::uint32_t size =
-              g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size;
+              g + 1 == cluster.groups ? cluster.last_group_size() : cluster.header().group_size();
           const std::uint64_t after =
               start + 8 * (cluster.vertices_at + groups.start[g]) + size * groups.stride[g];
           gaps_of_groups += expect_found(after, align_up(after, 8), g);

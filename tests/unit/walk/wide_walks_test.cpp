@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 #include <set>
+#include <string>
 #include <tuple>
 
 #include <gtest/gtest.h>
@@ -28,15 +29,21 @@ namespace {
 using cooker::SourceMesh;
 
 // Calls body(name) once for each instruction set that the walks were compiled for and the machine
-// has; the scalar build has one.
+// has, and once for walks by AVX2 whose leaves are decoded by AVX-512; the scalar build has one.
 template <class Body>
 void for_each_target(Body body) {
 #ifdef BOXTREE_TEST_TARGETS
   const std::int64_t supported = hwy::SupportedTargets();
+  const auto test = [&](std::int64_t targets, const std::string& name) {
+    hwy::SetSupportedTargetsForTest(targets);
+    body(name.c_str());
+  };
   for (std::int64_t left = supported & HWY_TARGETS; left != 0; left &= left - 1) {
     const std::int64_t target = left & -left;
-    hwy::SetSupportedTargetsForTest(target);
-    body(hwy::TargetName(target));
+    test(target, hwy::TargetName(target));
+    if (target == HWY_AVX2 && (supported & HWY_AVX3_DL) != 0) {
+      test(HWY_AVX2 | HWY_AVX3_DL, "AVX2 with leaves by AVX3_DL");
+    }
   }
   hwy::SetSupportedTargetsForTest(0);
 #else
@@ -258,6 +265,8 @@ TEST(WideTargets, HoldPlainCodeAndEveryInstructionSetOfMachineAndBuild) {
   EXPECT_TRUE(names.contains("SCALAR") || names.contains("EMU128"));
   EXPECT_EQ(names.contains("SSE4"), is_in(HWY_SSE4) && __builtin_cpu_supports("sse4.2") != 0);
   EXPECT_EQ(names.contains("AVX2"), is_in(HWY_AVX2) && __builtin_cpu_supports("avx2") != 0);
+  EXPECT_EQ(names.contains("AVX2 with leaves by AVX3_DL"),
+            is_in(HWY_AVX2) && __builtin_cpu_supports("avx512vbmi2") != 0);
   EXPECT_EQ(names.contains("AVX3"), is_in(HWY_AVX3) && __builtin_cpu_supports("avx512dq") != 0);
 }
 #endif

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: MIT
+#include "runtime/walk/cluster_avx512.h"
+
+#define HWY_WANT_AVX3_DL  // has the funnel shifts and expansions of VBMI2
+#include "runtime/walk/targets.h"
+// Not for walks by 512 bits without them.
+#undef HWY_DISABLED_TARGETS
+#define HWY_DISABLED_TARGETS BOXTREE_LEAF_DISABLED_TARGETS
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/walk/cluster_avx512.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/walk/cluster_groups-inl.h"
+#include "runtime/walk/strip-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_AVX3_DL
+using Sixteen = __m512i;
+
+HWY_INLINE Sixteen load(const std::uint32_t (&row)[16]) {
+  return _mm512_load_si512(row);
+}
+// From memory, where it costs nothing as an operand.
+HWY_INLINE Sixteen set(const std::uint32_t& number) {
+  return _mm512_set1_epi32(static_cast<std::int32_t>(number));
+}
+// The same; up to LaneConstants::kMost.
+HWY_INLINE Sixteen small(std::uint32_t number) {
+  return set(kLaneConstants.number[number]);
+}
+template <std::uint32_t kNumber>
+HWY_INLINE Sixteen constant() {
+  return set(lane_constant<kNumber>()[0]);
+}
+// Lane i: that of `row` which lane i of `group` names.
+HWY_INLINE Sixteen look_up(const std::uint32_t (&row)[16], Sixteen group) {
+  return _mm512_permutexvar_epi32(group, load(row));
+}
+alignas(64) constexpr std::uint32_t kIota[16] = {0, 1, 2,  3,  4,  5,  6,  7,
+                                                 8, 9, 10, 11, 12, 13, 14, 15};
+
+HWY_NOINLINE bool find(const ClusterView& view, std::uint32_t number, Avx512Cluster& out) {
+  out.leaves.cluster = LeafTable::kNone;
+  Cluster cluster;
+  if (!find_cluster(view, number, cluster)) return false;
+  const ClusterHeaderView header = cluster.header();
+  GroupLanes groups;
+  if (header.group_size() > ClusterHeader::kFastGroupSize || !find_groups(cluster, groups)) {
+    return false;
+  }
+  out.leaves.set(cluster, header);
+  out.last_vertex = header.vertex_count() - 1u;
+  out.group_size = header.group_size();
+  out.per_group = 0xffffu / header.group_size() + 1;
+  _mm512_store_si512(out.start, _mm512_cvtepu16_epi32(groups.start.raw));
+  _mm512_store_si512(out.stride, _mm512_cvtepu8_epi32(groups.stride.raw));
+  const auto two = hn::Add(groups.width[0], groups.width[1]);
+  _mm512_store_si512(out.at[0], _mm512_cvtepu8_epi32(groups.width[0].raw));
+  _mm512_store_si512(out.at[1], _mm512_cvtepu8_epi32(two.raw));
+  // With up to 7 bits before.
+  out.is_long = !is_zero(above(two, 64 - 8));
+  HWY_UNROLL(3)
+  for (std::size_t k = 0; k < 3; ++k) {
+    out.trailing[k] = header.trailing(k);
+    const Sixteen width = _mm512_cvtepu8_epi32(groups.width[k].raw);
+    // A shift by 32 gives 0.
+    const Sixteen ones = set(0xffffffffu);
+    _mm512_store_si512(out.low_bits[k], _mm512_xor_si512(_mm512_sllv_epi32(ones, width), ones));
+    const auto* const bases = cluster.bytes + cluster.bases_at + k * cluster.groups;
+    const Sixteen base =
+        _mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(bases)));
+    const auto origin = boxtree::load<std::uint32_t>(cluster.bytes + sizeof(ClusterHeader), k);
+    _mm512_store_si512(
+        out.base[k],
+        _mm512_add_epi32(_mm512_sll_epi32(base, _mm_cvtsi32_si128(header.base_shift(k))),
+                         set(origin)));
+  }
+  out.leaves.cluster = number;
+  return true;
+}
+
+// Words of 32 bits of sixteen words of 128 bits, the lowest first.
+struct LongWords {
+  Sixteen part[4];
+};
+
+// One load each: gathers take longer on most processors, and these have all bits of a vertex.
+// `at`: memory through which `byte` gets into scalar registers. Without the fence, compilers would
+// take lane by lane out of the vector, in more than twice as many instructions.
+HWY_INLINE LongWords words_at(const std::byte* bytes, Sixteen byte, std::uint32_t (&at)[16]) {
+  _mm256_store_si256(reinterpret_cast<__m256i*>(at), _mm512_castsi512_si256(byte));
+  _mm256_store_si256(reinterpret_cast<__m256i*>(at + 8), _mm512_extracti64x4_epi64(byte, 1));
+  HWY_FENCE;
+  const auto one = [&](std::size_t i) {
+    return _mm_loadu_si128(reinterpret_cast<const __m128i*>(bytes + at[i]));
+  };
+  // Copies that are masked need no port that moves lanes.
+  const auto four = [&](std::size_t i) {
+    const Sixteen first = _mm512_castsi128_si512(one(i));
+    const Sixteen two = _mm512_mask_broadcast_i32x4(first, 0x00f0, one(i + 4));
+    const Sixteen three = _mm512_mask_broadcast_i32x4(two, 0x0f00, one(i + 8));
+    return _mm512_mask_broadcast_i32x4(three, 0xf000, one(i + 12));
+  };
+  const Sixteen a = four(0), b = four(1), c = four(2), d = four(3);
+  const __m512 low_ab = _mm512_castsi512_ps(_mm512_unpacklo_epi64(a, b));
+  const __m512 low_cd = _mm512_castsi512_ps(_mm512_unpacklo_epi64(c, d));
+  const __m512 high_ab = _mm512_castsi512_ps(_mm512_unpackhi_epi64(a, b));
+  const __m512 high_cd = _mm512_castsi512_ps(_mm512_unpackhi_epi64(c, d));
+  constexpr int kEven = _MM_SHUFFLE(2, 0, 2, 0), kOdd = _MM_SHUFFLE(3, 1, 3, 1);
+  return {{_mm512_castps_si512(_mm512_shuffle_ps(low_ab, low_cd, kEven)),
+           _mm512_castps_si512(_mm512_shuffle_ps(low_ab, low_cd, kOdd)),
+           _mm512_castps_si512(_mm512_shuffle_ps(high_ab, high_cd, kEven)),
+           _mm512_castps_si512(_mm512_shuffle_ps(high_ab, high_cd, kOdd))}};
+}
+
+// The bits from `bit` on, below 64, and those after them.
+struct TwoWords {
+  Sixteen low, high;
+};
+HWY_INLINE TwoWords words_from(const LongWords& words, Sixteen bit) {
+  const __mmask16 is_second = _mm512_cmpgt_epu32_mask(bit, constant<31>());
+  return {_mm512_mask_mov_epi32(words.part[0], is_second, words.part[1]),
+          _mm512_mask_mov_epi32(words.part[1], is_second, words.part[2])};
+}
+
+bool find_and_read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
+                   LeafTriangles& triangles, LeafCoordinates& out);
+
+// Neighbours are read one after another, so the cluster is mostly the one of the last leaf.
+bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
+          LeafTriangles& triangles, LeafCoordinates& out) {
+  if (HWY_UNLIKELY(leaf / kClusterLeaves != cluster.leaves.cluster)) {
+    return find_and_read(view, leaf, scale, cluster, triangles, out);
+  }
+  LeafFields faces;
+  if (!cluster.leaves.find(leaf % kClusterLeaves, faces) || !faces.is_usual) return false;
+  triangles.count = kLeafFaces;
+
+  // Which vertices references are to: new ones in a row, and others by their distance from the last
+  // new one. Fields of those follow each other, each in up to three bytes.
+  const Sixteen iota = load(kIota);
+  const auto is_new = static_cast<__mmask16>(faces.new_thirds | faces.new_others << kLeafFaces);
+  const Sixteen place =
+      _mm512_add_epi32(_mm512_mullo_epi16(iota, small(faces.old_bits)), small(faces.others));
+  const Sixteen first_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
+  const Sixteen bytes = _mm512_add_epi32(
+      _mm512_shuffle_epi8(_mm512_srli_epi32(place, 3), first_byte), constant<0x80020100>());
+  const Sixteen window =
+      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(faces.bytes)));
+  const Sixteen field = _mm512_and_si512(
+      _mm512_srlv_epi32(_mm512_shuffle_epi8(window, bytes), _mm512_and_si512(place, constant<7>())),
+      set(kLaneConstants.low_bits[faces.old_bits]));
+  const Sixteen news =
+      _mm512_maskz_expand_epi32(is_new, _mm512_add_epi32(iota, set(faces.before + 1)));
+  const Sixteen vertex = _mm512_mask_expand_epi32(news, static_cast<__mmask16>(~is_new),
+                                                  _mm512_sub_epi32(set(faces.last), field));
+  const Sixteen inside = _mm512_min_epu32(vertex, set(cluster.last_vertex));
+  const auto references = static_cast<__mmask16>((1u << (kLeafFaces + faces.others)) - 1);
+  const __mmask16 corrupt = _mm512_mask_cmpneq_epu32_mask(references, vertex, inside);
+
+  // Where they are. Products below 2^16.
+  const Sixteen group = _mm512_mulhi_epu16(inside, set(cluster.per_group));
+  const Sixteen in_group =
+      _mm512_sub_epi32(inside, _mm512_mullo_epi16(group, set(cluster.group_size)));
+  const Sixteen bit = _mm512_mullo_epi16(in_group, look_up(cluster.stride, group));
+  const LongWords words = words_at(
+      cluster.leaves.bytes,
+      _mm512_add_epi32(look_up(cluster.start, group), _mm512_srli_epi32(bit, 3)), cluster.byte);
+  const Sixteen x = _mm512_and_si512(bit, constant<7>());
+  const Sixteen y = _mm512_add_epi32(x, look_up(cluster.at[0], group));
+  const Sixteen z = _mm512_add_epi32(x, look_up(cluster.at[1], group));
+  const TwoWords of_y = words_from(words, y);
+  TwoWords of_z = words_from(words, z);
+  if (HWY_UNLIKELY(cluster.is_long)) {
+    const __mmask16 is_third = _mm512_cmpgt_epu32_mask(z, constant<63>());
+    of_z = {_mm512_mask_mov_epi32(of_z.low, is_third, words.part[2]),
+            _mm512_mask_mov_epi32(of_z.high, is_third, words.part[3])};
+  }
+  const Sixteen offset[3] = {_mm512_shrdv_epi32(words.part[0], words.part[1], x),
+                             _mm512_shrdv_epi32(of_y.low, of_y.high, y),
+                             _mm512_shrdv_epi32(of_z.low, of_z.high, z)};
+  Sixteen stored[3];
+  __m512 position[3];
+  HWY_UNROLL(3)
+  for (std::size_t k = 0; k < 3; ++k) {
+    stored[k] = _mm512_add_epi32(_mm512_and_si512(offset[k], look_up(cluster.low_bits[k], group)),
+                                 look_up(cluster.base[k], group));
+  }
+  if (view.numbers == ClusterNumbers::kGrid) {
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Sixteen whole = _mm512_sllv_epi32(stored[k], set(cluster.trailing[k]));
+      _mm512_store_si512(triangles.number[k], whole);
+      position[k] = _mm512_cvtepi32_ps(whole);
+    }
+  } else {
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Sixteen sign = _mm512_srai_epi32(stored[k], 31);
+      const Sixteen magnitude =
+          _mm512_sllv_epi32(_mm512_xor_si512(stored[k], sign), set(cluster.trailing[k]));
+      const Sixteen bits =
+          _mm512_or_si512(magnitude, _mm512_and_si512(sign, constant<0x80000000>()));
+      _mm512_store_si512(triangles.number[k], bits);
+      position[k] = _mm512_castsi512_ps(bits);
+    }
+  }
+  HWY_UNROLL(3)
+  for (std::size_t k = 0; k < 3; ++k) {
+    position[k] = _mm512_mul_ps(position[k], _mm512_set1_ps(scale));
+  }
+
+  // Corners of faces are references.
+  const StripCorners corners =
+      join_strip(hn::Set(Words(), boxtree::load<std::uint32_t>(faces.bytes - sizeof(faces.fields))),
+                 triangles);
+  const Sixteen both =
+      _mm512_inserti64x4(_mm512_castsi256_si512(corners.first.raw), corners.second.raw, 1);
+  HWY_UNROLL(3)
+  for (std::size_t k = 0; k < 3; ++k) {
+    const __m512 first_two = _mm512_permutexvar_ps(both, position[k]);
+    _mm256_store_ps(out[0][k], _mm512_castps512_ps256(first_two));
+    _mm256_store_ps(out[1][k], _mm512_extractf32x8_ps(first_two, 1));
+    _mm256_store_ps(out[2][k], _mm512_castps512_ps256(position[k]));
+  }
+  return corrupt == 0 && hn::AllTrue(Words(), hn::Eq(corners.corrupt, hn::Zero(Words())));
+}
+
+HWY_NOINLINE bool find_and_read(const ClusterView& view, std::uint32_t leaf, float scale,
+                                Avx512Cluster& cluster, LeafTriangles& triangles,
+                                LeafCoordinates& out) {
+  return find(view, leaf / kClusterLeaves, cluster) &&
+         read(view, leaf, scale, cluster, triangles, out);
+}
+
+Avx512LeafReader reader() {
+  return read;
+}
+#else
+Avx512LeafReader reader() {
+  return nullptr;
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace boxtree {
+namespace {
+
+HWY_EXPORT(reader);
+
+}  // namespace
+
+Avx512LeafReader avx512_leaf_reader() noexcept {
+  return HWY_DYNAMIC_DISPATCH(reader)();
+}
+
+}  // namespace boxtree
+#endif

@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: MIT
+// What readers by vectors keep of a cluster, and the fields of its leaves that no vectors are
+// needed for: the same as find_leaf and decode_cluster_leaf (format/cluster.cpp).
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+#include "format/bytes.h"
+#include "format/cluster_leaf.h"
+
+#define BOXTREE_ALWAYS_INLINE [[gnu::always_inline]] inline
+
+namespace boxtree {
+
+// Of the fields of a leaf: steps, a bit for each third corner, and how many bits more than
+// ClusterHeader::old_bits references have.
+inline constexpr std::uint32_t kLeafStepBits = StripStep::kBits * (kLeafFaces - 1);
+static_assert(kLeafStepBits + kLeafFaces + kOldWiderBits == 32);
+
+/// The faces of a leaf, and where the vertices are that it refers to.
+struct LeafFields {
+  /// Leaves with as many bits in front of what follows their references are usual.
+  static constexpr std::uint32_t kWindowBits = 128;
+
+  std::uint32_t fields = 0;      // the first 32 bits, see kLeafStepBits
+  std::uint32_t aparts = 0;      // faces that share nothing with the one before
+  std::uint32_t new_thirds = 0;  // bit f: the third corner of face f is new
+  std::uint32_t quads = 0;       // bit f: face f is one
+  std::uint32_t others = 0;      // other references: two for each of `aparts`, one for each quad
+  std::uint32_t new_others = 0;  // bit r: the same for these
+  std::uint32_t before = 0;      // vertices that leaves before use, less 1
+  std::uint32_t last = 0;        // number of the last new vertex
+  std::uint32_t old_bits = 0;    // of each reference that is not new
+  const std::byte* bytes = nullptr;  // new_others, then references that are not new
+  bool is_usual = false;  // triangles whose other references are 8, whose bits are kWindowBits
+};
+
+/// Where the leaves of one cluster are.
+struct LeafTable {
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+
+  std::uint32_t cluster = kNone;  // its number
+  const std::byte* bytes = nullptr;
+  std::uint32_t size = 0;  // at which a leaf may begin
+  std::uint32_t table = 0, entry_bits = 0;
+  std::uint32_t start_bits = 0, starts_at = 0, start_slope = 0;
+  std::uint32_t first_slope = 0, first_bias = 0;  // with 1 more
+  std::uint32_t old_bits = 0;
+  std::uint32_t quad_bytes = 0;  // that a leaf has in front of its other fields: a bit a face
+
+  LeafTable() = default;
+  BOXTREE_ALWAYS_INLINE explicit LeafTable(const ClusterView& view) noexcept
+      : quad_bytes(view.corners_per_face == 4 ? kLeafFaces / 8 : 0) {}
+
+  BOXTREE_ALWAYS_INLINE void set(const Cluster& found, const ClusterHeaderView& header) noexcept {
+    bytes = found.bytes;
+    size = static_cast<std::uint32_t>(std::min<std::uint64_t>(found.size, 0xffffffffu));
+    table = found.table;
+    entry_bits = found.entry_bits;
+    start_bits = header.start_bits();
+    start_slope = header.start_slope();
+    starts_at = header.leaves_at() - header.start_bias();
+    first_slope = header.first_slope();
+    first_bias = header.first_bias() + 1u;
+    old_bits = header.old_bits();
+  }
+
+  /// Finds leaf `self` of the cluster. False if its place is corrupt.
+  BOXTREE_ALWAYS_INLINE bool find(std::uint32_t self, LeafFields& leaf) const noexcept {
+    const std::uint32_t bit = table + self * entry_bits;
+    const auto entry =
+        static_cast<std::uint32_t>(load<std::uint64_t>(bytes + bit / 8) >> (bit % 8)) &
+        ((1u << entry_bits) - 1);
+    constexpr std::uint32_t kSlopeBits = ClusterHeader::kSlopeBits;
+    const std::uint32_t byte =
+        starts_at + (self * start_slope >> kSlopeBits) + (entry & ((1u << start_bits) - 1));
+    if (byte > size) return false;
+    const std::uint32_t at = byte + quad_bytes;
+    leaf.quads = quad_bytes != 0 ? std::to_integer<std::uint32_t>(bytes[byte]) : 0;
+    leaf.fields = load<std::uint32_t>(bytes + at);
+    leaf.bytes = bytes + at + sizeof(leaf.fields);
+    leaf.new_thirds = (leaf.fields >> kLeafStepBits) & 0xffu;
+    leaf.old_bits = old_bits + (leaf.fields >> (kLeafStepBits + kLeafFaces));
+    constexpr std::uint32_t kEachStep = 0x49249u;  // the first bit of each
+    leaf.aparts = 1 + static_cast<std::uint32_t>(
+                          std::popcount((leaf.fields >> 1) & (leaf.fields >> 2) & kEachStep));
+    leaf.others = 2 * leaf.aparts + static_cast<std::uint32_t>(std::popcount(leaf.quads));
+    leaf.new_others = load<std::uint32_t>(leaf.bytes) & ((1u << leaf.others) - 1);
+    const auto new_vertices =
+        static_cast<std::uint32_t>(std::popcount(leaf.new_others << kLeafFaces | leaf.new_thirds));
+    leaf.before = (entry >> start_bits) + (self * first_slope >> kSlopeBits) - first_bias;
+    leaf.last = leaf.before + new_vertices;
+    const std::uint32_t olds = kLeafFaces + leaf.others - new_vertices;
+    leaf.is_usual = leaf.quads == 0 && leaf.aparts <= kLeafFaces / 2 &&
+                    leaf.others + olds * leaf.old_bits <= LeafFields::kWindowBits;
+    return true;
+  }
+};
+
+/// Coordinates as floats: [corner][axis][triangle].
+using LeafCoordinates = float[3][3][kMaxLeafTriangles];
+
+/// The triangles of a leaf as it was read last: their corners are references to vertices.
+struct LeafTriangles {
+  // A triangle of a leaf with quads.
+  struct OfQuads {
+    std::uint8_t face, half;
+    std::array<std::uint8_t, 3> reference;
+  };
+
+  std::uint32_t count = 0;  // more than 8 if there are quads: a quad is two, one after the other
+  OfQuads of_quads[2 * kLeafFaces];
+  alignas(32) std::uint32_t step[kLeafFaces];       // to each face
+  alignas(32) std::uint32_t corner[2][kLeafFaces];  // references of its first two corners
+  // [axis]: whole numbers, or bits of floats. Third corners of all faces, a lane each; after them,
+  // the other two of those that are apart, and the fourth corners of quads.
+  alignas(64) std::uint32_t number[3][kMostLeafReferences];
+
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t face(std::uint32_t lane) const noexcept {
+    return count == kLeafFaces ? lane : of_quads[lane].face;
+  }
+  /// 1 for the second triangle of a quad.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t half(std::uint32_t lane) const noexcept {
+    return count == kLeafFaces ? 0 : of_quads[lane].half;
+  }
+
+  /// Calls set(corner, x, y, z) for the corners of lane `lane`: steps of the grid, or the floats of
+  /// the source.
+  template <class Setter>
+  BOXTREE_ALWAYS_INLINE void read_corners(std::uint32_t lane, ClusterNumbers numbers,
+                                          const Setter& set) const {
+    // Its references, and the corner of the source that the first of them is.
+    std::uint32_t references[3] = {0, 0, lane};
+    std::uint32_t turn = 0;
+    if (count == kLeafFaces) {
+      references[0] = corner[0][lane];
+      references[1] = corner[1][lane];
+      static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
+      static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+      turn = kTurn[step[lane]];
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) references[c] = of_quads[lane].reference[c];
+    }
+    static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
+    const std::uint8_t* const place = kNext + turn;
+    const auto fill = [&](const auto& real) {
+      for (std::size_t i = 0; i < 3; ++i) {
+        const std::uint32_t r = references[i];
+        set(place[i], real(number[0][r]), real(number[1][r]), real(number[2][r]));
+      }
+    };
+    if (numbers == ClusterNumbers::kGrid) {
+      fill([](std::uint32_t n) { return static_cast<double>(static_cast<std::int32_t>(n)); });
+    } else {
+      fill([](std::uint32_t n) { return static_cast<double>(std::bit_cast<float>(n)); });
+    }
+  }
+};
+
+}  // namespace boxtree
+
+#undef BOXTREE_ALWAYS_INLINE
