@@ -6,10 +6,7 @@
 #include <array>
 #include <bit>
 #include <cstring>
-#include <span>
 #include <tuple>
-
-#include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -23,12 +20,13 @@ class FaceBits {
         stride_(3 * (is_f32_ ? sizeof(float) : sizeof(double))) {}
 
   [[nodiscard]] std::uint64_t hash(std::size_t face) const {
-    std::array<std::byte, 4 * 3 * sizeof(double)> bits;
     const std::size_t count = corners(face);
+    std::uint64_t mixed = count;
     for (std::size_t i = 0; i < count; ++i) {
-      std::memcpy(bits.data() + i * stride_, corner(face, i), stride_);
+      const void* const position = corner(face, i);
+      mixed = is_f32_ ? mix<std::uint32_t>(mixed, position) : mix<std::uint64_t>(mixed, position);
     }
-    return checksum(std::span(bits).first(count * stride_));
+    return mixed;
   }
 
   [[nodiscard]] bool are_same(std::size_t a, std::size_t b) const {
@@ -44,6 +42,17 @@ class FaceBits {
  private:
   [[nodiscard]] std::size_t corners(std::size_t face) const {
     return mesh_.faces[face].is_quad() ? 4 : 3;
+  }
+  // Fibonacci hashing: 2^64 over the golden ratio.
+  template <class Bits>
+  [[nodiscard]] static std::uint64_t mix(std::uint64_t mixed, const void* position) {
+    std::array<Bits, 3> bits;
+    std::memcpy(bits.data(), position, sizeof(bits));
+    for (const std::uint64_t x : bits) {
+      mixed = (mixed ^ x) * 0x9e3779b97f4a7c15u;
+      mixed ^= mixed >> 32;
+    }
+    return mixed;
   }
   [[nodiscard]] const void* corner(std::size_t face, std::size_t i) const {
     const std::size_t first = std::size_t{3} * mesh_.faces[face].corner[i];
@@ -62,15 +71,33 @@ std::vector<std::uint32_t> first_of_group(const SourceMesh& mesh) {
   const FaceBits bits(mesh);
   const std::size_t faces = mesh.faces.size();
   std::vector<std::uint32_t> first(faces);
-  // At most half full, so that searches end.
+  // At most half full, so that searches end. The bits of a slot that its face leaves are those of
+  // its hash: others are nearly never compared, whose corners are far away in memory. All bits are
+  // set in free slots only, because numbers of faces are smaller.
   std::vector<std::uint32_t> slots(std::bit_ceil(2 * faces + 1), kFree);
-  for (std::size_t face = 0; face < faces; ++face) {
-    std::size_t slot = bits.hash(face) & (slots.size() - 1);
-    while (slots[slot] != kFree && !bits.are_same(slots[slot], face)) {
-      slot = (slot + 1) & (slots.size() - 1);
+  const auto number_bits = static_cast<std::uint32_t>(std::bit_width(faces));
+  const std::uint32_t number_mask = (std::uint32_t{1} << number_bits) - 1;
+  const auto slot_of = [&](std::uint64_t hash) { return hash & (slots.size() - 1); };
+  // The memory of some slots is fetched together.
+  std::array<std::uint64_t, 64> hash;
+  for (std::size_t begin = 0; begin < faces; begin += hash.size()) {
+    const std::size_t count = std::min(hash.size(), faces - begin);
+    for (std::size_t i = 0; i < count; ++i) {
+      hash[i] = bits.hash(begin + i);
+      __builtin_prefetch(&slots[slot_of(hash[i])]);
     }
-    if (slots[slot] == kFree) slots[slot] = static_cast<std::uint32_t>(face);
-    first[face] = slots[slot];
+    for (std::size_t i = 0; i < count; ++i) {
+      const std::size_t face = begin + i;
+      const auto entry =
+          static_cast<std::uint32_t>((hash[i] >> 32 & ~std::uint64_t{number_mask}) | face);
+      std::size_t slot = slot_of(hash[i]);
+      const auto is_other = [&](std::uint32_t met) {
+        return ((met ^ entry) & ~number_mask) != 0 || !bits.are_same(met & number_mask, face);
+      };
+      while (slots[slot] != kFree && is_other(slots[slot])) slot = slot_of(slot + 1);
+      if (slots[slot] == kFree) slots[slot] = entry;
+      first[face] = slots[slot] & number_mask;
+    }
   }
   return first;
 }
