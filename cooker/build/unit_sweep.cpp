@@ -3,7 +3,9 @@
 #include "cooker/build/unit_sweep.h"
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
+#include <numeric>
 
 #include "cooker/build/build_tree.h"
 #include "cooker/build/full_nodes.h"
@@ -11,30 +13,81 @@
 namespace boxtree::cooker {
 namespace {
 
-struct Key {
-  double centre;
-  std::uint32_t face;
-  std::uint16_t place;
+// The order of all floats but NaN as that of whole numbers.
+std::uint32_t number_of(float value) {
+  const auto bits = std::bit_cast<std::uint32_t>(value);
+  constexpr std::uint32_t kSign = 0x80000000u;
+  return (bits & kSign) != 0 ? ~bits : bits | kSign;
+}
 
-  [[nodiscard]] bool operator<(const Key& other) const {
-    return centre != other.centre ? centre < other.centre : face < other.face;
+// Sorts places of faces by the centres of their boxes, ties by face number.
+class CentreOrder {
+ public:
+  explicit CentreOrder(std::span<const FaceBox> faces)
+      : faces_(faces), keys_(faces.size()), other_(faces.size()) {}
+
+  void sort(std::size_t axis, std::vector<std::uint16_t>& places) {
+    sort_rounded(axis);
+    places.resize(keys_.size());
+    std::transform(keys_.begin(), keys_.end(), places.begin(),
+                   [](const Key& key) { return key.place; });
+    const auto is_before = [&](std::uint16_t a, std::uint16_t b) {
+      const double ca = centre(faces_[a], axis), cb = centre(faces_[b], axis);
+      return ca != cb ? ca < cb : faces_[a].face < faces_[b].face;
+    };
+    for (std::size_t first = 0; first < keys_.size();) {
+      std::size_t last = first + 1;
+      while (last < keys_.size() && keys_[last].rounded == keys_[first].rounded) ++last;
+      if (last - first > 1) {
+        std::sort(places.begin() + static_cast<std::ptrdiff_t>(first),
+                  places.begin() + static_cast<std::ptrdiff_t>(last), is_before);
+      }
+      first = last;
+    }
   }
+
+ private:
+  struct Key {
+    std::uint32_t rounded;  // the centre, as a number
+    std::uint16_t place;
+  };
+
+  // Digit by digit, from the lowest: with rounded centres, this takes a third of the time of a
+  // sort by comparison.
+  void sort_rounded(std::size_t axis) {
+    std::uint32_t least = ~std::uint32_t{0}, most = 0;
+    for (std::size_t i = 0; i < keys_.size(); ++i) {
+      const std::uint32_t rounded = number_of(static_cast<float>(centre(faces_[i], axis)));
+      keys_[i] = {rounded, static_cast<std::uint16_t>(i)};
+      least = std::min(least, rounded);
+      most = std::max(most, rounded);
+    }
+    constexpr std::uint32_t kDigitBits = 8;
+    constexpr std::uint32_t kDigits = 1u << kDigitBits;
+    const auto bits = static_cast<std::uint32_t>(std::bit_width(most - least));
+    for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
+      const auto digit_of = [&](const Key& key) {
+        return (key.rounded - least) >> shift & (kDigits - 1);
+      };
+      std::array<std::uint32_t, kDigits> end{};
+      for (const Key& key : keys_) ++end[digit_of(key)];
+      std::exclusive_scan(end.begin(), end.end(), end.begin(), 0u);
+      for (const Key& key : keys_) other_[end[digit_of(key)]++] = key;
+      keys_.swap(other_);
+    }
+  }
+
+  std::span<const FaceBox> faces_;
+  std::vector<Key> keys_;
+  std::vector<Key> other_;
 };
 
 }  // namespace
 
 UnitSweep::UnitSweep(std::span<const FaceBox> faces) : faces_(faces.begin(), faces.end()) {
   assert(faces.size() <= kMaxFaces);
-  std::vector<Key> keys(faces.size());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    for (std::size_t i = 0; i < faces.size(); ++i) {
-      keys[i] = {centre(faces[i], axis), faces[i].face, static_cast<std::uint16_t>(i)};
-    }
-    std::sort(keys.begin(), keys.end());
-    sorted_[axis].resize(keys.size());
-    std::transform(keys.begin(), keys.end(), sorted_[axis].begin(),
-                   [](const Key& key) { return key.place; });
-  }
+  CentreOrder order(faces_);
+  for (std::size_t axis = 0; axis < 3; ++axis) order.sort(axis, sorted_[axis]);
 }
 
 Box<float> UnitSweep::bounds(std::size_t first, std::size_t last) const {
