@@ -16,9 +16,94 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr std::uint32_t kOffsetBitsEnd = 32;  // intervals as long as all ids together
-
 using Ids = std::span<const std::uint32_t>;
+
+// The numbers of a block's faces, ascending; none if one of them would be negative.
+class Numbers {
+ public:
+  Numbers() = default;
+  Numbers(Ids ids, std::uint32_t base, std::uint32_t grain) {
+    static_assert(kMaxFaces <= ~std::uint32_t{0} / 2);
+    std::array<std::uint64_t, kIdBlockFaces> number_and_place;
+    for (std::uint32_t i = 0; i < ids.size(); ++i) {
+      const std::uint32_t number = ids[i] - base - (i >> grain << grain);
+      if (number > kMaxFaces) return;  // negative, without its sign
+      number_and_place[i] = std::uint64_t{number} << 32 | i;
+    }
+    count_ = ids.size();
+    std::sort(number_and_place.begin(),
+              number_and_place.begin() + static_cast<std::ptrdiff_t>(count_));
+    for (std::size_t i = 0; i < count_; ++i) {
+      number_[i] = static_cast<std::uint32_t>(number_and_place[i] >> 32);
+      place_[i] = static_cast<std::uint32_t>(number_and_place[i]);
+    }
+  }
+  [[nodiscard]] Ids sorted() const { return {number_.data(), count_}; }
+  /// Of the face with each number.
+  [[nodiscard]] Ids places() const { return {place_.data(), count_}; }
+
+ private:
+  std::array<std::uint32_t, kIdBlockFaces> number_;
+  std::array<std::uint32_t, kIdBlockFaces> place_;
+  std::size_t count_ = 0;
+};
+
+// How far the numbers of a block lie apart, negative ones included.
+[[nodiscard]] std::int64_t spread_of(Ids ids, std::uint32_t grain) {
+  static_assert(kMaxFaces <= 0x7fffffffu);
+  auto least = static_cast<std::int32_t>(ids[0]);
+  std::int32_t largest = least;
+  for (std::uint32_t i = 1; i < ids.size(); ++i) {
+    const auto number =
+        static_cast<std::int32_t>(ids[i]) - static_cast<std::int32_t>(i >> grain << grain);
+    least = std::min(least, number);
+    largest = std::max(largest, number);
+  }
+  return std::int64_t{largest} - least;
+}
+
+// The fewest intervals of 2^0, 2^1 ... numbers that hold those of a block, for kLengths lengths at
+// once, the longest last: compilers make vectors of them.
+class Covers {
+ public:
+  static constexpr std::uint32_t kLengths = 16;
+
+  // Precondition: `sorted` ascends and is not empty; numbers and intervals are less than 2^31.
+  Covers(Ids sorted, std::uint32_t longest_bits) : longest_bits_(longest_bits) {
+    std::array<std::int32_t, kLengths> last_place;
+    for (std::uint32_t i = 0; i < kLengths; ++i) {
+      const std::uint32_t bits = longest_bits - std::min(longest_bits, kLengths - 1 - i);
+      last_place[i] = static_cast<std::int32_t>(low_bits(bits));
+    }
+    start_.fill(static_cast<std::int32_t>(sorted.front()));
+    intervals_.fill(1);
+    for (const std::uint32_t each : sorted) {
+      const auto number = static_cast<std::int32_t>(each);
+      for (std::uint32_t i = 0; i < kLengths; ++i) {
+        const std::int32_t is_outside = number - start_[i] > last_place[i] ? -1 : 0;
+        start_[i] += (number - start_[i]) & is_outside;
+        intervals_[i] -= is_outside;
+      }
+    }
+  }
+
+  // For intervals of 2^bits numbers. Precondition: it is one of the lengths.
+  [[nodiscard]] std::uint32_t intervals(std::uint32_t bits) const {
+    return static_cast<std::uint32_t>(intervals_[place_of(bits)]);
+  }
+  [[nodiscard]] std::uint32_t last_start(std::uint32_t bits) const {
+    return static_cast<std::uint32_t>(start_[place_of(bits)]);
+  }
+
+ private:
+  [[nodiscard]] std::size_t place_of(std::uint32_t bits) const {
+    return kLengths - 1 - (longest_bits_ - bits);
+  }
+
+  std::uint32_t longest_bits_;
+  std::array<std::int32_t, kLengths> start_;
+  std::array<std::int32_t, kLengths> intervals_;
+};
 
 // A way to store a block: the intervals of 2^offset_bits numbers that hold those of its faces. The
 // number of a face is its id without the base of the group and what its place adds.
@@ -28,63 +113,47 @@ struct Plan {
   std::uint32_t bits = ~std::uint32_t{0};
 };
 
-[[nodiscard]] std::uint32_t number_of(Ids ids, std::uint32_t base, std::uint32_t grain,
-                                      std::size_t i) {
-  const auto place = static_cast<std::uint32_t>(i);
-  return ids[i] - base - (place >> grain << grain);
-}
-
-// The starts of the fewest intervals of that length. Precondition: `sorted` ascends.
-class Cover {
- public:
-  Cover(Ids sorted, std::uint32_t offset_bits) {
-    std::uint64_t end = 0;  // of the last interval
-    for (const std::uint32_t number : sorted) {
-      if (count_ != 0 && number < end) continue;
-      start_[count_++] = number;
-      end = number + (std::uint64_t{1} << offset_bits);
-    }
-  }
-  [[nodiscard]] Ids starts() const { return {start_.data(), count_}; }
-
- private:
-  std::array<std::uint32_t, kIdBlockFaces> start_;
-  std::uint32_t count_ = 0;
-};
-
-// The numbers of a block's faces, ascending; none if one of them would be negative.
-class Numbers {
- public:
-  Numbers(Ids ids, std::uint32_t base, std::uint32_t grain) {
-    for (std::size_t i = 0; i < ids.size(); ++i) {
-      const std::uint32_t number = number_of(ids, base, grain, i);
-      if (number > kMaxFaces) return;  // negative, without its sign
-      number_[i] = number;
-    }
-    count_ = ids.size();
-    std::sort(number_.begin(), number_.begin() + static_cast<std::ptrdiff_t>(count_));
-  }
-  [[nodiscard]] Ids sorted() const { return {number_.data(), count_}; }
-
- private:
-  std::array<std::uint32_t, kIdBlockFaces> number_;
-  std::size_t count_ = 0;
-};
-
-// How far the numbers of a block lie apart, negative ones included.
-[[nodiscard]] std::int64_t spread_of(Ids ids, std::uint32_t grain) {
-  std::int64_t least = ids[0], largest = ids[0];
-  for (std::size_t i = 1; i < ids.size(); ++i) {
-    const std::int64_t number =
-        std::int64_t{ids[i]} - static_cast<std::int64_t>(i >> grain << grain);
-    least = std::min(least, number);
-    largest = std::max(largest, number);
-  }
-  return largest - least;
-}
-
-[[nodiscard]] Plan plan_of(Ids ids, std::uint32_t base) {
+// The least bits, and of equal plans the one with the shortest intervals. Lengths are tried from
+// the longest down, because most short ones, which take many starts, then need not be.
+[[nodiscard]] Plan plan_of(const Numbers& numbers, std::uint32_t grain) {
+  const Ids sorted = numbers.sorted();
+  const auto count = static_cast<std::uint32_t>(sorted.size());
+  const std::uint32_t last = sorted.back();
   Plan best;
+  // One interval holds all numbers.
+  auto longest = static_cast<std::uint32_t>(std::bit_width(last - sorted.front()));
+  for (;;) {
+    const Covers covers(sorted, longest);
+    const std::uint32_t shortest = longest - std::min(longest, Covers::kLengths - 1);
+    for (std::uint32_t offset_bits = longest;; --offset_bits) {
+      const std::uint32_t intervals = covers.intervals(offset_bits);
+      const FaceIdBlock block{
+          0, offset_bits,
+          static_cast<std::uint32_t>(std::bit_width(covers.last_start(offset_bits))),
+          width_below(intervals), grain};
+      const std::uint32_t bits = count * block.width() + intervals * block.start_bits;
+      if (bits <= best.bits) best = {block, intervals, bits};
+      // Shorter intervals are as many at least, and the last of them starts here at the earliest.
+      const std::uint64_t earliest =
+          last + std::uint64_t{1} -
+          std::min(std::uint64_t{1} << offset_bits, last + std::uint64_t{1});
+      const std::uint32_t least = count * block.interval_bits +
+                                  intervals * static_cast<std::uint32_t>(std::bit_width(earliest));
+      if (offset_bits == 0 || least > best.bits) return best;
+      if (offset_bits == shortest) break;
+    }
+    longest = shortest - 1;
+  }
+}
+
+// A block with the numbers of its faces as it stores them.
+struct PlannedBlock {
+  Plan plan;
+  Numbers numbers;
+};
+
+[[nodiscard]] PlannedBlock best_plan(Ids ids, std::uint32_t base) {
+  PlannedBlock best;
   // Places add nothing, or the number of the leaf, or that of the face: for sources in the order of
   // a tree, whose leaves may have been reordered.
   constexpr auto kLeafGrain = static_cast<std::uint32_t>(std::countr_zero(kLeafFaces));
@@ -94,36 +163,26 @@ class Numbers {
     if (grain != FaceIdBlock::kNoGrain && spread_of(ids, grain) > spread / 2) continue;
     const Numbers numbers(ids, base, grain);
     if (numbers.sorted().empty()) continue;
-    const auto count = static_cast<std::uint32_t>(ids.size());
-    for (std::uint32_t offset_bits = 0; offset_bits < kOffsetBitsEnd; ++offset_bits) {
-      if (count * offset_bits >= best.bits) break;
-      const Cover cover(numbers.sorted(), offset_bits);
-      const auto intervals = static_cast<std::uint32_t>(cover.starts().size());
-      const FaceIdBlock block{0, offset_bits,
-                              static_cast<std::uint32_t>(std::bit_width(cover.starts().back())),
-                              width_below(intervals), grain};
-      const std::uint32_t bits = count * block.width() + intervals * block.start_bits;
-      if (bits < best.bits) best = {block, intervals, bits};
-      if (intervals == 1) break;
-    }
+    const Plan plan = plan_of(numbers, grain);
+    if (plan.bits < best.plan.bits) best = {plan, numbers};
   }
   return best;
 }
 
-void write_block(Ids ids, std::uint32_t base, const FaceIdBlock& block, std::byte* out) {
-  const Numbers numbers(ids, base, block.grain);
-  const Cover cover(numbers.sorted(), block.offset_bits);
-  const Ids starts = cover.starts();
-  for (std::uint32_t k = 0; k < starts.size(); ++k) {
-    write_bits(out, block.middle - (k + 1) * block.start_bits, block.start_bits, starts[k]);
-  }
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const std::uint32_t number = number_of(ids, base, block.grain, i);
-    const auto after = std::upper_bound(starts.begin(), starts.end(), number);
-    const auto interval = static_cast<std::uint64_t>(after - starts.begin() - 1);
-    const std::uint64_t offset = number - starts[interval];
-    write_bits(out, block.middle + i * block.width(), block.width(),
-               interval << block.offset_bits | offset);
+// Precondition: kBitPadding bytes follow the block.
+void write_block(const PlannedBlock& planned, std::byte* out) {
+  const FaceIdBlock& block = planned.plan.block;
+  const Ids numbers = planned.numbers.sorted();
+  const std::uint64_t length = std::uint64_t{1} << block.offset_bits;
+  std::uint64_t start = 0, intervals = 0;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (i == 0 || numbers[i] >= start + length) {
+      start = numbers[i];
+      ++intervals;
+      write_short_bits(out, block.middle - intervals * block.start_bits, block.start_bits, start);
+    }
+    write_short_bits(out, block.middle + planned.numbers.places()[i] * block.width(), block.width(),
+                     (intervals - 1) << block.offset_bits | (numbers[i] - start));
   }
 }
 
@@ -135,23 +194,23 @@ struct Group {
 [[nodiscard]] Group encode_group(Ids ids) {
   Group group;
   group.head.base = *std::min_element(ids.begin(), ids.end());
-  std::array<Plan, kIdGroupBlocks> plans;
+  std::array<PlannedBlock, kIdGroupBlocks> planned;
   std::uint32_t end = 0;
   const std::size_t blocks = (ids.size() + kIdBlockFaces - 1) / kIdBlockFaces;
-  const auto ids_of = [&](std::size_t b) {
-    const std::size_t first = b * kIdBlockFaces;
-    return ids.subspan(first, std::min<std::size_t>(kIdBlockFaces, ids.size() - first));
-  };
   for (std::size_t b = 0; b < blocks; ++b) {
-    Plan& plan = plans[b] = plan_of(ids_of(b), group.head.base);
+    const std::size_t first = b * kIdBlockFaces;
+    planned[b] =
+        best_plan(ids.subspan(first, std::min<std::size_t>(kIdBlockFaces, ids.size() - first)),
+                  group.head.base);
+    Plan& plan = planned[b].plan;
     plan.block.middle = end + plan.intervals * plan.block.start_bits;
     group.head.block[b] = plan.block.word();
     end += plan.bits;
   }
-  group.bits.resize(align_up((end + 7) / 8, kIdUnit));
-  for (std::size_t b = 0; b < blocks; ++b) {
-    write_block(ids_of(b), group.head.base, plans[b].block, group.bits.data());
-  }
+  const std::size_t size = align_up((end + 7) / 8, kIdUnit);
+  group.bits.resize(size + kBitPadding);
+  for (std::size_t b = 0; b < blocks; ++b) write_block(planned[b], group.bits.data());
+  group.bits.resize(size);
   return group;
 }
 
