@@ -39,22 +39,23 @@ class StripOrder {
         const std::uint32_t sought = number_of(faces[f].corner[(e + 1) % 3], faces[f].corner[e]);
         std::uint32_t found = 0;
         for (std::size_t i = 0; i < kEdges; ++i) found |= edge[i] == sought ? kBit[i] : 0;
-        for (std::size_t turn = 0; turn < 3; ++turn) {
-          by_turn_[f][e][turn] =
-              (found >> (turn * kLeafFaces)) & ((1u << kLeafFaces) - 1) & ~(1u << f);
-          across_[f][e] |= by_turn_[f][e][turn];
-        }
+        found &= ~(kFirstOfTurns << f);
+        found_[f][e] = found;
+        across_[f][e] = (found | found >> kLeafFaces | found >> (2 * kLeafFaces)) & kAllFaces;
       }
       near_[f] = across_[f][0] | across_[f][1] | across_[f][2];
     }
   }
 
   void apply() {
+    // No walk has fewer faces apart than there are sets of faces that share no edge.
+    const std::uint32_t fewest_apart = components();
     Walk best;
     for (std::size_t start = 0; start < count_; ++start) {
-      const Walk walk = walk_from(start);
-      if (walk.shared > best.shared) best = walk;
-      if (best.shared + 1 == static_cast<int>(count_)) break;
+      Walk walk;
+      if (!walk_from(start, best.apart, walk)) continue;
+      best = walk;
+      if (best.apart == fewest_apart) break;
     }
     std::array<ClusterFace, kLeafFaces> ordered;
     for (std::size_t i = 0; i < count_; ++i) ordered[i] = faces_[best.face[i]];
@@ -63,6 +64,8 @@ class StripOrder {
 
  private:
   static constexpr std::size_t kEdges = std::size_t{3} * kLeafFaces;
+  static constexpr std::uint32_t kAllFaces = (1u << kLeafFaces) - 1;
+  static constexpr std::uint32_t kFirstOfTurns = 1u | 1u << kLeafFaces | 1u << (2 * kLeafFaces);
   static constexpr std::uint32_t kNoEdge = 0xfffffffeu;  // vertices of a cluster are fewer
 
   static std::uint32_t number_of(std::uint32_t from, std::uint32_t to) { return from << 16 | to; }
@@ -76,31 +79,47 @@ class StripOrder {
 
   struct Walk {
     std::array<std::size_t, kLeafFaces> face{};
-    int shared = -1;
+    std::uint32_t apart = kLeafFaces + 1;  // faces that share no edge with the one before
   };
 
-  [[nodiscard]] Walk walk_from(std::size_t at) const {
-    Walk walk;
-    walk.shared = 0;
-    std::uint32_t left = (1u << count_) - 1;
+  [[nodiscard]] std::uint32_t components() const {
+    std::uint32_t count = 0;
+    for (std::uint32_t left = all(); left != 0; ++count) {
+      std::uint32_t border = left & (~left + 1);
+      while (border != 0) {
+        left &= ~(border & (~border + 1));
+        border = (border | near_[std::countr_zero(border)]) & left;
+      }
+    }
+    return count;
+  }
+  [[nodiscard]] std::uint32_t all() const { return (1u << count_) - 1; }
+
+  // Returns false as soon as no fewer faces than `limit` are apart.
+  [[nodiscard]] bool walk_from(std::size_t at, std::uint32_t limit, Walk& walk) const {
+    walk.apart = 1;
+    std::uint32_t left = all();
     std::uint32_t entered = 0;
-    for (std::size_t length = 0;; ++length) {
+    for (std::size_t length = 0; walk.apart < limit; ++length) {
       walk.face[length] = at;
       left &= ~(1u << at);
-      if (left == 0) return walk;
+      if (left == 0) return true;
       const std::uint32_t first = (entered + 1) % 3, second = (entered + 2) % 3;
       const std::uint32_t near = (across_[at][first] | across_[at][second]) & left;
       const std::size_t next = loneliest(near != 0 ? near : left, left);
       entered = 0;
       if (near != 0) {
-        ++walk.shared;
         const bool is_first = ((across_[at][first] >> next) & 1u) != 0;
-        const std::uint32_t(&turns)[3] = by_turn_[at][is_first ? first : second];
-        // The first of them, as step_between finds it.
-        while (((turns[entered] >> next) & 1u) == 0) ++entered;
+        const std::uint32_t found = found_[at][is_first ? first : second];
+        // The first turn, as step_between finds it.
+        entered = static_cast<std::uint32_t>(std::countr_zero((found >> next) & kFirstOfTurns)) /
+                  kLeafFaces;
+      } else {
+        ++walk.apart;
       }
       at = next;
     }
+    return false;
   }
 
   // Of some faces, the one with the fewest neighbours left. Precondition: there is one.
@@ -121,10 +140,10 @@ class StripOrder {
 
   std::span<ClusterFace> faces_;
   std::size_t count_;
-  // Bit j: face j can follow face i over its edge, and is entered by the edge of the turn.
-  std::uint32_t by_turn_[kLeafFaces][3][3] = {};
-  std::uint32_t across_[kLeafFaces][3] = {};  // by any of its edges
-  std::uint32_t near_[kLeafFaces] = {};       // over any edge
+  // Bit turn * kLeafFaces + j: face j can follow face i over its edge, entered by the turn.
+  std::uint32_t found_[kLeafFaces][3];
+  std::uint32_t across_[kLeafFaces][3];  // bit j: by any of its edges
+  std::uint32_t near_[kLeafFaces];       // over any edge
 };
 
 }  // namespace
