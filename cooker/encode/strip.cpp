@@ -38,7 +38,10 @@ class StripOrder {
       for (std::size_t e = 0; e < 3; ++e) {
         const std::uint32_t sought = number_of(faces[f].corner[(e + 1) % 3], faces[f].corner[e]);
         std::uint32_t found = 0;
-        for (std::size_t i = 0; i < kEdges; ++i) found |= edge[i] == sought ? kBit[i] : 0;
+        for (std::size_t i = 0; i < kEdges; ++i) {
+          // A mask: for a choice, compilers load the bit only after a branch.
+          found |= kBit[i] & (0u - (edge[i] == sought ? 1u : 0u));
+        }
         found &= ~(kFirstOfTurns << f);
         found_[f][e] = found;
         across_[f][e] = (found | found >> kLeafFaces | found >> (2 * kLeafFaces)) & kAllFaces;
