@@ -76,7 +76,7 @@ class ClusterReader {
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
-  /// The same where the machine has AVX-512. False also where read() has to be asked.
+  /// The same where the machine has AVX-512. False also where read() has to do it.
   HWY_INLINE bool read_by_avx512(std::uint32_t leaf, float scale, LeafCoordinates& out) {
     return read_by_avx512_ != nullptr &&
            read_by_avx512_(view_, leaf, scale, sixteen_, triangles_, out);
