@@ -3,6 +3,7 @@
 #include "cooker/choose/calibrate.h"
 
 #include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -66,7 +67,9 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   return Sample{work, *ns};
 }
 
-CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& samples) {
+// `arrays`: of the same codec, or null where these are fitted.
+CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& samples,
+              const CodecCost* arrays) {
   CodecCost cost{codec, geometry, {}};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     std::vector<Measured> measured;
@@ -74,7 +77,8 @@ CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& sam
     for (const Sample& of_mesh : samples) {
       measured.push_back({of_mesh.work[kind], of_mesh.ns[kind]});
     }
-    cost.of_kind[kind] = fit_steps(measured);
+    cost.of_kind[kind] =
+        arrays == nullptr ? fit_steps(measured) : fit_leaf(measured, arrays->of_kind[kind]);
   }
   return cost;
 }
@@ -88,8 +92,8 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
   }
   Calibration out;
   for (const CodecInfo& codec : kCodecs) {
-    for (const GeometryId geometry :
-         {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
+    std::optional<CodecCost> arrays;
+    for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
       if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
       std::vector<Sample> samples;
       for (const SourceMesh& mesh : meshes) {
@@ -101,7 +105,8 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
         if (!of_mesh) return of_mesh.error();
         samples.push_back(*of_mesh);
       }
-      out.costs.push_back(fit(codec.id, geometry, samples));
+      out.costs.push_back(fit(codec.id, geometry, samples, arrays ? &*arrays : nullptr));
+      if (geometry == GeometryId::kArrays) arrays = out.costs.back();
       for (const Sample& of_mesh : samples) {
         const QueryCost modelled =
             cost_of(of_mesh.work, codec.id, geometry, std::span(&out.costs.back(), 1));

@@ -53,4 +53,14 @@ StepCost fit_steps(std::span<const Measured> measured) {
   return {best[0], best[1], best[2]};
 }
 
+StepCost fit_leaf(std::span<const Measured> measured, const StepCost& known) {
+  double products = 0, squares = 0;
+  for (const Measured& m : measured) {
+    const double left = m.ns - known.query - m.work.nodes * known.node;
+    products += m.work.leaves * left / (m.ns * m.ns);
+    squares += m.work.leaves * m.work.leaves / (m.ns * m.ns);
+  }
+  return {known.query, known.node, std::max(0.0, products / squares)};
+}
+
 }  // namespace boxtree::cooker

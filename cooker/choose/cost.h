@@ -45,4 +45,10 @@ struct Measured {
 /// some time is above zero.
 [[nodiscard]] StepCost fit_steps(std::span<const Measured> measured);
 
+/// The same for another store of a codec whose steps are known: walks over nodes are the same
+/// whatever store they lead to, so only a leaf's part is fitted. Fits of all three would share the
+/// time among them anew for each store, and rate stores of the same few leaves by that.
+/// Precondition: some mesh has leaves.
+[[nodiscard]] StepCost fit_leaf(std::span<const Measured> measured, const StepCost& known);
+
 }  // namespace boxtree::cooker

@@ -26,8 +26,8 @@ struct SearchOptions {
   // Codecs with one triangle per leaf have arrays in any case.
   bool may_use_grid = false;
   bool may_use_arrays = false;
-  GridChoice grid;            // of geometry grid
-  bool try_all = false;       // also encodings that cannot win
+  GridChoice grid;       // of geometry grid
+  bool try_all = false;  // also encodings that cannot win
   bool face_ids = true;
   std::vector<CodecCost> costs;  // for the user's machine; empty: those compiled in [default]
   /// Binary codecs: the share of a box that must be empty to be cut off [kShrinkShare] [0.01 to 1;

@@ -48,5 +48,31 @@ TEST(FitSteps, NoStepIsNegative) {
   EXPECT_NEAR(found.query + found.leaf + 10 * found.node, 90, 5);
 }
 
+TEST(FitLeaf, FindsTheLeafAndKeepsTheRest) {
+  const StepCost truth{80, 15, 40};
+  std::vector<Measured> measured;
+  for (const Work work : {Work{3, 1}, Work{10, 2}, Work{40, 31}}) {
+    measured.push_back({work, truth.query + work.nodes * truth.node + work.leaves * truth.leaf});
+  }
+  const StepCost found = fit_leaf(measured, {80, 15, 7});
+  EXPECT_EQ(found.query, truth.query);
+  EXPECT_EQ(found.node, truth.node);
+  EXPECT_NEAR(found.leaf, truth.leaf, 1e-9);
+  EXPECT_EQ(fit_leaf(measured, {1e6, 15, 7}).leaf, 0);
+}
+
+// Stores differ by what a leaf takes, so a mesh of few leaves is no faster in a slower store.
+TEST(Cost, StoresOfACodecDifferInLeaves) {
+  for (const CodecCost& cost : compiled_costs()) {
+    for (const CodecCost& other : compiled_costs()) {
+      if (other.codec != cost.codec) continue;
+      for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+        EXPECT_EQ(other.of_kind[kind].query, cost.of_kind[kind].query);
+        EXPECT_EQ(other.of_kind[kind].node, cost.of_kind[kind].node);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
