@@ -76,7 +76,7 @@ expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-bytes-per-triangle 1
 grep -q '^boxtree: budget_unreachable: refused.bxt: wanted at most 1 B/tri; .* takes .* B/tri' err
 [ ! -e refused.bxt ]
 for budget in 0 -1 nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --max-slowdown=$budget; done
-# Slowdowns below 1, faster than wide8 with arrays, may be asked for, on the command line and in a profile.
+# Slowdowns below 1, faster than wide8 with arrays, may be requested, on the command line and in a profile.
 expect 1 "$boxtree" cook cube.obj -o refused.bxt --max-slowdown 0.5
 grep -q '^boxtree: budget_unreachable: refused.bxt: wanted a slowdown of at most 0.5; .*, slowdown 1' err
 printf '[budget]\nslowdown = 0.5\n' >fast.toml
