@@ -3,6 +3,9 @@
 // Volume Hierarchies", 2007), a full sweep for small ones.
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <limits>
 
 #include "cooker/build/full_nodes.h"
 #include "cooker/build/splitter.h"
@@ -33,23 +36,48 @@ struct Binning {
 
 template <std::size_t kBins>
 std::array<Binning<kBins>, 3> binnings(std::span<const FaceBox> faces) {
+  std::array<double, 3> low, high;
+  for (std::size_t k = 0; k < 3; ++k) low[k] = high[k] = centre(faces[0], k);
+  for (const FaceBox& face : faces) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      low[k] = std::min(low[k], centre(face, k));
+      high[k] = std::max(high[k], centre(face, k));
+    }
+  }
   std::array<Binning<kBins>, 3> result;
   for (std::size_t k = 0; k < 3; ++k) {
-    double low = centre(faces[0], k);
-    double high = low;
-    for (const FaceBox& face : faces) {
-      low = std::min(low, centre(face, k));
-      high = std::max(high, centre(face, k));
-    }
-    result[k].low = low;
-    if (high > low) result[k].scale = static_cast<double>(kBins) / (high - low);
+    result[k].low = low[k];
+    if (high[k] > low[k]) result[k].scale = static_cast<double>(kBins) / (high[k] - low[k]);
   }
   return result;
 }
 
+// Bounds of the faces of a bin: four numbers a side, the last of which means nothing, so that
+// compilers make one vector of them.
 struct Bin {
-  Box<float> bounds = empty_box<float>();
+  std::array<float, 4> low, high;
   std::size_t count = 0;
+
+  Bin() {
+    low.fill(std::numeric_limits<float>::infinity());
+    high.fill(-std::numeric_limits<float>::infinity());
+  }
+  void add(const FaceBox& face) {
+    static_assert(offsetof(FaceBox, box.high) == 3 * sizeof(float) &&
+                  offsetof(FaceBox, face) == 6 * sizeof(float));
+    std::array<float, 4> face_low, face_high;
+    std::memcpy(face_low.data(), &face, sizeof(face_low));
+    std::memcpy(face_high.data(), reinterpret_cast<const std::byte*>(&face) + 3 * sizeof(float),
+                sizeof(face_high));
+    for (std::size_t k = 0; k < 4; ++k) {
+      low[k] = face_low[k] < low[k] ? face_low[k] : low[k];
+      high[k] = face_high[k] > high[k] ? face_high[k] : high[k];
+    }
+    ++count;
+  }
+  [[nodiscard]] Box<float> bounds() const {
+    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+  }
 };
 
 template <std::size_t kBins>
@@ -59,7 +87,7 @@ SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
   Box<float> box = empty_box<float>();
   std::size_t count = 0;
   for (std::size_t i = kBins; i-- > 1;) {
-    expand(box, bins[i].bounds);
+    expand(box, bins[i].bounds());
     count += bins[i].count;
     right_count[i] = count;
     right_cost[i] = count == 0 ? 0 : half_area(box) * static_cast<double>(count);
@@ -68,7 +96,7 @@ SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis
   box = empty_box<float>();
   count = 0;
   for (std::size_t i = 1; i < kBins; ++i) {
-    expand(box, bins[i - 1].bounds);
+    expand(box, bins[i - 1].bounds());
     count += bins[i - 1].count;
     if (count == 0 || right_count[i] == 0) continue;
     const SplitCost here{half_area(box) * static_cast<double>(count) + right_cost[i],
@@ -95,9 +123,7 @@ std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const FaceBox& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Bin& bin = bins[k][binning[k].bin(centre(face, k))];
-      expand(bin.bounds, face.box);
-      ++bin.count;
+      bins[k][binning[k].bin(centre(face, k))].add(face);
     }
   }
   SplitCost best;
@@ -113,7 +139,7 @@ std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
     const Bin& bin = bins[best.axis][i];
     split.counts[i] = bin.count;
     if (i < best.position) split.left_count += bin.count;
-    expand(i < best.position ? left : right, bin.bounds);
+    expand(i < best.position ? left : right, bin.bounds());
   }
   split.left_area = half_area(left);
   split.right_area = half_area(right);
