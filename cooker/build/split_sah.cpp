@@ -3,9 +3,6 @@
 // Volume Hierarchies", 2007), a full sweep for small ones.
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <cstring>
-#include <limits>
 
 #include "cooker/build/full_nodes.h"
 #include "cooker/build/splitter.h"
@@ -52,54 +49,31 @@ std::array<Binning<kBins>, 3> binnings(std::span<const FaceBox> faces) {
   return result;
 }
 
-// Bounds of the faces of a bin: four numbers a side, the last of which means nothing, so that
-// compilers make one vector of them.
 struct Bin {
-  std::array<float, 4> low, high;
+  FaceBounds bounds;
   std::size_t count = 0;
-
-  Bin() {
-    low.fill(std::numeric_limits<float>::infinity());
-    high.fill(-std::numeric_limits<float>::infinity());
-  }
-  void add(const FaceBox& face) {
-    static_assert(offsetof(FaceBox, box.high) == 3 * sizeof(float) &&
-                  offsetof(FaceBox, face) == 6 * sizeof(float));
-    std::array<float, 4> face_low, face_high;
-    std::memcpy(face_low.data(), &face, sizeof(face_low));
-    std::memcpy(face_high.data(), reinterpret_cast<const std::byte*>(&face) + 3 * sizeof(float),
-                sizeof(face_high));
-    for (std::size_t k = 0; k < 4; ++k) {
-      low[k] = face_low[k] < low[k] ? face_low[k] : low[k];
-      high[k] = face_high[k] > high[k] ? face_high[k] : high[k];
-    }
-    ++count;
-  }
-  [[nodiscard]] Box<float> bounds() const {
-    return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
-  }
 };
 
 template <std::size_t kBins>
 SplitCost best_bin_boundary(const std::array<Bin, kBins>& bins, std::size_t axis) {
   std::array<double, kBins> right_cost;  // of bins [i, kBins)
   std::array<std::size_t, kBins> right_count;
-  Box<float> box = empty_box<float>();
+  FaceBounds bounds;
   std::size_t count = 0;
   for (std::size_t i = kBins; i-- > 1;) {
-    expand(box, bins[i].bounds());
+    bounds.add(bins[i].bounds);
     count += bins[i].count;
     right_count[i] = count;
-    right_cost[i] = count == 0 ? 0 : half_area(box) * static_cast<double>(count);
+    right_cost[i] = count == 0 ? 0 : half_area(bounds.box()) * static_cast<double>(count);
   }
   SplitCost best;
-  box = empty_box<float>();
+  bounds = {};
   count = 0;
   for (std::size_t i = 1; i < kBins; ++i) {
-    expand(box, bins[i - 1].bounds());
+    bounds.add(bins[i - 1].bounds);
     count += bins[i - 1].count;
     if (count == 0 || right_count[i] == 0) continue;
-    const SplitCost here{half_area(box) * static_cast<double>(count) + right_cost[i],
+    const SplitCost here{half_area(bounds.box()) * static_cast<double>(count) + right_cost[i],
                          imbalance(count, right_count[i]), axis, i};
     if (here.improves_on(best)) best = here;
   }
@@ -123,7 +97,9 @@ std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
   std::array<std::array<Bin, kBins>, 3> bins;
   for (const FaceBox& face : faces) {
     for (std::size_t k = 0; k < 3; ++k) {
-      bins[k][binning[k].bin(centre(face, k))].add(face);
+      Bin& bin = bins[k][binning[k].bin(centre(face, k))];
+      bin.bounds.add(face);
+      ++bin.count;
     }
   }
   SplitCost best;
@@ -134,15 +110,15 @@ std::optional<BinnedSplit<kBins>> best_binned(std::span<const FaceBox> faces) {
   }
   if (!std::isfinite(best.cost)) return std::nullopt;
   BinnedSplit<kBins> split{binning[best.axis], best.axis, best.position, 0, 0, 0, {}};
-  Box<float> left = empty_box<float>(), right = empty_box<float>();
+  FaceBounds left, right;
   for (std::size_t i = 0; i < kBins; ++i) {
     const Bin& bin = bins[best.axis][i];
     split.counts[i] = bin.count;
     if (i < best.position) split.left_count += bin.count;
-    expand(i < best.position ? left : right, bin.bounds());
+    (i < best.position ? left : right).add(bin.bounds);
   }
-  split.left_area = half_area(left);
-  split.right_area = half_area(right);
+  split.left_area = half_area(left.box());
+  split.right_area = half_area(right.box());
   return split;
 }
 

@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <bit>
 #include <cstddef>
+#include <cstring>
 #include <limits>
 #include <optional>
 #include <span>
+
+#include <Eigen/Core>
 
 #include "cooker/build/build_tree.h"
 
@@ -20,6 +23,33 @@ namespace boxtree::cooker {
   const double z = double{box.high[2]} - box.low[2];
   return x * y + y * z + z * x;
 }
+
+/// The bounds of faces as they grow: four numbers a side, of which the last means nothing, so that
+/// a side is one vector.
+class FaceBounds {
+ public:
+  void add(const FaceBox& face) {
+    // Whatever follows three numbers in memory is the fourth.
+    static_assert(offsetof(FaceBox, box) == 0 && sizeof(FaceBox) == sizeof(Box<float>) + 4);
+    FaceBounds bounds;
+    std::memcpy(bounds.low_.data(), &face, sizeof(low_));
+    std::memcpy(bounds.high_.data(), reinterpret_cast<const std::byte*>(&face) + 3 * sizeof(float),
+                sizeof(high_));
+    add(bounds);
+  }
+  void add(const FaceBounds& other) {
+    low_ = low_.min(other.low_);
+    high_ = high_.max(other.high_);
+  }
+  [[nodiscard]] Box<float> box() const {
+    return {{low_[0], low_[1], low_[2]}, {high_[0], high_[1], high_[2]}};
+  }
+
+ private:
+  static constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  Eigen::Array4f low_ = Eigen::Array4f::Constant(kInfinity);
+  Eigen::Array4f high_ = Eigen::Array4f::Constant(-kInfinity);
+};
 
 /// Twice the centre of a box; comparisons do not need the factor.
 [[nodiscard]] inline double centre(const FaceBox& face, std::size_t axis) {

@@ -84,7 +84,8 @@ class CentreOrder {
 
 }  // namespace
 
-UnitSweep::UnitSweep(std::span<const FaceBox> faces) : faces_(faces.begin(), faces.end()) {
+UnitSweep::UnitSweep(std::span<const FaceBox> faces)
+    : faces_(faces.begin(), faces.end()), of_leaf_(leaves_of(faces.size())) {
   assert(faces.size() <= kMaxFaces);
   CentreOrder order(faces_);
   for (std::size_t axis = 0; axis < 3; ++axis) order.sort(axis, sorted_[axis]);
@@ -96,32 +97,32 @@ Box<float> UnitSweep::bounds(std::size_t first, std::size_t last) const {
   return box;
 }
 
-Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t roots) const {
+Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t roots) {
   const std::size_t count = last - first;
   const std::size_t leaves = leaves_of(count);
   SplitCost best;
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    std::array<Box<float>, kMaxFaces / kLeafFaces> box;  // of each leaf
+    const std::uint16_t* const order = sorted_[axis].data();
     for (std::size_t leaf = 0; leaf < leaves; ++leaf) {
-      box[leaf] = empty_box<float>();
-      const std::size_t end = std::min(last, first + (leaf + 1) * kLeafFaces);
-      for (std::size_t i = first + leaf * kLeafFaces; i < end; ++i) {
-        expand(box[leaf], faces_[sorted_[axis][i]].box);
-      }
+      const std::size_t begin = first + leaf * kLeafFaces;
+      const std::size_t end = std::min(last, begin + kLeafFaces);
+      FaceBounds bounds;
+      for (std::size_t i = begin; i < end; ++i) bounds.add(faces_[order[i]]);
+      of_leaf_[leaf] = bounds;
     }
     // A query that enters a side visits its leaves.
     std::array<double, kMaxFaces / kLeafFaces> right_cost;  // of leaves from this one on
-    Box<float> right = empty_box<float>();
+    FaceBounds right;
     for (std::size_t leaf = leaves; leaf-- > 1;) {
-      expand(right, box[leaf]);
-      right_cost[leaf] = half_area(right) * static_cast<double>(leaves - leaf);
+      right.add(of_leaf_[leaf]);
+      right_cost[leaf] = half_area(right.box()) * static_cast<double>(leaves - leaf);
     }
-    Box<float> left = empty_box<float>();
+    FaceBounds left;
     for (std::size_t leaf = 1; leaf < leaves; ++leaf) {
-      expand(left, box[leaf - 1]);
+      left.add(of_leaf_[leaf - 1]);
       if (roots_on_left(leaf, leaves, roots) == 0) continue;
       const std::size_t faces = leaf * kLeafFaces;
-      const SplitCost here{half_area(left) * static_cast<double>(leaf) + right_cost[leaf],
+      const SplitCost here{half_area(left.box()) * static_cast<double>(leaf) + right_cost[leaf],
                            imbalance(faces, count - faces), axis, faces};
       if (here.improves_on(best)) best = here;
     }

@@ -28,7 +28,7 @@ class UnitSweep {
   /// The best division of the part [first, last), which will become `roots` children of a wide
   /// node: by the surface-area heuristic, along any axis, with full leaves and full nodes on the
   /// left. Precondition: more faces than kLeafFaces, two to eight roots.
-  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t roots) const;
+  [[nodiscard]] Split best_split(std::size_t first, std::size_t last, std::size_t roots);
 
   /// Divides [first, last): the faces with the lowest centres along the axis go left.
   void divide(std::size_t first, std::size_t last, const Split& split);
@@ -39,6 +39,7 @@ class UnitSweep {
  private:
   std::vector<FaceBox> faces_;
   std::array<std::vector<std::uint16_t>, 3> sorted_;  // indices into faces_
+  std::vector<FaceBounds> of_leaf_;  // of a part that is being divided, along one axis
 };
 
 }  // namespace boxtree::cooker
