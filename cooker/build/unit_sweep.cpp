@@ -131,23 +131,23 @@ Split UnitSweep::best_split(std::size_t first, std::size_t last, std::size_t roo
 }
 
 void UnitSweep::divide(std::size_t first, std::size_t last, const Split& split) {
-  std::array<bool, kMaxFaces> goes_left;
+  std::array<std::uint8_t, kMaxFaces> goes_left;
   for (std::size_t i = first; i < last; ++i) {
-    goes_left[sorted_[split.axis][i]] = i < first + split.left_count;
+    goes_left[sorted_[split.axis][i]] = i < first + split.left_count ? 1 : 0;
   }
   std::array<std::uint16_t, kMaxFaces> right;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (axis == split.axis) continue;
-    std::size_t lefts = first, rights = 0;
+    std::uint16_t* const part = sorted_[axis].data() + first;
+    std::size_t lefts = 0;
     // Both are written and one is kept: a branch here would be unpredictable.
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint16_t place = sorted_[axis][i];
-      sorted_[axis][lefts] = place;
-      right[rights] = place;
-      lefts += goes_left[place] ? 1u : 0u;
-      rights += goes_left[place] ? 0u : 1u;
+    for (std::size_t i = 0; i < last - first; ++i) {
+      const std::uint16_t place = part[i];
+      part[lefts] = place;
+      right[i - lefts] = place;
+      lefts += goes_left[place];
     }
-    std::copy_n(right.begin(), rights, sorted_[axis].begin() + static_cast<std::ptrdiff_t>(lefts));
+    std::copy_n(right.begin(), last - first - lefts, part + lefts);
   }
 }
 
