@@ -31,8 +31,38 @@ constexpr std::uint32_t kParallelFaces = 16384;
 constexpr std::uint32_t kBinaryTaskLevels = 9;
 constexpr std::uint32_t kWideTaskLevels = 3;
 
-// One byte per face, set when the face is reached.
-using Reached = std::vector<std::atomic<std::uint8_t>>;
+// One bit per face, set when the face is reached: eight to a word, so that one exchange is enough
+// for a full leaf.
+class Reached {
+ public:
+  explicit Reached(std::uint32_t faces) : faces_(faces), words_((faces + kFaces - 1) / kFaces) {}
+
+  [[nodiscard]] std::uint32_t faces() const { return faces_; }
+  [[nodiscard]] bool has(std::uint32_t face) const {
+    return (words_[face / kFaces].load(std::memory_order_relaxed) >> (face % kFaces) & 1u) != 0;
+  }
+
+  // Marks faces from `first` to the last of their word or before `end`, and calls twice(face) for
+  // each that was marked before. Returns the next face. Precondition: first < end <= faces().
+  template <class Twice>
+  std::uint32_t mark(std::uint32_t first, std::uint32_t end, Twice twice) {
+    const std::uint32_t word = first / kFaces;
+    const std::uint32_t next = std::min((word + 1) * kFaces, end);
+    const std::uint32_t mask = ((1u << (next - first)) - 1) << (first % kFaces);
+    const auto before =
+        words_[word].fetch_or(static_cast<std::uint8_t>(mask), std::memory_order_relaxed) & mask;
+    if (before == 0) return next;
+    for (std::uint32_t face = first; face < next; ++face) {
+      if ((before >> (face % kFaces) & 1u) != 0) twice(face);
+    }
+    return next;
+  }
+
+ private:
+  static constexpr std::uint32_t kFaces = 8;
+  std::uint32_t faces_;
+  std::vector<std::atomic<std::uint8_t>> words_;
+};
 
 // The walk of one subtree. Its counts and findings are added up in the order of the children, so
 // that they do not depend on threads.
@@ -147,23 +177,27 @@ class Walk {
   }
 
   // The order in which threads reach a face affects only the report of a corrupt tree.
-  bool mark_reached(std::uint32_t face, const char* twice) {
-    const bool met = reached_[face].exchange(1, std::memory_order_relaxed) != 0;
-    if (met) add(Errc::kFaceRepeated, "face " + std::to_string(face) + " " + twice);
-    if (!met) ++proof_.face_count;
-    return !met;
+  bool mark_reached(std::uint32_t first, std::uint32_t count, const char* twice) {
+    const std::uint32_t end = first + count;
+    std::uint32_t repeated = 0;
+    for (std::uint32_t face = first; face < end;) {
+      face = reached_.mark(face, end, [&](std::uint32_t met) {
+        add(Errc::kFaceRepeated, "face " + std::to_string(met) + " " + twice);
+        ++repeated;
+      });
+    }
+    proof_.face_count += count - repeated;
+    return repeated == 0;
   }
 
   Box<double> visit_leaf(const Node& leaf) {
     Box<double> content = empty_box<double>();
-    if (!in_range(leaf.ref.first, leaf.ref.second, reached_.size())) {
+    if (!in_range(leaf.ref.first, leaf.ref.second, reached_.faces())) {
       add(Errc::kFaceOutOfRange, "a leaf names face " + std::to_string(leaf.ref.first) + " of " +
-                                     std::to_string(reached_.size()));
+                                     std::to_string(reached_.faces()));
       return content;
     }
-    for (std::uint32_t f = leaf.ref.first; f < leaf.ref.first + leaf.ref.second; ++f) {
-      mark_reached(f, "is in two leaves");
-    }
+    mark_reached(leaf.ref.first, leaf.ref.second, "is in two leaves");
     if (!with_geometry_) return content;
     TriangleBatch batch;
     if (const Errc error = BoundTree::of(tree_).leaf_triangles(leaf, batch); error != Errc::kOk) {
@@ -188,8 +222,7 @@ class Walk {
     std::uint32_t before = 0;
     for (std::uint32_t copy = in_leaves; copy < tree_.face_count(); ++copy) {
       const std::uint32_t original = BoundTree::of(tree_).original_of(copy);
-      const bool is_original = original < in_leaves && original >= before &&
-                               reached_[original].load(std::memory_order_relaxed) != 0;
+      const bool is_original = original < in_leaves && original >= before && reached_.has(original);
       if (!is_original) {
         add(Errc::kFaceOutOfRange, "face " + std::to_string(copy) + " is a copy of face " +
                                        std::to_string(original) +
@@ -197,7 +230,7 @@ class Walk {
         continue;
       }
       before = original;
-      if (!mark_reached(copy, "is in a leaf and a copy of another one")) continue;
+      if (!mark_reached(copy, 1, "is in a leaf and a copy of another one")) continue;
       if (!has_same_triangles(original, copy) ||
           (tree_.has_face_ids() &&
            BoundTree::of(tree_).face_id(original) > BoundTree::of(tree_).face_id(copy))) {
@@ -231,8 +264,8 @@ class Walk {
   }
 
   void report_unreached() {
-    for (std::size_t f = 0; f < reached_.size(); ++f) {
-      if (reached_[f].load(std::memory_order_relaxed) != 0) continue;
+    for (std::uint32_t f = 0; f < reached_.faces(); ++f) {
+      if (reached_.has(f)) continue;
       ++proof_.missed;
       add(Errc::kFaceUnreachable, "no leaf holds face " + std::to_string(f));
     }
