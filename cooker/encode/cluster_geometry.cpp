@@ -79,20 +79,39 @@ class ClusterVertices {
   std::uint16_t count_ = 0;
 };
 
+// Appends fields to bytes; the last byte is there when the writer ends.
 class BitWriter {
  public:
-  explicit BitWriter(std::vector<std::byte>& out) : out_(out), at_(8 * out.size()) {}
+  explicit BitWriter(std::vector<std::byte>& out) : out_(out) {}
+  BitWriter(const BitWriter&) = delete;
+  BitWriter& operator=(const BitWriter&) = delete;
+  ~BitWriter() { append((count_ + 7) / 8); }
 
   void put(std::uint64_t value, std::uint32_t width) {
-    out_.resize((at_ + width + 7) / 8);
-    write_bits(out_.data(), at_, width, value);
-    at_ += width;
+    if (width > kWord) {
+      put(value, kWord);
+      value >>= kWord;
+      width -= kWord;
+    }
+    pending_ |= (value & low_bits(width)) << count_;
+    count_ += width;
+    if (count_ < kWord) return;
+    append(kWord / 8);
+    pending_ >>= kWord;
+    count_ -= kWord;
   }
-  [[nodiscard]] std::uint64_t position() const { return at_; }
 
  private:
+  static constexpr std::uint32_t kWord = 32;
+
+  void append(std::size_t bytes) {
+    const auto all = std::as_bytes(std::span(&pending_, 1));
+    out_.insert(out_.end(), all.begin(), all.begin() + static_cast<std::ptrdiff_t>(bytes));
+  }
+
   std::vector<std::byte>& out_;
-  std::uint64_t at_;
+  std::uint64_t pending_ = 0;  // fewer than kWord bits between calls
+  std::uint32_t count_ = 0;    // of them
 };
 
 // Numbers n[i] as (i * slope >> kSlopeBits) - bias + rest[i], where rests are from 0 to `range`.
@@ -400,11 +419,12 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
   using Number = typename Numbers::Number;
   Block block;
   ClusterEncoder<Number> encoder(block.bytes, may_have_quads, Numbers::kAreFloats);
+  std::vector<ClusterFace> faces;
   for (std::size_t first = 0; first < order.size(); first += kClusterFaces) {
     const std::span<std::uint32_t> of_cluster =
         order.subspan(first, std::min<std::size_t>(kClusterFaces, order.size() - first));
     ClusterVertices<Number> vertices;
-    std::vector<ClusterFace> faces;
+    faces.clear();
     for (const std::uint32_t source : of_cluster) {
       const Face& face = mesh.faces[source];
       ClusterFace named{{}, source, face.is_quad()};
