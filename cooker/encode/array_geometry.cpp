@@ -23,17 +23,45 @@ void append_number(std::vector<std::byte>& out, std::uint32_t value, std::uint8_
   if (bytes == 4) append(out, value);
 }
 
-void append_position(const Positions& positions, std::size_t vertex, std::vector<std::byte>& out) {
-  const auto copy = [&](const auto* first) {
-    const std::size_t end = out.size();
-    out.resize(end + 3 * sizeof(*first));
-    std::memcpy(out.data() + end, first, 3 * sizeof(*first));
-  };
-  if (positions.precision == Precision::kF32) {
-    copy(positions.f32.data() + 3 * vertex);
-  } else {
-    copy(positions.f64.data() + 3 * vertex);
+// Appends pieces to bytes that have room for them.
+class ByteWriter {
+ public:
+  explicit ByteWriter(std::byte* to) : to_(to) {}
+  template <class T>
+  void put(const T* values, std::size_t count) {
+    std::memcpy(to_, values, count * sizeof(T));
+    to_ += count * sizeof(T);
   }
+
+ private:
+  std::byte* to_;
+};
+
+// Corners are of the type Number, positions of Float.
+template <class Number, class Float>
+void encode_arrays(const SourceMesh& mesh, std::span<const Float> positions,
+                   std::span<const std::uint32_t> order, EncodedGeometry& out) {
+  out.corner_bytes = sizeof(Number);
+  out.corners.resize(order.size() * out.corners_per_face * sizeof(Number));
+  out.vertices.resize(positions.size() * sizeof(Float));
+  ByteWriter corners(out.corners.data()), vertices(out.vertices.data());
+  std::uint32_t count = 0;
+  std::vector<std::uint32_t> renumbered(positions.size() / 3, kNoCorner);
+  for (const std::uint32_t face : order) {
+    for (std::size_t i = 0; i < out.corners_per_face; ++i) {
+      const std::uint32_t corner = mesh.faces[face].corner[i];
+      auto number = static_cast<Number>(kNoCorner);
+      if (corner != kNoCorner) {
+        if (renumbered[corner] == kNoCorner) {
+          renumbered[corner] = count++;
+          vertices.put(&positions[std::size_t{3} * corner], 3);
+        }
+        number = static_cast<Number>(renumbered[corner]);
+      }
+      corners.put(&number, 1);
+    }
+  }
+  out.vertices.resize(std::size_t{3} * count * sizeof(Float));  // without those that no face has
 }
 
 }  // namespace
@@ -64,25 +92,20 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;
-  // 16 bits suffice for 65 535 vertices: the largest number marks a missing corner.
-  out.corner_bytes = mesh.positions.size() <= 0xffff ? 2 : 4;
-  out.corners.reserve(order.size() * out.corners_per_face * out.corner_bytes);
-
-  std::uint32_t vertices = 0;
-  std::vector<std::uint32_t> renumbered(mesh.positions.size(), kNoCorner);
-  for (const std::uint32_t face : order) {
-    for (std::size_t i = 0; i < out.corners_per_face; ++i) {
-      const std::uint32_t corner = mesh.faces[face].corner[i];
-      if (corner == kNoCorner) {
-        append_number(out.corners, kNoCorner, out.corner_bytes);
-        continue;
-      }
-      if (renumbered[corner] == kNoCorner) {
-        renumbered[corner] = vertices++;
-        append_position(mesh.positions, corner, out.vertices);
-      }
-      append_number(out.corners, renumbered[corner], out.corner_bytes);
+  const Positions& positions = mesh.positions;
+  const auto encode = [&](auto number) {
+    using Number = decltype(number);
+    if (positions.precision == Precision::kF32) {
+      encode_arrays<Number, float>(mesh, positions.f32, order, out);
+    } else {
+      encode_arrays<Number, double>(mesh, positions.f64, order, out);
     }
+  };
+  // 16 bits suffice for 65 535 vertices: the largest number marks a missing corner.
+  if (positions.size() <= 0xffff) {
+    encode(std::uint16_t{});
+  } else {
+    encode(std::uint32_t{});
   }
   return out;
 }
