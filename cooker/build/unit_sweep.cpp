@@ -20,54 +20,32 @@ std::uint32_t number_of(float value) {
   return (bits & kSign) != 0 ? ~bits : bits | kSign;
 }
 
-// Sorts places of faces by the centres of their boxes, ties by face number.
-class CentreOrder {
+// Sorts places by numbers, digit by digit from the lowest, which takes a third of the time of a
+// sort by comparison. Stable.
+class PlaceSorter {
  public:
-  explicit CentreOrder(std::span<const FaceBox> faces)
-      : faces_(faces), keys_(faces.size()), other_(faces.size()) {}
-
-  void sort(std::size_t axis, std::vector<std::uint16_t>& places) {
-    sort_rounded(axis);
-    places.resize(keys_.size());
-    std::transform(keys_.begin(), keys_.end(), places.begin(),
-                   [](const Key& key) { return key.place; });
-    const auto is_before = [&](std::uint16_t a, std::uint16_t b) {
-      const double ca = centre(faces_[a], axis), cb = centre(faces_[b], axis);
-      return ca != cb ? ca < cb : faces_[a].face < faces_[b].face;
-    };
-    for (std::size_t first = 0; first < keys_.size();) {
-      std::size_t last = first + 1;
-      while (last < keys_.size() && keys_[last].rounded == keys_[first].rounded) ++last;
-      if (last - first > 1) {
-        std::sort(places.begin() + static_cast<std::ptrdiff_t>(first),
-                  places.begin() + static_cast<std::ptrdiff_t>(last), is_before);
-      }
-      first = last;
-    }
-  }
-
- private:
   struct Key {
-    std::uint32_t rounded;  // the centre, as a number
+    std::uint32_t number;
     std::uint16_t place;
   };
 
-  // Digit by digit, from the lowest: with rounded centres, this takes a third of the time of a
-  // sort by comparison.
-  void sort_rounded(std::size_t axis) {
+  explicit PlaceSorter(std::size_t places) : keys_(places), other_(places) {}
+
+  template <class NumberOf>
+  std::span<const Key> sort(NumberOf number_of_place) {
     std::uint32_t least = ~std::uint32_t{0}, most = 0;
     for (std::size_t i = 0; i < keys_.size(); ++i) {
-      const std::uint32_t rounded = number_of(static_cast<float>(centre(faces_[i], axis)));
-      keys_[i] = {rounded, static_cast<std::uint16_t>(i)};
-      least = std::min(least, rounded);
-      most = std::max(most, rounded);
+      const std::uint32_t number = number_of_place(i);
+      keys_[i] = {number, static_cast<std::uint16_t>(i)};
+      least = std::min(least, number);
+      most = std::max(most, number);
     }
     constexpr std::uint32_t kDigitBits = 8;
     constexpr std::uint32_t kDigits = 1u << kDigitBits;
     const auto bits = static_cast<std::uint32_t>(std::bit_width(most - least));
     for (std::uint32_t shift = 0; shift < bits; shift += kDigitBits) {
       const auto digit_of = [&](const Key& key) {
-        return (key.rounded - least) >> shift & (kDigits - 1);
+        return (key.number - least) >> shift & (kDigits - 1);
       };
       std::array<std::uint32_t, kDigits> end{};
       for (const Key& key : keys_) ++end[digit_of(key)];
@@ -75,20 +53,48 @@ class CentreOrder {
       for (const Key& key : keys_) other_[end[digit_of(key)]++] = key;
       keys_.swap(other_);
     }
+    return keys_;
   }
 
-  std::span<const FaceBox> faces_;
+ private:
   std::vector<Key> keys_;
   std::vector<Key> other_;
 };
 
+// Places of faces by the centres of their boxes, ties by place.
+void sort_by_centre(std::span<const FaceBox> faces, std::size_t axis, PlaceSorter& sorter,
+                    std::vector<std::uint16_t>& places) {
+  const std::span<const PlaceSorter::Key> keys = sorter.sort(
+      [&](std::size_t i) { return number_of(static_cast<float>(centre(faces[i], axis))); });
+  places.resize(keys.size());
+  std::transform(keys.begin(), keys.end(), places.begin(),
+                 [](const PlaceSorter::Key& key) { return key.place; });
+  // Centres that are rounded to the same number may differ.
+  const auto is_before = [&](std::uint16_t a, std::uint16_t b) {
+    const double ca = centre(faces[a], axis), cb = centre(faces[b], axis);
+    return ca != cb ? ca < cb : a < b;
+  };
+  for (std::size_t first = 0; first < keys.size();) {
+    std::size_t last = first + 1;
+    while (last < keys.size() && keys[last].number == keys[first].number) ++last;
+    const std::span<std::uint16_t> run = std::span(places).subspan(first, last - first);
+    if (!std::is_sorted(run.begin(), run.end(), is_before)) {
+      std::sort(run.begin(), run.end(), is_before);
+    }
+    first = last;
+  }
+}
+
 }  // namespace
 
-UnitSweep::UnitSweep(std::span<const FaceBox> faces)
-    : faces_(faces.begin(), faces.end()), of_leaf_(leaves_of(faces.size())) {
+UnitSweep::UnitSweep(std::span<const FaceBox> faces) : of_leaf_(leaves_of(faces.size())) {
   assert(faces.size() <= kMaxFaces);
-  CentreOrder order(faces_);
-  for (std::size_t axis = 0; axis < 3; ++axis) order.sort(axis, sorted_[axis]);
+  PlaceSorter sorter(faces.size());
+  faces_.reserve(faces.size());
+  for (const PlaceSorter::Key& key : sorter.sort([&](std::size_t i) { return faces[i].face; })) {
+    faces_.push_back(faces[key.place]);
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis) sort_by_centre(faces_, axis, sorter, sorted_[axis]);
 }
 
 Box<float> UnitSweep::bounds(std::size_t first, std::size_t last) const {

@@ -37,7 +37,7 @@ class UnitSweep {
   void copy_to(std::size_t first, std::span<FaceBox> to) const;
 
  private:
-  std::vector<FaceBox> faces_;
+  std::vector<FaceBox> faces_;                        // by number
   std::array<std::vector<std::uint16_t>, 3> sorted_;  // indices into faces_
   std::vector<FaceBounds> of_leaf_;  // of a part that is being divided, along one axis
 };
