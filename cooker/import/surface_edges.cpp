@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cooker/import/weld.h"
+#include "format/limits.h"
 #include "runtime/tree/geometry.h"
 
 namespace boxtree::cooker {
@@ -61,9 +62,10 @@ SurfaceEdges count_surface_edges(const MeshArrays& mesh) {
   visit_sides(mesh, numbers, [&](std::uint32_t a, std::uint32_t b) { ++end[std::min(a, b) + 1]; });
   for (std::size_t v = 1; v < end.size(); ++v) end[v] += end[v - 1];
   // The larger vertex, and in the lowest bit whether the face goes from the larger to the smaller.
-  std::vector<std::uint64_t> sides(end.back());
+  static_assert(kMaxVertices <= 0x7fffffffu);
+  std::vector<std::uint32_t> sides(end.back());
   visit_sides(mesh, numbers, [&](std::uint32_t a, std::uint32_t b) {
-    sides[end[std::min(a, b)]++] = std::uint64_t{std::max(a, b)} << 1 | (a > b ? 1u : 0u);
+    sides[end[std::min(a, b)]++] = std::max(a, b) << 1 | (a > b ? 1u : 0u);
   });
   SurfaceEdges edges;
   std::size_t first = 0;
@@ -73,7 +75,7 @@ SurfaceEdges count_surface_edges(const MeshArrays& mesh) {
     std::sort(begin, past);
     for (auto side = begin; side != past;) {
       const auto next =
-          std::find_if(side, past, [&](std::uint64_t other) { return other >> 1 != *side >> 1; });
+          std::find_if(side, past, [&](std::uint32_t other) { return other >> 1 != *side >> 1; });
       const auto faces = next - side;
       edges.open += faces == 1 ? 1u : 0u;
       edges.non_manifold += faces > 2 ? 1u : 0u;
