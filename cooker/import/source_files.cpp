@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <charconv>
 #include <cstdio>
 #include <cstring>
 #include <locale.h>
@@ -18,6 +17,7 @@
 
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
+#include "cooker/text/percent.h"
 #include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
@@ -27,23 +27,6 @@ namespace fs = std::filesystem;
 
 Error unreadable(const fs::path& path, const std::string& why) {
   return Error{Errc::kFileUnreadable, path.string() + ": " + why};
-}
-
-// Text with the escapes of an URI, as bytes; as it is where one is none.
-std::string unescaped(std::string_view text) {
-  std::string out;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    unsigned value = 0;
-    const char* const digits = text.data() + i + 1;
-    if (text[i] == '%' && text.size() - i > 2 &&
-        std::from_chars(digits, digits + 2, value, 16).ptr == digits + 2 && value != 0) {
-      out += static_cast<char>(value);
-      i += 2;
-    } else {
-      out += text[i];
-    }
-  }
-  return out;
 }
 
 }  // namespace
@@ -99,7 +82,7 @@ fs::path RecordingIo::found(const char* path) const {
   if (name.find('%') == std::string_view::npos || fs::is_regular_file(path, error)) return path;
   const std::string folder = source_.path().parent_path().string();
   const std::size_t kept = name.substr(0, folder.size()) == folder ? folder.size() : 0;
-  fs::path file = std::string(name.substr(0, kept)) + unescaped(name.substr(kept));
+  fs::path file = std::string(name.substr(0, kept)) + percent_decoded(name.substr(kept));
   return fs::is_regular_file(file, error) ? file : fs::path(path);
 }
 

@@ -18,6 +18,7 @@
 #include "cooker/import/gltf_nesting.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
+#include "cooker/text/percent.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -111,33 +112,6 @@ std::optional<std::string> data_of(std::string_view uri) {
     bytes += static_cast<char>(group >> bits & 0xffu);
   }
   return bytes;
-}
-
-// A path as a URI, and back.
-std::string percent_encoded(std::string_view path) {
-  std::string uri;
-  for (const char c : path) {
-    const bool is_plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') ||
-                          (c >= '0' && c <= '9') ||
-                          std::string_view("-._~/").find(c) != std::string_view::npos;
-    uri += is_plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
-  }
-  return uri;
-}
-std::string percent_decoded(std::string_view uri) {
-  std::string path;
-  const auto digit = [](char c) -> int {
-    if (c >= '0' && c <= '9') return c - '0';
-    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
-    return c >= 'A' && c <= 'F' ? c - 'A' + 10 : -1;
-  };
-  for (std::size_t i = 0; i < uri.size(); ++i) {
-    const bool is_code =
-        uri[i] == '%' && i + 2 < uri.size() && digit(uri[i + 1]) >= 0 && digit(uri[i + 2]) >= 0;
-    path += is_code ? static_cast<char>(digit(uri[i + 1]) * 16 + digit(uri[i + 2])) : uri[i];
-    if (is_code) i += 2;
-  }
-  return path;
 }
 
 class GltfReorder {
