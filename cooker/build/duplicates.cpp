@@ -8,6 +8,8 @@
 #include <cstring>
 #include <tuple>
 
+#include "cooker/import/hash_mix.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -43,15 +45,11 @@ class FaceBits {
   [[nodiscard]] std::size_t corners(std::size_t face) const {
     return mesh_.faces[face].is_quad() ? 4 : 3;
   }
-  // Fibonacci hashing: 2^64 over the golden ratio.
   template <class Bits>
   [[nodiscard]] static std::uint64_t mix(std::uint64_t mixed, const void* position) {
     std::array<Bits, 3> bits;
     std::memcpy(bits.data(), position, sizeof(bits));
-    for (const std::uint64_t x : bits) {
-      mixed = (mixed ^ x) * 0x9e3779b97f4a7c15u;
-      mixed ^= mixed >> 32;
-    }
+    for (const Bits x : bits) mixed = hash_with(mixed, x);
     return mixed;
   }
   [[nodiscard]] const void* corner(std::size_t face, std::size_t i) const {

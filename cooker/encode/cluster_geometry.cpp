@@ -16,6 +16,7 @@
 #include "cooker/encode/encoded.h"
 #include "cooker/encode/strip.h"
 #include "cooker/encode/vertex_groups.h"
+#include "cooker/import/hash_mix.h"
 #include "format/bits.h"
 #include "format/cluster_leaf.h"
 
@@ -65,11 +66,9 @@ class ClusterVertices {
   static constexpr std::uint16_t kFree = 0xffff;
 
   static std::size_t hash(const Point& point) {
-    // Fibonacci hashing: 2^64 over the golden ratio.
     std::uint64_t mixed = 0;
     for (const Number x : point) {
-      mixed = (mixed ^ static_cast<std::make_unsigned_t<Number>>(x)) * 0x9e3779b97f4a7c15u;
-      mixed ^= mixed >> 32;
+      mixed = hash_with(mixed, static_cast<std::make_unsigned_t<Number>>(x));
     }
     return mixed;
   }

@@ -8,6 +8,8 @@
 #include <cstring>
 #include <type_traits>
 
+#include "cooker/import/hash_mix.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -20,16 +22,13 @@ std::size_t slots_for(std::size_t vertices) {
   return std::bit_ceil(wanted < kMinSlots ? kMinSlots : wanted);
 }
 
-// Each coordinate is spread over 64 bits before the next is added, because neighbouring positions
-// differ in few bits. The top bits of a product depend on all lower bits, hence the final fold.
-// Multiplier: 2^64 divided by the golden ratio (Knuth, TAOCP 6.4).
+// Neighbouring positions differ in few bits.
 template <class T>
 std::uint64_t hash_bits(const T* position) {
   using Bits = std::conditional_t<sizeof(T) == 4, std::uint32_t, std::uint64_t>;
   std::uint64_t hash = 0;
   for (int axis = 0; axis < 3; ++axis) {
-    hash = (hash ^ std::bit_cast<Bits>(position[axis])) * 0x9e3779b97f4a7c15u;
-    hash ^= hash >> 32;
+    hash = hash_with(hash, std::bit_cast<Bits>(position[axis]));
   }
   return hash;
 }
