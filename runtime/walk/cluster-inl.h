@@ -117,36 +117,20 @@ class ClusterReader {
   }
 
   HWY_NOINLINE bool find(std::uint32_t number) {
-    leaves_.cluster = LeafTable::kNone;
     Cluster cluster;
-    if (!find_cluster(view_, number, cluster)) return false;
-    const ClusterHeaderView header = cluster.header();
     GroupLanes groups;
-    if (header.group_size() > ClusterHeader::kFastGroupSize || !find_groups(cluster, groups)) {
-      return false;
-    }
+    if (!find_cluster(view_, number, leaves_, cluster, groups)) return false;
     set_groups(groups);
-    leaves_.set(cluster, header);
     bases_ = cluster.bytes + cluster.bases_at;
     groups_ = cluster.groups;
-    last_vertex_ = header.vertex_count() - 1u;
-    group_size_ = header.group_size();
-    per_group_ = 0xffffu / header.group_size() + 1;
-    const hn::Rebind<std::uint8_t, Words> small;
-    HWY_ALIGN std::uint32_t field[kWideChildren];  // the first bytes of the header
-    hn::Store(hn::PromoteTo(Words(),
-                            hn::LoadU(small, reinterpret_cast<const std::uint8_t*>(cluster.bytes))),
-              Words(), field);
-    constexpr std::size_t kTrailing = offsetof(ClusterHeader, trailing);
-    constexpr std::size_t kBaseShift = offsetof(ClusterHeader, base_shift);
+    const ClusterHeaderView header = cluster.header();
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
-      hn::Store(set(field[kTrailing + k]), Words(), trailing_[k]);
-      hn::Store(set(field[kBaseShift + k]), Words(), base_shift_[k]);
+      hn::Store(set(header.trailing(k)), Words(), trailing_[k]);
+      hn::Store(set(header.base_shift(k)), Words(), base_shift_[k]);
       const auto origin = boxtree::load<std::uint32_t>(cluster.bytes + sizeof(ClusterHeader), k);
       hn::Store(set(origin), Words(), origin_[k]);
     }
-    leaves_.cluster = number;
     return true;
   }
 
@@ -212,10 +196,11 @@ class ClusterReader {
         set(kLaneConstants.low_bits[faces.old_bits]));
     const auto number =
         hn::IfThenElse(is_new, hn::Add(set(faces.before), rank), hn::Sub(set(faces.last), field));
-    const auto inside = hn::Min(number, set(last_vertex_));
-    const auto group = hn::BitCast(Words(), hn::MulHigh(hn::BitCast(Halves(), inside),
-                                                        hn::BitCast(Halves(), set(per_group_))));
-    const auto in_group = hn::Sub(inside, multiply(group, set(group_size_)));
+    const auto inside = hn::Min(number, set(leaves_.last_vertex));
+    const auto group = hn::BitCast(
+        Words(),
+        hn::MulHigh(hn::BitCast(Halves(), inside), hn::BitCast(Halves(), set(leaves_.per_group))));
+    const auto in_group = hn::Sub(inside, multiply(group, set(leaves_.group_size)));
     Vertices out;
     out.group = hn::Or(group, constant<kLowByte>());
     const auto start =
@@ -383,10 +368,7 @@ class ClusterReader {
   const Avx512LeafReader read_by_avx512_;  // null where the machine has none
   std::uint32_t groups_ = 0;
   const std::byte* bases_ = nullptr;
-  std::uint32_t last_vertex_ = 0;
-  std::uint32_t group_size_ = 0;
-  std::uint32_t per_group_ = 0;  // 2^16 / group_size_, rounded up
-  bool is_narrow_ = false;       // offsets of x and y end in the first 32 and 64 bits of a vertex
+  bool is_narrow_ = false;  // offsets of x and y end in the first 32 and 64 bits of a vertex
   // Each in all lanes.
   HWY_ALIGN std::uint32_t origin_[3][kWideChildren];
   HWY_ALIGN std::uint32_t base_shift_[3][kWideChildren];

@@ -26,17 +26,17 @@ using Sixteen = __m512i;
 HWY_INLINE Sixteen load(const std::uint32_t (&row)[16]) {
   return _mm512_load_si512(row);
 }
-// From memory, where it costs nothing as an operand.
-HWY_INLINE Sixteen set(const std::uint32_t& number) {
+// A number in all lanes: from memory, where it costs nothing as an operand.
+HWY_INLINE Sixteen every(const std::uint32_t& number) {
   return _mm512_set1_epi32(static_cast<std::int32_t>(number));
 }
 // The same; up to LaneConstants::kMost.
-HWY_INLINE Sixteen small(std::uint32_t number) {
-  return set(kLaneConstants.number[number]);
+HWY_INLINE Sixteen every_small(std::uint32_t number) {
+  return every(kLaneConstants.number[number]);
 }
 template <std::uint32_t kNumber>
-HWY_INLINE Sixteen constant() {
-  return set(lane_constant<kNumber>()[0]);
+HWY_INLINE Sixteen every_constant() {
+  return every(lane_constant<kNumber>()[0]);
 }
 // Lane i: that of `row` which lane i of `group` names.
 HWY_INLINE Sixteen look_up(const std::uint32_t (&row)[16], Sixteen group) {
@@ -46,31 +46,23 @@ alignas(64) constexpr std::uint32_t kIota[16] = {0, 1, 2,  3,  4,  5,  6,  7,
                                                  8, 9, 10, 11, 12, 13, 14, 15};
 
 HWY_NOINLINE bool find(const ClusterView& view, std::uint32_t number, Avx512Cluster& out) {
-  out.leaves.cluster = LeafTable::kNone;
   Cluster cluster;
-  if (!find_cluster(view, number, cluster)) return false;
-  const ClusterHeaderView header = cluster.header();
   GroupLanes groups;
-  if (header.group_size() > ClusterHeader::kFastGroupSize || !find_groups(cluster, groups)) {
-    return false;
-  }
-  out.leaves.set(cluster, header);
-  out.last_vertex = header.vertex_count() - 1u;
-  out.group_size = header.group_size();
-  out.per_group = 0xffffu / header.group_size() + 1;
+  if (!find_cluster(view, number, out.leaves, cluster, groups)) return false;
+  const ClusterHeaderView header = cluster.header();
   _mm512_store_si512(out.start, _mm512_cvtepu16_epi32(groups.start.raw));
   _mm512_store_si512(out.stride, _mm512_cvtepu8_epi32(groups.stride.raw));
   const auto two = hn::Add(groups.width[0], groups.width[1]);
   _mm512_store_si512(out.at[0], _mm512_cvtepu8_epi32(groups.width[0].raw));
   _mm512_store_si512(out.at[1], _mm512_cvtepu8_epi32(two.raw));
-  // With up to 7 bits before.
-  out.is_long = !is_zero(above(two, 64 - 8));
+  constexpr std::uint8_t kMostBefore = 7;
+  out.is_long = !is_zero(above(two, 63 - kMostBefore));
   HWY_UNROLL(3)
   for (std::size_t k = 0; k < 3; ++k) {
     out.trailing[k] = header.trailing(k);
     const Sixteen width = _mm512_cvtepu8_epi32(groups.width[k].raw);
     // A shift by 32 gives 0.
-    const Sixteen ones = set(0xffffffffu);
+    const Sixteen ones = every(0xffffffffu);
     _mm512_store_si512(out.low_bits[k], _mm512_xor_si512(_mm512_sllv_epi32(ones, width), ones));
     const auto* const bases = cluster.bytes + cluster.bases_at + k * cluster.groups;
     const Sixteen base =
@@ -79,9 +71,8 @@ HWY_NOINLINE bool find(const ClusterView& view, std::uint32_t number, Avx512Clus
     _mm512_store_si512(
         out.base[k],
         _mm512_add_epi32(_mm512_sll_epi32(base, _mm_cvtsi32_si128(header.base_shift(k))),
-                         set(origin)));
+                         every(origin)));
   }
-  out.leaves.cluster = number;
   return true;
 }
 
@@ -124,7 +115,7 @@ struct TwoWords {
   Sixteen low, high;
 };
 HWY_INLINE TwoWords words_from(const LongWords& words, Sixteen bit) {
-  const __mmask16 is_second = _mm512_cmpgt_epu32_mask(bit, constant<31>());
+  const __mmask16 is_second = _mm512_cmpgt_epu32_mask(bit, every_constant<31>());
   return {_mm512_mask_mov_epi32(words.part[0], is_second, words.part[1]),
           _mm512_mask_mov_epi32(words.part[1], is_second, words.part[2])};
 }
@@ -146,39 +137,40 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
   // new one. Fields of those follow each other, each in up to three bytes.
   const Sixteen iota = load(kIota);
   const auto is_new = static_cast<__mmask16>(faces.new_thirds | faces.new_others << kLeafFaces);
-  const Sixteen place =
-      _mm512_add_epi32(_mm512_mullo_epi16(iota, small(faces.old_bits)), small(faces.others));
+  const Sixteen place = _mm512_add_epi32(_mm512_mullo_epi16(iota, every_small(faces.old_bits)),
+                                         every_small(faces.others));
   const Sixteen first_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
   const Sixteen bytes = _mm512_add_epi32(
-      _mm512_shuffle_epi8(_mm512_srli_epi32(place, 3), first_byte), constant<0x80020100>());
+      _mm512_shuffle_epi8(_mm512_srli_epi32(place, 3), first_byte), every_constant<0x80020100>());
   const Sixteen window =
       _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(faces.bytes)));
-  const Sixteen field = _mm512_and_si512(
-      _mm512_srlv_epi32(_mm512_shuffle_epi8(window, bytes), _mm512_and_si512(place, constant<7>())),
-      set(kLaneConstants.low_bits[faces.old_bits]));
+  const Sixteen field =
+      _mm512_and_si512(_mm512_srlv_epi32(_mm512_shuffle_epi8(window, bytes),
+                                         _mm512_and_si512(place, every_constant<7>())),
+                       every(kLaneConstants.low_bits[faces.old_bits]));
   const Sixteen news =
-      _mm512_maskz_expand_epi32(is_new, _mm512_add_epi32(iota, set(faces.before + 1)));
+      _mm512_maskz_expand_epi32(is_new, _mm512_add_epi32(iota, every(faces.before + 1)));
   const Sixteen vertex = _mm512_mask_expand_epi32(news, static_cast<__mmask16>(~is_new),
-                                                  _mm512_sub_epi32(set(faces.last), field));
-  const Sixteen inside = _mm512_min_epu32(vertex, set(cluster.last_vertex));
+                                                  _mm512_sub_epi32(every(faces.last), field));
+  const Sixteen inside = _mm512_min_epu32(vertex, every(cluster.leaves.last_vertex));
   const auto references = static_cast<__mmask16>((1u << (kLeafFaces + faces.others)) - 1);
   const __mmask16 corrupt = _mm512_mask_cmpneq_epu32_mask(references, vertex, inside);
 
   // Where they are. Products below 2^16.
-  const Sixteen group = _mm512_mulhi_epu16(inside, set(cluster.per_group));
+  const Sixteen group = _mm512_mulhi_epu16(inside, every(cluster.leaves.per_group));
   const Sixteen in_group =
-      _mm512_sub_epi32(inside, _mm512_mullo_epi16(group, set(cluster.group_size)));
+      _mm512_sub_epi32(inside, _mm512_mullo_epi16(group, every(cluster.leaves.group_size)));
   const Sixteen bit = _mm512_mullo_epi16(in_group, look_up(cluster.stride, group));
   const LongWords words = words_at(
       cluster.leaves.bytes,
       _mm512_add_epi32(look_up(cluster.start, group), _mm512_srli_epi32(bit, 3)), cluster.byte);
-  const Sixteen x = _mm512_and_si512(bit, constant<7>());
+  const Sixteen x = _mm512_and_si512(bit, every_constant<7>());
   const Sixteen y = _mm512_add_epi32(x, look_up(cluster.at[0], group));
   const Sixteen z = _mm512_add_epi32(x, look_up(cluster.at[1], group));
   const TwoWords of_y = words_from(words, y);
   TwoWords of_z = words_from(words, z);
   if (HWY_UNLIKELY(cluster.is_long)) {
-    const __mmask16 is_third = _mm512_cmpgt_epu32_mask(z, constant<63>());
+    const __mmask16 is_third = _mm512_cmpgt_epu32_mask(z, every_constant<63>());
     of_z = {_mm512_mask_mov_epi32(of_z.low, is_third, words.part[2]),
             _mm512_mask_mov_epi32(of_z.high, is_third, words.part[3])};
   }
@@ -195,7 +187,7 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
   if (view.numbers == ClusterNumbers::kGrid) {
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Sixteen whole = _mm512_sllv_epi32(stored[k], set(cluster.trailing[k]));
+      const Sixteen whole = _mm512_sllv_epi32(stored[k], every(cluster.trailing[k]));
       _mm512_store_si512(triangles.number[k], whole);
       position[k] = _mm512_cvtepi32_ps(whole);
     }
@@ -204,9 +196,9 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
     for (std::size_t k = 0; k < 3; ++k) {
       const Sixteen sign = _mm512_srai_epi32(stored[k], 31);
       const Sixteen magnitude =
-          _mm512_sllv_epi32(_mm512_xor_si512(stored[k], sign), set(cluster.trailing[k]));
+          _mm512_sllv_epi32(_mm512_xor_si512(stored[k], sign), every(cluster.trailing[k]));
       const Sixteen bits =
-          _mm512_or_si512(magnitude, _mm512_and_si512(sign, constant<0x80000000>()));
+          _mm512_or_si512(magnitude, _mm512_and_si512(sign, every_constant<0x80000000>()));
       _mm512_store_si512(triangles.number[k], bits);
       position[k] = _mm512_castsi512_ps(bits);
     }
@@ -217,9 +209,7 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
   }
 
   // Corners of faces are references.
-  const StripCorners corners =
-      join_strip(hn::Set(Words(), boxtree::load<std::uint32_t>(faces.bytes - sizeof(faces.fields))),
-                 triangles);
+  const StripCorners corners = join_strip(hn::Set(Words(), faces.fields), triangles);
   const Sixteen both =
       _mm512_inserti64x4(_mm512_castsi256_si512(corners.first.raw), corners.second.raw, 1);
   HWY_UNROLL(3)

@@ -19,10 +19,7 @@ struct Avx512Cluster {
   explicit Avx512Cluster(const ClusterView& view) noexcept : leaves(view) {}
 
   LeafTable leaves;
-  std::uint32_t last_vertex = 0;
-  std::uint32_t group_size = 0;
-  std::uint32_t per_group = 0;  // 2^16 / group_size, rounded up
-  bool is_long = false;         // offsets of z may begin after the first 64 bits
+  bool is_long = false;  // offsets of z may begin after the first 64 bits
   std::uint32_t trailing[3];
   alignas(64) Lanes start;        // byte of the cluster
   alignas(64) Lanes stride;       // bits of a vertex

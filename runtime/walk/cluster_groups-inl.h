@@ -7,6 +7,7 @@
 #define BOXTREE_RUNTIME_WALK_CLUSTER_GROUPS_INL_H
 #endif
 
+#include "runtime/walk/leaf_fields.h"
 #include "runtime/walk/word_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -74,6 +75,20 @@ HWY_INLINE bool find_groups(const Cluster& cluster, GroupLanes& out) {
   out.start = hn::Add(hn::Sub(end, taken), half_words(cluster.vertices_at));
   const std::uint32_t all = hn::ExtractLane(hn::UpperHalf(hn::Half<Halves>(), end), 7);
   return cluster.vertices_at + all == header.leaves_at();
+}
+
+/// Finds cluster `number` for a reader by vectors. False, and no cluster in `leaves`, if it is
+/// corrupt or its groups are too large for products of 16 bits.
+HWY_INLINE bool find_cluster(const ClusterView& view, std::uint32_t number, LeafTable& leaves,
+                             Cluster& cluster, GroupLanes& groups) {
+  leaves.cluster = LeafTable::kNone;
+  if (!boxtree::find_cluster(view, number, cluster) ||
+      cluster.header().group_size() > ClusterHeader::kFastGroupSize ||
+      !find_groups(cluster, groups)) {
+    return false;
+  }
+  leaves.set(number, cluster);
+  return true;
 }
 
 #endif

@@ -37,12 +37,11 @@ class LeafFloats {
   HWY_INLINE bool load(std::uint32_t first, std::uint32_t count) {
     first_ = first;
     count_ = count;
-    is_direct_ =
-        floats_.is_direct && count == kLeafFaces && in_range(first, count, mesh_.face_count);
+    is_direct_ = floats_.is_direct && first % kLeafFaces == 0 && count == kLeafFaces &&
+                 in_range(first, count, mesh_.face_count);
 #if BOXTREE_HAS_EIGHT_LANES
     // The usual case without another call.
-    if (is_direct_ && first % kLeafFaces == 0 &&
-        clusters_.read_by_avx512(first / kLeafFaces, floats_.scale, coordinate_)) {
+    if (is_direct_ && clusters_.read_by_avx512(first / kLeafFaces, floats_.scale, coordinate_)) {
       return true;
     }
 #endif
@@ -145,10 +144,7 @@ class LeafFloats {
 
 #if BOXTREE_HAS_EIGHT_LANES
   HWY_INLINE bool gather_cluster() {
-    if (first_ % kLeafFaces != 0 ||
-        !clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_)) {
-      return false;
-    }
+    if (!clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_)) return false;
     count_ = clusters_.triangles().count;
     return true;
   }

@@ -23,7 +23,7 @@ static_assert(kLeafStepBits + kLeafFaces + kOldWiderBits == 32);
 
 /// The faces of a leaf, and where the vertices are that it refers to.
 struct LeafFields {
-  /// Leaves with as many bits in front of what follows their references are usual.
+  /// Bits of one load, by which a usual leaf's new_others and references that are not new are read.
   static constexpr std::uint32_t kWindowBits = 128;
 
   std::uint32_t fields = 0;      // the first 32 bits, see kLeafStepBits
@@ -36,27 +36,33 @@ struct LeafFields {
   std::uint32_t last = 0;        // number of the last new vertex
   std::uint32_t old_bits = 0;    // of each reference that is not new
   const std::byte* bytes = nullptr;  // new_others, then references that are not new
-  bool is_usual = false;  // triangles whose other references are 8, whose bits are kWindowBits
+  // Triangles, with at most 8 other references, and at most kWindowBits in `bytes`.
+  bool is_usual = false;
 };
 
-/// Where the leaves of one cluster are.
+/// Where the leaves of one cluster are, and what gives the group of a vertex.
 struct LeafTable {
   static constexpr std::uint32_t kNone = 0xffffffffu;
 
-  std::uint32_t cluster = kNone;  // its number
+  std::uint32_t cluster = kNone;  // its number, or kNone while nothing else here is set
   const std::byte* bytes = nullptr;
   std::uint32_t size = 0;  // at which a leaf may begin
   std::uint32_t table = 0, entry_bits = 0;
   std::uint32_t start_bits = 0, starts_at = 0, start_slope = 0;
   std::uint32_t first_slope = 0, first_bias = 0;  // with 1 more
   std::uint32_t old_bits = 0;
+  std::uint32_t last_vertex = 0;
+  std::uint32_t group_size = 0;
+  std::uint32_t per_group = 0;   // 2^16 / group_size, rounded up
   std::uint32_t quad_bytes = 0;  // that a leaf has in front of its other fields: a bit a face
 
   LeafTable() = default;
   BOXTREE_ALWAYS_INLINE explicit LeafTable(const ClusterView& view) noexcept
       : quad_bytes(view.corners_per_face == 4 ? kLeafFaces / 8 : 0) {}
 
-  BOXTREE_ALWAYS_INLINE void set(const Cluster& found, const ClusterHeaderView& header) noexcept {
+  BOXTREE_ALWAYS_INLINE void set(std::uint32_t number, const Cluster& found) noexcept {
+    const ClusterHeaderView header = found.header();
+    cluster = number;
     bytes = found.bytes;
     size = static_cast<std::uint32_t>(std::min<std::uint64_t>(found.size, 0xffffffffu));
     table = found.table;
@@ -67,6 +73,9 @@ struct LeafTable {
     first_slope = header.first_slope();
     first_bias = header.first_bias() + 1u;
     old_bits = header.old_bits();
+    last_vertex = header.vertex_count() - 1;
+    group_size = header.group_size();
+    per_group = 0xffffu / group_size + 1;
   }
 
   /// Finds leaf `self` of the cluster. False if its place is corrupt.
