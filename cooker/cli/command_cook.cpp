@@ -78,10 +78,9 @@ std::string report_text(const Arguments& arguments, const std::string& output,
 
 // Refused here, because assimp looks for a reader by the first bytes if it does not know an ending.
 std::string ending_fault(const std::string& text) {
-  const std::vector<std::string> endings = mesh_endings();
-  if (std::find(endings.begin(), endings.end(), in_lower_case(text)) != endings.end()) return {};
+  if (is_mesh_ending(text)) return {};
   return fmt::format("expected the ending of a mesh file, as obj, found \"{}\"{}", text,
-                     suggestion(text, endings));
+                     suggestion(text, mesh_endings()));
 }
 
 // The options of the cook that names on the command line stand for.

@@ -144,7 +144,7 @@ int run_batch(const Arguments& arguments, const AnswerRequest& answer_request,
     if (arguments.json) {
       answers.push_back(std::move(numbered));
     } else {
-      fmt::print("{}\n", line_of(numbered));
+      fmt::print("{}\n", line_of(std::move(numbered)));
       if (is_interactive && std::fflush(stdout) != 0) return fail_to_print();
     }
   }

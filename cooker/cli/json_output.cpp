@@ -41,10 +41,9 @@ void print_files(std::vector<Json> documents, bool are_several) {
   print(Json{{"files", std::move(documents)}});
 }
 
-std::string line_of(const Json& value) {
-  Json line = value;
-  drop_signs_of_zero(line);
-  return line.dump(-1, ' ', false, Json::error_handler_t::replace);
+std::string line_of(Json value) {
+  drop_signs_of_zero(value);
+  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 }  // namespace boxtree::cooker

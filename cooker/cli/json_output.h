@@ -22,7 +22,7 @@ void print(const Json& document);
 /// {"files": [...]}, however many there is something to say of.
 void print_files(std::vector<Json> documents, bool are_several);
 /// The same in one line, as text.
-[[nodiscard]] std::string line_of(const Json& value);
+[[nodiscard]] std::string line_of(Json value);
 
 /// A vector as three numbers.
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);

@@ -100,14 +100,14 @@ double decoded_move(int grid_bits) {
   const test::CookedTree cooked = test::cook_tree(mesh(), CodecId::kWide8, options);
   double largest = 0;
   std::size_t triangles = 0;
-  std::vector<Node> todo = {BoundTree::of(cooked.tree).root()};
-  while (!todo.empty()) {
-    const Node node = todo.back();
-    todo.pop_back();
+  std::vector<Node> pending = {BoundTree::of(cooked.tree).root()};
+  while (!pending.empty()) {
+    const Node node = pending.back();
+    pending.pop_back();
     if (!node.is_leaf) {
       NodeChildren children;
       EXPECT_EQ(BoundTree::of(cooked.tree).expand(node, children), NodeState::kValid);
-      for (std::uint32_t i = 0; i < children.count; ++i) todo.push_back(children.child[i]);
+      for (std::uint32_t i = 0; i < children.count; ++i) pending.push_back(children.child[i]);
       continue;
     }
     TriangleBatch batch;
