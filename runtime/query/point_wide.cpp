@@ -37,9 +37,15 @@ class PointLeaves {
   /// Squared distances above it cannot improve the answer.
   [[nodiscard]] float bound() const { return bound_; }
 
-  /// Whether to go on.
-  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
-    if (!leaf_.load(first, count)) {
+  /// Whether what is visited next is worth reading ahead: the first face that is found may exclude
+  /// the rest.
+  [[nodiscard]] bool reads_ahead() const { return leaf_.reads_ahead() && query_.found; }
+
+  /// Whether to go on. `next`: see NearestWalk.
+  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count, std::uint32_t next) {
+    const bool is_read = leaf_.load(first, count);
+    if (next != kNoLeaf) leaf_.read_ahead(next);
+    if (!is_read) {
       query_.error = leaf_.error();
       return false;
     }
@@ -102,16 +108,17 @@ class PointFaces {
     return bits_of(hn::Le(key, hn::Set(Floats(), leaves_.bound())));
   }
 
+  [[nodiscard]] bool reads_ahead() const { return leaves_.reads_ahead(); }
   HWY_INLINE void expanding(const WideLinks& links, std::uint32_t passing) {
     ++query_.nodes_expanded;
     prefetch_.leaves(links, passing & ~links.inner_mask);
     prefetch_.nodes(links, passing & links.inner_mask);
   }
 
-  bool leaf(std::uint32_t number) {
+  bool leaf(std::uint32_t number, std::uint32_t next) {
     ++query_.nodes_expanded;
     const std::uint32_t first = number * kLeafFaces;
-    return leaves_.visit(first, std::min(kLeafFaces, codec_.face_count - first));
+    return leaves_.visit(first, std::min(kLeafFaces, codec_.face_count - first), next);
   }
 
  private:

@@ -98,7 +98,8 @@ class Instances {
     return region_.intersect(boxes, limit_, key);
   }
   void expanding(const WideLinks& /*links*/, std::uint32_t /*passing*/) const {}
-  bool leaf(std::uint32_t number) {
+  [[nodiscard]] static bool reads_ahead() { return false; }
+  bool leaf(std::uint32_t number, std::uint32_t /*next*/) {
     const bool go_on = visit_(number);
     limit_ = region_.limit_of(best_);
     return go_on;

@@ -30,18 +30,19 @@ class ClusterReader {
         read_by_avx512_(view.bytes.empty() ? nullptr : avx512_leaf_reader()),
         sixteen_(view) {}
 
-  /// Decodes a leaf of 8 faces: coordinates as floats times `scale`, [corner][axis][triangle].
-  /// Corners of leaves without quads are those of the source but for a turn, which read_corners()
-  /// undoes. False when its bytes are corrupt, or when decode_cluster_leaf has to read it.
-  HWY_INLINE bool read(std::uint32_t leaf, float scale, LeafCoordinates& out) {
+  /// Decodes a leaf of 8 faces; coordinates are multiplied by `scale`. Corners of leaves without
+  /// quads are those of the source but for a turn, which LeafTriangles::read_corners() undoes.
+  /// False when its bytes are corrupt, or when decode_cluster_leaf has to read it.
+  HWY_INLINE bool read(std::uint32_t leaf, float scale, LeafTriangles& triangles,
+                       LeafCoordinates& out) {
     if (!enter(leaf / kClusterLeaves)) return false;
     LeafFields faces;
     if (!leaves_.find(leaf % kClusterLeaves, faces)) return false;
     if (HWY_UNLIKELY(!faces.is_usual)) {
       const LeafFields faces_copy = faces;  // so that the usual case may keep it in registers
-      return read_any(faces_copy, scale, out);
+      return read_any(faces_copy, scale, triangles, out);
     }
-    triangles_.count = kLeafFaces;
+    triangles.count = kLeafFaces;
     const WordVector fields = set(faces.fields);
     const Olds olds{window_at(faces.bytes), faces.others};
     const Vertices thirds =
@@ -54,16 +55,16 @@ class ClusterReader {
     const FloatVector scales = hn::Set(Floats(), scale);
     FloatVector third[3], apart[3];
     if (HWY_LIKELY(is_narrow_)) {
-      read_vertices<true>(thirds, 0, scales, third);
-      read_vertices<true>(aparts, kLeafFaces, scales, apart);
+      read_vertices<true>(thirds, 0, scales, triangles, third);
+      read_vertices<true>(aparts, kLeafFaces, scales, triangles, apart);
     } else {
-      read_vertices<false>(thirds, 0, scales, third);
-      read_vertices<false>(aparts, kLeafFaces, scales, apart);
+      read_vertices<false>(thirds, 0, scales, triangles, third);
+      read_vertices<false>(aparts, kLeafFaces, scales, triangles, apart);
     }
     auto corrupt =
         hn::Or(thirds.corrupt,
                hn::IfThenElseZero(is_less(iota(), small(2 * faces.aparts)), aparts.corrupt));
-    const StripCorners corners = join_strip(fields, triangles_);
+    const StripCorners corners = join_strip(fields, triangles);
     corrupt = hn::Or(corrupt, corners.corrupt);
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) hn::Store(third[k], Floats(), out[2][k]);
@@ -76,14 +77,12 @@ class ClusterReader {
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
+  [[nodiscard]] HWY_INLINE bool has_avx512() const { return read_by_avx512_ != nullptr; }
   /// The same where the machine has AVX-512. False also where read() has to do it.
-  HWY_INLINE bool read_by_avx512(std::uint32_t leaf, float scale, LeafCoordinates& out) {
-    return read_by_avx512_ != nullptr &&
-           read_by_avx512_(view_, leaf, scale, sixteen_, triangles_, out);
+  HWY_INLINE bool read_by_avx512(std::uint32_t leaf, float scale, LeafTriangles& triangles,
+                                 LeafCoordinates& out) {
+    return has_avx512() && read_by_avx512_(view_, leaf, scale, sixteen_, triangles, out);
   }
-
-  /// The triangles of the last leaf.
-  [[nodiscard]] const LeafTriangles& triangles() const { return triangles_; }
 
  private:
   // References that are not new.
@@ -263,7 +262,7 @@ class ClusterReader {
   // The vertices of references `first` and on.
   template <bool kIsNarrow>
   HWY_INLINE void read_vertices(const Vertices& vertices, std::uint32_t first, FloatVector scale,
-                                FloatVector (&out)[3]) {
+                                LeafTriangles& triangles, FloatVector (&out)[3]) {
     WordVector width[3];
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) width[k] = look_up(width_[k], vertices.group);
@@ -296,7 +295,7 @@ class ClusterReader {
       HWY_UNROLL(3)
       for (std::size_t k = 0; k < 3; ++k) {
         const auto whole = shift_left(stored[k], trailing_[k]);
-        hn::Store(whole, Words(), triangles_.number[k] + first);
+        hn::Store(whole, Words(), triangles.number[k] + first);
         out[k] = hn::Mul(hn::ConvertTo(Floats(), hn::BitCast(Integers(), whole)), scale);
       }
     } else {
@@ -306,7 +305,7 @@ class ClusterReader {
         const auto signs = hn::BitCast(Words(), sign);
         const auto magnitude = shift_left(hn::Xor(stored[k], signs), trailing_[k]);
         const auto bits = hn::Or(magnitude, hn::ShiftLeft<31>(signs));
-        hn::Store(bits, Words(), triangles_.number[k] + first);
+        hn::Store(bits, Words(), triangles.number[k] + first);
         out[k] = hn::Mul(hn::BitCast(Floats(), bits), scale);
       }
     }
@@ -315,12 +314,12 @@ class ClusterReader {
   // Any leaf: its triangles in the order of decoders of one leaf. Cold, so that it is compiled for
   // size: its vectors take the time.
   [[gnu::cold]] HWY_NOINLINE bool read_any(const LeafFields& faces, float scale,
-                                           LeafCoordinates& out) {
+                                           LeafTriangles& triangles, LeafCoordinates& out) {
     const FloatVector scales = hn::Set(Floats(), scale);
     const std::uint32_t is_new = faces.new_thirds | faces.new_others << kLeafFaces;
     const std::uint32_t count = kLeafFaces + faces.others;
     HWY_ALIGN float all[3][kMostLeafReferences];
-    auto corrupt = join_strip(set(faces.fields), triangles_).corrupt;
+    auto corrupt = join_strip(set(faces.fields), triangles).corrupt;
     for (std::uint32_t first = 0; first < count; first += kWideChildren) {
       const std::uint32_t here = (is_new >> first) & 0xffu;
       const auto before = static_cast<std::uint32_t>(std::popcount(is_new & ((1u << first) - 1)));
@@ -332,34 +331,33 @@ class ClusterReader {
       const Vertices vertices = find_vertices(faces, olds, lanes_with(small(here), kLaneBits),
                                               hn::Add(ranks(here), small(before)), first);
       FloatVector position[3];
-      read_vertices<false>(vertices, first, scales, position);
+      read_vertices<false>(vertices, first, scales, triangles, position);
       for (std::size_t k = 0; k < 3; ++k) hn::Store(position[k], Floats(), all[k] + first);
       corrupt = hn::Or(corrupt,
                        hn::IfThenElseZero(is_less(iota(), small(count - first)), vertices.corrupt));
     }
     if (!hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
     std::uint32_t fourth = kLeafFaces + 2 * faces.aparts;
-    std::uint32_t triangles = 0;
-    auto& of_quads = triangles_.of_quads;
+    std::uint32_t written = 0;
+    auto& of_quads = triangles.of_quads;
     for (std::uint32_t f = 0; f < kLeafFaces; ++f) {
-      const std::uint32_t step = triangles_.step[f];
+      const std::uint32_t step = triangles.step[f];
       const std::uint32_t turn = step == StripStep::kApart ? 0 : step % 3;
       std::uint8_t corner[3];
-      corner[turn] = static_cast<std::uint8_t>(triangles_.corner[0][f]);
-      corner[(turn + 1) % 3] = static_cast<std::uint8_t>(triangles_.corner[1][f]);
+      corner[turn] = static_cast<std::uint8_t>(triangles.corner[0][f]);
+      corner[(turn + 1) % 3] = static_cast<std::uint8_t>(triangles.corner[1][f]);
       corner[(turn + 2) % 3] = static_cast<std::uint8_t>(f);
       const auto face = static_cast<std::uint8_t>(f);
-      of_quads[triangles++] = {face, 0, {corner[0], corner[1], corner[2]}};
+      of_quads[written++] = {face, 0, {corner[0], corner[1], corner[2]}};
       if (((faces.quads >> f) & 1u) == 0) continue;
-      of_quads[triangles++] = {
-          face, 1, {corner[0], corner[2], static_cast<std::uint8_t>(fourth++)}};
+      of_quads[written++] = {face, 1, {corner[0], corner[2], static_cast<std::uint8_t>(fourth++)}};
     }
-    for (std::uint32_t i = 0; i < triangles; ++i) {
+    for (std::uint32_t i = 0; i < written; ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
         for (std::size_t k = 0; k < 3; ++k) out[c][k][i] = all[k][of_quads[i].reference[c]];
       }
     }
-    triangles_.count = triangles;
+    triangles.count = written;
     return true;
   }
 
@@ -379,7 +377,6 @@ class ClusterReader {
   HWY_ALIGN std::uint8_t stride_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_low_[ClusterHeader::kMostGroups];
   HWY_ALIGN std::uint8_t start_high_[ClusterHeader::kMostGroups];
-  LeafTriangles triangles_;
   Avx512Cluster sixteen_;
 };
 

@@ -7,6 +7,8 @@
 #define BOXTREE_RUNTIME_WALK_LEAF_INL_H
 #endif
 
+#include <utility>
+
 #include "runtime/primitive/rounding.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/cluster-inl.h"
@@ -17,7 +19,7 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR  // without vectors the generic walks are used
 
-/// Reads leaves of one tree, one at a time. Coordinates are the exact ones or those rounded to
+/// Reads leaves of one tree. Coordinates are the exact ones or those rounded to
 /// nearest, see corner_error(). Exact triangles come from with_triangle().
 class LeafFloats {
  public:
@@ -31,6 +33,7 @@ class LeafFloats {
 #endif
   {
   }
+  LeafFloats(const LeafFloats&) = delete;  // leaf_ points into it
 
   /// Reads the leaf of `count` faces from `first` on. False when its bytes are corrupt; see
   /// error().
@@ -41,11 +44,32 @@ class LeafFloats {
                  in_range(first, count, mesh_.face_count);
 #if BOXTREE_HAS_EIGHT_LANES
     // The usual case without another call.
-    if (is_direct_ && clusters_.read_by_avx512(first / kLeafFaces, floats_.scale, coordinate_)) {
+    if (is_direct_ &&
+        (take_ahead(first / kLeafFaces) || read_by_avx512(first / kLeafFaces, *leaf_)))
       return true;
-    }
 #endif
     return load_any();
+  }
+
+  /// Whether read_ahead() gains something.
+  [[nodiscard]] HWY_INLINE bool reads_ahead() const {
+#if BOXTREE_HAS_EIGHT_LANES
+    return floats_.is_direct && clusters_.has_avx512();
+#else
+    return false;
+#endif
+  }
+
+  /// Decodes leaf `next`, which is likely to be loaded next; if it is not kNoLeaf. Called between
+  /// load() and the tests of the leaf before, so that the two are decoded side by side: a decoder
+  /// is a chain of instructions that wait for each other. Where it fails, load() reads the leaf
+  /// again and tells why. Precondition: reads_ahead().
+  HWY_INLINE void read_ahead(std::uint32_t next) {
+#if BOXTREE_HAS_EIGHT_LANES
+    if (next < mesh_.face_count / kLeafFaces && read_by_avx512(next, other())) ahead_ = next;
+#else
+    (void)next;
+#endif
   }
 
   /// Bounds how far the coordinates of a leaf are off: mostly by underflow alone when they were
@@ -68,7 +92,8 @@ class LeafFloats {
   /// Coordinates of the triangles of a group and part.
   [[nodiscard]] FloatVector at(std::size_t corner, std::size_t axis, std::size_t group,
                                std::size_t part) const {
-    return hn::Load(Floats(), &coordinate_[corner][axis][group * kWideChildren + part * kLanes]);
+    return hn::Load(Floats(),
+                    &leaf_->coordinate[corner][axis][group * kWideChildren + part * kLanes]);
   }
 
   [[nodiscard]] VectorTriangle triangles(std::size_t group, std::size_t part) const {
@@ -109,6 +134,28 @@ class LeafFloats {
  private:
   static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
 
+  struct Leaf {
+    HWY_ALIGN LeafCoordinates coordinate;
+#if BOXTREE_HAS_EIGHT_LANES
+    LeafTriangles triangles;  // of a cluster
+#endif
+  };
+
+#if BOXTREE_HAS_EIGHT_LANES
+  HWY_INLINE bool read_by_avx512(std::uint32_t number, Leaf& out) {
+    return clusters_.read_by_avx512(number, floats_.scale, out.triangles, out.coordinate);
+  }
+  [[nodiscard]] HWY_INLINE Leaf& other() {
+    return leaves_[leaf_ == leaves_ ? 1 : 0];
+  }
+  // Whether a leaf was read ahead; then it is the current one.
+  HWY_INLINE bool take_ahead(std::uint32_t number) {
+    if (number != std::exchange(ahead_, kNoLeaf)) return false;
+    leaf_ = &other();
+    return true;
+  }
+#endif
+
   HWY_NOINLINE bool load_any() {
     is_direct_ = is_direct_ && gather();
     return is_direct_ || convert();
@@ -144,8 +191,10 @@ class LeafFloats {
 
 #if BOXTREE_HAS_EIGHT_LANES
   HWY_INLINE bool gather_cluster() {
-    if (!clusters_.read(first_ / kLeafFaces, floats_.scale, coordinate_)) return false;
-    count_ = clusters_.triangles().count;
+    if (!clusters_.read(first_ / kLeafFaces, floats_.scale, leaf_->triangles, leaf_->coordinate)) {
+      return false;
+    }
+    count_ = leaf_->triangles.count;
     return true;
   }
 
@@ -154,13 +203,13 @@ class LeafFloats {
   // Of a lane of a leaf that was gathered.
   [[nodiscard]] HWY_INLINE std::uint32_t face_in_leaf(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.triangles().face(lane);
+    if (reader_.has_clusters()) return leaf_->triangles.face(lane);
 #endif
     return lane;
   }
   [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return clusters_.triangles().half(lane);
+    if (reader_.has_clusters()) return leaf_->triangles.half(lane);
 #else
     (void)lane;
 #endif
@@ -171,7 +220,7 @@ class LeafFloats {
   HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
 #if BOXTREE_HAS_EIGHT_LANES
     if (reader_.has_clusters())
-      return clusters_.triangles().read_corners(lane, reader_.clusters().numbers, set);
+      return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, set);
 #endif
     for (std::size_t c = 0; c < 3; ++c) {
       const auto p = boxtree::load<std::array<float, 3>>(
@@ -227,7 +276,7 @@ class LeafFloats {
       const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
         hn::Store(hn::Mul(hn::BitCast(d, values), scale), Floats(),
-                  &coordinate_[corner][axis][face]);
+                  &leaf_->coordinate[corner][axis][face]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
       store(1, hn::InterleaveUpper(pairs, xy01, xy23));
@@ -250,7 +299,7 @@ class LeafFloats {
     error_ = reader_.read(first_, count_, batch_);
     count_ = batch_.count;
     if (error_ != Errc::kOk) return false;
-    batch_.round_to_floats(coordinate_);
+    batch_.round_to_floats(leaf_->coordinate);
     return true;
   }
 
@@ -262,11 +311,15 @@ class LeafFloats {
   std::uint32_t count_ = 0;
   Errc error_ = Errc::kOk;
   HWY_ALIGN std::uint32_t start_[kCorners];  // of each corner's position, in floats
-  HWY_ALIGN LeafCoordinates coordinate_;
   TriangleBatch batch_;
 #if BOXTREE_HAS_EIGHT_LANES
   ClusterReader clusters_;
+  std::uint32_t ahead_ = kNoLeaf;  // the leaf that was read ahead, which is in the other one
+  Leaf leaves_[2];
+#else
+  Leaf leaves_[1];
 #endif
+  Leaf* leaf_ = leaves_;  // the current one
 };
 
 #endif

@@ -25,7 +25,9 @@ namespace boxtree::HWY_NAMESPACE {
 /// query.expanding(const WideLinks&, std::uint32_t passing): a node was expanded; its children
 ///   `passing` were pushed.
 /// query.nodes() -> WalkBound&: of as many nodes as the codec has.
-/// query.leaf(number) -> bool: whether to go on; the query keeps its own error.
+/// query.reads_ahead() -> bool: whether leaf() wants to know `next`.
+/// query.leaf(number, next) -> bool: whether to go on; the query keeps its own error. `next`: the
+///   leaf that is visited next unless the bound excludes it by then, or kNoLeaf.
 template <class Node, class Query>
 class NearestWalk {
  public:
@@ -57,7 +59,9 @@ class NearestWalk {
           depth = at.depth + 1;
           break;
         }
-        if (!query_.leaf(leaf_number(of.links, at.number))) return Errc::kOk;
+        if (!query_.leaf(leaf_number(of.links, at.number),
+                         query_.reads_ahead() ? next_leaf() : kNoLeaf))
+          return Errc::kOk;
       }
     }
   }
@@ -81,6 +85,14 @@ class NearestWalk {
     passing &= all;
     stack_.push(passing, keys, depth);
     return passing;
+  }
+
+  // What is on top of the stack, if it is a leaf.
+  HWY_INLINE std::uint32_t next_leaf() const {
+    typename decltype(stack_)::Child top;
+    if (!stack_.top(query_.bound(), top)) return kNoLeaf;
+    const WideLinks& links = open_[top.depth].links;
+    return ((links.inner_mask >> top.number) & 1u) != 0 ? kNoLeaf : leaf_number(links, top.number);
   }
 
   const WideCodec<Node>& codec_;

@@ -95,6 +95,8 @@ HWY_INLINE std::uint32_t node_number(const WideLinks& links, std::uint32_t i) {
 HWY_INLINE std::uint32_t leaf_number(const WideLinks& links, std::uint32_t i) {
   return links.first_leaf + rank(~links.inner_mask, i);
 }
+/// No leaf has this number.
+inline constexpr std::uint32_t kNoLeaf = 0xffffffffu;
 /// First face of the leaf that is child i.
 HWY_INLINE std::uint32_t first_face(const WideLinks& links, std::uint32_t i) {
   return leaf_number(links, i) * kLeafFaces;

@@ -52,9 +52,12 @@ class OverlapLeaves {
     return true;
   }
 
-  /// Reports the faces that touch the shape.
-  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
-    if (!leaf_.load(first, count)) {
+  /// Reports the faces that touch the shape. `next`: the leaf that is visited next, or
+  /// kNoLeaf.
+  HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count, std::uint32_t next) {
+    const bool is_read = leaf_.load(first, count);
+    if (leaf_.reads_ahead()) leaf_.read_ahead(next);
+    if (!is_read) {
       walk_.error = leaf_.error();
       return false;
     }
@@ -119,13 +122,16 @@ class OverlapWalk {
       const Classification classification = classify(node, links, box, inside, children.boxes);
       prefetch_.leaves(links, classification.touched & ~classification.inside & ~links.inner_mask);
       prefetch_.nodes(links, classification.touched & links.inner_mask);
-      const bool go_on =
-          for_each_bit(classification.touched & ~links.inner_mask, [&](std::uint32_t i) {
-            const std::uint32_t first = first_face(links, i);
-            const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
-            return ((classification.inside >> i) & 1u) != 0 ? leaves_.report(first, count)
-                                                            : leaves_.visit(first, count);
-          });
+      const std::uint32_t leaves = classification.touched & ~links.inner_mask;
+      const std::uint32_t visited = leaves & ~classification.inside;
+      const bool go_on = for_each_bit(leaves, [&](std::uint32_t i) {
+        const std::uint32_t first = first_face(links, i);
+        const std::uint32_t count = std::min(kLeafFaces, codec_.face_count - first);
+        if (((visited >> i) & 1u) == 0) return leaves_.report(first, count);
+        const std::uint32_t later = visited & ~1u << i;
+        const auto next = static_cast<std::uint32_t>(std::countr_zero(later));
+        return leaves_.visit(first, count, later != 0 ? leaf_number(links, next) : kNoLeaf);
+      });
       if (!go_on) return Errc::kOk;
       children.pending = classification.touched & links.inner_mask;
       children.inside = classification.inside;

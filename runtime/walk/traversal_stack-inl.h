@@ -75,6 +75,14 @@ class TraversalStack {
     return true;
   }
 
+  /// The child that pop() would take first, if its key is not above `bound`.
+  HWY_INLINE bool top(float bound, Child& child) const {
+    if (size_ == 0) return false;
+    const std::int32_t word = word_[size_ - 1];
+    child = {depth_[size_ - 1], static_cast<std::uint32_t>(word & kChildBits)};
+    return std::bit_cast<float>(word & ~kChildBits) <= bound;
+  }
+
  private:
   static constexpr std::int32_t kChildBits = kWideChildren - 1;
   static constexpr std::size_t kMost = kDepths * kWideChildren;
