@@ -92,11 +92,35 @@ class FaceIdView {
   /// that do not exist are unspecified. Precondition: the first face exists.
   void read_leaf(std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) const noexcept;
 
- private:
-  struct Block;
+  /// What the faces of a block have in common. Positions are bits of the section.
+  struct Block {
+    std::uint32_t base;
+    FaceIdBlock fields;
+    std::uint64_t middle;
 
+    /// Whether fields of all faces, and all starts that these can name, begin in the section:
+    /// `last_bit` is the last where one may.
+    [[nodiscard]] constexpr bool is_inside(std::uint64_t last_bit) const noexcept {
+      const std::uint64_t starts = std::uint64_t{fields.start_bits} << fields.interval_bits;
+      return starts <= middle && middle + (kIdBlockFaces - 1) * fields.width() <= last_bit;
+    }
+  };
+  /// The block of a face. Precondition: the face exists.
+  [[nodiscard]] Block block_of(std::uint32_t face) const noexcept {
+    const std::byte* const group = bytes_ + face / kIdGroupFaces * sizeof(FaceIdGroup);
+    const FaceIdBlock fields = FaceIdBlock::of(load<std::uint32_t>(
+        group + offsetof(FaceIdGroup, block), face / kIdBlockFaces % kIdGroupBlocks));
+    const std::uint64_t begin = load<std::uint32_t>(group + offsetof(FaceIdGroup, begin));
+    return {load<std::uint32_t>(group + offsetof(FaceIdGroup, base)), fields,
+            begin * (kIdUnit * 8) + fields.middle};
+  }
+  [[nodiscard]] const std::byte* bytes() const noexcept { return bytes_; }
+  /// The last bit that a field may begin at: kBitPadding bytes can be read from there.
+  [[nodiscard]] std::uint64_t last_bit() const noexcept { return last_bit_; }
+
+ private:
   const std::byte* bytes_ = nullptr;
-  std::uint64_t last_bit_ = 0;  // that a field may begin at
+  std::uint64_t last_bit_ = 0;
 };
 
 }  // namespace boxtree

@@ -86,19 +86,24 @@ struct PointQuery {
     // Never below the distance of the bounds, so that it agrees with every key above.
     const double distance = std::max(bounds_distance, squared_length(closest - point));
     if (approximation != nullptr) note_lower(triangle, closest, std::min(distance, best));
-    if (distance > best || (distance == best && !wins_tie(face_index, half))) return;
+    FaceRef face{kNoFaceId, face_index};
+    if (distance > best || (distance == best && !wins_tie(face, half))) return;
     best = approximation == nullptr ? distance : enough(distance);
-    found = ClosestPoint{closest, distance, {kNoFaceId, face_index}, half};
+    found = ClosestPoint{closest, distance, face, half};
   }
 
   /// Adds what the walk left out: the id of the face that was found.
   void name_face() noexcept {
-    if (found) found->face = face_ref(tree, found->face.index);
+    if (found) name(tree, found->face);
   }
 
  private:
-  [[nodiscard]] bool wins_tie(std::uint32_t face_index, std::uint32_t half) const noexcept {
-    return !found || tree.comes_before(face_index, half, found->face.index, found->triangle);
+  // Names both faces. Ties are common, since neighbours share edges and vertices.
+  [[nodiscard]] bool wins_tie(FaceRef& face, std::uint32_t half) noexcept {
+    if (!found) return true;
+    name(tree, face);
+    name(tree, found->face);
+    return comes_before(face, half, found->face, found->triangle);
   }
 
   void test_placed(const Triangle& triangle, std::uint32_t face_index,
@@ -107,10 +112,11 @@ struct PointQuery {
         closest_point_on_triangle(placed->point, placed->to_world.apply(triangle));
     const double distance = squared_length(closest - placed->point);
     if (distance > placed->best) return;
-    if (distance == placed->best && !wins_tie(face_index, half)) return;
+    FaceRef face{kNoFaceId, face_index};
+    if (distance == placed->best && !wins_tie(face, half)) return;
     placed->best = distance;
     best = placed->bound_in_tree();
-    found = ClosestPoint{closest, distance, {kNoFaceId, face_index}, half};
+    found = ClosestPoint{closest, distance, face, half};
   }
 
   // The squared distance from which triangles can be skipped; unchanged if no error is allowed.

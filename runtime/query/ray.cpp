@@ -22,7 +22,7 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
   if (query.error != Errc::kOk) return query.error;
   if (hit.is_hit) {
     hit.t = parameter_of(ray, hit.t, query.parameter_exponent);
-    hit.face = face_ref(tree, hit.face.index);
+    name(tree, hit.face);
   }
   return Errc::kOk;
 }

@@ -133,11 +133,13 @@ struct RayQuery : RayInTree {
     // above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
-    if (hit.is_hit && t == hit.t &&
-        !tree.comes_before(face_index, half, hit.face.index, hit.half)) {
-      return;
+    FaceRef face{kNoFaceId, face_index};
+    if (hit.is_hit && t == hit.t) {
+      name(tree, face);
+      name(tree, hit.face);
+      if (!comes_before(face, half, hit.face, hit.half)) return;
     }
-    hit = RayCandidate{true, t, {kNoFaceId, face_index}, half, found->u, found->v, triangle};
+    hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
     t_max = t;
   }
 

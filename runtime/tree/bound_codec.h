@@ -24,6 +24,9 @@ namespace boxtree {
 
 struct CodecWalks;
 
+/// Whether trees of a wide codec can be bound.
+inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
+
 /// Whether the wide codecs have walks by vectors; otherwise they use the generic ones.
 inline constexpr bool kWalksByVectors = BOXTREE_WALKS_BY_VECTORS;
 

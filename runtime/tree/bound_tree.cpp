@@ -37,14 +37,6 @@ void BoundTree::read_leaf_ids(std::uint32_t leaf,
   }
 }
 
-bool BoundTree::comes_before(std::uint32_t a, std::uint32_t a_half, std::uint32_t b,
-                             std::uint32_t b_half) const noexcept {
-  const std::uint32_t a_id = face_id(a);
-  const std::uint32_t b_id = face_id(b);
-  if (a_id != b_id) return a_id < b_id;
-  return a != b ? a < b : a_half < b_half;
-}
-
 NodeRef BoundTree::root_ref() const noexcept {
   return is_leaf() ? NodeRef{0, counts_.faces_in_leaves} : functions_->root(nodes_);
 }

@@ -107,6 +107,9 @@ class BoundTree {
   /// A triangle of a face, in tree space; see Tree::triangle.
   [[nodiscard]] Result<Triangle> triangle(const FaceRef& face, std::uint32_t half) const;
 
+  /// What is stored of them; none where faces are in the order of the source.
+  [[nodiscard]] const FaceIdView& face_ids() const noexcept { return face_ids_; }
+
   /// The source face number of a face in this tree's order; kNoFaceId without ids.
   /// Precondition: face < face_count().
   [[nodiscard]] std::uint32_t face_id(std::uint32_t face) const noexcept;
@@ -114,11 +117,6 @@ class BoundTree {
   /// The same for faces 8 leaf to 8 leaf + 7, in a third of the time of eight calls. Those of faces
   /// that do not exist are unspecified. Precondition: 8 leaf < face_count().
   void read_leaf_ids(std::uint32_t leaf, std::span<std::uint32_t, kLeafFaces> out) const noexcept;
-
-  /// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`: by source number, so
-  /// that every codec and builder agrees. Precondition: the faces exist.
-  [[nodiscard]] bool comes_before(std::uint32_t a, std::uint32_t a_half, std::uint32_t b,
-                                  std::uint32_t b_half) const noexcept;
 
   /// Whether some faces are in no leaf because they are copies of others.
   [[nodiscard]] bool has_duplicates() const noexcept { return bool{duplicates_}; }

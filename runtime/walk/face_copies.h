@@ -9,12 +9,26 @@
 #include <boxtree/query.h>
 
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/leaf_ids.h"
 
 namespace boxtree {
 
 /// How an answer names face `index` of the tree's order. Precondition: the face exists.
 [[nodiscard]] inline FaceRef face_ref(const BoundTree& tree, std::uint32_t index) noexcept {
   return {tree.face_id(index), index};
+}
+
+/// The same, unless it is named already.
+inline void name(const BoundTree& tree, FaceRef& face) noexcept {
+  if (face.id == kNoFaceId) face.id = tree.face_id(face.index);
+}
+
+/// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`, both named: by source
+/// number, so that every codec and builder agrees.
+[[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,
+                                       std::uint32_t b_half) noexcept {
+  if (a.id != b.id) return a.id < b.id;
+  return a.index != b.index ? a.index < b.index : a_half < b_half;
 }
 
 /// Names faces that come leaf by leaf: reads the ids of a leaf together, when the first is needed.
@@ -26,7 +40,7 @@ class LeafFaceRefs {
   [[nodiscard]] FaceRef operator()(std::uint32_t index) noexcept {
     if (index / kLeafFaces != leaf_) {
       leaf_ = index / kLeafFaces;
-      tree_.read_leaf_ids(leaf_, ids_);
+      read_leaf_ids(tree_, leaf_, ids_);
     }
     return {ids_[index % kLeafFaces], index};
   }

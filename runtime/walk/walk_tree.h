@@ -13,9 +13,6 @@
 
 namespace boxtree {
 
-/// Whether trees of a wide codec can be bound.
-inline constexpr bool kHasWideCodecs = BOXTREE_HAS_WIDE8 || BOXTREE_HAS_WIDE4;
-
 /// Whether trees of other codecs can be, with boxtree::paper.
 inline constexpr bool kHasOtherCodecs = BOXTREE_HAS_PLAIN_F32 || BOXTREE_HAS_PLAIN_F16 ||
                                         BOXTREE_HAS_PACKED_F32 || BOXTREE_HAS_PACKED_F16 ||

@@ -14,42 +14,12 @@
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
-
-#ifdef BOXTREE_TEST_TARGETS
-#include <boxtree/configuration.h>
-
-#include "runtime/walk/targets.h"
-// Its macros follow those of targets.h.
-#include <hwy/targets.h>
-#endif
+#include "tests/unit/walk/targets.h"
 
 namespace boxtree {
 namespace {
 
 using cooker::SourceMesh;
-
-// Calls body(name) once for each instruction set that the walks were compiled for and the machine
-// has, and once for walks by AVX2 whose leaves are decoded by AVX-512; the scalar build has one.
-template <class Body>
-void for_each_target(Body body) {
-#ifdef BOXTREE_TEST_TARGETS
-  const std::int64_t supported = hwy::SupportedTargets();
-  const auto test = [&](std::int64_t targets, const std::string& name) {
-    hwy::SetSupportedTargetsForTest(targets);
-    body(name.c_str());
-  };
-  for (std::int64_t left = supported & HWY_TARGETS; left != 0; left &= left - 1) {
-    const std::int64_t target = left & -left;
-    test(target, hwy::TargetName(target));
-    if (target == HWY_AVX2 && (supported & HWY_AVX3_DL) != 0) {
-      test(HWY_AVX2 | HWY_AVX3_DL, "AVX2 with leaves by AVX3_DL");
-    }
-  }
-  hwy::SetSupportedTargetsForTest(0);
-#else
-  body("scalar");
-#endif
-}
 
 // Queries about one mesh. A part of each kind is degenerate on purpose: along axes, in planes of
 // the root box, through vertices, from far away, of no size.
