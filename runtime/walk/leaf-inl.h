@@ -165,12 +165,13 @@ class LeafFloats {
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
     const bool is_grid = reader_.is_grid();
     const double scale = is_grid ? reader_.grid_step() : reader_.frame().inverse_scale;
+    double corner[3][3];
+    read_corners(lane, corner);
     bool is_finite = true;
-    read_corners(lane, [&](std::size_t corner, double x, double y, double z) {
-      const Eigen::Vector3d position(x * scale, y * scale, z * scale);
-      is_finite &= is_grid || is_within_range(position);
-      triangle.corner[corner] = position;
-    });
+    for (std::size_t c = 0; c < 3; ++c) {
+      triangle.corner[c] = {corner[c][0] * scale, corner[c][1] * scale, corner[c][2] * scale};
+      is_finite &= is_grid || is_within_range(triangle.corner[c]);
+    }
     if (!is_finite) {
       error_ = Errc::kVertexNotFinite;
       return false;
@@ -216,16 +217,16 @@ class LeafFloats {
     return 0;
   }
 
-  template <class Setter>
-  HWY_INLINE void read_corners(std::uint32_t lane, const Setter& set) const {
+  // [corner][axis], as they are stored.
+  HWY_INLINE void read_corners(std::uint32_t lane, double (&out)[3][3]) const {
 #if BOXTREE_HAS_EIGHT_LANES
     if (reader_.has_clusters())
-      return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, set);
+      return leaf_->triangles.read_corners(lane, reader_.clusters().numbers, out);
 #endif
     for (std::size_t c = 0; c < 3; ++c) {
       const auto p = boxtree::load<std::array<float, 3>>(
           mesh_.positions + start_[std::size_t{3} * lane + c] * sizeof(float));
-      set(c, double{p[0]}, double{p[1]}, double{p[2]});
+      for (std::size_t k = 0; k < 3; ++k) out[c][k] = double{p[k]};
     }
   }
 

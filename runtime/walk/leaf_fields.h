@@ -137,11 +137,9 @@ struct LeafTriangles {
     return count == kLeafFaces ? 0 : of_quads[lane].half;
   }
 
-  /// Calls set(corner, x, y, z) for the corners of lane `lane`: steps of the grid, or the floats of
-  /// the source.
-  template <class Setter>
+  /// The corners of lane `lane`, [corner][axis]: steps of the grid, or the floats of the source.
   BOXTREE_ALWAYS_INLINE void read_corners(std::uint32_t lane, ClusterNumbers numbers,
-                                          const Setter& set) const {
+                                          double (&out)[3][3]) const {
     // Its references, and the corner of the source that the first of them is.
     std::uint32_t references[3] = {0, 0, lane};
     std::uint32_t turn = 0;
@@ -156,16 +154,13 @@ struct LeafTriangles {
     }
     static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
     const std::uint8_t* const place = kNext + turn;
-    const auto fill = [&](const auto& real) {
-      for (std::size_t i = 0; i < 3; ++i) {
-        const std::uint32_t r = references[i];
-        set(place[i], real(number[0][r]), real(number[1][r]), real(number[2][r]));
+    const bool is_grid = numbers == ClusterNumbers::kGrid;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const std::uint32_t n = number[k][references[i]];
+        out[place[i]][k] = is_grid ? static_cast<double>(static_cast<std::int32_t>(n))
+                                   : static_cast<double>(std::bit_cast<float>(n));
       }
-    };
-    if (numbers == ClusterNumbers::kGrid) {
-      fill([](std::uint32_t n) { return static_cast<double>(static_cast<std::int32_t>(n)); });
-    } else {
-      fill([](std::uint32_t n) { return static_cast<double>(std::bit_cast<float>(n)); });
     }
   }
 };
