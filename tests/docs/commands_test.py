@@ -43,6 +43,18 @@ extern std::uint32_t crate;
 extern boxtree::Pose pose;
 """
 
+# What a rule must do after a change, and that it does it once. `is_fresh` and `cook` are the tool's.
+RECOOKS = r"""
+recooks() {
+  local why=$1
+  shift
+  "$@"
+  if is_fresh; then echo "does not cook $why"; exit 1; fi
+  cook
+  is_fresh || { echo "cooks twice $why"; exit 1; }
+}
+"""
+
 
 def take_interrupts():
     """As in a terminal: what runs in the background of a script ignores them, with all that it starts."""
@@ -61,7 +73,7 @@ def as_pattern(line):
 
 class Pages:
     def __init__(self, source, boxtree, compiler, includes, libraries, work):
-        self.source, self.compiler, self.work = source, compiler, work
+        self.source, self.boxtree, self.compiler, self.work = source, boxtree, compiler, work
         self.includes = [flag for folder in includes.split(";") if folder for flag in ("-isystem", folder)]
         self.libraries = [library for library in libraries.split(";") if library]
         # The folder of the sources, in which nothing that is written stays.
@@ -104,19 +116,45 @@ class Pages:
         if is_whole:
             self.run(page, "./program\n", line)
 
-    def makefile(self, page, text, line):
-        """Cooks what make is told to, and cooks it again only if a file that the mesh refers to changes."""
-        folder = self.work / "make"
+    def build_folder(self, name, file, text):
+        """The meshes of the samples, one of them in a folder, with a boxtree of their own, whose time may change."""
+        folder = self.work / name
         shutil.copytree(self.source / "samples/meshes", folder)
-        (folder / "Makefile").write_text(text, encoding="utf-8")
-        self.run(page, "cd make && make crate.bxt && make -q crate.bxt && touch crate.mtl && ! make -q crate.bxt\n", line)
+        (folder / "levels").mkdir()
+        shutil.copy(folder / "level.obj", folder / "levels/yard.obj")
+        (folder / "bin").mkdir()
+        shutil.copy(self.boxtree, folder / "bin/boxtree")
+        (folder / file).write_text(text, encoding="utf-8")
+
+    def makefile(self, page, text, line):
+        """Cooks what the rule names, and again only if something changes that the files depend on."""
+        self.build_folder("make", "Makefile", text)
+        self.run(page, RECOOKS + """
+cd make
+export PATH=$PWD/bin:$PATH
+cook() { make; }
+is_fresh() { make -q; }
+recooks 'without the cooked files' true
+recooks 'for another material library' touch crate.mtl
+recooks 'for another boxtree' touch bin/boxtree
+recooks 'for other options' sed -i 's/--quiet/--quiet --exact/' Makefile
+boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | grep -x 2
+""", line)
 
     def ninja(self, page, text, line):
         """The same with ninja."""
-        folder = self.work / "ninja"
-        shutil.copytree(self.source / "samples/meshes", folder)
-        (folder / "build.ninja").write_text(text, encoding="utf-8")
-        self.run(page, "cd ninja && ninja && ninja | grep 'no work' && touch crate.mtl && ninja -n | grep 'cook crate.obj'\n", line)
+        assert "/usr/local/bin/boxtree" in text
+        self.build_folder("ninja", "build.ninja", text.replace("/usr/local/bin/boxtree", "bin/boxtree"))
+        self.run(page, RECOOKS + """
+cd ninja
+cook() { ninja; }
+is_fresh() { ninja -n | grep 'no work'; }
+recooks 'without the cooked files' true
+recooks 'for another material library' touch crate.mtl
+recooks 'for another boxtree' touch bin/boxtree
+recooks 'for other options' sed -i 's/--quiet/--quiet --exact/' build.ninja
+boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | grep -x 2
+""", line)
 
     def profile(self, page, text, line):
         """Lines of the sample's profile, in its order."""
