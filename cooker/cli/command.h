@@ -28,6 +28,7 @@ enum class Values : std::uint8_t {
   kOther,
   kFiles,
   kCookedFiles,
+  kCookedFilesAndMeshes,
   kMeshes,
   kProfiles,
   kFolders,

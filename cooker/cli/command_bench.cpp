@@ -125,6 +125,8 @@ void print_row(const Json& row) {
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
+  fmt::print(
+      "  means; boxes are cubes with an edge of 5 % of the diagonal, contacts those with a copy\n");
   fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
@@ -163,6 +165,9 @@ int run_calibration(const Arguments& arguments) {
     print(Json::parse(costs_to_json(*calibration)));
     return 0;
   }
+  fmt::print(
+      "ns of a query, of a node expanded and of a leaf read, for rays, boxes (cubes with an "
+      "edge of 5 % of the diagonal), points and pairs (all contacts)\n");
   for (const CodecCost& cost : calibration->costs) print_row(cost);
   fmt::print("modelled and measured times differ by at most {:.2f} times\n",
              calibration->worst_ratio);
@@ -237,11 +242,13 @@ int run(const Arguments& arguments) {
 void add_bench_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   Command& command = program.add_command("bench", "Time queries on .bxt files");
-  command.add_file("FILE", arguments->files, Values::kCookedFiles, "Files with geometry inside")
+  command
+      .add_file("FILE", arguments->files, Values::kCookedFilesAndMeshes,
+                "Files with geometry inside; with --calibrate meshes")
       ->required();
   command
       .add_flag("--calibrate", arguments->calibrate,
-                "Measure the constants that auto chooses by; the files are meshes then")
+                "Measure the constants that auto chooses by; files are meshes, best three or more")
       ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->type_name("N")

@@ -113,6 +113,8 @@ std::string offer(const OptionText& option) {
       return "__boxtree_files";
     case Values::kCookedFiles:
       return "__boxtree_files bxt";
+    case Values::kCookedFilesAndMeshes:
+      return "__boxtree_files bxt " + joined(mesh_endings());
     case Values::kMeshes:
       return "__boxtree_files " + joined(mesh_endings());
     case Values::kProfiles:

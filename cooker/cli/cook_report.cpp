@@ -89,6 +89,9 @@ void add_contest(const CookedTree& cooked, std::string& text) {
         candidate.cost[1], candidate.cost[2], candidate.cost[3] / 1000, candidate.max_vertex_error,
         candidate.rejected.empty() ? "" : "  ", candidate.rejected);
   }
+  text +=
+      "    times: modelled means; boxes are cubes with an edge of 5 % of the diagonal, pairs all\n"
+      "    contacts of the tree and its copy\n";
   // Codecs that share a reason stand together.
   const std::vector<NotTried>& others = cooked.contest.not_tried;
   for (std::size_t i = 0; i < others.size();) {

@@ -37,10 +37,14 @@ constexpr Effort kFullEffort{
 constexpr Effort kQuickEffort{
     {2'000, 400, 400, 16, 0}, {20'000, 0, 2'000, 0, 0}, {0, 0, 400, 0, 16}, 3, 100};
 
+// Where n faces cross in one place, n * n pairs touch; more than these say nothing new.
+constexpr std::size_t kMostPairs = 100'000;
+
 Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Workload& queries,
                                                       std::size_t runs) {
   Status status;
   const Pose here = Pose::Identity();
+  const Tree originals = tree.without_duplicates();  // as count_work() counts
   const std::array<KindTimes, kTimedKinds> times = {
       time_each(queries.rays, runs, status,
                 [&](const Ray& ray) { return closest_hit(tree, ray).code(); }),
@@ -50,6 +54,12 @@ Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Wo
                 }),
       time_each(queries.points, runs, status,
                 [&](const Eigen::Vector3d& point) { return closest_point(tree, point).code(); }),
+      time_each(queries.poses, runs, status,
+                [&](const Pose& pose) {
+                  std::size_t pairs = 0;
+                  const auto go_on = [&](const FacePair&) { return ++pairs < kMostPairs; };
+                  return overlap_pairs(originals, here, originals, pose, go_on).code();
+                }),
       time_each(queries.poses, runs, status,
                 [&](const Pose& pose) { return first_contact(tree, here, tree, pose).code(); })};
   if (!status) return status.error();

@@ -60,17 +60,18 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
                                   ? "No position changes by a single bit."
                                   : fmt::format("No point of the surface moves by more than {}.",
                                                 move_in_words(mesh, point.surface_max));
-  const auto time = [&](std::size_t kind) { return time_in_words(time_of(mesh, point, kind)); };
-  std::string times =
-      fmt::format("a ray takes {}, a small box {}, a closest point {}, {} {}", time(0), time(1),
-                  time(2), mesh.timed ? "a first contact" : "all contacts", time(3));
+  const auto time = [&](std::size_t kind) {
+    return time_in_words(mean_time_of(mesh, point, kind));
+  };
+  std::string times = fmt::format("a ray takes {}, a box {}, a closest point {}, all contacts {}",
+                                  time(0), time(1), time(2), time(3));
   if (mesh.timed) {
-    times = fmt::format("In the median {} (one in a hundred takes longer than {}, {}, {} and {}).",
-                        times, time_in_words(point.times[0].p99_ns),
-                        time_in_words(point.times[1].p99_ns), time_in_words(point.times[2].p99_ns),
-                        time_in_words(point.times[3].p99_ns));
+    times =
+        fmt::format("In the mean {} (one in a hundred takes longer than {}, {}, {} and {}).", times,
+                    time_in_words(point.times[0].p99_ns), time_in_words(point.times[1].p99_ns),
+                    time_in_words(point.times[2].p99_ns), time_in_words(point.times[3].p99_ns));
   } else {
-    times = "By its counted work " + times + ".";
+    times = "By its counted work, in the mean " + times + ".";
   }
   return {
       role + ": " + point.name() + ".",
@@ -84,8 +85,8 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
 
 }  // namespace
 
-double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind) {
-  return mesh.timed ? point.times[kind].median_ns : point.modelled[kind];
+double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind) {
+  return mesh.timed ? point.times[kind].mean_ns : point.modelled[kind];
 }
 
 std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
@@ -93,12 +94,12 @@ std::vector<double> slowdowns_of(const MeshTradeoff& mesh) {
   std::vector<double> slower;
   for (const TradePoint& point : mesh.points) {
     double sum = 0;
-    for (std::size_t kind = 0; kind < kTimedKinds; ++kind) {
-      const double time = time_of(mesh, point, kind);
-      const double base = baseline == nullptr ? 0 : time_of(mesh, *baseline, kind);
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      const double time = mean_time_of(mesh, point, kind);
+      const double base = baseline == nullptr ? 0 : mean_time_of(mesh, *baseline, kind);
       sum += time > 0 && base > 0 ? time / base : 1;  // else below the clock's resolution
     }
-    slower.push_back(sum / kTimedKinds);
+    slower.push_back(sum / kQueryKinds);
   }
   return slower;
 }

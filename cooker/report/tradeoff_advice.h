@@ -25,12 +25,13 @@ struct Advice {
   std::size_t smallest_exact = 0;  // fewest bytes with every position bit for bit
 };
 
-/// Nanoseconds of a query of a timed kind: the measured median or, without times, the modelled time
-/// of the counted work.
-[[nodiscard]] double time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind);
+/// Mean nanoseconds of a query of a QueryKind: measured or, without times, modelled by the counted
+/// work.
+[[nodiscard]] double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point,
+                                  std::size_t kind);
 
-/// The time of each point relative to that of wide8 with arrays: the mean over the timed kinds of
-/// the ratio of both times, as slowdowns() has it by counted work. 1 where either has no time.
+/// The time of each point relative to that of wide8 with arrays: the mean over the kinds of queries
+/// of the ratio of both mean times, as slowdowns() has it. 1 where either has no time.
 [[nodiscard]] std::vector<double> slowdowns_of(const MeshTradeoff& mesh);
 
 /// Which points may be recommended: those that pass their gates, that boxtree::runtime alone reads

@@ -160,7 +160,12 @@ Json to_json(const MeshTradeoff& mesh) {
                       {"smallest_exact", mesh.points[advice->smallest_exact].name()}};
   }
   json["points"] = Json::array();
-  for (const TradePoint& point : mesh.points) json["points"].push_back(to_json(mesh, point));
+  const std::vector<double> slower = slowdowns_of(mesh);
+  for (std::size_t i = 0; i < slower.size(); ++i) {
+    Json point = to_json(mesh, mesh.points[i]);
+    point["slowdown"] = slower[i];
+    json["points"].push_back(std::move(point));
+  }
   return json;
 }
 
@@ -264,7 +269,8 @@ std::string to_csv(const TradeoffReport& report) {
     out += fmt::format(",{0}_nodes,{0}_leaves,{0}_extra_nodes,{0}_false_leaf_tests,{0}_modelled_ns",
                        kind);
   }
-  for (const char* kind : kTimedNames) out += fmt::format(",{0}_median_ns,{0}_p99_ns", kind);
+  for (const char* kind : kTimedNames)
+    out += fmt::format(",{0}_median_ns,{0}_p99_ns,{0}_mean_ns", kind);
   out += ",pages_file,pages_open";
   for (const char* kind : {"ray", "box", "point"})
     out += fmt::format(",pages_{0},pages_{0}_worst", kind);
@@ -286,7 +292,8 @@ std::string to_csv(const TradeoffReport& report) {
                            point.modelled[kind]);
       }
       for (const KindTimes& times : point.times) {
-        out += mesh.timed ? fmt::format(",{},{}", times.median_ns, times.p99_ns) : ",,";
+        out += mesh.timed ? fmt::format(",{},{},{}", times.median_ns, times.p99_ns, times.mean_ns)
+                          : ",,,";
       }
       out += fmt::format(",{},{}", point.pages.file_pages, point.pages.open);
       for (const PageCount& count : {point.pages.ray, point.pages.box, point.pages.point}) {

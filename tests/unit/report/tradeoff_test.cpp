@@ -285,8 +285,8 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
       words[0].text,
       "8.00 bytes per triangle, a file of 800 bytes: 80 % of the source arrays, tree included. No "
       "point of the surface moves by more than 4e-08 of the diagonal (8e-08 units of the "
-      "mesh). In the median a ray takes 120 ns, a small box 120 ns, a closest point 120 ns, a "
-      "first contact 120 ns (one in a hundred takes longer than 240 ns, 240 ns, 240 ns and "
+      "mesh). In the mean a ray takes 120 ns, a box 120 ns, a closest point 120 ns, all "
+      "contacts 120 ns (one in a hundred takes longer than 240 ns, 240 ns, 240 ns and "
       "240 ns). Slowdown: 1.20. Make it with: "
       "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24 --flatten --strip");
   EXPECT_NE(words[3].text.find("No position changes by a single bit."), std::string::npos);
@@ -317,9 +317,39 @@ TEST(Advice, TheFastestHasTheSurfaceOfTheMesh) {
 TEST(Advice, SlowdownsAreRelativeToWide8WithArrays) {
   MeshTradeoff made = three_points();
   EXPECT_EQ(slowdowns_of(made), (std::vector<double>{1, 1.5, 2, 2, 1.2}));
-  made.points[1].times[0].median_ns = 50;  // faster than the baseline for rays alone
+  // Of mean times, as cook's, and of the kinds that cook takes: not of first contacts.
+  for (KindTimes& times : made.points[2].times) times.median_ns = 1;
+  made.points[2].times[kFirstContact].mean_ns = 1;
+  EXPECT_EQ(slowdowns_of(made)[2], 2);
+  made.points[1].times[0].mean_ns = 50;  // faster than the baseline for rays alone
   EXPECT_EQ(slowdowns_of(made)[0], 1);
   EXPECT_EQ(slowdowns_of(made)[1], (0.5 + 3 * 1.5) / 4);
+}
+
+// Without times, the page's slowdowns are the numbers that `cook --candidates` prints.
+TEST(Advice, SlowdownsByCountedWorkAreThoseOfCook) {
+  CookOptions options;
+  options.may_use_grid = true;
+  options.may_use_arrays = true;
+  options.try_all = true;
+  const CookedTree cooked = require(cook_mesh(mesh(), options));
+  const std::vector<double> of_cook = slowdowns(cooked.contest);
+  const std::vector<double> of_page = slowdowns_of(counted());
+  std::size_t compared = 0;
+  for (std::size_t c = 0; c < of_cook.size(); ++c) {
+    const Candidate& candidate = cooked.contest.candidates[c];
+    const int bits = candidate.geometry == GeometryId::kGrid ? GridChoice().bits : 0;
+    for (std::size_t i = 0; i < of_page.size(); ++i) {
+      const TradePoint& point = counted().points[i];
+      if (point.codec != candidate.codec || point.geometry != candidate.geometry ||
+          point.grid_bits != bits) {
+        continue;
+      }
+      EXPECT_DOUBLE_EQ(of_page[i], of_cook[c]) << point.name();
+      ++compared;
+    }
+  }
+  EXPECT_GE(compared, 6u);
 }
 
 // `cook --for memory` takes arrays where they are smaller, so no command makes the clusters.
