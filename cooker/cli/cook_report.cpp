@@ -265,7 +265,9 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
                                    file.string()));
   }
   if (import.has_open_end) {
-    warnings.push_back(source + ": the last line has no end, as if the file was cut short");
+    warnings.push_back(
+        fmt::format("{}: the last line has no end{}, as if the file was cut short", source,
+                    import.has_half_face ? " and is half a face, which is left out" : ""));
   }
   return warnings;
 }

@@ -81,6 +81,9 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
     if (is_gltf && use.failure) {
       return Error{use.failure->code, "it refers to " + use.failure->detail};
     }
+    if (std::string fault = gltf_fault(source); !fault.empty()) {
+      return Error{Errc::kImportFailed, std::move(fault)};
+    }
     if (why.starts_with("No suitable reader found")) {
       return Error{Errc::kImportFailed,
                    fmt::format("no reader knows how it begins; expected a file of the format {}",

@@ -12,6 +12,8 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/file_error.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -64,7 +66,7 @@ class Reader {
   Status read_record(const PlyElement& element, std::uint64_t number);
   Status read_list(const PlyElement& element, const PlyProperty& list, std::uint64_t number);
   [[nodiscard]] Error ended_in(const PlyElement& element, std::uint64_t number) const {
-    return stream_.ended_in(fmt::format("{} {}", element.name, number));
+    return stream_.ended_in(fmt::format("{} {} of {}", element.name, number, element.count));
   }
 
   SourceStream& stream_;
@@ -82,9 +84,12 @@ Status Reader<T>::read() {
     // Checked before memory is reserved: the header may state any count.
     const std::size_t least = least_bytes(element);
     if (least > 0 && element.count > stream_.left() / least) {
-      return Error{Errc::kImportFailed,
-                   fmt::format("{}: {} elements '{}' cannot be in {} bytes", file_, element.count,
-                               element.name, stream_.left())};
+      return Error{
+          Errc::kImportFailed,
+          fmt::format("{}: {} elements '{}' cannot be in the {} bytes that are left, which "
+                      "hold {} at most{}",
+                      file_, element.count, element.name, stream_.left(), stream_.left() / least,
+                      kAsIfCut)};
     }
     if (Status status = read_element(element); !status.ok()) return status;
     if (&element == layout_.vertex) mesh_.end_vertices();
@@ -176,9 +181,11 @@ Status Reader<T>::read_list(const PlyElement& element, const PlyProperty& list,
   const std::int64_t stated = load_ply_integer(at, *list.length, swapped_);
   const std::size_t size = size_of(list.type);
   if (stated < 0 || static_cast<std::uint64_t>(stated) > stream_.left() / size) {
-    return Error{Errc::kImportFailed,
-                 fmt::format("{}: {} {}: a list of {} cannot be in the {} bytes that are left",
-                             file_, element.name, number, stated, stream_.left())};
+    return Error{
+        Errc::kImportFailed,
+        fmt::format("{}: {} {} of {}: a list of {} cannot be in the {} bytes that are left{}",
+                    file_, element.name, number, element.count, stated, stream_.left(),
+                    stated < 0 ? "" : kAsIfCut)};
   }
   auto count = static_cast<std::size_t>(stated);
   if (&list != layout_.corners && &list != layout_.strip) {

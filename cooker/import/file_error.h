@@ -8,6 +8,9 @@
 
 namespace boxtree::cooker {
 
+/// Ends the message about a file that ends too early.
+inline constexpr const char* kAsIfCut = ", as if the file was cut short";
+
 /// The same error, its message preceded by the name of the file.
 [[nodiscard]] inline Error in_file(const std::filesystem::path& path, const Error& error) {
   return {error.code, path.string() + ": " + error.detail};

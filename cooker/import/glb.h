@@ -5,9 +5,19 @@
 
 #include <cstdint>
 #include <cstring>
+#include <optional>
 #include <string_view>
 
 namespace boxtree::cooker {
+
+/// The number of bytes that the header states; empty if there is no such header.
+[[nodiscard]] inline std::optional<std::uint32_t> glb_size(std::string_view file) {
+  constexpr std::size_t kSizeAt = 8;
+  std::uint32_t size = 0;
+  if (!file.starts_with("glTF") || file.size() < kSizeAt + sizeof(size)) return std::nullopt;
+  std::memcpy(&size, file.data() + kSizeAt, sizeof(size));
+  return size;
+}
 
 /// The JSON; empty if the file is too short.
 [[nodiscard]] inline std::string_view glb_json(std::string_view file) {

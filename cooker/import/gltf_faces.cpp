@@ -68,6 +68,25 @@ StatedFaces stated_faces(const Json& document) {
   return stated;
 }
 
+std::string gltf_fault(const SourceFile& source) {
+  const bool is_binary = has_extension(source.path(), "glb");
+  if (!is_binary && !has_extension(source.path(), "gltf")) return {};
+  const Result<std::string> file = source.read();
+  if (!file.ok()) return {};
+  if (!is_binary) {
+    const std::size_t first = file->find_first_not_of(" \t\r\n\xef\xbb\xbf");
+    return first < file->size() && (*file)[first] == '{' ? json_fault(*file) : std::string();
+  }
+  if (!file->starts_with("glTF")) return {};
+  const std::optional<std::uint32_t> stated = glb_size(*file);
+  if (!stated) return fmt::format("its header ends after {} bytes{}", file->size(), kAsIfCut);
+  if (*stated > file->size()) {
+    return fmt::format("it has {} bytes, but its header states {}{}", file->size(), *stated,
+                       kAsIfCut);
+  }
+  return json_fault(glb_json(*file));
+}
+
 Result<StatedFaces> read_stated_faces(const SourceFile& source) {
   const bool is_binary = has_extension(source.path(), "glb");
   if (!is_binary && !has_extension(source.path(), "gltf")) return StatedFaces();

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <set>
+#include <string>
 #include <utility>
 
 #include <nlohmann/json_fwd.hpp>
@@ -26,6 +27,10 @@ using StatedFaces = std::set<std::pair<std::uint64_t, std::uint64_t>>;
 
 /// The counts in a .gltf or .glb file; empty for others. Errors: as parse_gltf.
 Result<StatedFaces> read_stated_faces(const SourceFile& source);
+
+/// Why no reader takes a .gltf or .glb file: its bytes end too early, or its JSON is none. Empty if
+/// that is not the reason, and for other formats.
+[[nodiscard]] std::string gltf_fault(const SourceFile& source);
 
 /// kMeshIndexOutOfRange with the mesh if a scene's counts differ from `stated`.
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene);

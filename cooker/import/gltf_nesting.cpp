@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
+
+#include "cooker/import/file_error.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -107,7 +110,42 @@ Status check_nodes(const Children& children) {
   return fault(fmt::format("node {}: it is below itself", cyclic - parents.begin()));
 }
 
+// Values without effect, up to the first fault.
+struct FaultListener : nlohmann::json_sax<Json> {
+  bool null() override { return true; }
+  bool boolean(bool) override { return true; }
+  bool number_integer(Json::number_integer_t) override { return true; }
+  bool number_unsigned(Json::number_unsigned_t) override { return true; }
+  bool number_float(Json::number_float_t, const std::string&) override { return true; }
+  bool string(std::string&) override { return true; }
+  bool binary(Json::binary_t&) override { return true; }
+  bool start_object(std::size_t) override { return true; }
+  bool key(std::string&) override { return true; }
+  bool end_object() override { return true; }
+  bool start_array(std::size_t) override { return true; }
+  bool end_array() override { return true; }
+  bool parse_error(std::size_t position, const std::string&,
+                   const nlohmann::detail::exception&) override {
+    at = position;
+    return false;
+  }
+
+  std::optional<std::size_t> at;  // bytes read, the one at fault included
+};
+
 }  // namespace
+
+std::string json_fault(std::string_view text) {
+  FaultListener listener;
+  if (Json::sax_parse(text, &listener) || !listener.at) return {};
+  const std::string_view before = text.substr(0, std::max<std::size_t>(*listener.at, 1) - 1);
+  if (*listener.at > text.size()) {
+    return fmt::format("its JSON ends within a value, after {} bytes{}", text.size(), kAsIfCut);
+  }
+  return fmt::format("its JSON is broken in line {}, at byte {} of {}",
+                     std::count(before.begin(), before.end(), '\n') + 1, before.size(),
+                     text.size());
+}
 
 Result<Json> parse_gltf(std::string_view text) {
   if (is_too_deep(text)) {

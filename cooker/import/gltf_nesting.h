@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,5 +23,8 @@ inline constexpr std::uint64_t kMaxRepeatedVisits = std::uint64_t{1} << 18;
 /// refuse. kImportFailed if it nests deeper than the limits, or its nodes form a cycle. O(bytes log
 /// bytes).
 Result<nlohmann::json> parse_gltf(std::string_view text);
+
+/// What keeps `text` from being JSON, in words; empty if nothing does. O(bytes).
+[[nodiscard]] std::string json_fault(std::string_view text);
 
 }  // namespace boxtree::cooker

@@ -62,6 +62,7 @@ struct ImportReport {
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
+  bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.
   std::vector<std::filesystem::path> files_read;

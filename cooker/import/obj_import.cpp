@@ -63,6 +63,7 @@ class Reader {
   Status read_statement();
   Status read_element();
   Status read_face();
+  [[nodiscard]] bool is_cut() const;
   [[nodiscard]] std::optional<std::uint32_t> vertex_of(std::string_view word) const;
   [[nodiscard]] FaceFault fault_of(std::string_view word, std::size_t corner) const;
 
@@ -153,6 +154,10 @@ Status Reader<T>::read_element() {
 
 template <class T>
 Status Reader<T>::read_face() {
+  if (words_.size() < 3 && is_cut()) {
+    report_.has_half_face = true;
+    return {};
+  }
   corners_.clear();
   std::optional<FaceFault> fault;
   for (std::size_t i = 0; i < words_.size() && !fault; ++i) {
@@ -164,6 +169,13 @@ Status Reader<T>::read_face() {
   if (fault && words_.size() < 3) return Error{fault->code, file_ + ": " + fault->reason};
   if (words_.size() >= 3) materials_.add_face(mesh_.next_face_id());
   return fault ? mesh_.add_bad_face(std::move(*fault)) : mesh_.add_face(corners_);
+}
+
+// Whether the current statement reaches the end of a text whose last line has no end.
+template <class T>
+bool Reader<T>::is_cut() const {
+  return report_.has_open_end &&
+         statement_.text.data() + statement_.text.size() == text_.data() + text_.size();
 }
 
 template <class T>

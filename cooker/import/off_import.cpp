@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "cooker/import/direct_import.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/indexed_mesh.h"
 #include "cooker/import/text_tokens.h"
 
@@ -76,7 +77,8 @@ Status Reader<T>::read() {
   if (Status status = mesh_.begin_vertices(vertices_); !status.ok()) return status;
   for (std::uint64_t i = 0; i < vertices_; ++i) {
     if (!find_word()) {
-      return failure(fmt::format("the file ends after {} of {} vertices", i, vertices_));
+      return failure(
+          fmt::format("the file ends after {} of {} vertices{}", i, vertices_, kAsIfCut));
     }
     if (Status status = read_vertex(); !status.ok()) return status;
   }
@@ -84,7 +86,7 @@ Status Reader<T>::read() {
   if (Status status = mesh_.reserve_faces(faces_); !status.ok()) return status;
   for (std::uint64_t i = 0; i < faces_; ++i) {
     if (!find_word()) {
-      return failure(fmt::format("the file ends after {} of {} faces", i, faces_));
+      return failure(fmt::format("the file ends after {} of {} faces{}", i, faces_, kAsIfCut));
     }
     if (Status status = read_face(); !status.ok()) return status;
   }
@@ -108,7 +110,7 @@ bool Reader<T>::find_word() {
 template <class T>
 Status Reader<T>::take_words(std::size_t count, const char* of) {
   for (std::size_t i = 0; i < count; ++i) {
-    if (!find_word()) return failure(fmt::format("the file ends within {}", of));
+    if (!find_word()) return failure(fmt::format("the file ends within {}{}", of, kAsIfCut));
     taken_.push_back(line_words_[word_++]);
   }
   return {};

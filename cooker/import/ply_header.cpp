@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/file_error.h"
 #include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
@@ -79,7 +80,7 @@ Result<PlyHeader> HeaderReader::read() {
     }
     if (Status status = take_statement(); !status.ok()) return status.error();
   }
-  return failure("the header has no 'end_header' behind it");
+  return failure(std::string("the header has no 'end_header' behind it") + kAsIfCut);
 }
 
 // False at the end of the file, and for a last line without an end.

@@ -12,6 +12,7 @@
 
 #include <xxhash.h>
 
+#include "cooker/import/file_error.h"
 #include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
@@ -87,7 +88,7 @@ bool SourceStream::skip(std::uint64_t count) {
 
 Error SourceStream::ended_in(std::string_view what) const {
   if (error_ != 0) return read_failure(title_, error_);
-  return Error{Errc::kImportFailed, title_ + ": the file ends in " + std::string(what)};
+  return Error{Errc::kImportFailed, title_ + ": the file ends in " + std::string(what) + kAsIfCut};
 }
 
 Result<std::uint64_t> SourceStream::finish() {

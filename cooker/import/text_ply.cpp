@@ -86,8 +86,8 @@ Status Reader<T>::check_counts() const {
   for (const PlyElement& element : layout_.header.elements) {
     if (element.count <= rest_.size() || element.properties.empty()) continue;
     return Error{Errc::kImportFailed,
-                 fmt::format("{}: {} elements '{}' cannot be in {} bytes", file_, element.count,
-                             element.name, rest_.size())};
+                 fmt::format("{}: {} elements '{}' cannot be in {} bytes{}", file_, element.count,
+                             element.name, rest_.size(), kAsIfCut)};
   }
   return {};
 }
@@ -108,8 +108,8 @@ Status Reader<T>::read_element(const PlyElement& element) {
   if (element.properties.empty()) return {};
   for (std::uint64_t i = 0; i < element.count; ++i) {
     if (!next_row()) {
-      return failure(
-          fmt::format("the file ends after {} of {} '{}'", i, element.count, element.name));
+      return failure(fmt::format("the file ends after {} of {} '{}'{}", i, element.count,
+                                 element.name, kAsIfCut));
     }
     if (Status status = check_row(element, i); !status.ok()) return status;
     if (Status status = take_row(element); !status.ok()) return status;
@@ -122,8 +122,9 @@ Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) con
   const Result<std::uint64_t> wanted = count_words(element);
   if (!wanted.ok()) return wanted.error();
   if (*wanted != row_.size()) {
-    return failure(fmt::format("'{}' {} has {} words; its properties take {}", element.name, number,
-                               row_.size(), *wanted));
+    const bool is_cut = *wanted > row_.size() && rest_.empty();
+    return failure(fmt::format("'{}' {} has {} words; its properties take {}{}", element.name,
+                               number, row_.size(), *wanted, is_cut ? kAsIfCut : ""));
   }
   const std::string_view no_number = find_no_number(row_);
   return no_number.empty() ? Status() : failure(fmt::format("'{}' is no number", no_number));
@@ -137,8 +138,8 @@ Result<std::uint64_t> Reader<T>::count_words(const PlyElement& element) const {
     if (property.length && wanted < row_.size()) {
       const std::optional<std::uint64_t> count = read_count(row_[wanted]);
       if (!count || *count > row_.size()) {
-        return failure(fmt::format("a list of '{}' numbers, but the line has {} words",
-                                   row_[wanted], row_.size()));
+        return failure(fmt::format("a list of '{}' numbers, but the line has {} words{}",
+                                   row_[wanted], row_.size(), rest_.empty() ? kAsIfCut : ""));
       }
       wanted += *count;
     }

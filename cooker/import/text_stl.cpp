@@ -41,8 +41,8 @@ class Reader {
         if (is_name_) break;
       }
     }
-    if (is_in_facet_) return failure("the file ends within a facet");
-    if (is_open_) return failure("the file ends without 'endsolid'");
+    if (is_in_facet_) return failure(std::string("the file ends within a facet") + kAsIfCut);
+    if (is_open_) return failure(std::string("the file ends without 'endsolid'") + kAsIfCut);
     return mesh_.finish();
   }
 

@@ -75,6 +75,55 @@ TEST_F(ImportErrorTest, WhatIsNoMeshAtAllIsToldSo) {
   }
 }
 
+std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
+                int face_count) {
+  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
+         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
+         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" +
+         std::string(vertices) + std::string(faces);
+}
+
+// Found by newcomers: a glTF file that was cut had no reader that "knows how it begins".
+TEST_F(ImportErrorTest, ACutFileIsToldSo) {
+  EXPECT_TRUE(has(fail("cut.gltf", "\n{\"asset\": {\"version\": \"2.0\"").detail,
+                  "cut.gltf: its JSON ends within a value, after 28 bytes, as if the file was cut "
+                  "short"));
+  EXPECT_TRUE(has(fail("broken.gltf", "{\"asset\":\n{\"version\": \"2.0\"}, }").detail,
+                  "broken.gltf: its JSON is broken in line 2, at byte 30 of 31"));
+  EXPECT_TRUE(has(fail("no.gltf", "hello").detail, "no reader knows how it begins"));
+  const std::string header("glTF\x02\0\0\0\x40\x06\0\0", 12);
+  EXPECT_TRUE(has(fail("cut.glb", header.substr(0, 9)).detail,
+                  "cut.glb: its header ends after 9 bytes, as if the file was cut short"));
+  EXPECT_TRUE(has(fail("cut.glb", header + "and so on").detail,
+                  "cut.glb: it has 21 bytes, but its header states 1600, as if the file was cut "
+                  "short"));
+
+  const std::string mesh = ply("0 0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n3 0 2 1\n", 3, 2);
+  const auto cut = [&](std::size_t bytes) {
+    return fail("cut.ply", mesh.substr(0, mesh.size() - bytes)).detail;
+  };
+  EXPECT_TRUE(has(cut(8), "the file ends after 1 of 2 'face', as if the file was cut short"));
+  EXPECT_TRUE(has(cut(4), "a list of '3' numbers, but the line has 2 words, as if the file was"));
+  EXPECT_TRUE(has(cut(18), "'vertex' 2 has 2 words; its properties take 3, as if the file"));
+  EXPECT_TRUE(has(cut(50), "the header has no 'end_header' behind it, as if the file was cut"));
+  // Not where lines follow.
+  EXPECT_FALSE(has(fail("a.ply", ply("0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n", 3, 1)).detail, "cut"));
+}
+
+// It was counted among points and lines.
+TEST_F(ImportErrorTest, TheHalfFaceOfACutObjIsNoLine) {
+  const std::string whole = std::string(kTriangle) + "f 1 2 3\nf 3 2 1\n";
+  for (const std::size_t bytes : {2u, 4u, 5u}) {
+    const Imported cut = load("cut.obj", whole.substr(0, whole.size() - 1 - bytes));
+    EXPECT_EQ(cut.mesh.faces.size(), 1u) << bytes;
+    EXPECT_TRUE(cut.report.has_half_face) << bytes;
+    EXPECT_EQ(cut.report.lines_skipped + cut.report.points_skipped + cut.report.empty_skipped, 0u);
+  }
+  const Imported line = load("line.obj", std::string(kTriangle) + "f 1 2 3\nf 3 2\n");
+  EXPECT_FALSE(line.report.has_half_face);
+  EXPECT_EQ(line.report.lines_skipped, 1u);
+}
+
 TEST_F(ImportErrorTest, NoFaces) {
   EXPECT_EQ(fail("a.obj", "# nothing at all, but long enough\n").code, Errc::kNoFaces);
   const Error points = fail("points.obj", kTriangle);
@@ -88,14 +137,6 @@ TEST_F(ImportErrorTest, NoFaces) {
                  "property float y\nproperty float z\nend_header\n1 2 3\n")
                 .code,
             Errc::kNoFaces);
-}
-
-std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
-                int face_count) {
-  return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
-         "\nproperty float x\nproperty float y\nproperty float z\nelement face " +
-         std::to_string(face_count) + "\nproperty list uchar int vertex_indices\nend_header\n" +
-         std::string(vertices) + std::string(faces);
 }
 
 TEST_F(ImportErrorTest, NotFiniteNamesVertexAndFace) {
