@@ -164,6 +164,18 @@ boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | g
             if wanted not in lines:
                 fail(page, line, f"not in samples/level/scene.toml: {wanted}")
 
+    def check_retries(self):
+        """The GUIDE's list of what may pass has every error of the operating system and of too little memory,
+        each with its status of docs/api/errors.md."""
+        errors = dict(re.findall(r"^\| \d+ \| `(\w+)` \|.*\| (\d) \|$",
+                                 (self.source / "docs/api/errors.md").read_text(encoding="utf-8"), re.MULTILINE))
+        guide = (self.source / "docs/GUIDE.md").read_text(encoding="utf-8")
+        listed = dict(re.findall(r"^\| `(\w+)` \| (\d) \|", guide[guide.index("## Exit statuses"):], re.MULTILINE))
+        wanted = {name: status for name, status in errors.items()
+                  if status == "2" or name in ("out_of_memory", "import_failed")}
+        if listed != wanted:
+            fail("docs/GUIDE.md", 0, f"what may pass: listed {listed}, expected {wanted}")
+
     def check(self, page):
         for language, text, line in blocks_of(self.source / page):
             if language == "sh" and BUILDS.match(text):
@@ -182,6 +194,7 @@ def main():
                   "boxtree query bunny.bxt ray --origin 0,0,10 --direction 0,0,-1 | grep ^t: >query.out\n"
                   "cmp program.out query.out\n", 0)
         pages.check("docs/GUIDE.md")
+        pages.check_retries()
         assert pages.ran > 30, f"only {pages.ran} commands were found"
     print(f"{pages.ran} commands run as printed")
 
