@@ -400,7 +400,7 @@ class Cook {
       if (!make_something_smaller()) {
         return Error{Errc::kBudgetUnreachable,
                      fmt::format("{}: wanted a file of at most {} bytes; the smallest that is "
-                                 "possible has {}",
+                                 "possible has {}; a larger 'tolerance' allows fewer",
                                  profile_.cite(profile_.budget.bytes->line), limit, layout->bytes)};
       }
       assemble();

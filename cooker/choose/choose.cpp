@@ -89,6 +89,11 @@ std::string nearest_of(const Contest& tree, const std::vector<Rated>& rated) {
   return smallest == fastest ? told(*smallest) : told(*smallest) + "; " + told(*fastest);
 }
 
+// The remedy where bytes are too few.
+constexpr const char* kFewerBytes =
+    "; fewer bytes take a tolerance (cook --tolerance LENGTH, tolerance of a profile), by which "
+    "vertices may move";
+
 Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes& wishes) {
   const bool any_eligible =
       std::any_of(rated.begin(), rated.end(), [](const Rated& each) { return each.eligible; });
@@ -102,7 +107,8 @@ Error refusal(const Contest& tree, const std::vector<Rated>& rated, const Wishes
                           *wishes.max_slowdown);
   }
   return {Errc::kBudgetUnreachable, "wanted " + wanted + "; " + nearest_of(tree, rated) +
-                                        fmt::format(" (slowdown: {})", kSlowdownMeaning)};
+                                        fmt::format(" (slowdown: {})", kSlowdownMeaning) +
+                                        (wishes.max_bytes_per_triangle ? kFewerBytes : "")};
 }
 
 std::string reason(const Candidate& candidate, const Rated& rated, const Candidate& chosen,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <map>
 #include <string>
 
 #include <fmt/format.h>
@@ -261,13 +262,30 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
       input_name(import.files_read.empty() ? "-" : import.files_read.front());
   std::vector<std::string> warnings;
   for (const std::filesystem::path& file : import.files_missing) {
-    warnings.push_back(fmt::format("{}: {} is not there: no file of that name can be read", source,
-                                   file.string()));
+    warnings.push_back(
+        fmt::format("{}: {} is not there: no file of that name can be read. Faces and the "
+                    "names of their materials are complete without it",
+                    source, file.string()));
   }
   if (import.has_open_end) {
     warnings.push_back(
         fmt::format("{}: the last line has no end{}, as if the file was cut short", source,
                     import.has_half_face ? " and is half a face, which is left out" : ""));
+  }
+  return warnings;
+}
+
+// Names that several inputs gave their trees.
+std::vector<std::string> shared_names(const std::vector<CookedTree>& trees) {
+  std::map<std::string, std::size_t> counts;
+  for (const CookedTree& cooked : trees) ++counts[cooked.tree.name];
+  std::vector<std::string> warnings;
+  for (const auto& [name, count] : counts) {
+    if (count == 1 || name.empty()) continue;
+    warnings.push_back(fmt::format(
+        "tree {0}: {1} trees of the file have this name; --tree {0} and find_tree() take "
+        "the first, --tree NUMBER any",
+        name, count));
   }
   return warnings;
 }
@@ -280,7 +298,11 @@ std::vector<std::string> warnings_of(const Summary& summary) {
     }
   };
   for (const ImportReport& import : summary.imports) add(warnings_of(import));
-  if (summary.scene) add(summary.scene->notices);
+  if (summary.scene) {
+    add(summary.scene->notices);
+  } else {
+    add(shared_names(summary.trees));
+  }
   return all;
 }
 

@@ -423,12 +423,14 @@ Result<Json> parse_line(std::string_view line) {
   }
 }
 
-// Names of options have hyphens, keys of answers underscores: keys of lines have either.
+// Names of options have hyphens, keys of answers underscores: keys of lines have either. Hyphens
+// before a name, which no key has, stay for the message.
 Result<Json> with_underscores(const Json& json) {
   Json named = Json::object();
   for (const auto& [key, value] : json.items()) {
     std::string name = key;
-    std::replace(name.begin(), name.end(), '-', '_');
+    const std::size_t first = std::min(name.find_first_not_of('-'), name.size());
+    std::replace(name.begin() + static_cast<std::ptrdiff_t>(first), name.end(), '-', '_');
     if (named.contains(name)) {
       return invalid(fmt::format("\"{}\": expected once, found twice: - and _ are the same", name));
     }

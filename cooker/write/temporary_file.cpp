@@ -46,6 +46,19 @@ std::optional<std::string> random_digits() {
   return fmt::format("{:016x}", random);
 }
 
+// Of the file folder/name, by errno.
+Error cannot_create(const fs::path& folder, const std::string& name) {
+  const int reason = errno;
+  struct stat status {};
+  if (reason == ENOENT && ::stat(folder.c_str(), &status) != 0 && errno == ENOENT) {
+    return {Errc::kWriteFailed,
+            fmt::format("{}: the folder {} is not there; make it first, as by mkdir -p",
+                        (folder / name).string(), folder.string())};
+  }
+  errno = reason;
+  return write_failure(folder / name, "cannot create");
+}
+
 struct CloseDirectory {
   void operator()(DIR* directory) const { ::closedir(directory); }
 };
@@ -121,7 +134,7 @@ Status TemporaryFile::create_named(mode_t mode) {
     if (Status status = choose_name(); !status) return status;
     descriptor_ = ::open(path_.c_str(), O_CREAT | O_EXCL | O_RDWR | O_CLOEXEC, mode);
     is_named_ = descriptor_ >= 0 || errno != EEXIST;
-    if (descriptor_ < 0) return write_failure(folder_ / name_, "cannot create");
+    if (descriptor_ < 0) return cannot_create(folder_, name_);
     const bool is_swept = ::flock(descriptor_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
     struct stat status {};
     if (::fstat(descriptor_, &status) != 0) return write_failure(folder_ / name_, "cannot create");

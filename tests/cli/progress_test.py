@@ -55,7 +55,12 @@ def run_on_terminal(command, names, **others):
 
 
 def cook(boxtree, count, *options):
-    return [boxtree, "cook", *["grid.obj"] * count, "-o", "grid.bxt", *options]
+    """Of `count` inputs, each by a name of its own, as equal ones are warned of."""
+    names = [f"grid{i}.obj" for i in range(count)]
+    for name in names:
+        if not os.path.exists(name):
+            os.link("grid.obj", name)
+    return [boxtree, "cook", *names, "-o", "grid.bxt", *options]
 
 
 def find_long_work(boxtree):

@@ -148,7 +148,7 @@ expect 1 "$boxtree" report crate.obj -o - --json --quick --no-times
 expect 1 "$boxtree" query - --batch - <crate.bxt
 grep -q 'the file or the batch, not both' err
 expect 0 "$boxtree" cook - --format obj -o out.bxt <crate.obj
-same "$(cat err)" 'boxtree: warning: standard input: crate.mtl is not there: no file of that name can be read'
+same "$(cat err)" 'boxtree: warning: standard input: crate.mtl is not there: no file of that name can be read. Faces and the names of their materials are complete without it'
 rm out.bxt
 printf 'f 1 2 3\n' | expect 3 "$boxtree" cook - --format obj -o out.bxt
 grep -q 'mesh_index_out_of_range: standard input: face 0: ' err
@@ -214,10 +214,11 @@ head -c -1 open.obj >cut.obj
 for option in '' --quiet --json; do
   # shellcheck disable=SC2086
   expect 0 "$boxtree" cook no_library.obj -o no_library.bxt $option
-  same "$(cat err)" 'boxtree: warning: no_library.obj: gone.mtl is not there: no file of that name can be read'
+  same "$(cat err)" 'boxtree: warning: no_library.obj: gone.mtl is not there: no file of that name can be read. Faces and the names of their materials are complete without it'
   # shellcheck disable=SC2086
   expect 0 "$boxtree" cook cut.obj cut.obj open.obj -o cut.bxt $option
-  same "$(cat err)" 'boxtree: warning: cut.obj: the last line has no end, as if the file was cut short'
+  same "$(cat err)" 'boxtree: warning: cut.obj: the last line has no end, as if the file was cut short
+boxtree: warning: tree cut: 2 trees of the file have this name; --tree cut and find_tree() take the first, --tree NUMBER any'
 done
 # What is left of a face counts as no line.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 3 2' >half.obj

@@ -148,7 +148,7 @@ add_library(assets INTERFACE)
 boxtree_add_cooked_assets(TARGET assets MESHES ../meshes/level.obj)
 boxtree_add_cooked_assets(TARGET assets MESHES ../meshes/crate.obj OUTPUT_DIR other)
 CMAKE
-refused "there is no target nothing" <<'CMAKE'
+refused "there is no target nothing; call add_executable or add_library" <<'CMAKE'
 find_package(boxtree CONFIG REQUIRED)
 boxtree_add_cooked_assets(TARGET nothing MESHES ../meshes/level.obj)
 CMAKE

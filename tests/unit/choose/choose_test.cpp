@@ -97,7 +97,10 @@ TEST(Choose, RefusesWithTheNearestThatIsPossible) {
   EXPECT_EQ(bytes.error().detail,
             "wanted at most 6.5 B/tri; wide4 with geometry exact takes 7.00 B/tri, slowdown 2.00; "
             "wide8 with geometry exact takes 13.20 B/tri, slowdown 1.00 (slowdown: time over that "
-            "of wide8 with arrays, mean over the kinds of queries)");
+            "of wide8 with arrays, mean over the kinds of queries); fewer bytes take a tolerance "
+            "(cook --tolerance LENGTH, tolerance of a profile), by which vertices may move");
+  const auto slow = choose(std::span(&tree, 1), {Goal::kSpeed, {}, 0.5});
+  EXPECT_TRUE(slow.error().detail.ends_with("mean over the kinds of queries)"));
   const auto both = choose(std::span(&tree, 1), {Goal::kSpeed, 7, 1.2});
   EXPECT_EQ(both.code(), Errc::kBudgetUnreachable);
   EXPECT_NE(both.error().detail.find("at most 7 B/tri and a slowdown of at most 1.2;"),
