@@ -7,6 +7,8 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <sys/mman.h>
+#include <sys/resource.h>
 
 #include <fmt/format.h>
 
@@ -26,6 +28,28 @@ namespace {
   std::_Exit(boxtree::cooker::kExitInternal);
 }
 
+// distance() takes most: 512 KB (docs/api/threads.md), and those that call it less than half of
+// that.
+constexpr std::size_t kStackBytes = 768 * 1024;
+constexpr std::size_t kPageBytes = 4096;
+
+[[gnu::noinline]] void touch_stack() {
+  [[maybe_unused]] volatile char bytes[kStackBytes];
+  for (std::size_t at = kStackBytes; at > 0; at -= kPageBytes) bytes[at - 1] = 0;
+}
+
+// A stack that cannot grow when a function needs it ends the program by SIGSEGV. So it grows now,
+// where too little memory can still be told.
+void grow_stack() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_STACK, &limit) != 0 || limit.rlim_cur < 2 * kStackBytes) return;
+  void* const room =
+      ::mmap(nullptr, kStackBytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+  if (room == MAP_FAILED) throw std::bad_alloc();
+  static_cast<void>(::munmap(room, kStackBytes));
+  touch_stack();
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -37,6 +61,7 @@ int main(int argc, char** argv) {
   static_cast<void>(std::signal(SIGXFSZ, SIG_IGN));
 #endif
   try {
+    grow_stack();
     cooker::Command app("boxtree",
                         "Cooks meshes into small collision trees and queries them.\n"
                         "A file called - is standard input or standard output; one of that name is "
