@@ -32,7 +32,7 @@ def numbers(cell):
 
 
 class Example:
-    def __init__(self, source, boxtree, reader, text, blocks, work):
+    def __init__(self, source, boxtree, reader, text, blocks, work, name="crate", is_whole=True):
         self.text = text
         (_, command, _), (_, shown, _) = blocks
         assert command.startswith("boxtree cook ") and command.count("\n") == 1, command
@@ -43,11 +43,13 @@ class Example:
         file = reader.File(output.read_bytes())
         records = file.section(1)
         trees = [reader.Tree(file, i, records[128 * i:128 * (i + 1)]) for i in range(len(records) // 128)]
-        self.tree = next(tree for tree in trees if tree.name == "crate")
+        self.tree = next(tree for tree in trees if tree.name == name)
         self.number = trees.index(self.tree)
         self.bytes = bytes.fromhex(shown)
         table = bytes([1, 0, 0, 0])  # the only cluster begins at byte 4
-        assert self.tree.vertices == table + self.bytes + bytes(72), self.tree.vertices.hex(" ")
+        shown = table + self.bytes
+        assert self.tree.vertices[:len(shown)] == shown, self.tree.vertices.hex(" ")
+        assert not is_whole or self.tree.vertices[len(shown):] == bytes(72), self.tree.vertices.hex(" ")
         self.read = self.record_strips(reader)
 
     def record_strips(self, reader):
@@ -118,17 +120,21 @@ def main():
     text = page.read_text(encoding="utf-8")
     start = text.index("#### Example")
     middle = text.index("```sh", text.index("```hex", start))
-    end = re.compile(r"\n##+ ").search(text, middle).start()
+    third = text.index("With geometry exact the fields", middle)
+    end = re.compile(r"\n##+ ").search(text, third).start()
     blocks = [block for block in blocks_of(page)
               if text.count("\n", 0, start) < block[2] <= text.count("\n", 0, end)]
-    assert [language for language, _, _ in blocks] == ["sh", "hex"] * 2, "two examples"
-    with tempfile.TemporaryDirectory() as work:
-        level, quads = (Example(source, boxtree, read_bxt, part, blocks[2 * i:2 * i + 2], pathlib.Path(work))
-                        for i, part in enumerate((text[start:middle], text[middle:end])))
+    assert [language for language, _, _ in blocks] == ["sh", "hex"] * 3, "three examples"
+    with tempfile.TemporaryDirectory() as folder:
+        work = pathlib.Path(folder)
+        level, quads = (Example(source, boxtree, read_bxt, part, blocks[2 * i:2 * i + 2], work)
+                        for i, part in enumerate((text[start:middle], text[middle:third])))
+        exact = Example(source, boxtree, read_bxt, text[third:end], blocks[4:], work, "wall", is_whole=False)
     level.check_fields(True)
     level.check_faces()
     quads.check_fields(False)
     quads.check_faces()
+    exact.check_fields(False)
     # What the text says of the trees.
     assert f"The tree `crate`, number {level.number}, of" in text
     assert (level.tree.geometry, level.tree.corners_per_face, level.tree.exponent,
@@ -137,8 +143,14 @@ def main():
     assert {abs(x) * 2.0 ** -16 for face in level.tree.clusters.faces for point in face for x in point} == {
         0.399993896484375}
     assert (quads.tree.geometry, quads.tree.corners_per_face, quads.tree.face_count) == (read_bxt.GRID, 4, 6)
-    assert struct.pack(">f", 0.5).hex() == f"{63 << 24:08x}" == "3f000000"
-    assert struct.pack(">f", -0.5).hex() == f"{(-1 - -64) << 24 | 1 << 31:08x}" == "bf000000"
+    assert f"The tree `wall`, number {exact.number}, of" in text
+    assert (exact.tree.geometry, exact.tree.face_count) == (read_bxt.EXACT, 48)
+    vertices = {tuple(point) for face in exact.tree.clusters.faces for point in face}
+    for words in (0x40000000, 0x3f800000, 0x3e19999a), (0xc0000000, 0x3f800000, 0x3e19999a):
+        assert all(f"{word:X}" in text[third:end] for word in words), words
+        assert struct.unpack(">3f", struct.pack(">3I", *words)) in vertices, words
+    assert [536870912 << 1, 254 << 22, 520932557 << 1] == [0x40000000, 0x3f800000, 0x3e19999a]
+    assert (-1 - -536870913) << 1 | 1 << 31 == 0xc0000000
     print("the examples are as cooked")
 
 
