@@ -27,18 +27,23 @@ class WideCollapse {
   // For forests with at most 1 .. 8 roots over a node and its subtree: the cost, and the number of
   // roots on the left; kSameAsFewer if one root less is as cheap.
   static constexpr std::uint8_t kSameAsFewer = 0xff;
-  struct Forests {
-    std::array<double, kWideChildren> cost{};
-    std::array<std::uint8_t, kWideChildren> left_roots{};
+  using Costs = std::array<double, kWideChildren>;
+  using LeftRoots = std::array<std::uint8_t, kWideChildren>;
+
+  // The cheapest division of a number of roots between two sides.
+  struct Division {
+    double cost;
+    std::uint8_t on_left;
   };
 
-  [[nodiscard]] Forests forests_of(std::uint32_t node, double own_cost) const;
-  [[nodiscard]] std::uint8_t best_division(std::uint32_t node, std::size_t roots,
-                                           double& cost) const;
+  static Division best_division(const Costs& left, const Costs& right, std::size_t roots);
+  // Fills the forests over a node and returns their costs.
+  static Costs choose_forests(const Costs& left, const Costs& right, double own_cost,
+                              LeftRoots& left_roots);
   void gather(std::uint32_t node, std::size_t roots, std::vector<std::uint32_t>& children) const;
 
   const BuildTree& tree_;
-  std::vector<Forests> forests_;
+  std::vector<LeftRoots> left_roots_;
   std::vector<std::uint8_t> own_division_;  // of the eight roots below a node that stays
 };
 
