@@ -137,7 +137,7 @@ class Cook {
       search.wishes.max_slowdown = profile_.budget.slowdown->value;
     }
     // A limit of bytes for the whole file may need any candidate.
-    if (profile_.budget.bytes) search.try_all = true;
+    if (profile_.budget.bytes) search.try_all = search.keep_all = true;
     search.face_ids = planned.face_ids || has_several_materials(mesh);
     search.grid.tolerance = planned.tolerance;
     if (planned.external) {

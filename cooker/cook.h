@@ -102,11 +102,12 @@ struct CookedFile {
 ///
 /// With CookOptions::number_by_tree, kMeshUnsupported for more than one tree or a top level.
 ///
-/// The bytes do not depend on threads or folders. Meshes are freed once they are encoded; all
-/// candidates stay in memory until the shared geometry store is chosen. Runs on the threads of the
-/// enclosing oneTBB arena; may be called from several threads at once. Errors: those of
-/// CookInput::importer, plan_scene, choose_grid, try_encodings, choose and encode_scene;
-/// kBudgetUnreachable for a limit of the file, with the nearest possible value.
+/// The bytes do not depend on threads or folders. Meshes are freed once they are encoded. Until the
+/// shared geometry store is chosen, the candidates that may win stay in memory; all candidates, if
+/// the file has a limit of bytes. Runs on the threads of the enclosing oneTBB arena; may be called
+/// from several threads at once. Errors: those of CookInput::importer, plan_scene, choose_grid,
+/// try_encodings, choose and encode_scene; kBudgetUnreachable for a limit of the file, with the
+/// nearest possible value.
 Result<CookedFile> cook(CookInput input, const Profile& profile, const CookOptions& options,
                         const Progress& progress = {});
 

@@ -167,6 +167,15 @@ std::vector<bool> may_be_chosen(std::span<const Candidate> candidates) {
   return eligible;
 }
 
+std::vector<bool> may_still_win(const Contest& tree, const Wishes& wishes) {
+  const std::vector<Rated> rated = rate(tree, wishes);
+  std::vector<bool> may_win(rated.size(), false);
+  for (const Positioning positioning : kPositionings) {
+    if (const auto best = best_of(tree, rated, positioning)) may_win[*best] = true;
+  }
+  return may_win;
+}
+
 std::vector<double> slowdowns(const Contest& tree) {
   static_assert(kQueryKinds == 4 && kRayQueries == 1 && kPairQueries == 8);  // bits in their order
   const QueryKinds queries =

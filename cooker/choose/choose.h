@@ -65,6 +65,11 @@ struct Contest {
 /// as when one was requested.
 [[nodiscard]] std::vector<bool> may_be_chosen(std::span<const Candidate> candidates);
 
+/// Which candidates choose() can still choose once other stores are tried and other trees are known
+/// that share the file: of those with equal positions, the best one within the budgets.
+/// Precondition: the baseline and the queries that count are entered.
+[[nodiscard]] std::vector<bool> may_still_win(const Contest& tree, const Wishes& wishes);
+
 /// What slowdowns are relative to, for texts.
 inline constexpr const char* kSlowdownMeaning =
     "time over that of wide8 with arrays, mean over the kinds of queries";

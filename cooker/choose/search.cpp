@@ -221,6 +221,7 @@ class Search {
                                      : std::span<const CodecCost>(options.costs)),
         queries_(choice_queries(bounds_of(mesh))) {
     out_.contest.triangles = static_cast<std::uint32_t>(mesh.triangle_count());
+    out_.contest.queries = options.wishes.queries;
   }
 
   Result<TriedTree> run() {
@@ -231,7 +232,7 @@ class Search {
 
  private:
   Status try_stores() {
-    if (options_.geometry != GeometryId::kExact) return try_store(options_.geometry);
+    if (options_.geometry != GeometryId::kExact) return try_and_drop(options_.geometry);
     for (const GeometryId store : {GeometryId::kExact, GeometryId::kArrays, GeometryId::kGrid}) {
       if (store == GeometryId::kGrid && !options_.may_use_grid) continue;
       const std::string why = options_.try_all ? "" : why_not(store);
@@ -239,7 +240,7 @@ class Search {
         leave_out(store, why);
         continue;
       }
-      const Status status = try_store(store);
+      const Status status = try_and_drop(store);
       if (status) continue;
       if (store != GeometryId::kGrid) return status.error();
       leave_out(store, status.error().detail);  // the scene has no grid that fine
@@ -247,9 +248,19 @@ class Search {
     return {};
   }
 
+  // Tries a store and frees the bytes of what lost by it.
+  Status try_and_drop(GeometryId store) {
+    if (Status status = try_store(store); !status) return status;
+    if (out_.contest.candidates.empty()) return {};
+    if (Status status = enter_baseline(); !status) return status;
+    if (!options_.keep_all) drop_losers();
+    return {};
+  }
+
   // What slowdowns are relative to. The store does not change the work of a tree, so that any wide8
   // tree tells it, best one over positions that are not rounded, which are tried first.
   Status enter_baseline() {
+    if (has_baseline_) return {};
     const auto found = std::find_if(
         out_.contest.candidates.begin(), out_.contest.candidates.end(),
         [](const Candidate& each) { return each.codec == CodecId::kWide8 && each.gates.pass(); });
@@ -262,7 +273,24 @@ class Search {
       work = *counted;
     }
     out_.contest.baseline = cost_of(work, CodecId::kWide8, GeometryId::kArrays, costs_);
+    has_baseline_ = true;
     return {};
+  }
+
+  // Frees the bytes of candidates that lose to another one, whatever is tried after them.
+  void drop_losers() {
+    const std::vector<bool> may_win = may_still_win(out_.contest, options_.wishes);
+    std::vector<bool> is_needed(out_.families.size(), false);
+    for (std::size_t i = 0; i < may_win.size(); ++i) {
+      if (may_win[i]) {
+        is_needed[out_.nodes[i].family] = true;
+      } else {
+        out_.nodes[i].nodes.bytes = {};
+      }
+    }
+    for (std::size_t i = 0; i < is_needed.size(); ++i) {
+      if (!is_needed[i]) out_.families[i].geometry = {};
+    }
   }
 
   // The work of wide8 where only other codecs were requested.
@@ -442,6 +470,7 @@ class Search {
   const std::span<const CodecCost> costs_;
   const Workload queries_;
   std::optional<Built> unrounded_;
+  bool has_baseline_ = false;
   TriedTree out_;
 };
 

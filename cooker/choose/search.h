@@ -28,6 +28,9 @@ struct SearchOptions {
   bool may_use_arrays = false;
   GridChoice grid;       // of geometry grid
   bool try_all = false;  // also encodings that cannot win
+  /// Keep the bytes of every candidate. If false, those are freed that choose() cannot choose with
+  /// `wishes`.
+  bool keep_all = false;
   bool face_ids = true;
   std::vector<CodecCost> costs;  // for the user's machine; empty: those compiled in [default]
   /// Binary codecs: the share of a box that must be empty to be cut off [kShrinkShare] [0.01 to 1;
@@ -46,7 +49,8 @@ inline constexpr std::size_t kTryAllFaces = 4096;
 [[nodiscard]] bool may_grid_win(const Wishes& wishes) noexcept;
 
 /// The encodings of one mesh. Candidates with the same tree and order of faces share all parts
-/// except nodes.
+/// except nodes. Without SearchOptions::keep_all, the bytes of candidates that cannot be chosen are
+/// empty.
 struct TriedTree {
   struct Nodes {
     std::size_t family;
@@ -61,7 +65,7 @@ struct TriedTree {
     return collapsed[nodes[candidate].family];
   }
 
-  /// Moves the tree of a candidate out; the others are freed.
+  /// Moves the tree of a candidate out; the others are freed. Precondition: its bytes were kept.
   [[nodiscard]] EncodedTree take(std::size_t candidate);
 };
 

@@ -183,6 +183,7 @@ class Measurement {
     announce(grid_bits ? fmt::format("grid of {} bits", *grid_bits) : "exact geometry");
     SearchOptions search;
     search.try_all = !grid_bits;
+    search.keep_all = true;
     search.geometry = grid_bits ? GeometryId::kGrid : GeometryId::kExact;
     search.may_use_arrays = true;
     double rms = 0;

@@ -128,11 +128,42 @@ TEST(Search, TheBaselineIsWide8WithArraysWhateverIsRequested) {
   EXPECT_EQ(require(try_encodings(mesh, options)).contest.baseline, arrays->cost);
 }
 
+// Whichever positions the trees of a file share, a candidate with these is chosen: the others take
+// no memory while more are tried.
+TEST(Search, BytesOfCandidatesThatLoseAreFreed) {
+  for (const SourceMesh& mesh : {large_mesh(), test::torus(12, 8)}) {
+    for (const Goal goal : {Goal::kMemory, Goal::kSpeed, Goal::kBalance}) {
+      const SearchOptions options = options_for(goal);
+      TriedTree tried = require(try_encodings(mesh, options));
+      const std::vector<bool> may_win = may_still_win(tried.contest, options.wishes);
+      std::size_t kept = 0;
+      for (std::size_t i = 0; i < may_win.size(); ++i) {
+        kept += may_win[i] ? 1u : 0u;
+        const TriedTree::Nodes& of = tried.nodes[i];
+        EXPECT_EQ(of.nodes.bytes.empty(), !may_win[i]);
+        EXPECT_TRUE(!may_win[i] || !tried.families[of.family].geometry.vertices.empty());
+      }
+      const std::size_t exact_and_grid = goal == Goal::kSpeed && mesh.faces.size() > 1000 ? 1 : 2;
+      EXPECT_LE(kept, exact_and_grid) << goal_name(goal);
+      const auto has_bytes = [](const EncodedTree& tree) {
+        return !tree.geometry.vertices.empty();
+      };
+      EXPECT_EQ(std::count_if(tried.families.begin(), tried.families.end(), has_bytes), kept);
+      const std::size_t chosen =
+          require(choose(std::span(&tried.contest, 1), options.wishes)).front();
+      EXPECT_TRUE(may_win[chosen]);
+      EXPECT_TRUE(bind_encoded(tried.take(chosen)).ok());
+    }
+  }
+}
+
 TEST(Search, TakesOutOneTreeWhole) {
   const SourceMesh mesh = test::torus(12, 8);
-  TriedTree tried = require(try_encodings(mesh, options_for(Goal::kBalance)));
+  SearchOptions options = options_for(Goal::kBalance);
+  options.keep_all = true;
+  TriedTree tried = require(try_encodings(mesh, options));
   for (std::size_t i = 0; i < tried.contest.candidates.size(); ++i) {
-    TriedTree copy = require(try_encodings(mesh, options_for(Goal::kBalance)));
+    TriedTree copy = require(try_encodings(mesh, options));
     const EncodedTree tree = copy.take(i);
     const Candidate& candidate = tried.contest.candidates[i];
     EXPECT_EQ(tree.nodes.codec, candidate.codec);
