@@ -65,7 +65,7 @@ class Recursion {
 
 }  // namespace
 
-BuildTree build_tree(const SourceMesh& mesh, Builder builder, Origin origin,
+BuildTree build_tree(const MeshView& mesh, Builder builder, Origin origin,
                      const Duplicates& duplicates) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);

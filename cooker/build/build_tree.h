@@ -55,7 +55,7 @@ struct BuildTree {
 };
 
 /// The bounds of a face in tree space, as a reader computes its corners.
-[[nodiscard]] Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face);
+[[nodiscard]] Box<double> face_bounds(const MeshView& mesh, const Frame& frame, std::size_t face);
 
 /// The origin of tree space.
 enum class Origin : std::uint8_t {
@@ -72,13 +72,13 @@ enum class Builder : std::uint8_t {
 /// not on threads, order of execution or standard library. Every face becomes exactly one leaf,
 /// except duplicates, of which only the original does. Runs on the threads of the enclosing oneTBB
 /// arena. Precondition: finite positions, corners in range (import guarantees both).
-[[nodiscard]] BuildTree build_tree(const SourceMesh& mesh, Builder builder,
+[[nodiscard]] BuildTree build_tree(const MeshView& mesh, Builder builder,
                                    Origin origin = Origin::kByPrecision,
                                    const Duplicates& duplicates = {});
 
 /// The same with leaves of kLeafFaces faces. All leaves are full except the last one from left to
 /// right. Uses the surface-area heuristic over the divisions that allow full leaves.
-[[nodiscard]] BuildTree build_full_leaves(const SourceMesh& mesh,
+[[nodiscard]] BuildTree build_full_leaves(const MeshView& mesh,
                                           Origin origin = Origin::kByPrecision,
                                           const Duplicates& duplicates = {});
 

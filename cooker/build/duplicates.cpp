@@ -16,7 +16,7 @@ namespace {
 // The bits of a face's corners, one after another.
 class FaceBits {
  public:
-  explicit FaceBits(const SourceMesh& mesh)
+  explicit FaceBits(const MeshView& mesh)
       : mesh_(mesh),
         is_f32_(mesh.positions.precision == Precision::kF32),
         stride_(3 * (is_f32_ ? sizeof(float) : sizeof(double))) {}
@@ -58,13 +58,13 @@ class FaceBits {
     return mesh_.positions.f64.data() + first;
   }
 
-  const SourceMesh& mesh_;
+  MeshView mesh_;
   bool is_f32_;
   std::size_t stride_;
 };
 
 // For each face, the first face with the same corners.
-std::vector<std::uint32_t> first_of_group(const SourceMesh& mesh) {
+std::vector<std::uint32_t> first_of_group(const MeshView& mesh) {
   constexpr std::uint32_t kFree = 0xffffffffu;
   const FaceBits bits(mesh);
   const std::size_t faces = mesh.faces.size();
@@ -102,7 +102,7 @@ std::vector<std::uint32_t> first_of_group(const SourceMesh& mesh) {
 
 }  // namespace
 
-Duplicates find_duplicates(const SourceMesh& mesh) {
+Duplicates find_duplicates(const MeshView& mesh) {
   Duplicates found;
   found.original = first_of_group(mesh);
   for (std::size_t i = 0; i < found.original.size(); ++i) found.count += found.original[i] != i;
@@ -116,7 +116,7 @@ Duplicates find_duplicates(const SourceMesh& mesh) {
   return found;
 }
 
-std::vector<std::uint32_t> append_duplicates(const SourceMesh& mesh, const Duplicates& duplicates,
+std::vector<std::uint32_t> append_duplicates(const MeshView& mesh, const Duplicates& duplicates,
                                              std::vector<std::uint32_t>& order) {
   std::vector<std::uint32_t> places;
   if (duplicates.count == 0) return places;

@@ -24,12 +24,12 @@ struct Duplicates {
 /// Groups faces with bitwise identical corner positions in the same order, so that a result
 /// computed for one holds for all. The original of a group is the face with the smallest face id,
 /// and among equal ids the first face: ties between answers go to it, too.
-[[nodiscard]] Duplicates find_duplicates(const SourceMesh& mesh);
+[[nodiscard]] Duplicates find_duplicates(const MeshView& mesh);
 
 /// Appends the copies to `order`, which holds the originals in the order of the tree. Copies are
 /// ordered by the place of their original, then by id. Returns for each copy the place of its
 /// original, ascending.
-[[nodiscard]] std::vector<std::uint32_t> append_duplicates(const SourceMesh& mesh,
+[[nodiscard]] std::vector<std::uint32_t> append_duplicates(const MeshView& mesh,
                                                            const Duplicates& duplicates,
                                                            std::vector<std::uint32_t>& order);
 

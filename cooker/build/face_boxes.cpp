@@ -49,7 +49,7 @@ Bounds bounds_of(const Positions& positions) {
   return bounds;
 }
 
-Box<float> face_box(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
+Box<float> face_box(const MeshView& mesh, const Frame& frame, std::size_t face) {
   const Box<double> bounds = face_bounds(mesh, frame, face);
   Box<float> box;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -101,7 +101,7 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
                                    kMaxScaleExponent);
 }
 
-Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t face) {
+Box<double> face_bounds(const MeshView& mesh, const Frame& frame, std::size_t face) {
   const Face& corners = mesh.faces[face];
   const std::size_t count = corners.is_quad() ? 4 : 3;
   Bounds bounds;
@@ -112,7 +112,7 @@ Box<double> face_bounds(const SourceMesh& mesh, const Frame& frame, std::size_t 
           {bounds.high[0], bounds.high[1], bounds.high[2]}};
 }
 
-std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame,
+std::vector<FaceBox> face_boxes(const MeshView& mesh, const Frame& frame,
                                 const Duplicates& duplicates) {
   std::vector<FaceBox> faces(mesh.faces.size());
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, faces.size(), 4096),

@@ -16,7 +16,7 @@ namespace boxtree::cooker {
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree);
 
 /// The boxes of all faces except duplicates, in tree space, in the order of the mesh.
-[[nodiscard]] std::vector<FaceBox> face_boxes(const SourceMesh& mesh, const Frame& frame,
+[[nodiscard]] std::vector<FaceBox> face_boxes(const MeshView& mesh, const Frame& frame,
                                               const Duplicates& duplicates);
 
 }  // namespace boxtree::cooker

@@ -103,7 +103,7 @@ class Recursion {
 
 }  // namespace
 
-BuildTree build_full_leaves(const SourceMesh& mesh, Origin origin, const Duplicates& duplicates) {
+BuildTree build_full_leaves(const MeshView& mesh, Origin origin, const Duplicates& duplicates) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   if (mesh.faces.empty()) return tree;

@@ -23,7 +23,7 @@
 namespace boxtree::cooker {
 namespace {
 
-std::uint32_t count_degenerate(const SourceMesh& mesh, const Frame& frame) {
+std::uint32_t count_degenerate(const MeshView& mesh, const Frame& frame) {
   std::uint32_t count = 0;
   for (const Face& face : mesh.faces) {
     const std::size_t corners = face.is_quad() ? 4 : 3;
@@ -55,26 +55,28 @@ Status check_limits(const SourceMesh& mesh, const SearchOptions& options) {
 }
 
 // A tree without nodes, with the frame that all builders choose.
-BuildTree unbuilt_tree(const SourceMesh& mesh, Origin origin) {
+BuildTree unbuilt_tree(const MeshView& mesh, Origin origin) {
   BuildTree tree;
   choose_frame(mesh.positions, origin, tree);
   return tree;
 }
 
-// The mesh to cook, and its quantised copy if geometry is on a grid.
+// The mesh to cook, and its positions on a grid if geometry is on one.
 struct Source {
-  const SourceMesh& mesh;                        // as imported
-  const std::optional<QuantisedMesh> quantised;  // or nothing
-  EncodedTree known;                             // shared by all its trees
-  Duplicates duplicates;                         // of the mesh that is built
+  const SourceMesh& mesh;                             // as imported
+  const std::optional<QuantisedPositions> quantised;  // or nothing
+  EncodedTree known;                                  // shared by all its trees
+  Duplicates duplicates;                              // of the mesh that is built
 
-  Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid);
+  Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid);
 
-  [[nodiscard]] const SourceMesh& built() const { return quantised ? quantised->mesh : mesh; }
+  [[nodiscard]] MeshView built() const {
+    return quantised ? MeshView(mesh, quantised->positions) : MeshView(mesh);
+  }
   [[nodiscard]] Origin origin() const { return quantised ? Origin::kZero : Origin::kByPrecision; }
 };
 
-Source::Source(const SourceMesh& imported, std::optional<QuantisedMesh> on_grid)
+Source::Source(const SourceMesh& imported, std::optional<QuantisedPositions> on_grid)
     : mesh(imported), quantised(std::move(on_grid)) {
   const BuildTree unbuilt = unbuilt_tree(built(), origin());
   known.name = mesh.name;
@@ -108,8 +110,9 @@ void encode_geometry(const Source& source, const SearchOptions& options,
                      std::vector<std::uint32_t> order, LeafOrder leaf_order, EncodedTree& tree) {
   const bool has_duplicates = source.duplicates.count > 0;
   const auto encode_clusters = [&](LeafOrder faces) {
-    return source.quantised ? encode_grid_geometry(*source.quantised, order, faces)
-                            : encode_exact_geometry(source.mesh, order, faces);
+    return source.quantised
+               ? encode_grid_geometry(source.mesh.faces, *source.quantised, order, faces)
+               : encode_exact_geometry(source.mesh, order, faces);
   };
   if (has_clusters(options.geometry) && has_duplicates && leaf_order == LeafOrder::kFree) {
     // The order of the originals decides the order of their duplicates, so clusters come first.
@@ -369,7 +372,7 @@ class Search {
     if (wide.empty() && binary.empty()) return {};
     std::optional<Built> on_grid;
     if (store == GeometryId::kGrid) {
-      Result<QuantisedMesh> quantised = quantise_mesh();
+      Result<QuantisedPositions> quantised = quantise_mesh();
       if (!quantised) return quantised.error();
       unrounded_.reset();  // a grid is tried last
       on_grid.emplace(Built{Source(mesh_, std::move(*quantised)), nullptr});
@@ -393,10 +396,10 @@ class Search {
     return try_family(binary_family(source, options, binary), source, binary);
   }
 
-  Result<QuantisedMesh> quantise_mesh() const {
+  Result<QuantisedPositions> quantise_mesh() const {
     const Result<Grid> grid = scene_ ? *scene_ : choose_grid(bounds_of(mesh_), options_.grid);
     if (!grid) return grid.error();
-    QuantisedMesh quantised = quantise(mesh_, *grid);
+    QuantisedPositions quantised = quantise(mesh_, *grid);
     const double tolerance = options_.grid.tolerance.value_or(quantised.max_vertex_error);
     if (quantised.max_vertex_error > tolerance) {
       return Error{Errc::kMeshUnsupported,

@@ -413,8 +413,8 @@ struct FloatNumbers {
 };
 
 template <class Numbers>
-Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std::uint32_t> order,
-                   bool may_have_quads, LeafOrder leaf_order) {
+Block encode_block(std::span<const Face> mesh_faces, const Numbers& numbers,
+                   std::span<std::uint32_t> order, bool may_have_quads, LeafOrder leaf_order) {
   using Number = typename Numbers::Number;
   Block block;
   ClusterEncoder<Number> encoder(block.bytes, may_have_quads, Numbers::kAreFloats);
@@ -425,7 +425,7 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
     ClusterVertices<Number> vertices;
     faces.clear();
     for (const std::uint32_t source : of_cluster) {
-      const Face& face = mesh.faces[source];
+      const Face& face = mesh_faces[source];
       ClusterFace named{{}, source, face.is_quad()};
       for (std::size_t c = 0; c < (named.is_quad ? 4u : 3u); ++c) {
         named.corner[c] = vertices.number_of(numbers[face.corner[c]]);
@@ -444,10 +444,10 @@ Block encode_block(const SourceMesh& mesh, const Numbers& numbers, std::span<std
 }
 
 template <class Numbers>
-EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
+EncodedGeometry encode_clusters(std::span<const Face> faces, const Numbers& numbers,
                                 std::vector<std::uint32_t>& order, LeafOrder leaf_order) {
-  const bool may_have_quads = std::any_of(mesh.faces.begin(), mesh.faces.end(),
-                                          [](const Face& face) { return face.is_quad(); });
+  const bool may_have_quads =
+      std::any_of(faces.begin(), faces.end(), [](const Face& face) { return face.is_quad(); });
   EncodedGeometry out;
   out.corners_per_face = may_have_quads ? 4 : 3;
   constexpr std::size_t kBlockFaces = std::size_t{16} * kClusterFaces;
@@ -455,7 +455,7 @@ EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
   const auto encode = [&](std::size_t i) {
     const std::size_t first = i * kBlockFaces;
     const std::size_t count = std::min(kBlockFaces, order.size() - first);
-    blocks[i] = encode_block(mesh, numbers, std::span(order).subspan(first, count), may_have_quads,
+    blocks[i] = encode_block(faces, numbers, std::span(order).subspan(first, count), may_have_quads,
                              leaf_order);
   };
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, blocks.size(), 1),
@@ -485,10 +485,10 @@ EncodedGeometry encode_clusters(const SourceMesh& mesh, const Numbers& numbers,
 
 }  // namespace
 
-EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
+EncodedGeometry encode_grid_geometry(std::span<const Face> faces,
+                                     const QuantisedPositions& quantised,
                                      std::vector<std::uint32_t>& order, LeafOrder leaf_order) {
-  EncodedGeometry out =
-      encode_clusters(quantised.mesh, GridNumbers{quantised.mesh.positions}, order, leaf_order);
+  EncodedGeometry out = encode_clusters(faces, GridNumbers{quantised.positions}, order, leaf_order);
   out.geometry = GeometryId::kGrid;
   out.grid_exponent = quantised.step_exponent;
   out.max_vertex_error = quantised.max_vertex_error;
@@ -500,9 +500,9 @@ EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::vector<std::u
   const Positions& positions = mesh.positions;
   EncodedGeometry out =
       positions.precision == Precision::kF64
-          ? encode_clusters(mesh, FloatNumbers<std::int64_t, double>{positions.f64}, order,
+          ? encode_clusters(mesh.faces, FloatNumbers<std::int64_t, double>{positions.f64}, order,
                             leaf_order)
-          : encode_clusters(mesh, FloatNumbers<std::int32_t, float>{positions.f32}, order,
+          : encode_clusters(mesh.faces, FloatNumbers<std::int32_t, float>{positions.f32}, order,
                             leaf_order);
   out.geometry = GeometryId::kExact;
   return out;

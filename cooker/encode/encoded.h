@@ -67,7 +67,7 @@ struct EncodedGeometry {
   std::uint8_t duplicate_bytes = 0;
   std::uint32_t duplicate_count = 0;
   std::uint64_t face_id_bytes = 0;  // that ids take, or would take if they were not left out
-  int grid_exponent = 0;        // geometry grid: of its step in object space
+  int grid_exponent = 0;            // geometry grid: of its step in object space
   double max_vertex_error = 0;  // largest distance of a stored from a source vertex, object space
 };
 
@@ -87,7 +87,8 @@ enum class LeafOrder : std::uint8_t { kFixed, kFree };
 [[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
                                                     std::vector<std::uint32_t>& order,
                                                     LeafOrder leaf_order);
-[[nodiscard]] EncodedGeometry encode_grid_geometry(const QuantisedMesh& quantised,
+[[nodiscard]] EncodedGeometry encode_grid_geometry(std::span<const Face> faces,
+                                                   const QuantisedPositions& quantised,
                                                    std::vector<std::uint32_t>& order,
                                                    LeafOrder leaf_order);
 

@@ -24,7 +24,7 @@ enum class PlainCut : std::uint8_t { kF16, kF32, kF64 };
 /// Codecs plain-f16 and plain-f32, and plain nodes with cuts in f64, which no file holds. `mesh` is
 /// the source of the tree, used only for f64: the build tree's own bounds are f32. `shrink_share`
 /// is above 0. Precondition: a tree with one triangle per leaf.
-[[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
+[[nodiscard]] EncodedNodes encode_plain(const BuildTree& tree, const MeshView& mesh, PlainCut cut,
                                         FaceOrder order, double shrink_share = kShrinkShare);
 
 /// The nodes of a binary codec, from plain nodes with cuts as in plain_cut_of(codec). `widths`

@@ -255,7 +255,7 @@ EncodedNodes encode(const BuildTree& tree, FaceOrder order, double shrink_share,
 
 // The box that each node of the build tree must contain, without rounding to f32. Computed from the
 // leaves up; children have larger indices than their parents.
-std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMesh& mesh) {
+std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const MeshView& mesh) {
   const Frame frame = tree.frame();
   std::vector<Box<double>> bounds(tree.nodes.size());
   for (std::size_t i = tree.nodes.size(); i-- > 0;) {
@@ -276,7 +276,7 @@ std::vector<Box<double>> bounds_in_double(const BuildTree& tree, const SourceMes
 
 }  // namespace
 
-EncodedNodes encode_plain(const BuildTree& tree, const SourceMesh& mesh, PlainCut cut,
+EncodedNodes encode_plain(const BuildTree& tree, const MeshView& mesh, PlainCut cut,
                           FaceOrder order, double shrink_share) {
   if (cut == PlainCut::kF64) {
     const std::vector<Box<double>> bounds = bounds_in_double(tree, mesh);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -55,14 +56,33 @@ struct SourceMesh {
   /// triangle. Empty unless import was told to keep it (ImportOptions::keep_polygon_corners).
   std::vector<std::array<std::uint32_t, 4>> polygon_corners;
 
-  [[nodiscard]] std::uint32_t face_id(std::size_t face) const {
-    return face_ids.empty() ? static_cast<std::uint32_t>(face) : face_ids[face];
-  }
+  [[nodiscard]] std::uint32_t face_id(std::size_t face) const;
   [[nodiscard]] std::size_t triangle_count() const {
     std::size_t count = faces.size();
     for (const Face& face : faces) count += face.is_quad() ? 1u : 0u;
     return count;
   }
 };
+
+/// What a tree is built over: the faces of a mesh, with its positions or others for its vertices.
+/// It points into both.
+struct MeshView {
+  const Positions& positions;
+  std::span<const Face> faces;
+  std::span<const std::uint32_t> face_ids;  // as in SourceMesh
+
+  MeshView(const SourceMesh& mesh)  // NOLINT(google-explicit-constructor): it is one
+      : MeshView(mesh, mesh.positions) {}
+  MeshView(const SourceMesh& mesh, const Positions& moved)
+      : positions(moved), faces(mesh.faces), face_ids(mesh.face_ids) {}
+
+  [[nodiscard]] std::uint32_t face_id(std::size_t face) const {
+    return face_ids.empty() ? static_cast<std::uint32_t>(face) : face_ids[face];
+  }
+};
+
+inline std::uint32_t SourceMesh::face_id(std::size_t face) const {
+  return MeshView(*this).face_id(face);
+}
 
 }  // namespace boxtree::cooker

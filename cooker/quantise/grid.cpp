@@ -99,12 +99,9 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
   return grid;
 }
 
-QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
-  QuantisedMesh out;
+QuantisedPositions quantise(const SourceMesh& mesh, const Grid& grid) {
+  QuantisedPositions out;
   out.step_exponent = grid.step_exponent;
-  out.mesh.name = mesh.name;
-  out.mesh.faces = mesh.faces;
-  out.mesh.face_ids = mesh.face_ids;
   const std::size_t count = mesh.positions.size();
   if (count == 0) return out;
 
@@ -125,7 +122,7 @@ QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid) {
   }
   constexpr double kFloatHolds = 1 << std::numeric_limits<float>::digits;
   const bool fits_float = farthest <= kFloatHolds;
-  Positions& positions = out.mesh.positions;
+  Positions& positions = out.positions;
   positions.precision = fits_float ? Precision::kF32 : Precision::kF64;
   (fits_float ? positions.f32.resize(3 * count) : positions.f64.resize(3 * count));
   for (std::size_t i = 0; i < count; ++i) {

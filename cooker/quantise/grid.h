@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Quantisation: the grid that all trees of a file share, and the mesh on that grid. Meshes are
+// Quantisation: the grid that all trees of a file share, and positions on that grid. Meshes are
 // quantised before trees are built, so boxes contain what a reader decodes.
 #pragma once
 
@@ -38,17 +38,16 @@ struct Grid {
 /// kMaxGridBits, or a tolerance is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
 
-/// A mesh on the grid, in grid steps from the mesh's own centre. Coordinates are whole numbers: f32
-/// for extents up to 25 bits, f64 above.
-struct QuantisedMesh {
-  SourceMesh mesh;
+/// The positions of a mesh on the grid, in grid steps from the mesh's own centre. Coordinates are
+/// whole numbers: f32 for extents up to 25 bits, f64 above.
+struct QuantisedPositions {
+  Positions positions;
   std::array<double, 3> origin{};  // of its coordinates, object space
   int step_exponent = 0;
   double max_vertex_error = 0;  // largest distance of a vertex from its source, object space
 };
 
-/// Moves a mesh onto the grid; faces, ids and name are unchanged. Precondition: the grid's bounds
-/// contain the mesh.
-[[nodiscard]] QuantisedMesh quantise(const SourceMesh& mesh, const Grid& grid);
+/// Moves the vertices of a mesh onto the grid. Precondition: the grid's bounds contain the mesh.
+[[nodiscard]] QuantisedPositions quantise(const SourceMesh& mesh, const Grid& grid);
 
 }  // namespace boxtree::cooker

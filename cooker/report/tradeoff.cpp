@@ -118,13 +118,13 @@ AnswerErrors compare(const Answers& found, const Answers& exact, double diagonal
 }
 
 // Root mean square of the vertices' movement on a grid, object space.
-double rms_move(const SourceMesh& mesh, const QuantisedMesh& quantised) {
+double rms_move(const SourceMesh& mesh, const QuantisedPositions& quantised) {
   double sum = 0;
   const std::size_t count = mesh.positions.size();
   const Eigen::Vector3d origin(quantised.origin[0], quantised.origin[1], quantised.origin[2]);
   const double step = std::ldexp(1.0, quantised.step_exponent);
   for (std::size_t i = 0; i < count; ++i) {
-    sum += (quantised.mesh.positions[i] * step + origin - mesh.positions[i]).squaredNorm();
+    sum += (quantised.positions[i] * step + origin - mesh.positions[i]).squaredNorm();
   }
   return count == 0 ? 0 : std::sqrt(sum / static_cast<double>(count));
 }
