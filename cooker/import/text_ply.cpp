@@ -46,10 +46,10 @@ class Reader {
   Status check_counts() const;
   bool next_row();
   Status read_element(const PlyElement& element);
-  Status check_row(const PlyElement& element, std::uint64_t number) const;
+  Status check_row(const PlyElement& element, std::uint64_t number);
   Result<std::uint64_t> count_words(const PlyElement& element) const;
+  Status check_numbers(const PlyElement& element);
   Status take_row(const PlyElement& element);
-  void take_coordinate(const PlyProperty& property, std::string_view word);
   Status take_corners(Words words);
 
   [[nodiscard]] Error failure(std::string_view why) const {
@@ -57,8 +57,9 @@ class Reader {
   }
 
   std::string_view rest_;
-  std::size_t line_;  // current line, from 1
-  Tokens row_;        // its words
+  std::size_t line_;       // current line, from 1
+  Tokens row_;             // its words
+  std::vector<T> vertex_;  // the numbers of the current vertex, one for each of its words
   const PlyLayout& layout_;
   const std::string& file_;
   IndexedMesh<T>& mesh_;
@@ -118,7 +119,7 @@ Status Reader<T>::read_element(const PlyElement& element) {
 }
 
 template <class T>
-Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) const {
+Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) {
   const Result<std::uint64_t> wanted = count_words(element);
   if (!wanted.ok()) return wanted.error();
   if (*wanted != row_.size()) {
@@ -126,7 +127,26 @@ Status Reader<T>::check_row(const PlyElement& element, std::uint64_t number) con
     return failure(fmt::format("'{}' {} has {} words; its properties take {}{}", element.name,
                                number, row_.size(), *wanted, is_cut ? kAsIfCut : ""));
   }
-  const std::string_view no_number = find_no_number(row_);
+  return check_numbers(element);
+}
+
+// Those of a vertex are kept, so that coordinates are read once.
+template <class T>
+Status Reader<T>::check_numbers(const PlyElement& element) {
+  std::string_view no_number;
+  if (&element == layout_.vertex) {
+    vertex_.clear();
+    for (const std::string_view word : row_) {
+      const std::optional<T> number = read_number<T>(word);
+      if (!number) {
+        no_number = word;
+        break;
+      }
+      vertex_.push_back(*number);
+    }
+  } else {
+    no_number = find_no_number(row_);
+  }
   return no_number.empty() ? Status() : failure(fmt::format("'{}' is no number", no_number));
 }
 
@@ -155,13 +175,14 @@ Status Reader<T>::take_row(const PlyElement& element) {
   for (const PlyProperty& property : element.properties) {
     std::size_t count = 1;
     if (property.length) count = static_cast<std::size_t>(*read_count(row_[at++]));
-    const Words words = Words(row_).subspan(at, count);
-    at += count;
     if (&property == layout_.corners || &property == layout_.strip) {
-      if (Status status = take_corners(words); !status.ok()) return status;
-    } else if (&element == layout_.vertex && !property.length) {
-      take_coordinate(property, words[0]);
+      if (Status status = take_corners(Words(row_).subspan(at, count)); !status.ok()) return status;
+    } else if (&element == layout_.vertex) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        if (layout_.xyz[k] == &property) position_[k] = double{vertex_[at]};
+      }
     }
+    at += count;
   }
   if (&element == layout_.vertex) {
     for (const double x : position_) mesh_.add_coordinate(x);
@@ -171,13 +192,6 @@ Status Reader<T>::take_row(const PlyElement& element) {
     return mesh_.add_strips(corners_);
   }
   return {};
-}
-
-template <class T>
-void Reader<T>::take_coordinate(const PlyProperty& property, std::string_view word) {
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (layout_.xyz[k] == &property) position_[k] = double{*read_number<T>(word)};
-  }
 }
 
 template <class T>
