@@ -15,8 +15,6 @@ namespace boxtree::HWY_NAMESPACE {
 namespace {
 
 #if BOXTREE_HAS_EIGHT_LANES
-using IdBytes = hn::Repartition<std::uint8_t, Words>;
-
 // The most bits of a field that one word holds, wherever in its first byte the field begins.
 constexpr std::uint32_t kMostBits = 32 - 7;
 
@@ -47,25 +45,24 @@ void read(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kL
     return hn::LoadU(hn::Full128<std::uint8_t>(),
                      reinterpret_cast<const std::uint8_t*>(ids.bytes()) + bit / 8);
   };
-  const auto loaded = hn::Combine(IdBytes(), load(high_at), load(low_at));
+  const auto loaded = hn::Combine(Bytes(), load(high_at), load(low_at));
   HWY_ALIGN static constexpr std::uint32_t kOfHalf[kLeafFaces] = {0, 1, 2, 3, 0, 1, 2, 3};
   const auto two = hn::ConcatLowerLower(Words(), set(static_cast<std::uint32_t>(high_at % 8)),
                                         set(static_cast<std::uint32_t>(low_at % 8)));
   const auto bit = hn::Add(hn::Mul(hn::Load(Words(), kOfHalf), set(width)), two);
   // Its first byte and the three after it.
   const auto bytes = hn::Add(hn::Mul(hn::ShiftRight<3>(bit), set(0x01010101u)), set(0x03020100u));
-  const auto word =
-      hn::BitCast(Words(), hn::TableLookupBytes(loaded, hn::BitCast(IdBytes(), bytes)));
-  const auto field = low_bits(hn::Shr(word, hn::And(bit, set(7))), width);
+  const auto word = hn::BitCast(Words(), hn::TableLookupBytes(loaded, hn::BitCast(Bytes(), bytes)));
+  const auto field = low_bits(hn::Shr(word, hn::And(bit, constant<7>())), width);
 
   // Starts of intervals lie before the middle, that of interval 0 last.
   const auto interval = hn::ShiftRightSame(field, static_cast<int>(fields.offset_bits));
-  const auto before = hn::Mul(hn::Add(interval, set(1)), set(fields.start_bits));
+  const auto before = hn::Mul(hn::Add(interval, constant<1>()), set(fields.start_bits));
   const auto at = hn::Sub(set(static_cast<std::uint32_t>(block.middle % 8)), before);
   const auto byte = hn::ShiftRight<3>(hn::BitCast(Integers(), at));
   const auto start_word = hn::GatherOffset(
       Words(), reinterpret_cast<const std::uint32_t*>(ids.bytes() + block.middle / 8), byte);
-  const auto start = low_bits(hn::Shr(start_word, hn::And(at, set(7))), fields.start_bits);
+  const auto start = low_bits(hn::Shr(start_word, hn::And(at, constant<7>())), fields.start_bits);
 
   const auto places = hn::Iota(Words(), place);
   const auto by_place = hn::Sub(places, low_bits(places, fields.grain));
