@@ -59,9 +59,7 @@ class NearestWalk {
           depth = at.depth + 1;
           break;
         }
-        if (!query_.leaf(leaf_number(of.links, at.number),
-                         query_.reads_ahead() ? next_leaf() : kNoLeaf))
-          return Errc::kOk;
+        if (!query_.leaf(leaf_number(of.links, at.number), next_leaf())) return Errc::kOk;
       }
     }
   }
@@ -87,10 +85,10 @@ class NearestWalk {
     return passing;
   }
 
-  // What is on top of the stack, if it is a leaf.
+  // What is on top of the stack, if it is a leaf and the query wants to know.
   HWY_INLINE std::uint32_t next_leaf() const {
     typename decltype(stack_)::Child top;
-    if (!stack_.top(query_.bound(), top)) return kNoLeaf;
+    if (!query_.reads_ahead() || !stack_.top(query_.bound(), top)) return kNoLeaf;
     const WideLinks& links = open_[top.depth].links;
     return ((links.inner_mask >> top.number) & 1u) != 0 ? kNoLeaf : leaf_number(links, top.number);
   }

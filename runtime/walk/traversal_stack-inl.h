@@ -66,13 +66,12 @@ class TraversalStack {
   /// Takes the next child whose key is not above `bound`; keys are compared without their lowest
   /// bits, which at most makes them smaller. False when there is none.
   HWY_INLINE bool pop(float bound, Child& child) {
-    std::int32_t word = 0;
-    do {
-      if (size_ == 0) return false;
-      word = word_[--size_];
-    } while (std::bit_cast<float>(word & ~kChildBits) > bound);
-    child = {depth_[size_], static_cast<std::uint32_t>(word & kChildBits)};
-    return true;
+    while (size_ != 0) {
+      const bool is_near = top(bound, child);
+      --size_;
+      if (is_near) return true;
+    }
+    return false;
   }
 
   /// The child that pop() would take first, if its key is not above `bound`.
