@@ -44,7 +44,7 @@ class PointLeaves {
   /// Whether to go on. `next`: see NearestWalk.
   HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count, std::uint32_t next) {
     const bool is_read = leaf_.load(first, count);
-    if (next != kNoLeaf) leaf_.read_ahead(next);
+    leaf_.read_ahead(next);
     if (!is_read) {
       query_.error = leaf_.error();
       return false;

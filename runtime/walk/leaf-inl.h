@@ -19,8 +19,8 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR  // without vectors the generic walks are used
 
-/// Reads leaves of one tree. Coordinates are the exact ones or those rounded to
-/// nearest, see corner_error(). Exact triangles come from with_triangle().
+/// Reads leaves of one tree. Coordinates are the exact ones or those rounded to nearest, see
+/// corner_error(). Exact triangles come from with_triangle().
 class LeafFloats {
  public:
   explicit LeafFloats(const BoundTree& tree)
@@ -60,13 +60,15 @@ class LeafFloats {
 #endif
   }
 
-  /// Decodes leaf `next`, which is likely to be loaded next; if it is not kNoLeaf. Called between
-  /// load() and the tests of the leaf before, so that the two are decoded side by side: a decoder
-  /// is a chain of instructions that wait for each other. Where it fails, load() reads the leaf
-  /// again and tells why. Precondition: reads_ahead().
+  /// Decodes leaf `next`, which is likely to be loaded next, if reads_ahead(); kNoLeaf: none.
+  /// Called between load() and the tests of the leaf before, so that the two are decoded side by
+  /// side: a decoder is a chain of instructions that wait for each other. Where it fails, load()
+  /// reads the leaf again and tells why.
   HWY_INLINE void read_ahead(std::uint32_t next) {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (next < mesh_.face_count / kLeafFaces && read_by_avx512(next, other())) ahead_ = next;
+    if (next == kNoLeaf || !reads_ahead()) return;
+    const bool is_read = next < mesh_.face_count / kLeafFaces && read_by_avx512(next, other());
+    ahead_ = is_read ? next : kNoLeaf;
 #else
     (void)next;
 #endif

@@ -52,11 +52,10 @@ class OverlapLeaves {
     return true;
   }
 
-  /// Reports the faces that touch the shape. `next`: the leaf that is visited next, or
-  /// kNoLeaf.
+  /// Reports the faces that touch the shape. `next`: the leaf that is visited next, or kNoLeaf.
   HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count, std::uint32_t next) {
     const bool is_read = leaf_.load(first, count);
-    if (leaf_.reads_ahead()) leaf_.read_ahead(next);
+    leaf_.read_ahead(next);
     if (!is_read) {
       walk_.error = leaf_.error();
       return false;
