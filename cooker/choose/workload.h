@@ -18,10 +18,13 @@ struct WorkloadSize {
   std::size_t apart = 100;
 };
 
+/// What Workload::boxes are, for texts.
+inline constexpr const char* kBoxMeaning = "cubes with an edge of 5 % of the diagonal";
+
 struct Workload {
   /// From a sphere with twice the bounding radius toward random points of the bounds.
   std::vector<Ray> rays;
-  /// Cubes with an edge of 5 % of the diagonal and centres in the bounds.
+  /// kBoxMeaning, with centres in the bounds.
   std::vector<Eigen::AlignedBox3d> boxes;
   /// In the bounds scaled by 1.2.
   std::vector<Eigen::Vector3d> points;

@@ -10,6 +10,7 @@
 
 #include "cooker/choose/cost_file.h"
 #include "cooker/choose/measure.h"
+#include "cooker/choose/workload.h"
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
 #include "cooker/cli/json_output.h"
@@ -125,8 +126,7 @@ void print_row(const Json& row) {
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
-  fmt::print(
-      "  means; boxes are cubes with an edge of 5 % of the diagonal, contacts those with a copy\n");
+  fmt::print("  means; boxes are {}, contacts those with a copy\n", kBoxMeaning);
   fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
@@ -166,8 +166,9 @@ int run_calibration(const Arguments& arguments) {
     return 0;
   }
   fmt::print(
-      "ns of a query, of a node expanded and of a leaf read, for rays, boxes (cubes with an "
-      "edge of 5 % of the diagonal), points and pairs (all contacts)\n");
+      "ns of a query, of a node expanded and of a leaf read, for rays, boxes ({}), points and "
+      "pairs (all contacts)\n",
+      kBoxMeaning);
   for (const CodecCost& cost : calibration->costs) print_row(cost);
   fmt::print("modelled and measured times differ by at most {:.2f} times\n",
              calibration->worst_ratio);

@@ -9,9 +9,11 @@
 
 #include <fmt/format.h>
 
+#include "cooker/choose/workload.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/surface_text.h"
+#include "cooker/import/file_error.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -90,9 +92,10 @@ void add_contest(const CookedTree& cooked, std::string& text) {
         candidate.cost[1], candidate.cost[2], candidate.cost[3] / 1000, candidate.max_vertex_error,
         candidate.rejected.empty() ? "" : "  ", candidate.rejected);
   }
-  text +=
-      "    times: modelled means; boxes are cubes with an edge of 5 % of the diagonal, pairs all\n"
-      "    contacts of the tree and its copy\n";
+  text += fmt::format(
+      "    times: modelled means; boxes are {}, pairs all\n"
+      "    contacts of the tree and its copy\n",
+      kBoxMeaning);
   // Codecs that share a reason stand together.
   const std::vector<NotTried>& others = cooked.contest.not_tried;
   for (std::size_t i = 0; i < others.size();) {
@@ -268,9 +271,9 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
                     source, file.string()));
   }
   if (import.has_open_end) {
-    warnings.push_back(
-        fmt::format("{}: the last line has no end{}, as if the file was cut short", source,
-                    import.has_half_face ? " and is half a face, which is left out" : ""));
+    warnings.push_back(fmt::format(
+        "{}: the last line has no end{}{}", source,
+        import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
   }
   return warnings;
 }

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/choose/workload.h"
 #include "cooker/report/approximate_page.h"
 #include "cooker/report/tradeoff_advice.h"
 
@@ -227,10 +228,9 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       " Unless told a codec, boxtree cook chooses by counted work, the same on every machine: {}. "
       "The choices below go by the times on this page, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
-      "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes (cubes with an "
-      "edge of 5 % of the diagonal), closest points and all contacts of the mesh and its copy, "
-      "the kinds that cook takes, too{}.",
-      cooks, kSlowdownMeaning, mesh.timed ? "measured" : "modelled",
+      "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
+      "points and all contacts of the mesh and its copy, the kinds that cook takes, too{}.",
+      cooks, kSlowdownMeaning, mesh.timed ? "measured" : "modelled", kBoxMeaning,
       mesh.timed ? ", by modelled times and fewer queries" : "");
   return section;
 }
