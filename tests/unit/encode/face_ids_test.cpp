@@ -4,37 +4,24 @@
 #include "cooker/encode/face_ids.h"
 
 #include <algorithm>
-#include <numeric>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "format/face_ids.h"
 #include "format/limits.h"
+#include "tests/support/face_ids.h"
 
 namespace boxtree::cooker {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
-
-std::vector<std::byte> encode(const Ids& ids) {
-  SourceMesh mesh;
-  mesh.face_ids = ids;
-  Ids order(ids.size());
-  std::iota(order.begin(), order.end(), 0u);
-  return encode_face_ids(mesh, order);
-}
+using test::ascending;
+using test::Ids;
 
 Ids decode(Bytes section, std::size_t count) {
   const FaceIdView view(section);
   Ids ids(count);
   for (std::uint32_t i = 0; i < count; ++i) ids[i] = view[i];
-  return ids;
-}
-
-Ids ascending(std::uint32_t count) {
-  Ids ids(count);
-  std::iota(ids.begin(), ids.end(), 0u);
   return ids;
 }
 
@@ -59,7 +46,7 @@ Ids of_scan(std::uint32_t row, std::uint32_t rows) {
 }
 
 double bits_per_face(const Ids& ids) {
-  return 8 * static_cast<double>(encode(ids).size()) / static_cast<double>(ids.size());
+  return 8 * static_cast<double>(test::encoded(ids).size()) / static_cast<double>(ids.size());
 }
 
 TEST(FaceIds, OfAnyOrderAreReadBack) {
@@ -75,7 +62,7 @@ TEST(FaceIds, OfAnyOrderAreReadBack) {
     Ids same(count, kMaxFaces - 1);
     for (const Ids& ids :
          {ascending(count), descending, shuffled(count), far, pairs, widest, same}) {
-      EXPECT_EQ(decode(encode(ids), count), ids) << count;
+      EXPECT_EQ(decode(test::encoded(ids), count), ids) << count;
     }
   }
   std::mt19937 random(7);
@@ -87,7 +74,7 @@ TEST(FaceIds, OfAnyOrderAreReadBack) {
       next = std::min(id, kMaxFaces - 1);
       id = next + static_cast<std::uint32_t>(random() % 3);
     }
-    EXPECT_EQ(decode(encode(ids), ids.size()), ids) << round;
+    EXPECT_EQ(decode(test::encoded(ids), ids.size()), ids) << round;
   }
 }
 
@@ -115,14 +102,14 @@ TEST(FaceIds, AreStoredAsSpecified) {
   const auto put = [&](std::size_t at, std::initializer_list<unsigned> bytes) {
     for (const unsigned byte : bytes) expected[at++] = static_cast<std::byte>(byte);
   };
-  put(0, {8, 0, 0, 0});   // base
-  put(4, {3, 0, 0, 0});   // begin: 12 bytes
+  put(0, {8, 0, 0, 0});  // base
+  put(4, {3, 0, 0, 0});  // begin: 12 bytes
   // The numbers are 92, 93, 1 and 0. Two intervals of two numbers: starts 0 and 92 of 7 bits.
   // middle 14, offset_bits 1, start_bits 7, interval_bits 1, grain 6
   put(8, {14, 0, 0xe1, 0xc4});
   // start 1 = 92 in bits 0 to 6, start 0 = 0 in bits 7 to 13; then 2 bits a face: 2, 3, 1, 0.
   put(12, {92, 0b10'000000, 0b01'11});
-  EXPECT_EQ(encode(ids), expected);
+  EXPECT_EQ(test::encoded(ids), expected);
   EXPECT_EQ(decode(expected, 4), ids);
 }
 
@@ -142,7 +129,7 @@ TEST(FaceIds, AreThoseOfTheOrderThatIsGiven) {
 TEST(FaceIds, OfCorruptBytesAreReadInsideTheSection) {
   constexpr std::uint32_t kFaces = 3000;
   std::mt19937 random(3);
-  const std::vector<std::byte> valid = encode(shuffled(kFaces));
+  const std::vector<std::byte> valid = test::encoded(shuffled(kFaces));
   for (int round = 0; round < 300; ++round) {
     std::vector<std::byte> section = valid;
     if (round % 3 == 0) section.resize(least_id_bytes(kFaces));

@@ -5,34 +5,21 @@
 
 #include <algorithm>
 #include <array>
-#include <numeric>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "cooker/encode/face_ids.h"
 #include "format/face_ids.h"
+#include "tests/support/face_ids.h"
 #include "tests/unit/walk/targets.h"
 
 namespace boxtree {
 namespace {
 
-using Ids = std::vector<std::uint32_t>;
-
-std::vector<std::byte> encode(const Ids& ids) {
-  cooker::SourceMesh mesh;
-  mesh.face_ids = ids;
-  Ids order(ids.size());
-  std::iota(order.begin(), order.end(), 0u);
-  return cooker::encode_face_ids(mesh, order);
-}
-
-Ids ascending(std::uint32_t count) {
-  Ids ids(count);
-  std::iota(ids.begin(), ids.end(), 0u);
-  return ids;
-}
+using test::ascending;
+using test::encoded;
+using test::Ids;
 
 // Numbers of `bits` bits: fields and starts of every width.
 Ids random_ids(std::uint32_t count, std::uint32_t bits, std::mt19937& random) {
@@ -79,7 +66,7 @@ TEST(LeafIds, AreThoseOfTheirFaces) {
         cases.push_back(random_ids(count, bits, random));
       }
       for (const Ids& ids : cases) {
-        const std::vector<std::byte> section = encode(ids);
+        const std::vector<std::byte> section = encoded(ids);
         ASSERT_EQ(by_leaves(FaceIdView(section), count), ids) << target << ", " << count;
       }
     }
@@ -92,7 +79,7 @@ TEST(LeafIds, OfCorruptBytesAreReadInsideTheSection) {
   for_each_target([](const char* target) {
     constexpr std::uint32_t kFaces = 3000;
     std::mt19937 random(2);
-    const std::vector<std::byte> valid = encode(runs(kFaces, 100000, random));
+    const std::vector<std::byte> valid = encoded(runs(kFaces, 100000, random));
     for (int round = 0; round < 300; ++round) {
       std::vector<std::byte> section = valid;
       if (round % 3 == 0) section.resize(least_id_bytes(kFaces));
