@@ -92,7 +92,7 @@ Errc run_query(const BoundTree& tree, const Pose& pose, Counts& counts) {
   // Bounds as large as doubles allow leave no room for a copy: nothing to count.
   if (!relative) return Errc::kOk;
   const auto go_on = [](const FacePair&) { return true; };
-  const ListeningCodec codec{&tree, &counts};
+  const ListeningCodec codec{{&tree}, &counts};
   PairBound bound(tree, tree, nullptr);
   return PairWalk(tree, codec, tree, codec, *relative, go_on, bound, LeafPairCounter{&counts})
       .run()
