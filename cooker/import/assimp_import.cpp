@@ -56,6 +56,18 @@ void configure(Assimp::Importer& importer, FaceOrder order) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_READ_WEIGHTS, false);
 }
 
+// Text formats of which assimp accepts a truncated file.
+struct TextFormat {
+  const char* extension;
+  Status (*check_end)(std::string_view file);  // null if the format defines no end
+};
+constexpr std::array kTextFormats = {
+    TextFormat{"ac", check_ac_end},   TextFormat{"ase", check_blocks_end},
+    TextFormat{"dxf", check_dxf_end}, TextFormat{"md5mesh", check_blocks_end},
+    TextFormat{"nff", nullptr},       TextFormat{"raw", nullptr},
+    TextFormat{"smd", check_smd_end},
+};
+
 // Records the files read in `use`. Errors do not name the source. No post-processing flags: each
 // may drop, reorder, merge or generate data.
 Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder order,
@@ -63,7 +75,10 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
   const CLocaleScope numbers_in_c_locale;
   Assimp::Importer importer;
   configure(importer, order);
-  importer.SetIOHandler(new RecordingIo(source, use));  // the importer owns it from here
+  const bool is_text = find_extension(kTextFormats, source.path()) != nullptr;
+  // The importer owns it from here.
+  importer.SetIOHandler(
+      new RecordingIo(source, use, is_text ? LastLine::kEnded : LastLine::kAsItIs));
   if (importer.ReadFile(source.path().string(), 0) == nullptr) {
     const std::string why = importer.GetErrorString();
     if (why == std::bad_alloc().what()) throw std::bad_alloc();  // as when we run out of memory
@@ -134,18 +149,6 @@ Status try_reading(const SourceFile& source) {
     return Status();
   });
 }
-
-// Text formats of which assimp accepts a truncated file.
-struct TextFormat {
-  const char* extension;
-  Status (*check_end)(std::string_view file);  // null if the format defines no end
-};
-constexpr std::array kTextFormats = {
-    TextFormat{"ac", check_ac_end},   TextFormat{"ase", check_blocks_end},
-    TextFormat{"dxf", check_dxf_end}, TextFormat{"md5mesh", check_blocks_end},
-    TextFormat{"nff", nullptr},       TextFormat{"raw", nullptr},
-    TextFormat{"smd", check_smd_end},
-};
 
 // Whether the last line has no end, in formats in which a truncated file is otherwise valid.
 Result<bool> check_text(const SourceFile& source) {

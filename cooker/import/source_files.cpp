@@ -15,6 +15,7 @@
 #include <assimp/MemoryIOWrapper.h>
 #include <xxhash.h>
 
+#include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
 #include "cooker/text/percent.h"
@@ -92,10 +93,21 @@ void RecordingIo::note_failure(const fs::path& file) {
   if (!status.ok()) use_.failure = status.error();
 }
 
+Assimp::IOStream* RecordingIo::open_with_line_end() const {
+  Result<std::string> text = source_.read();
+  if (!text.ok()) return nullptr;
+  if (has_open_end(*text)) text->push_back('\n');
+  auto bytes = std::make_unique<std::uint8_t[]>(text->size());
+  std::memcpy(bytes.get(), text->data(), text->size());
+  constexpr bool kOwn = true;  // the stream deletes the bytes
+  return new Assimp::MemoryIOStream(bytes.release(), text->size(), kOwn);
+}
+
 Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   if (std::strpbrk(mode, "wa+") != nullptr) return nullptr;
   if (source_.bytes()) {
     if (is_source(path)) {
+      if (last_line_ == LastLine::kEnded) return open_with_line_end();
       const auto* const data = reinterpret_cast<const std::uint8_t*>(source_.bytes()->data());
       return new Assimp::MemoryIOStream(data, source_.bytes()->size());
     }
@@ -106,7 +118,11 @@ Assimp::IOStream* RecordingIo::Open(const char* path, const char* mode) {
   std::error_code error;
   const fs::path file = found(path);
   const bool is_regular = fs::is_regular_file(file, error);
-  Assimp::IOStream* stream = is_regular ? DefaultIOSystem::Open(file.c_str(), mode) : nullptr;
+  Assimp::IOStream* stream = nullptr;
+  if (is_regular) {
+    const bool adds_line_end = last_line_ == LastLine::kEnded && is_source(path);
+    stream = adds_line_end ? open_with_line_end() : DefaultIOSystem::Open(file.c_str(), mode);
+  }
   if (stream == nullptr) {
     note_failure(file);
     return nullptr;

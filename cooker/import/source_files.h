@@ -37,13 +37,18 @@ struct SourceUse {
   std::optional<Error> failure;
 };
 
+/// Whether assimp gets a line end behind a last line of the source that has none. Its reader of SMD
+/// goes on behind the end of its buffer without one.
+enum class LastLine : std::uint8_t { kAsItIs, kEnded };
+
 /// Lets assimp read but not write, and records each file that it opens, in order of first use.
 /// Files that it only looks for are not recorded. Of a source that is bytes, nothing else can be
 /// opened.
 class RecordingIo final : public Assimp::DefaultIOSystem {
  public:
-  /// Both must outlive this object, which assimp's Importer owns.
-  RecordingIo(const SourceFile& source, SourceUse& use) : source_(source), use_(use) {}
+  /// Source and use must outlive this object, which assimp's Importer owns.
+  RecordingIo(const SourceFile& source, SourceUse& use, LastLine last_line)
+      : source_(source), use_(use), last_line_(last_line) {}
 
   bool Exists(const char* path) const override;
   Assimp::IOStream* Open(const char* path, const char* mode = "rb") override;
@@ -57,9 +62,12 @@ class RecordingIo final : public Assimp::DefaultIOSystem {
   // (%20) behind the folder of the source.
   [[nodiscard]] std::filesystem::path found(const char* path) const;
   void note_failure(const std::filesystem::path& file);
+  // The source with an end of its last line; null if it cannot be read.
+  [[nodiscard]] Assimp::IOStream* open_with_line_end() const;
 
   const SourceFile& source_;
   SourceUse& use_;
+  LastLine last_line_;
 };
 
 /// While it exists, this thread reads numbers in the "C" locale, whatever the process has set: some

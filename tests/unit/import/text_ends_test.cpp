@@ -2,12 +2,15 @@
 // Texts of formats that assimp reads: whole, and cut short at every byte.
 #include "cooker/import/text_ends.h"
 
+#include <span>
 #include <string>
 #include <string_view>
 
+#include <assimp/IOStream.hpp>
 #include <gtest/gtest.h>
 
 #include "cooker/import/import.h"
+#include "cooker/import/source_files.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
@@ -62,6 +65,28 @@ TEST(TextEnds, EveryPrefixOfSmdIsRefused) {
   check_prefixes("two.smd", kSmd);
   EXPECT_TRUE(check_smd_end(kSmd).ok());
   EXPECT_EQ(check_smd_end("triangles\nend.bmp\n").code(), Errc::kImportFailed);
+}
+
+// Assimp's reader of SMD skips what follows "end", even if that is the end of its buffer.
+TEST(TextEnds, ReadersGetALastLineThatEnds) {
+  const test::TempFolder folder;
+  const auto given = [](const SourceFile& source, LastLine last_line) {
+    SourceUse use;
+    RecordingIo files(source, use, last_line);
+    Assimp::IOStream* const stream = files.Open(source.path().c_str());
+    std::string text(stream->FileSize(), ' ');
+    EXPECT_EQ(stream->Read(text.data(), 1, text.size()), text.size());
+    files.Close(stream);
+    return text;
+  };
+  for (const std::string whole : {"triangles\nend\n", "triangles\nend\r"}) {
+    const std::string open = whole.substr(0, whole.size() - 1);
+    EXPECT_EQ(given(folder.write("whole.smd", whole), LastLine::kEnded), whole);
+    EXPECT_EQ(given(folder.write("open.smd", open), LastLine::kEnded), open + "\n");
+    EXPECT_EQ(given(folder.write("open.smd", open), LastLine::kAsItIs), open);
+    const SourceBytes bytes{"-", "standard input", "stdin.smd", std::as_bytes(std::span(open))};
+    EXPECT_EQ(given(SourceFile("-", bytes), LastLine::kEnded), open + "\n");
+  }
 }
 
 // RAW states no end: a last line that does not end is told.
