@@ -103,7 +103,7 @@ struct PointQuery {
     if (!found) return true;
     name(tree, face);
     name(tree, found->face);
-    return comes_before(face, half, found->face, found->triangle);
+    return comes_before(tree, face, half, found->face, found->triangle);
   }
 
   void test_placed(const Triangle& triangle, std::uint32_t face_index,

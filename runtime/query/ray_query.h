@@ -137,7 +137,7 @@ struct RayQuery : RayInTree {
     if (hit.is_hit && t == hit.t) {
       name(tree, face);
       name(tree, hit.face);
-      if (!comes_before(face, half, hit.face, hit.half)) return;
+      if (!comes_before(tree, face, half, hit.face, hit.half)) return;
     }
     hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
     t_max = t;

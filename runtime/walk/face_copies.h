@@ -23,12 +23,19 @@ inline void name(const BoundTree& tree, FaceRef& face) noexcept {
   if (face.id == kNoFaceId) face.id = tree.face_id(face.index);
 }
 
+/// Whether face `a` of the tree's order wins a tie against `b`, another part of the face of the
+/// source that import split: by their corners, since codecs put the parts in different orders.
+[[nodiscard]] bool part_comes_before(const BoundTree& tree, std::uint32_t a,
+                                     std::uint32_t b) noexcept;
+
 /// Whether triangle `a_half` of face `a` wins a tie against `b_half` of `b`, both named: by source
-/// number, so that every codec and builder agrees.
-[[nodiscard]] inline bool comes_before(const FaceRef& a, std::uint32_t a_half, const FaceRef& b,
+/// number, so that every codec and builder agrees. Without numbers they do not.
+[[nodiscard]] inline bool comes_before(const BoundTree& tree, const FaceRef& a,
+                                       std::uint32_t a_half, const FaceRef& b,
                                        std::uint32_t b_half) noexcept {
   if (a.id != b.id) return a.id < b.id;
-  return a.index != b.index ? a.index < b.index : a_half < b_half;
+  if (a.index == b.index) return a_half < b_half;
+  return a.id == kNoFaceId ? a.index < b.index : part_comes_before(tree, a.index, b.index);
 }
 
 /// Names faces that come leaf by leaf: reads the ids of a leaf together, when the first is needed.

@@ -179,6 +179,48 @@ bool tell(const FaceRef& /*face*/) {
   return ++g_told > 0;
 }
 
+// Polygons that import split have parts of one number, in another order in each codec. Rays at a
+// corner that two parts share, whose weights tell the parts apart, and points on the edge.
+TEST_P(Answers, OfPartsOfAFaceAreThoseOfEveryCodec) {
+  constexpr std::uint32_t kPolygons = 500;
+  SourceMesh mesh;
+  std::mt19937 random(33);
+  std::uniform_real_distribution<float> unit(-1, 1);
+  for (std::uint32_t i = 0; i < kPolygons; ++i) {
+    const float at[3] = {10 * unit(random), 10 * unit(random), 10 * unit(random)};
+    for (int corner = 0; corner < 4; ++corner) {
+      for (const float x : at) mesh.positions.f32.push_back(x + unit(random));
+    }
+    mesh.faces.push_back({{4 * i, 4 * i + 1, 4 * i + 2, cooker::kNoCorner}});
+    mesh.faces.push_back({{4 * i, 4 * i + 2, 4 * i + 3, cooker::kNoCorner}});
+    mesh.face_ids.insert(mesh.face_ids.end(), {i, i});
+  }
+  const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+  const test::CookedTree plain = test::cook_tree(mesh, {CodecId::kPlainF32, GetParam().geometry});
+  int hits = 0;
+  for (std::uint32_t i = 0; i < kPolygons; ++i) {
+    // As it is decoded: the same from all trees.
+    const Eigen::Vector3d shared = closest_point(plain.tree, corner_of(mesh, 4 * i + 2))->point;
+    for (const Eigen::Vector3d& from : {Eigen::Vector3d(0, 0, 40), Eigen::Vector3d(30, 2, 1)}) {
+      const Ray ray{shared + from, -from};
+      const RayResult hit = closest_hit(cooked.tree, ray), other = closest_hit(plain.tree, ray);
+      ASSERT_EQ(hit.has_value(), other.has_value());
+      hits += hit.has_value() ? 1 : 0;
+      ASSERT_EQ(hit->face.id, other->face.id);
+      ASSERT_EQ(hit->t, other->t);
+      ASSERT_EQ(hit->u, other->u);
+      ASSERT_EQ(hit->v, other->v);
+    }
+    const Eigen::Vector3d middle =
+        0.25 * corner_of(mesh, 4 * i) + 0.75 * corner_of(mesh, 4 * i + 2);
+    const PointResult near = closest_point(cooked.tree, middle);
+    const PointResult other = closest_point(plain.tree, middle);
+    ASSERT_EQ(near->distance, other->distance);
+    ASSERT_EQ(near->point, other->point);
+  }
+  EXPECT_GT(hits, 500);
+}
+
 TEST(Visitors, CanBeFreeFunctions) {
   const test::CookedTree cooked = test::cook_tree(test::sphere(8, 8), CodecId::kWide8);
   g_told = 0;
