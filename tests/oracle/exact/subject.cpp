@@ -93,8 +93,10 @@ std::unique_ptr<Subject> make_subject(SourceMesh mesh, bool grid) {
   for (const CodecInfo& codec : kCodecs) {
     exact.trees.push_back(cook(subject->mesh, codec.id, GeometryId::kExact));
   }
-  exact.trees.push_back(cook(subject->mesh, CodecId::kPackedF32, GeometryId::kExternal));
-  exact.trees.push_back(cook(subject->mesh, CodecId::kWide8, GeometryId::kExternal));
+  for (const GeometryId store : {GeometryId::kArrays, GeometryId::kExternal}) {
+    exact.trees.push_back(cook(subject->mesh, CodecId::kPackedF32, store));
+    exact.trees.push_back(cook(subject->mesh, CodecId::kWide8, store));
+  }
   finish(exact);
   subject->groups.push_back(std::move(exact));
   if (!grid) return subject;
