@@ -9,7 +9,7 @@ namespace tbb {
 template <class Index>
 class blocked_range {
  public:
-  blocked_range(Index begin, Index end, std::size_t grain)
+  blocked_range(Index begin, Index end, std::size_t grain = 1)
       : begin_(begin), end_(end), grain_(grain) {}
 
   [[nodiscard]] Index begin() const { return begin_; }
