@@ -57,7 +57,7 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
   const bool is_scaled_exactly = double{floats_.scale} == frame_.inverse_scale &&
                                  std::isnormal(floats_.scale) && frame_.origin.isZero(0);
   const bool are_readable = has_clusters() ? clusters_.numbers == ClusterNumbers::kF32
-                                           : !mesh_.positions_f64 && mesh_.corners_per_face == 3 &&
+                                           : !mesh_.positions_f64 &&
                                                  mesh_.position_stride == 3 * sizeof(float) &&
                                                  is_in_tree_order() && mesh_.vertex_count > 1 &&
                                                  mesh_.vertex_count <= kMaxVertices32;

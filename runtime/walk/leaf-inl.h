@@ -26,7 +26,8 @@ class LeafFloats {
   explicit LeafFloats(const BoundTree& tree)
       : reader_(tree.leaves()),
         mesh_(reader_.mesh()),
-        floats_(reader_.floats())
+        floats_(reader_.floats()),
+        lane_face_{0, 1, 2, 3, 4, 5, 6, 7}
 #if BOXTREE_HAS_EIGHT_LANES
         ,
         clusters_(reader_.clusters())
@@ -134,8 +135,6 @@ class LeafFloats {
   }
 
  private:
-  static constexpr std::size_t kCorners = std::size_t{3} * kLeafFaces;
-
   struct Leaf {
     HWY_ALIGN LeafCoordinates coordinate;
 #if BOXTREE_HAS_EIGHT_LANES
@@ -189,7 +188,10 @@ class LeafFloats {
       return false;
 #endif
     }
-    return mesh_.corner_bytes == 2 ? gather_mesh<std::uint16_t>() : gather_mesh<std::uint32_t>();
+    const bool is_read =
+        mesh_.corner_bytes == 2 ? find_triangles<std::uint16_t>() : find_triangles<std::uint32_t>();
+    if (is_read) gather_positions();
+    return is_read;
   }
 
 #if BOXTREE_HAS_EIGHT_LANES
@@ -208,15 +210,13 @@ class LeafFloats {
 #if BOXTREE_HAS_EIGHT_LANES
     if (reader_.has_clusters()) return leaf_->triangles.face(lane);
 #endif
-    return lane;
+    return lane_face_[lane];
   }
   [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
     if (reader_.has_clusters()) return leaf_->triangles.half(lane);
-#else
-    (void)lane;
 #endif
-    return 0;
+    return lane != 0 && lane_face_[lane] == lane_face_[lane - 1] ? 1 : 0;
   }
 
   // [corner][axis], as they are stored.
@@ -232,26 +232,70 @@ class LeafFloats {
     }
   }
 
-  // The common case: three corners per face, in floats, in the tree's order, and scaled without
-  // rounding. Four floats are read at once, so a leaf with the last vertex takes the other path.
+  // To start_, of each triangle. The common case: in floats, in the tree's order, and scaled
+  // without rounding. Four floats are read at once, so a leaf with the last vertex takes the other
+  // path.
   template <class Corner>
-  HWY_INLINE bool gather_mesh() {
+  HWY_INLINE bool find_triangles() {
+    if (mesh_.corners_per_face == 3) return read_starts<Corner, 3>(start_);
+    HWY_ALIGN std::uint32_t starts[std::size_t{4} * kLeafFaces];
+    if (!read_starts<Corner, 4>(starts)) return false;
+    join_triangles(starts, 3 * std::uint32_t{static_cast<Corner>(kMissingCorner)});
+    return true;
+  }
+  // Of each corner of each face, also of missing ones. False if there is no such vertex.
+  template <class Corner, std::uint32_t kCornersPerFace>
+  HWY_INLINE bool read_starts(std::uint32_t* starts) const {
     const hn::Repartition<std::uint32_t, Floats> words;
     const hn::Rebind<Corner, decltype(words)> stored;
-    const auto* corners = reinterpret_cast<const Corner*>(mesh_.corners) + std::size_t{first_} * 3;
+    const auto* corners =
+        reinterpret_cast<const Corner*>(mesh_.corners) + std::size_t{first_} * kCornersPerFace;
+    // Quads are rarer: a loop that is not unrolled, for size.
+    const std::uint32_t count =
+        kLeafFaces * (kCornersPerFace == 3 ? kCornersPerFace : mesh_.corners_per_face);
     auto largest = hn::Zero(words);
-    for (std::size_t i = 0; i < kCorners; i += kLanes) {
+    for (std::size_t i = 0; i < count; i += kLanes) {
       const auto vertex = widen(words, hn::LoadU(stored, corners + i));
-      largest = hn::Max(largest, vertex);
-      hn::Store(hn::Add(vertex, hn::ShiftLeft<1>(vertex)), words, start_ + i);
+      auto named = vertex;
+      if constexpr (kCornersPerFace == 4) {
+        const auto three = hn::Set(words, 3);
+        const auto is_missing =
+            hn::And(hn::Eq(hn::And(hn::Iota(words, 0), three), three),
+                    hn::Eq(vertex, hn::Set(words, static_cast<Corner>(kMissingCorner))));
+        named = hn::IfThenZeroElse(is_missing, vertex);
+      }
+      largest = hn::Max(largest, named);
+      hn::Store(hn::Add(vertex, hn::ShiftLeft<1>(vertex)), words, starts + i);
     }
-    if (!hn::AllTrue(words, hn::Lt(largest, hn::Set(words, mesh_.vertex_count - 1)))) return false;
+    return hn::AllTrue(words, hn::Lt(largest, hn::Set(words, mesh_.vertex_count - 1)));
+  }
+  // The triangles of faces of four corners, of which the last may be missing. For size: what is
+  // done with them takes the time.
+  [[gnu::cold]] HWY_NOINLINE void join_triangles(const std::uint32_t* starts,
+                                                 std::uint32_t missing) {
+    std::uint32_t count = 0;
+    for (std::uint32_t face = 0; face < kLeafFaces; ++face, starts += 4) {
+      const std::size_t corners = starts[3] == missing ? 3 : 4;
+      for (std::size_t second = 1; second + 1 < corners; ++second, ++count) {
+        start_[3 * count] = starts[0];
+        start_[3 * count + 1] = starts[second];
+        start_[3 * count + 2] = starts[second + 1];
+        lane_face_[count] = static_cast<std::uint8_t>(face);
+      }
+    }
+    count_ = count;
+    // The other lanes of vectors are read, too.
+    for (; count % kWideChildren != 0; ++count) std::fill_n(start_ + 3 * count, 3, 0);
+  }
+  HWY_INLINE void gather_positions() {
     const auto* positions = reinterpret_cast<const float*>(mesh_.positions);
-    for (std::size_t c = 0; c < 3; ++c) {
-      transpose(
-          positions, [&](std::size_t face) { return start_[3 * face + c]; }, c);
+    for (std::size_t group = 0; group < groups(); ++group) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        transpose(
+            positions, [&](std::size_t lane) { return start_[3 * lane + c]; }, c,
+            group * kWideChildren);
+      }
     }
-    return true;
   }
   template <class D, class V>
   static HWY_INLINE hn::Vec<D> widen(D words, V stored) {
@@ -262,37 +306,38 @@ class LeafFloats {
     }
   }
 
-  // Corner `corner` of all faces; that of face i is start(i) floats after `rows`.
+  // Corner `corner` of eight lanes from `first` on; that of lane i is start(i) floats after `rows`.
   template <class Start>
-  HWY_INLINE void transpose(const float* rows, const Start& start, std::size_t corner) {
+  HWY_INLINE void transpose(const float* rows, const Start& start, std::size_t corner,
+                            std::size_t first) {
     const Floats d;
     const FloatVector scale = hn::Set(Floats(), floats_.scale);
     const hn::Repartition<std::uint64_t, Floats> pairs;
     for (std::size_t part = 0; part < kParts; ++part) {
-      const std::size_t face = part * kLanes;
+      const std::size_t lane = first + part * kLanes;
       // Of each block of four rows: x0 x1 y0 y1, z0 z1 - -, and so on, to x0 x1 x2 x3.
-      const auto r0 = blocks(rows, start, face), r1 = blocks(rows, start, face + 1);
-      const auto r2 = blocks(rows, start, face + 2), r3 = blocks(rows, start, face + 3);
+      const auto r0 = blocks(rows, start, lane), r1 = blocks(rows, start, lane + 1);
+      const auto r2 = blocks(rows, start, lane + 2), r3 = blocks(rows, start, lane + 3);
       const auto xy01 = hn::BitCast(pairs, hn::InterleaveLower(d, r0, r1));
       const auto xy23 = hn::BitCast(pairs, hn::InterleaveLower(d, r2, r3));
       const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
       const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
         hn::Store(hn::Mul(hn::BitCast(d, values), scale), Floats(),
-                  &leaf_->coordinate[corner][axis][face]);
+                  &leaf_->coordinate[corner][axis][lane]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
       store(1, hn::InterleaveUpper(pairs, xy01, xy23));
       store(2, hn::InterleaveLower(pairs, z01, z23));
     }
   }
-  // The row of a face and, in the next block, of the one four faces on.
+  // The row of a lane and, in the next block, of the one four lanes on.
   template <class Start>
-  static HWY_INLINE FloatVector blocks(const float* rows, const Start& start, std::size_t face) {
+  static HWY_INLINE FloatVector blocks(const float* rows, const Start& start, std::size_t lane) {
     const hn::CappedTag<float, 4> four;
-    const auto row = hn::LoadU(four, rows + start(face));
+    const auto row = hn::LoadU(four, rows + start(lane));
 #if HWY_MAX_BYTES >= 32
-    return hn::Combine(Floats(), hn::LoadU(four, rows + start(face + 4)), row);
+    return hn::Combine(Floats(), hn::LoadU(four, rows + start(lane + 4)), row);
 #else
     return row;
 #endif
@@ -313,7 +358,10 @@ class LeafFloats {
   std::uint32_t first_ = 0;
   std::uint32_t count_ = 0;
   Errc error_ = Errc::kOk;
-  HWY_ALIGN std::uint32_t start_[kCorners];  // of each corner's position, in floats
+  // Of each corner's position, in floats: three for each lane.
+  HWY_ALIGN std::uint32_t start_[std::size_t{3} * kMaxLeafTriangles];
+  // The face of the leaf that a lane of arrays belongs to; triangles of a quad are side by side.
+  std::uint8_t lane_face_[kMaxLeafTriangles];
   TriangleBatch batch_;
 #if BOXTREE_HAS_EIGHT_LANES
   ClusterReader clusters_;

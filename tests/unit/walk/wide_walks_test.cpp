@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -213,12 +214,31 @@ SourceMesh in_double(SourceMesh mesh, const char* name) {
   return mesh;
 }
 
-// Small meshes of every kind, one with more vertices than 16 bits can name, a small one far from
-// the origin, one in double precision.
+// A torus that has a quad in place of every `period`-th pair of triangles.
+SourceMesh with_quads(std::size_t period) {
+  SourceMesh mesh = test::torus(30, 20);
+  const std::vector<cooker::Face> triangles = std::exchange(mesh.faces, {});
+  mesh.name = "every_quad_" + std::to_string(period);
+  for (std::size_t i = 0; i + 1 < triangles.size(); i += 2) {
+    const auto& first = triangles[i].corner;
+    const auto& second = triangles[i + 1].corner;
+    if (i / 2 % period == 0) {
+      mesh.faces.push_back({{first[0], first[1], first[2], second[2]}});
+    } else {
+      mesh.faces.push_back(triangles[i]);
+      mesh.faces.push_back(triangles[i + 1]);
+    }
+  }
+  return mesh;
+}
+
+// Small meshes of every kind, one with more vertices than 16 bits can name, those with quads, a
+// small one far from the origin, one in double precision.
 std::vector<SourceMesh> meshes() {
   std::vector<SourceMesh> meshes = test::all_kinds();
   meshes.push_back(
-      changed(test::torus(160, 120), "large_torus", [](float x, std::size_t) { return x; }));
+      changed(test::torus(300, 220), "large_torus", [](float x, std::size_t) { return x; }));
+  for (const std::size_t period : {1u, 3u, 50u}) meshes.push_back(with_quads(period));
   meshes.push_back(changed(test::sphere(40, 60), "far_away", [](float x, std::size_t axis) {
     return x * 1e-4f + (axis == 0 ? 1.0f : -2.0f);
   }));
@@ -276,6 +296,12 @@ TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodesOnAGrid) {
     options.grid.bits = bits;
     expect_equal(meshes()[GetParam()], options, GetParam());
   }
+}
+
+TEST_P(WideWalks, EqualTheScalarWalkOfPlainNodesOfArrays) {
+  cooker::CookOptions options;
+  options.geometry = GeometryId::kArrays;
+  expect_equal(meshes()[GetParam()], options, GetParam());
 }
 
 std::string mesh_name(const testing::TestParamInfo<std::size_t>& mesh) {
