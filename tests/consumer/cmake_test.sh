@@ -152,6 +152,32 @@ refused "there is no target nothing; call add_executable or add_library" <<'CMAK
 find_package(boxtree CONFIG REQUIRED)
 boxtree_add_cooked_assets(TARGET nothing MESHES ../meshes/level.obj)
 CMAKE
+# refused_call WHY ARGUMENT...: of boxtree_add_cooked_assets, for the target all_assets unless one is named.
+refused_call() {
+  local why=$1
+  shift
+  refused "boxtree_add_cooked_assets: $why" <<CMAKE
+find_package(boxtree CONFIG REQUIRED)
+add_custom_target(all_assets)
+boxtree_add_cooked_assets($*)
+CMAKE
+  tr -s ' \n' '  ' <"$work/log" | grep -qF 'TARGET target MESHES mesh...' || fail "not told how to call it: $why"
+}
+refused_call "'OPTION' in MESHES is no keyword; did you mean OPTIONS?" \
+  TARGET all_assets MESHES ../meshes/level.obj OPTION --exact
+refused_call "'OUTPUT_DIRECTORY' in MESHES is no keyword; did you mean OUTPUT_DIR?" \
+  TARGET all_assets MESHES ../meshes/level.obj OUTPUT_DIRECTORY other
+refused_call "'OUTDIR' in OPTIONS is no keyword; did you mean OUTPUT_DIR?" \
+  TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact OUTDIR other
+refused_call "'DEPENDS' in MESHES is neither a keyword nor the name of a mesh" \
+  TARGET all_assets MESHES ../meshes/level.obj DEPENDS other
+refused_call "'MESH' is no keyword; did you mean MESHES? Expected" TARGET all_assets MESH ../meshes/level.obj
+refused_call "'../meshes/level.obj' is no keyword and stands behind none that takes it. Expected" TARGET all_assets ../meshes/level.obj
+refused_call "TARGET is missing" MESHES ../meshes/level.obj
+# shellcheck disable=SC2016 # a variable of CMake
+for meshes in MESHES 'MESHES ${NONE}' 'MESHES ""' ''; do
+  refused_call 'MESHES of target all_assets is missing or an empty list' TARGET all_assets "$meshes" OPTIONS --exact
+done
 refused 'only OPTIONS may hold generator expressions' <<'CMAKE'
 find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
