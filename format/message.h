@@ -12,9 +12,14 @@
 namespace boxtree {
 
 /// An error whose detail is `place` followed by `text`, each '#' replaced by the next number.
-/// Precondition: as many numbers as '#'.
+/// Precondition: as many numbers as '#', or more.
 [[nodiscard]] Error error_with(Errc code, std::string_view place, std::string_view text,
                                std::initializer_list<std::uint64_t> numbers = {});
+
+/// "there is no tree 2; expected 0 or 1", of `count` things called `what`.
+/// Precondition: index >= count.
+[[nodiscard]] Error index_error(Errc code, std::string_view what, std::uint64_t index,
+                                std::uint64_t count);
 
 /// kSectionSize with both sizes; the caller knows which section of which tree.
 [[nodiscard]] Error section_size_error(std::uint64_t found, std::uint64_t expected);

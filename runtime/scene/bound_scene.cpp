@@ -58,7 +58,7 @@ Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
 
 Result<InstanceInfo> BoundScene::info(std::uint32_t number) const {
   if (number >= instance_count()) {
-    return error_with(Errc::kInstanceIndex, {}, "instance # of #", {number, instance_count()});
+    return index_error(Errc::kInstanceIndex, "instance", number, instance_count());
   }
   const std::optional<InstanceRecord> record = record_of(number);
   if (!record) return error_with(Errc::kRecordInvalid, {}, "instance #: its record", {number});

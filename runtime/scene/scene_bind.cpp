@@ -162,7 +162,7 @@ Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
   bool detaches = has_detached_;
   for (const std::uint32_t number : numbers) {
     if (number >= instance_count()) {
-      return error_with(Errc::kInstanceIndex, {}, "instance # of #", {number, instance_count()});
+      return index_error(Errc::kInstanceIndex, "instance", number, instance_count());
     }
     detaches |= number < record().static_count;
   }

@@ -31,7 +31,7 @@ bool are_readable(const MeshArrays& mesh) {
 Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptions& options) {
   const OpenFile& file = OpenFile::of(opened);
   if (index >= file.tree_count()) {
-    return error_with(Errc::kTreeIndex, {}, "tree # of #", {index, file.tree_count()});
+    return index_error(Errc::kTreeIndex, "tree", index, file.tree_count());
   }
   return BoundTree::bind(
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),

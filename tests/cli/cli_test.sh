@@ -705,7 +705,8 @@ for tree in 1 flat; do
   expect 0 "$boxtree" query both.bxt point --at 0.2,0.2,1 --tree "$tree" --json
   same "$(jq -c '[.distance,.face]' out)" '[1,1]'
 done
-expect 1 "$boxtree" query both.bxt point --at 0,0,0 --tree 2
+misvalued 'tree_index: both.bxt: there is no tree 2; expected 0 or 1' query both.bxt point --at 0,0,0 --tree 2
+misvalued 'tree_index: cube.bxt: there is no tree 1; expected 0' query cube.bxt point --at 0,0,0 --tree 1
 misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query both.bxt point --at 0,0,0 --tree nobody
 misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query cube.bxt pair both.bxt --tree2 nobody
 

@@ -69,7 +69,8 @@ TEST(SceneBind, TellsWhatWasCooked) {
     EXPECT_EQ(scene.material({i, {10, 0}}), info.tree == 0 ? 0 : kNoMaterial);
   }
   EXPECT_EQ(ids.size(), 9u);
-  EXPECT_EQ(scene.info(9).code(), Errc::kInstanceIndex);
+  EXPECT_EQ(scene.info(9).error().message(),
+            "instance_index: there is no instance 9; expected 0 to 8");
   EXPECT_EQ(scene.find_instance("nobody").code(), Errc::kInstanceIndex);
 }
 
