@@ -137,13 +137,13 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
   const bool is_listed = !profile.instances.empty();
   const bool has_source = is_listed || profile.source.has_value();
   if (has_source == !inputs.empty()) {
-    return Error{Errc::kProfileInvalid,
-                 has_source
-                     ? profile.path.string() +
-                           ": names what to cook; leave MESH out of the command, or \"source\" and "
-                           "[[instance]] out of the profile"
-                     : "nothing to cook: give an input, or a profile that names a source or "
-                       "lists instances"};
+    const std::string place = profile.path.empty() ? "the scene" : profile.path.string();
+    return Error{
+        Errc::kProfileInvalid,
+        place + (has_source ? ": names what to cook; leave MESH out of the command, or "
+                              "\"source\" and [[instance]] out of the profile"
+                            : ": names nothing to cook; give MESH in the command, or \"source\" "
+                              "or [[instance]] in a profile")};
   }
   if (is_listed) return load_listed(profile, options, progress);
   CookInput input;

@@ -68,6 +68,8 @@ class ProfileReader {
   void read_object(const Header& header);
   void read_mesh(const Header& header);
   void read_hidden_faces(Fields& fields, ProfileMesh& mesh);
+  void read_scene_keys(Fields& fields);
+  void refuse_keys_outside_tables(const TomlTable& root);
   void read_instance(const Header& header);
   Stated<std::filesystem::path> beside(const Stated<std::string>& file) const {
     return {profile_.path.parent_path() / file.value, file.line};
@@ -79,13 +81,23 @@ class ProfileReader {
   std::vector<std::string> mesh_names_;
 };
 
+bool is_array_of_tables(const TomlNode& node) {
+  const auto* array = std::get_if<TomlArray>(&node.value);
+  return array != nullptr && !array->empty() &&
+         std::holds_alternative<TomlTable>(array->front().value);
+}
+
 std::optional<ProfileReader::Header> ProfileReader::table(Fields& root, std::string_view key) {
   const TomlEntry* entry = root.find(key);
   if (entry == nullptr) return std::nullopt;
   if (const auto* found = std::get_if<TomlTable>(&entry->node.value)) {
     return Header{found, entry->line};
   }
-  complaints_.expected(entry->line, key, fmt::format("a table [{}]", key), shown(entry->node));
+  const bool is_doubled = is_array_of_tables(entry->node);
+  complaints_.expected(entry->line, key,
+                       is_doubled ? fmt::format("one table, [{}] in single brackets", key)
+                                  : fmt::format("a table [{}]", key),
+                       is_doubled ? fmt::format("[[{}]]", key) : shown(entry->node));
   return std::nullopt;
 }
 
@@ -95,7 +107,12 @@ std::vector<ProfileReader::Header> ProfileReader::tables(Fields& root, std::stri
   std::vector<Header> found;
   const auto* array = std::get_if<TomlArray>(&entry->node.value);
   if (array == nullptr) {
-    complaints_.expected(entry->line, key, fmt::format("tables [[{}]]", key), shown(entry->node));
+    const bool is_single = std::holds_alternative<TomlTable>(entry->node.value);
+    complaints_.expected(
+        entry->line, key,
+        is_single ? fmt::format("[[{}]] in double brackets, since there may be several", key)
+                  : fmt::format("tables [[{}]]", key),
+        is_single ? fmt::format("[{}]", key) : shown(entry->node));
     return found;
   }
   for (const TomlNode& node : *array) {
@@ -181,10 +198,14 @@ void ProfileReader::read_contact(Fields& fields, std::optional<ContactRule>& rul
   }
 }
 
-void ProfileReader::read_scene(const Header& header) {
-  Fields fields(*header.table, "[scene]", header.line, complaints_);
+void ProfileReader::read_scene_keys(Fields& fields) {
   if (const auto source = fields.text("source")) profile_.source = beside(*source);
   read_needs(fields, profile_.scene);
+}
+
+void ProfileReader::read_scene(const Header& header) {
+  Fields fields(*header.table, "[scene]", header.line, complaints_);
+  read_scene_keys(fields);
   const TomlEntry* queries = fields.find("queries");
   if (queries != nullptr && profile_.scene.queries.value == 0) {
     complaints_.expected(queries->line, "queries", "at least one kind", "none");
@@ -327,6 +348,24 @@ void ProfileReader::read_instance(const Header& header) {
   profile_.instances.push_back(std::move(instance));
 }
 
+// Values of keys; other tables are reported as keys that are not known.
+void ProfileReader::refuse_keys_outside_tables(const TomlTable& root) {
+  const TomlTable no_keys;
+  Fields scene(no_keys, "[scene]", 0, complaints_);
+  read_scene_keys(scene);  // requests them all and finds none
+  for (const TomlEntry& entry : root) {
+    if (std::holds_alternative<TomlTable>(entry.node.value) || is_array_of_tables(entry.node)) {
+      continue;
+    }
+    complaints_.expected(entry.line, entry.key,
+                         scene.knows(entry.key)
+                             ? "it below [scene], or another table that has it"
+                             : "it below a table: [scene], [budget], [contact], [[object]], "
+                               "[[mesh]] or [[instance]]",
+                         "it outside of all tables");
+  }
+}
+
 Status ProfileReader::read(const TomlTable& root) {
   Fields fields(root, "the profile", 1, complaints_);
   if (const auto scene = table(fields, "scene")) read_scene(*scene);
@@ -334,7 +373,8 @@ Status ProfileReader::read(const TomlTable& root) {
   if (const auto contact = table(fields, "contact")) {
     Fields keys(*contact->table, "[contact]", contact->line, complaints_);
     read_contact(keys, profile_.scene.contact, false);
-    if (!profile_.scene.contact) {
+    // Values that are wrong have been reported already, at later lines.
+    if (keys.find("stiffness") == nullptr || keys.find("mass") == nullptr) {
       complaints_.expected(contact->line, "[contact]", "the keys \"stiffness\" and \"mass\"",
                            "not both");
     }
@@ -343,6 +383,7 @@ Status ProfileReader::read(const TomlTable& root) {
   const std::vector<Header> meshes = tables(fields, "mesh");
   const std::vector<Header> objects = tables(fields, "object");
   const std::vector<Header> instances = tables(fields, "instance");
+  refuse_keys_outside_tables(root);
   fields.finish();
   if (objects.size() > kMaxObjects) {
     complaints_.expected(objects[kMaxObjects].line, "[[object]]",

@@ -173,10 +173,13 @@ void Fields::exclude(std::string_view first, std::string_view second) {
                        fmt::format("either \"{}\" or \"{}\"", first, second), "both");
 }
 
+bool Fields::knows(std::string_view key) const {
+  return std::find(known_.begin(), known_.end(), key) != known_.end();
+}
+
 void Fields::finish() {
   for (const TomlEntry& entry : table_) {
-    const bool is_known = std::find(known_.begin(), known_.end(), entry.key) != known_.end();
-    if (is_known || !complaints_.wants(entry.line)) continue;
+    if (knows(entry.key) || !complaints_.wants(entry.line)) continue;
     complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known_),
                          '"' + entry.key + '"');
   }

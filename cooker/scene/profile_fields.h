@@ -75,6 +75,8 @@ class Fields {
                                          std::string_view wording);
   /// Reports two keys that exclude each other, at the later one.
   void exclude(std::string_view first, std::string_view second);
+  /// Whether the key was requested.
+  [[nodiscard]] bool knows(std::string_view key) const;
   /// Reports all keys that were not requested.
   void finish();
 

@@ -258,6 +258,10 @@ expect 3 "$boxtree" cook --profile wrong.toml -o x.bxt
 grep -Eq 'wrong.toml:[0-9]+: .*tolerance' err
 expect 1 "$boxtree" cook -o x.bxt
 [ ! -e x.bxt ]
+: >empty.toml
+expect 3 "$boxtree" cook --profile empty.toml -o x.bxt
+same "$(cat err)" 'boxtree: profile_invalid: empty.toml: names nothing to cook; give MESH in the command, or "source" '\
+'or [[instance]] in a profile'
 
 # A node that is scaled to nothing has no pose to be queried in; flattened it is a flat surface.
 jq '(.nodes[] | select(.name == "Crate")).scale = [1, 0, 1]' level.gltf >squashed.gltf

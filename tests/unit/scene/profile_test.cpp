@@ -275,7 +275,12 @@ constexpr ProfileFault kTypes[] = {
     {"[scene]\nsource = 1979-05-27\n",
      "scene.toml:2: source: expected a text that is not empty, found a date or time"},
     {"scene = 3\n", "scene.toml:1: scene: expected a table [scene], found 3"},
-    {"[object]\nname = 'a'\n", "scene.toml:1: object: expected tables [[object]], found a table"},
+    {"[object]\nname = 'a'\n",
+     "scene.toml:1: object: expected [[object]] in double brackets, since there may be several, "
+     "found [object]"},
+    {"[[scene]]\nexact = true\n",
+     "scene.toml:1: scene: expected one table, [scene] in single brackets, found [[scene]]"},
+    {"scene = []\n", "scene.toml:1: scene: expected a table [scene], found an array of 0"},
     {"mesh = [1]\n", "scene.toml:1: mesh: expected tables [[mesh]], found 1"},
     {"[budget]\nbytes = 1.5\n",
      "scene.toml:2: bytes: expected a whole number of 1 or more, found 1.5"},
@@ -298,7 +303,7 @@ constexpr ProfileFault kRanges[] = {
      "scene.toml:2: bytes_per_triangle: expected a number above 0, found 0"},
     {"[budget]\nslowdown = 0\n", "scene.toml:2: slowdown: expected a number above 0, found 0"},
     {"[contact]\nstiffness = 0\nmass = 1\n",
-     "scene.toml:1: [contact]: expected the keys \"stiffness\" and \"mass\", found not both"},
+     "scene.toml:2: stiffness: expected a number above 0, found 0"},
     {"[contact]\nstiffness = 1\nmass = 1\ngravity = -9.81\n",
      "scene.toml:4: gravity: expected a number above 0, found -9.81"},
     {"[contact]\nstiffness = 1\nmass = 1\njump = 0\n",
@@ -316,6 +321,14 @@ constexpr ProfileFault kNames[] = {
     {"[seen]\n",
      "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found "
      "\"seen\""},
+    {"queries = ['ray']\n[budget]\nbytes = 1\n",
+     "scene.toml:1: queries: expected it below [scene], or another table that has it, found it "
+     "outside of all tables"},
+    {"match = ['a']\n",
+     "scene.toml:1: match: expected it below a table: [scene], [budget], [contact], [[object]], "
+     "[[mesh]] or [[instance]], found it outside of all tables"},
+    {"[[seen]]\nexact = true\n",
+     "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found \"seen\""},
     {"[budget]\nbyte = 1\n",
      "scene.toml:2: [budget]: expected a known key (nearest: \"bytes\"), found \"byte\""},
     {"[contact]\nstiffness = 1\nmass = 1\nmas = 1\n",
