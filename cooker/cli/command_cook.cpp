@@ -60,12 +60,16 @@ Json report_json(const Arguments& arguments, const Summary& summary, double seco
   return json;
 }
 
+constexpr const char* kNoWhyText =
+    "--why accounts for scenes, and this is none: --candidates prints why a tree is encoded as it "
+    "is, --scene or\n  --profile makes a scene of the input\n";
+
 // `output`: the name of what was written.
 std::string report_text(const Arguments& arguments, const std::string& output,
                         const Summary& summary, double seconds) {
   std::string text = summary.scene ? scene_text(summary, arguments.candidates)
                                    : trees_text(summary, arguments.candidates);
-  if (summary.scene && arguments.why) text += why_text(*summary.scene);
+  if (arguments.why) text += summary.scene ? why_text(*summary.scene) : kNoWhyText;
   if (!arguments.job.reordered.empty()) {
     text += fmt::format("wrote {}: face i of the tree is face i of it\n",
                         shown(arguments.job.reordered.string()));
@@ -223,8 +227,9 @@ void add_cook_command(Command& program, int& status) {
   command.add_flag("--flatten", arguments->job.flatten, "Make each input one tree, never a scene")
       ->excludes(profile)
       ->excludes(scene);
-  command.add_flag("--why", arguments->why,
-                   "Of a scene: print each part, its bytes, and what decided that it is there");
+  command.add_flag(
+      "--why", arguments->why,
+      "Of a scene: print each part, its bytes, and what decided that it is there, or not");
   command.add_flag("--candidates", arguments->candidates,
                    "Print all that was tried for each tree, not only what was chosen");
   Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")

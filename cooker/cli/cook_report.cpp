@@ -352,8 +352,10 @@ std::string why_text(const SceneSummary& scene) {
   for (const bool wanted : {true, false}) {
     text +=
         fmt::format("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
+    const auto is_here = [wanted](const WhyLine& line) { return line.kept == wanted; };
+    if (std::none_of(scene.why.begin(), scene.why.end(), is_here)) text += "  nothing\n";
     for (const WhyLine& line : scene.why) {
-      if (line.kept != wanted) continue;
+      if (!is_here(line)) continue;
       if (wanted) kept += line.bytes;
       const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)
                                                             : fmt::format("~{}", line.bytes);

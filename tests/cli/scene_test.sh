@@ -26,6 +26,7 @@ expect 0 "$boxtree" info level.bxt
 grep -q '^scene: 53 instances (0 moving), 9648 triangles placed' out
 expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --jobs 1 --why
 grep -q 'what a reader opens the file by' out
+grep -A1 '^left out' out | grep -qx '  nothing'
 cmp level.bxt again.bxt
 # Each tree on a line, or with all its candidates.
 same "$(grep -c '^  barrel ' out)" 1
@@ -33,6 +34,13 @@ same "$(grep -c 'not tried' out)" 0
 expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --candidates
 same "$(grep -c 'not tried, geometry grid' out)" 0
 same "$(grep -cE ' wide8 +arrays ' out)" 8
+
+# One mesh is no scene, unless it is made one.
+expect 0 "$boxtree" cook "$level/../meshes/crate.obj" -o crate.bxt --why
+grep -q '^--why accounts for scenes, and this is none: --candidates' out
+expect 0 "$boxtree" cook "$level/../meshes/crate.obj" -o crate.bxt --why --scene
+grep -q 'what a reader opens the file by' out
+same "$(grep -c '^--why' out)" 0
 
 # Answers in the world, with instance and material; those of the flattened tree are the same.
 expect 0 "$boxtree" query level.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --json
