@@ -196,13 +196,33 @@ std::optional<Pose> pose_of(std::span<const double> numbers) {
   return pose;
 }
 
+// A line of a batch.
+struct BatchLine {
+  Json values = Json::object();                // by key, with _ between words
+  std::map<std::string, std::string> written;  // the key as the line has it
+};
+
+std::vector<std::string> kind_names() {
+  std::vector<std::string> names;
+  for_each_kind([&]<class Kind>() { names.emplace_back(Kind::kKind); });
+  return names;
+}
+
+std::vector<std::string> kinds_of_two() {
+  std::vector<std::string> names;
+  for_each_kind([&]<class Kind>() {
+    if constexpr (requires(Kind kind) { kind.second; }) names.emplace_back(Kind::kKind);
+  });
+  return names;
+}
+
 // Reads the keys of one request, which has the values of the command line, and remembers the first
 // that is missing, wrong or unknown.
 class KeyFields {
  public:
   // `given`: keys that may be missing, though they are needed.
-  KeyFields(const Json& json, std::string_view kind, std::span<const std::string> given)
-      : json_(json), kind_(kind), given_(given) {}
+  KeyFields(const BatchLine& line, std::string_view kind, std::span<const std::string> given)
+      : json_(line.values), written_(line.written), kind_(kind), given_(given) {}
 
   template <class T>
   void required(const char* key, T& out, const char* /*help*/) {
@@ -233,19 +253,38 @@ class KeyFields {
       const bool known = std::find(known_.begin(), known_.end(), key) != known_.end();
       if (!known && key != "kind" && (error_.empty() || is_missing_)) {
         is_missing_ = false;
-        error_ = fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_,
-                             fmt::join(known_, ", "), known_.empty() ? "" : " or ", key,
-                             suggestion(key, known_));
+        error_ = unknown_key(key);
       }
     }
     return error_.empty() ? Status() : Status(invalid(error_));
   }
 
  private:
-  void fail(std::string_view key, std::string_view expected, const std::string& found) {
+  void fail(const std::string& key, std::string_view expected, const std::string& found) {
     if (!error_.empty()) return;
     is_missing_ = found == kNoSuchKey;
-    error_ = fmt::format("{}: \"{}\": expected {}, found {}", kind_, key, expected, found);
+    error_ = fmt::format("{}: \"{}\": expected {}, found {}", kind_,
+                         is_missing_ ? key : written_.at(key), expected, found);
+  }
+
+  // Words are joined in the message as they are in the line.
+  [[nodiscard]] std::string unknown_key(const std::string& key) const {
+    for (const char* second : {"file", "tree", "mesh", "pose"}) {
+      if (key != second) continue;
+      return fmt::format(
+          "{}: \"{}\" is of the second tree of a line of the kind {}; FILE, --tree and --mesh of "
+          "the "
+          "command line say which tree a batch queries",
+          kind_, key, listed(kinds_of_two()));
+    }
+    const std::string& written = written_.at(key);
+    std::vector<std::string> names = known_;
+    if (written != key) {
+      for (std::string& name : names) std::replace(name.begin(), name.end(), '_', '-');
+    }
+    return fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_,
+                       fmt::join(names, ", "), names.empty() ? "" : " or ", written,
+                       suggestion(written, names));
   }
 
   // The numbers of an array; nothing if it is another value.
@@ -276,7 +315,8 @@ class KeyFields {
   }
   static bool convert(const Json& value, std::string& out) {
     if (value.is_string()) out = value.get<std::string>();
-    return value.is_string();
+    if (value.is_number_unsigned()) out = std::to_string(value.get<std::uint64_t>());
+    return value.is_string() || value.is_number_unsigned();
   }
   static bool convert(const Json& value, std::vector<std::string>& out) {
     const Json texts = value.is_array() ? value : Json::array({value});
@@ -301,9 +341,9 @@ class KeyFields {
   static const char* form_of(const Eigen::Vector3d&) { return "[X,Y,Z]"; }
   static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
   static const char* form_of(double) { return "a number"; }
-  static const char* form_of(const std::string&) { return "a text"; }
+  static const char* form_of(const std::string&) { return "a name as a text, or a number"; }
   static const char* form_of(const std::vector<std::string>&) {
-    return "INSTANCE=POSE as a text, or an array of such";
+    return "INSTANCE=POSE as a text (\"Crate=1,2,3\"), or an array of such";
   }
   static const char* form_of(const std::filesystem::path&) { return "a text"; }
   static const char* form_of(bool) { return "true or false"; }
@@ -329,6 +369,7 @@ class KeyFields {
   }
 
   const Json& json_;
+  const std::map<std::string, std::string>& written_;
   const std::string_view kind_;
   const std::span<const std::string> given_;
   std::vector<std::string> known_;
@@ -391,30 +432,46 @@ std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
   return 0;
 }
 
-std::vector<std::string> kind_names() {
-  std::vector<std::string> names;
-  for_each_kind([&]<class Kind>() { names.emplace_back(Kind::kKind); });
-  return names;
+// Names of options have hyphens, keys of answers underscores: keys of lines have either. Hyphens
+// before a name, which no key has, stay for the message.
+std::string with_underscores(std::string key) {
+  const std::size_t first = std::min(key.find_first_not_of('-'), key.size());
+  std::replace(key.begin() + static_cast<std::ptrdiff_t>(first), key.end(), '-', '_');
+  return key;
 }
 
-// The object of a line. What nests deeper than any request would overflow the stack when a message
-// shows it.
-Result<Json> parse_line(std::string_view line) {
-  constexpr int kDeepest = 2;  // an array in the object
+// The object of a line. What nests deeper than any value that a message shows would overflow the
+// stack.
+Result<BatchLine> parse_line(std::string_view text) {
+  constexpr int kDeepest = 4;
   bool is_too_deep = false;
-  const auto watch = [&is_too_deep](int depth, Json::parse_event_t /*event*/, const Json&) {
+  std::vector<std::string> keys;  // all that the line has, in its order
+  const auto watch = [&](int depth, Json::parse_event_t event, const Json& parsed) {
     is_too_deep = is_too_deep || depth > kDeepest;
+    const bool is_of_line = event == Json::parse_event_t::key && depth == 1;
+    if (is_of_line && !is_too_deep) keys.push_back(parsed.get<std::string>());
     return !is_too_deep;
   };
   try {
-    Json json = Json::parse(line, watch);
+    const Json json = Json::parse(text, watch);
     if (is_too_deep) {
-      return invalid(
-          "expected a JSON object of numbers, texts and arrays of them, found an "
-          "array or an object in another");
+      return invalid(fmt::format(
+          "{}expected a JSON object of numbers, texts and arrays of them, found an array or an "
+          "object in another",
+          keys.empty() ? std::string() : '"' + keys.back() + "\": "));
     }
     if (!json.is_object()) return invalid("expected a JSON object, found " + found_text(json));
-    return json;
+    BatchLine line;
+    for (const std::string& key : keys) {
+      const std::string name = with_underscores(key);
+      const auto [first, is_new] = line.written.emplace(name, key);
+      if (!is_new) {
+        return invalid(fmt::format("\"{}\": expected once, found twice{}", key,
+                                   first->second == key ? "" : ": - and _ are the same"));
+      }
+      line.values[name] = json[key];
+    }
+    return line;
   } catch (const Json::parse_error& error) {
     return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", error.byte));
   } catch (const Json::out_of_range&) {
@@ -423,26 +480,10 @@ Result<Json> parse_line(std::string_view line) {
   }
 }
 
-// Names of options have hyphens, keys of answers underscores: keys of lines have either. Hyphens
-// before a name, which no key has, stay for the message.
-Result<Json> with_underscores(const Json& json) {
-  Json named = Json::object();
-  for (const auto& [key, value] : json.items()) {
-    std::string name = key;
-    const std::size_t first = std::min(name.find_first_not_of('-'), name.size());
-    std::replace(name.begin() + static_cast<std::ptrdiff_t>(first), name.end(), '-', '_');
-    if (named.contains(name)) {
-      return invalid(fmt::format("\"{}\": expected once, found twice: - and _ are the same", name));
-    }
-    named[name] = value;
-  }
-  return named;
-}
-
-Result<BatchRequest> request_of(std::string_view kind, const Json& json,
+Result<BatchRequest> request_of(std::string_view kind, const BatchLine& of,
                                 const RequestDefaults& defaults) {
   const bool is_default = kind == defaults.kind;
-  KeyFields fields(json, kind,
+  KeyFields fields(of, kind,
                    is_default ? std::span(defaults.given) : std::span<const std::string>());
   std::optional<QueryRequest> result;
   for_each_kind([&]<class Kind>() {
@@ -567,18 +608,16 @@ Error explained(const Error& error, const QueryRequest& request) {
 }
 
 Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults& defaults) {
-  const Result<Json> parsed = parse_line(line);
+  const Result<BatchLine> parsed = parse_line(line);
   if (!parsed) return parsed.error();
-  const Result<Json> named = with_underscores(*parsed);
-  if (!named) return named.error();
-  const Json& json = *named;
+  const Json& values = parsed->values;
   std::string kind = defaults.kind;
-  if (const auto given = json.find("kind"); given != json.end()) {
+  if (const auto given = values.find("kind"); given != values.end()) {
     if (!given->is_string())
       return invalid("\"kind\": expected a text, found " + found_text(*given));
     kind = given->get<std::string>();
   }
-  return request_of(kind, json, defaults);
+  return request_of(kind, *parsed, defaults);
 }
 
 Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others) {

@@ -283,10 +283,10 @@ struct BatchRequest {
 
 /// A request from one line of a batch: an object with the names of the options as keys, with - or
 /// _, as in {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}; those of a second tree are
-/// "file", "tree", "mesh" and "pose", which is text or an array of 3 or 12 numbers. "move" is a
-/// text as --move takes it, or an array of such. A line with "file" takes nothing of the second
-/// tree of the command line if that names a file, too. Error: kInvalidQuery with kind, key, what
-/// was expected and what was found.
+/// "file", "tree", a name or a number, "mesh" and "pose", text or an array of 3 or 12 numbers.
+/// "move" is a text as --move takes it, or an array of such. A line with "file" takes nothing of
+/// the second tree of the command line if that names a file, too. Error: kInvalidQuery with kind,
+/// key, what was expected and what was found.
 Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults& defaults);
 
 /// kInvalidPose with what is wrong; `whose`: "the second tree's".

@@ -582,18 +582,32 @@ names "box: expected the keys min, max, within, budget, move or kind, found \"mn
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'
 names "\"kind\": expected $kinds, found \"rya\"; did you mean 'ray'?" '{"kind":"rya"}'
 names 'point: expected the keys at, max_distance, relative_error, absolute_error, budget, move or kind, found "max_distence"; '\
-"did you mean 'max_distance'?" '{"kind":"point","at":[0,0,0],"max-distence":1}'
+"did you mean 'max_distance'?" '{"kind":"point","at":[0,0,0],"max_distence":1}'
+# Words are joined as they are in the line.
+names 'point: expected the keys at, max-distance, relative-error, absolute-error, budget, move or kind, found "max-distence"; '\
+"did you mean 'max-distance'?" '{"kind":"point","at":[0,0,0],"max-distence":1}'
+names 'point: "max-distance": expected a number, found "x"' '{"kind":"point","at":[0,0,0],"max-distance":"x"}'
 names 'expected a JSON object, found no JSON at byte 31' '{"kind":"point","at":[1,0,0]} x'
 names 'expected a JSON object, found [1]' '[1]'
 names 'expected a JSON object of finite numbers, found one beyond what a double holds' '{"kind":"point","at":[1e999,0,0]}'
 names "ray: expected the keys origin, direction, t_max, any, move or kind, found \"--origin\"; did you mean 'origin'?" '{"kind":"ray","--origin":[0,0,9],"direction":[0,0,-1]}'
 names '"t_max": expected once, found twice: - and _ are the same' \
   '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"t-max":1,"t_max":2}'
+names '"origin": expected once, found twice' '{"kind":"ray","origin":[0,0,9],"origin":[0,0,8],"direction":[0,0,-1]}'
+names '"kind": expected once, found twice' '{"kind":"ray","kind":"point","at":[0,0,8]}'
+names 'ray: "tree" is of the second tree of a line of the kind pair, distance or overlap; FILE, --tree and --mesh of the command '\
+'line say which tree a batch queries' '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"tree":"cube"}'
+names 'distance: "tree": expected a name as a text, or a number, found [0]' '{"kind":"distance","file":"cube.bxt","tree":[0]}'
+names 'cube.bxt: there is no tree 7; expected 0' '{"kind":"distance","file":"cube.bxt","tree":7}'
 # What nests deeply overflows no stack.
-names 'expected a JSON object of numbers, texts and arrays of them, found an array or an object in another' \
+names '"kind": expected a JSON object of numbers, texts and arrays of them, found an array or an object in another' \
   "{\"kind\":$(printf '[%.0s' {1..200000})$(printf ']%.0s' {1..200000})}"
 names '"move": is for instances of a scene, and this is a tree' '{"kind":"point","at":[0,0,0],"move":"cube=1,0,0"}'
-names 'point: "move": expected INSTANCE=POSE as a text, or an array of such, found [1]' '{"kind":"point","at":[0,0,0],"move":[1]}'
+names 'point: "move": expected INSTANCE=POSE as a text ("Crate=1,2,3"), or an array of such, found [1]' '{"kind":"point","at":[0,0,0],"move":[1]}'
+for nested in '{"Crate":[1,2,3]}' '[["Crate=1,2,3"]]' '[{"Crate":[1,2,3]}]'; do
+  names 'point: "move": expected INSTANCE=POSE as a text ("Crate=1,2,3"), or an array of such, found '"$nested" \
+    '{"kind":"point","at":[0,0,0],"move":'"$nested}"
+done
 # Keys are the names of options, with - or _.
 printf '%s\n' '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t-max":3}' '' \
   '{"kind":"ray","origin":[0.25,0.5,5],"direction":[0,0,-1],"t_max":4}' '{}' >keys.jsonl
