@@ -108,7 +108,7 @@ class Pages:
                 "int run() {\n" + body + "  return 0;\n}\n" + ("int main() { return run(); }\n" if is_whole else ""))
         path = self.work / "program.cpp"
         path.write_text(code, encoding="utf-8")
-        command = [self.compiler, "-std=c++20", "-ffp-contract=off", *self.includes, str(path), "-o", "program"]
+        command = [self.compiler, "-std=c++20", "-ffp-contract=off", "-Werror", *self.includes, str(path), "-o", "program"]
         done = subprocess.run(command + (self.libraries if is_whole else ["-fsyntax-only"]), cwd=self.work,
                               text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         if done.returncode != 0:
