@@ -198,13 +198,18 @@ function(boxtree_add_cooked_assets)
     set_property(GLOBAL PROPERTY "BOXTREE_MESH_OF_${output}" "${mesh}")
     set_property(GLOBAL PROPERTY "BOXTREE_OPTIONS_OF_${output}" "${ARG_OPTIONS}")
     set_property(GLOBAL PROPERTY "BOXTREE_TARGET_OF_${output}" "${assets_target}")
+    # As CMake names what it builds: below the folder of the build, wherever that is.
+    cmake_path(RELATIVE_PATH output BASE_DIRECTORY ${CMAKE_BINARY_DIR} OUTPUT_VARIABLE title)
+    if(title MATCHES "^\\.\\.(/|$)")
+      set(title ${output})
+    endif()
     cmake_language(EVAL CODE "cmake_language(DEFER CALL boxtree_expect_mesh [[${mesh}]])")
     add_custom_command(
       OUTPUT ${output}
       COMMAND ${tool} cook ${mesh} -o ${output} --depfile ${output}.d --quiet ${jobs} ${ARG_OPTIONS}
       DEPENDS ${mesh} ${tool}
       DEPFILE ${output}.d
-      COMMENT "Cooking ${name}.bxt"
+      COMMENT "Cooking ${title}"
       COMMAND_EXPAND_LISTS # an option that a generator expression leaves empty is none
       VERBATIM)
     list(APPEND outputs ${output})

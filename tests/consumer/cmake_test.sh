@@ -94,6 +94,7 @@ for generator in Ninja "Unix Makefiles"; do # another option cooks again, and ju
   configured assets -G "$generator" -DCODEC=plain-f16
   quiet cmake --build "$out"
   [ "$(codec_of "$out/small/crate.bxt")" = plain-f16 ] || fail "$generator: another option did not recook"
+  grep -q 'Cooking small/crate.bxt$' "$work/log" || fail "$generator: what is cooked is not told with its folder"
   [ "$(grep -c Cooking "$work/log")" = 1 ] || fail "$generator: another option recooked all"
 done
 
@@ -376,7 +377,7 @@ CMAKE
   configured parent -DCMAKE_BUILD_TYPE= -DSOURCE="$source"
   if grep -rl --include=cmake_install.cmake 'file(INSTALL' "$work/parent/build"; then fail "boxtree installs itself"; fi
   ninja -C "$work/parent/build" -n game >"$work/log"
-  grep -q 'Cooking level.bxt' "$work/log" || fail "nothing would be cooked"
+  grep -q 'Cooking assets/level.bxt' "$work/log" || fail "nothing would be cooked"
   [ -e "$work/parent/build/CPackConfig.cmake" ] && fail "boxtree configures packages"
 done
 # Unless it is wanted.
