@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <utility>
 #include <variant>
 
@@ -14,6 +13,7 @@
 #include "cooker/import/exception_error.h"
 #include "cooker/import/face_materials.h"
 #include "cooker/import/file_error.h"
+#include "cooker/import/foreign_file.h"
 #include "cooker/import/obj_import.h"
 #include "cooker/import/off_import.h"
 #include "cooker/import/ply_import.h"
@@ -21,8 +21,6 @@
 #include "cooker/import/source_scene.h"
 #include "cooker/import/stl_import.h"
 #include "cooker/import/text_tokens.h"
-#include "cooker/system/file_handle.h"
-#include "format/container.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -55,13 +53,6 @@ constexpr std::array kMeshReaders = {
     MeshReader{"stl", without_materials<import_stl>},
 };
 
-bool starts_like_cooked(const SourceFile& source) {
-  std::array<std::uint8_t, kMagic.size()> first{};
-  const FileHandle file = source.open();
-  return file && std::fread(first.data(), 1, first.size(), file.get()) == first.size() &&
-         first == kMagic;
-}
-
 SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
   SourceScene scene;
   scene.report = std::move(imported.report);
@@ -87,15 +78,14 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
   return {};
 }
 
-// A cooked file, or one whose ending no reader knows, in the place of a mesh. The error of the
-// reader that was chosen by the first bytes would be about a format that nobody meant.
+// A file of another kind, or one whose ending no reader knows, in the place of a mesh. The error of
+// the reader that was chosen by the ending or the first bytes would be about a format that nobody
+// meant.
 Error explained(const SourceFile& source, const Error& error) {
   if (error.code != Errc::kImportFailed && error.code != Errc::kNoFaces) return error;
   const std::string& title = source.title();
-  if (starts_like_cooked(source)) {
-    return {error.code, title +
-                            ": expected a mesh, found a cooked file, which info, verify, query, "
-                            "bench and export take"};
+  if (const char* const what = foreign_file(source)) {
+    return {error.code, fmt::format("{}: expected a mesh, found {}", title, what)};
   }
   const std::string ending = source.path().extension().string();
   if (!ending.empty() && is_mesh_ending(ending.substr(1))) return error;

@@ -75,6 +75,32 @@ TEST_F(ImportErrorTest, WhatIsNoMeshAtAllIsToldSo) {
   }
 }
 
+// Found by newcomers: a picture that is called .stl had 522937230 triangles, one called .obj a zero
+// byte.
+TEST_F(ImportErrorTest, WhatIsNoMeshIsToldSoWhateverItsEnding) {
+  const std::string rest(200, '\1');
+  const std::pair<std::string, const char*> files[] = {
+      {"\x89PNG\r\n\x1a\n", "a picture (PNG)"},
+      {"\xff\xd8\xff\xe0", "a picture (JPEG)"},
+      {"GIF89a", "a picture (GIF)"},
+      {std::string("II*\0", 4), "a picture (TIFF)"},
+      {"RIFF1234WEBP", "a picture (WebP)"},
+      {"%PDF-1.7\n", "a PDF document"},
+      {"\x1f\x8b\x08", "a file that gzip compressed"},
+      {"<!DOCTYPE HTML>\n", "a web page (HTML)"},
+      {"version https://git-lfs.github.com/spec/v1\n", "a pointer of Git LFS, in the place"},
+  };
+  for (const auto& [start, what] : files) {
+    for (const std::string ending : {"stl", "obj", "off", "ply", "glb", "fbx"}) {
+      const Error error = fail("a." + ending, start + rest);
+      EXPECT_EQ(error.code, Errc::kImportFailed);
+      EXPECT_TRUE(has(error.detail, std::string("expected a mesh, found ") + what)) << ending;
+    }
+  }
+  EXPECT_FALSE(has(fail("a.stl", "RIFF1234WAVE" + rest).detail, "picture"));
+  EXPECT_FALSE(has(fail("a.obj", "RIFF").detail, "picture"));
+}
+
 std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
                 int face_count) {
   return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: MIT
+// What stands in the place of a mesh, whatever its name says.
+#pragma once
+
+#include "cooker/import/source_file.h"
+
+namespace boxtree::cooker {
+
+/// What a file is that begins as no mesh does, for a message: "a picture (PNG)"; nullptr if it may
+/// be a mesh.
+[[nodiscard]] const char* foreign_file(const SourceFile& source);
+
+}  // namespace boxtree::cooker
