@@ -11,10 +11,12 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/file_error.h"
+
 namespace boxtree::cooker {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 84;
+constexpr std::size_t kHeaderBytes = kStlHeaderBytes;
 constexpr std::size_t kCountOffset = 80;
 constexpr std::size_t kTriangleBytes = 50;
 constexpr std::size_t kCornersOffset = 12;
@@ -59,9 +61,10 @@ Status read_binary_stl(SourceStream& stream, const std::string& file, StlMesh<T>
   if (header == nullptr) return stream.ended_in("its header");
   const std::uint32_t count = load_word(header + kCountOffset);
   if (bytes_of(count) != kHeaderBytes + stream.left()) {
+    const std::uint64_t found = kHeaderBytes + stream.left();
     return Error{Errc::kImportFailed,
-                 fmt::format("{}: {} triangles take {} bytes, but the file has {}", file, count,
-                             bytes_of(count), kHeaderBytes + stream.left())};
+                 fmt::format("{}: {} triangles take {} bytes, but the file has {}{}", file, count,
+                             bytes_of(count), found, found < bytes_of(count) ? kAsIfCut : "")};
   }
   if (Status status = mesh.begin(count); !status.ok()) return status;
   for (std::uint32_t id = 0; id < count;) {

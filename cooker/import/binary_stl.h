@@ -3,12 +3,16 @@
 // mostly for normals and for vertices that are merged at once.
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "cooker/import/source_stream.h"
 #include "cooker/import/stl_mesh.h"
 
 namespace boxtree::cooker {
+
+/// What is before the triangles: text of any content, and their count.
+inline constexpr std::size_t kStlHeaderBytes = 84;
 
 /// Whether the file has the length that the count in its header requires. `stream` is at its start.
 [[nodiscard]] bool is_binary_stl(const SourceStream& stream);

@@ -68,7 +68,8 @@ class Reader {
   [[nodiscard]] FaceFault fault_of(std::string_view word, std::size_t corner) const;
 
   [[nodiscard]] Status failure(std::string_view why) const {
-    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, statement_.line, why)};
+    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}{}", file_, statement_.line, why,
+                                                  is_cut() ? kAsIfCut : "")};
   }
 
   const std::string_view text_;
@@ -196,8 +197,9 @@ FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
   const std::string limit =
       number < 0 ? fmt::format("{} vertices come before it", vertices_so_far_)
                  : fmt::format("OBJ counts the {} vertices from 1", mesh_.vertices());
-  std::string why =
-      fmt::format("corner {} (line {}) says '{}', but {}", corner, statement_.line, word, limit);
+  const bool is_half = number == 0 && word != "0" && is_cut();
+  std::string why = fmt::format("corner {} (line {}) says '{}', but {}{}", corner, statement_.line,
+                                word, limit, is_half ? kAsIfCut : "");
   return {Errc::kMeshIndexOutOfRange, std::move(why)};
 }
 

@@ -11,15 +11,15 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/binary_stl.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/text_tokens.h"
 
 namespace boxtree::cooker {
 namespace {
 
-// Headers of binary files may begin with "solid", too, but a text contains no zero byte. This is
-// the number of bytes before the first triangle of a binary file.
-constexpr std::size_t kShown = 84;
+// Headers of binary files may begin with "solid", too, but a text contains no zero byte.
+constexpr std::size_t kShown = kStlHeaderBytes;
 
 // T is the type of the positions.
 template <class T>
@@ -32,17 +32,20 @@ class Reader {
     const Result<std::string_view> text = text_of(rest_);
     if (!text.ok()) return in_file(file_, text.error());
     rest_ = *text;
+    const char* const end = rest_.data() + rest_.size();
     while (!rest_.empty()) {
       split_tokens(take_line(rest_), words_);
       ++line_;
       is_name_ = false;
       for (const std::string_view word : words_) {
+        is_last_ = word.data() + word.size() == end;
         if (Status status = take(word); !status.ok()) return status;
         if (is_name_) break;
       }
     }
-    if (is_in_facet_) return failure(std::string("the file ends within a facet") + kAsIfCut);
-    if (is_open_) return failure(std::string("the file ends without 'endsolid'") + kAsIfCut);
+    is_last_ = true;
+    if (is_in_facet_) return failure("the file ends within a facet");
+    if (is_open_) return failure("the file ends without 'endsolid'");
     return mesh_.finish();
   }
 
@@ -95,7 +98,8 @@ class Reader {
   }
 
   [[nodiscard]] Status failure(std::string_view why) const {
-    return Error{Errc::kImportFailed, fmt::format("{}: line {}: {}", file_, line_, why)};
+    return Error{Errc::kImportFailed,
+                 fmt::format("{}: line {}: {}{}", file_, line_, why, is_last_ ? kAsIfCut : "")};
   }
 
   std::string_view rest_;
@@ -103,6 +107,7 @@ class Reader {
   StlMesh<T>& mesh_;
   std::size_t line_ = 0;  // current line, from 1
   Tokens words_;
+  bool is_last_ = false;    // nothing follows the current word, not even the end of its line
   bool is_open_ = false;    // inside a solid
   bool is_name_ = false;    // the rest of the line is a name
   bool after_end_ = false;  // the previous word was "end"

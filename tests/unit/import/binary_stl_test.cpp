@@ -110,12 +110,21 @@ TEST_F(BinaryStlTest, NotFiniteNamesVertexAndFace) {
   EXPECT_TRUE(has(fail("a.stl", binary(triangles), {.skip_bad = true}).detail, "all 1 faces are"));
 }
 
+// Its letters were read as a count.
+TEST_F(BinaryStlTest, ATextOfAnotherFormatIsToldSo) {
+  const std::string obj = "# an OBJ\n" + std::string(100, ' ') + "\nv 0 0 0\n";
+  EXPECT_TRUE(has(fail("a.stl", obj).detail,
+                  "a.stl: no STL file: a text that does not begin with 'solid'"));
+}
+
 TEST_F(BinaryStlTest, LengthMustFitTheCount) {
   const std::string file = binary(random_triangles(1, 3));
-  for (const std::string& wrong : {file + "x", file.substr(0, file.size() - 1)}) {
+  for (const bool is_cut : {false, true}) {
+    const std::string wrong = is_cut ? file.substr(0, file.size() - 1) : file + "x";
     const Error error = fail("a.stl", wrong);
     EXPECT_EQ(error.code, Errc::kImportFailed);
     EXPECT_TRUE(has(error.detail, "3 triangles take 234 bytes, but the file has "));
+    EXPECT_EQ(bool(has(error.detail, ", as if the file was cut short")), is_cut);
   }
   std::string huge = file;
   std::memset(huge.data() + 80, 0xff, 4);

@@ -132,6 +132,23 @@ TEST_F(ImportErrorTest, ACutFileIsToldSo) {
   EXPECT_TRUE(has(cut(4), "a list of '3' numbers, but the line has 2 words, as if the file was"));
   EXPECT_TRUE(has(cut(18), "'vertex' 2 has 2 words; its properties take 3, as if the file"));
   EXPECT_TRUE(has(cut(50), "the header has no 'end_header' behind it, as if the file was cut"));
+
+  // The last word or line of a text without an end.
+  const std::string obj(kTriangle);
+  for (const char* const half : {"v 1", "v 1 2 -", "v 1 2 1e", "f 1 2 -", "f 1 2 3 -", "\1"}) {
+    EXPECT_TRUE(has(fail("cut.obj", obj + "f 1 2 3\n" + half).detail, ", as if the file was cut"));
+    EXPECT_FALSE(has(fail("a.obj", obj + "f 1 2 3\n" + half + "\n").detail, "cut short")) << half;
+  }
+  EXPECT_FALSE(has(fail("a.obj", obj + "f 1 2 9").detail, "cut short"));
+  const std::string facet =
+      "solid x\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\nendsolid x\n";
+  for (std::size_t bytes = 6; bytes < facet.size() - 4; ++bytes) {
+    EXPECT_TRUE(has(fail("cut.stl", facet.substr(0, bytes)).detail, ", as if the file was cut"))
+        << facet.substr(0, bytes);
+  }
+  EXPECT_FALSE(has(fail("a.stl", "solid x\nfcaet\nendsolid x\n").detail, "cut short"));
+  EXPECT_FALSE(has(fail("a.stl", "solid x\nfcaet \n").detail, "cut short"));
   // Not where lines follow.
   EXPECT_FALSE(has(fail("a.ply", ply("0 0\n1 0 0\n0 1 0\n", "3 0 1 2\n", 3, 1)).detail, "cut"));
 }
