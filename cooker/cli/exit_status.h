@@ -29,4 +29,11 @@ inline constexpr std::array kExitStatuses = {
         "The file needs what this program, the format, or what was cooked into it, does not have."},
 };
 
+/// Statuses that are none of the program's, in the words of a manual.
+inline constexpr const char* kOtherStatuses =
+    "127, and 134 where too little memory meets the start-up code of a library, come from the "
+    "system before the program runs: a shared library is missing or cannot be loaded, or, in a "
+    "shell, there is no such program. 128 and the number of a signal is what a shell makes of a "
+    "program that the signal ended.";
+
 }  // namespace boxtree::cooker

@@ -112,7 +112,7 @@ std::string statuses() {
   for (const ExitStatus& status : kExitStatuses) {
     text += ".TP\n" + bold(std::to_string(status.number)) + "\n" + line_of_text(status.meaning);
   }
-  return text;
+  return text + ".PP\n" + line_of_text(kOtherStatuses);
 }
 
 // The other pages, in the order of the alphabet.

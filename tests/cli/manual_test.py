@@ -147,6 +147,9 @@ def check_pages(manual):
         sections = re.findall(r"^\.SH (.*)$", page, re.MULTILINE)
         if sections != [each for each in SECTIONS if each in sections] or not ALWAYS <= set(sections):
             sys.exit(f"{name}.1: sections {sections}")
+        statuses = page[page.index(".SH EXIT STATUS"):]
+        if "127, and 134" not in statuses:
+            sys.exit(f"{name}.1: nothing of the statuses of the system")
         others = set(re.findall(r"^\\fB(.*)\\fR\(1\),?$", page[page.index(".SH SEE ALSO"):], re.MULTILINE))
         expect(f"{name}.1, see also", {other.replace("\\-", "-") for other in others}, names - {name})
         run(["groff", "-man", "-ww", "-Tutf8", "-z"], input=page)
