@@ -75,6 +75,21 @@ bool has_option(const Command& command, const std::string& name) {
   });
 }
 
+// "boxtree help query ray".
+std::string help_of(const Command& command) {
+  return command.parent() == nullptr ? command.name() + " help"
+                                     : help_of(*command.parent()) + " " + command.name();
+}
+
+// The help of each command below that has the option.
+void add_owners(const Command& command, const std::string& option,
+                std::vector<std::string>& owners) {
+  for (const Command* inner : command.commands()) {
+    if (has_option(*inner, option)) owners.push_back("'" + help_of(*inner) + "'");
+    add_owners(*inner, option, owners);
+  }
+}
+
 // An option that nobody took.
 std::string unknown_option(const Command& command, const std::string& word) {
   const std::string start = "'" + word + "' is ";
@@ -125,9 +140,15 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
 std::string unknown_command(const Command& command, const std::string& word) {
   const std::string start = "'" + word + "' is no " + below(command);
   for (const Command* inner : command.commands()) {
-    if (inner->find(word) != nullptr) return start + " but a " + below(*inner);
+    if (const Command* const kind = inner->find(word)) {
+      return start + " but a " + below(*inner) + "; see '" + help_of(*kind) + "'";
+    }
   }
-  return start + suggestion(word, command_names(command));
+  const std::string similar = suggestion(word, command_names(command));
+  if (!similar.empty()) return start + similar;
+  std::vector<std::string> owners;
+  add_owners(command, "--" + word, owners);
+  return owners.empty() ? start : start + " but an option; see " + listed(owners);
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {

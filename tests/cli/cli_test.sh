@@ -365,9 +365,10 @@ misspelt "boxtree: usage: query: '--first' is an option of pair or contacts, whi
 See 'boxtree query --help'." query cube.bxt --first
 misspelt "boxtree: usage: cook: '-o' is an option that comes after cook
 See 'boxtree cook --help'." -o cube.bxt cook cube.obj
-misspelt "boxtree: usage: 'ray' is no command but a kind of query
+misspelt "boxtree: usage: 'ray' is no command but a kind of query; see 'boxtree help query ray'
 See 'boxtree --help'." ray cube.bxt --origin 0,0,9
-misspelt "boxtree: usage: 'ray' is no command but a kind of query" help ray
+misspelt "boxtree: usage: 'ray' is no command but a kind of query; see 'boxtree help query ray'" help ray
+misspelt "boxtree: usage: 'relative-error' is no command but an option; see 'boxtree help query point' or 'boxtree help query distance'" help relative-error
 
 # Values name what was expected and what was found.
 misvalued() {
