@@ -742,6 +742,43 @@ done
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
 same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
 same "$(jq -c '.files[0] | .ray_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
+# The same figures in words: all but times are those of the document.
+counts=$(jq -c '.files[0] | [.ray_hits, .box_faces, .pair_hits, .pair_pairs]' out)
+page_faults=$(jq '.files[0].open_page_faults' out)
+bench_says() {
+  grep -Eq -- "$1" out || { echo "bench does not say: $1"; cat out; exit 1; }
+}
+expect 0 "$boxtree" bench cube.bxt --quick --runs 1
+bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\)$'
+bench_says '^  means; boxes are cubes with an edge of 5 % of the diagonal, contacts those with a copy$'
+same "$(awk '$1 ~ /^(ray|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
+same "$(awk '$1 ~ /^(ray|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
+  'ray ns box ns point ns first us all us open us '
+bench_says "^  ray +[0-9]+ ns  [0-9]+ hits$"
+bench_says "^  box +[0-9]+ ns  [0-9]+ faces$"
+bench_says "^  point +[0-9]+ ns  [0-9.e+]+ summed distance$"
+bench_says "^  first +[0-9.]+ us  [0-9]+ contacts$"
+bench_says "^  all +[0-9.]+ us  [0-9]+ pairs$"
+bench_says "^  open +[0-9.]+ us  to the first answer, [0-9]+ page faults; [0-9.]+ us before it$"
+[ "$page_faults" -gt 0 ]
+expect 0 "$boxtree" bench cube.bxt --pages --quick --json
+pages=$(jq -r '.files[0] | "\(.pages.file)/\(.pages.open)/\(.pages.ray.median)/\(.first_rays.prefetched | length)"' out)
+expect 0 "$boxtree" bench cube.bxt --pages --quick
+bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\): [0-9]+ pages of 4 KiB$'
+bench_says '^  box +[0-9]+ pages at the median, +[0-9]+ at worst, of 100 queries$'
+bench_says '^  the first 100 rays on one open file, after Tree::prefetch\(levels\)$'
+bench_says '^ +0 levels, +0 nodes: +[0-9]+ pages read ahead, +[0-9]+ by the rays$'
+same "$(sed -n 's/^.*: \([0-9]*\) pages of.*/\1/p' out)/$(awk '$1 == "open" { print $2 }' out)/$(awk '$1 == "ray" { print $2 }' out)/$(grep -c ' levels, ' out)" \
+  "$pages"
+expect 0 "$boxtree" bench cube.bxt --approximate --quick --runs 1
+bench_says '^  point +median, ns +nodes +largest error$'
+bench_says '^  distance +median, ns +nodes +largest error$'
+bench_says '^    error 0\.1 +[0-9]+ +[0-9.]+ +[0-9.e-]+$'
+bench_says '^    budget [0-9]+ +[0-9]+ +[0-9.]+ +([0-9.e-]+|-)$'
+expect 0 "$boxtree" bench --calibrate cube.obj --runs 1
+bench_says '^ns of a query, of a node expanded and of a leaf read, for rays, boxes \(cubes with an edge of 5 % of the diagonal\), points and pairs \(all contacts\)$'
+bench_says '^wide8 +exact *( +[0-9.]+){12}$'
+bench_says '^modelled and measured times differ by at most [0-9.]+ times$'
 expect 1 "$boxtree" bench external.bxt --quick --runs 1
 expect 0 "$boxtree" bench cube.bxt --approximate --quick --runs 1 --json
 jq -e '.files[0].approximate | [.point, .distance] | all(
