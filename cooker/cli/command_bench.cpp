@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // `boxtree bench`: times of queries on cooked files.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "cooker/cli/json_output.h"
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/standard_streams.h"
 #include "cooker/import/import.h"
 #include "cooker/report/approximate.h"
 #include "cooker/report/pages_json.h"
@@ -215,6 +217,10 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
 }
 
 int run(const Arguments& arguments) {
+  const auto& files = arguments.files;
+  if (std::any_of(files.begin(), files.end(), is_standard_stream)) {
+    return usage("bench: - (standard input) is no file, and bench times the opening of files, too");
+  }
   if (arguments.calibrate) return run_calibration(arguments);
   Json rows = Json::array();
   for (const std::filesystem::path& path : arguments.files) {

@@ -209,7 +209,9 @@ void add_info_command(Command& program, int& status) {
   const auto arguments = std::make_shared<Arguments>();
   Command& command =
       program.add_command("info", "Show what a .bxt file holds and what each part takes");
-  command.add_file("FILE", arguments->files, Values::kCookedFiles, "Files to look into")
+  command
+      .add_file("FILE", arguments->files, Values::kCookedFiles,
+                "Files to look into; - is standard input")
       ->required();
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.example("What is in a file", "boxtree info bunny.bxt");

@@ -52,7 +52,7 @@ struct RayRequest {
   void describe(Fields& fields) {
     fields.required("origin", ray.origin, "Where it starts");
     fields.required("direction", ray.direction, "Where it goes; t counts in its length");
-    fields.optional("t_max", ray.t_max, "Where it ends");
+    fields.optional("t_max", ray.t_max, "Where it ends, as t [nowhere]");
     fields.optional("any", any, "Any hit, not the closest");
   }
 };
@@ -64,7 +64,8 @@ struct OverlapOptions {
 
   template <class Fields>
   void describe(Fields& fields, bool* given = nullptr) {
-    fields.optional("within", within, "Answer overlapping or disjoint, or undecided if closer",
+    fields.optional("within", within,
+                    "May end with undecided where parts are closer than this, and so sooner [0]",
                     given);
     fields.optional("budget", node_budget, "Stop after so many nodes", given);
   }
@@ -72,13 +73,14 @@ struct OverlapOptions {
 
 struct BoxRequest {
   static constexpr const char* kKind = "box";
-  static constexpr const char* kHelp = "Faces that touch an axis-aligned box";
+  static constexpr const char* kHelp =
+      "Faces that touch an axis-aligned box, or with --within or --budget whether any does";
   static constexpr const char* kExpected =
       "finite corners, min not above max on any axis, and within of 0 or more";
   static constexpr KindExample kExamples[] = {
-      {"The faces in a box", "boxtree query bunny.bxt box --min=-1,-1,-1 --max 1,1,1"},
+      {"The faces in a box", "boxtree query bunny.bxt box --min -1,-1,-1 --max 1,1,1"},
       {"Whether anything is closer to it than 0.1",
-       "boxtree query bunny.bxt box --min=-9,-9,-9 --max=-8,-8,-8 --within 0.1"}};
+       "boxtree query bunny.bxt box --min -9,-9,-9 --max -8,-8,-8 --within 0.1"}};
 
   Eigen::AlignedBox3d box;
   OverlapOptions overlap;

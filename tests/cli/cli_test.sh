@@ -780,6 +780,7 @@ bench_says '^ns of a query, of a node expanded and of a leaf read, for rays, box
 bench_says '^wide8 +exact *( +[0-9.]+){12}$'
 bench_says '^modelled and measured times differ by at most [0-9.]+ times$'
 expect 1 "$boxtree" bench external.bxt --quick --runs 1
+misvalued 'usage: bench: - (standard input) is no file, and bench times the opening of files, too' bench - --quick
 expect 0 "$boxtree" bench cube.bxt --approximate --quick --runs 1 --json
 jq -e '.files[0].approximate | [.point, .distance] | all(
   (.by_error | length > 3 and .[0].relative_error == 0 and all(.median_ns > 0 and .false_bounds == 0
