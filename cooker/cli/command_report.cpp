@@ -304,6 +304,10 @@ int run_tradeoff(const Arguments& arguments) {
 }
 
 int run(const Arguments& arguments) {
+  const auto& meshes = arguments.meshes;
+  if (std::any_of(meshes.begin(), meshes.end(), is_standard_stream)) {
+    return usage("report: - (standard input) is no file; expected names of meshes");
+  }
   std::vector<std::filesystem::path> inputs = arguments.meshes;
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
