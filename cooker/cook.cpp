@@ -109,12 +109,12 @@ class Cook {
         grids.size() > 1 && (options_.geometry == GeometryId::kGrid || may_choose_grid);
     if (!may_share) return grids;
     // One grid for all, so that surfaces that touch still touch: all are measured first.
-    Eigen::AlignedBox3d bounds;
     for (std::size_t m = 0; m < grids.size(); ++m) {
       if (Status status = import_mesh(m); !status) return status.error();
-      bounds.extend(bounds_of(input_.scene.meshes[m].mesh));
     }
-    const Result<Grid> shared = choose_grid(bounds, options_.grid);
+    std::vector<const SourceMesh*> meshes;
+    for (const SceneMesh& mesh : input_.scene.meshes) meshes.push_back(&mesh.mesh);
+    const Result<Grid> shared = choose_grid(meshes, options_.grid);
     if (shared) {
       grids.assign(grids.size(), *shared);
     } else if (!options_.may_use_grid) {

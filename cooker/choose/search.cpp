@@ -397,7 +397,8 @@ class Search {
   }
 
   Result<QuantisedPositions> quantise_mesh() const {
-    const Result<Grid> grid = scene_ ? *scene_ : choose_grid(bounds_of(mesh_), options_.grid);
+    const std::array meshes{&mesh_};
+    const Result<Grid> grid = scene_ ? *scene_ : choose_grid(meshes, options_.grid);
     if (!grid) return grid.error();
     QuantisedPositions quantised = quantise(mesh_, *grid);
     const double tolerance = options_.grid.tolerance.value_or(quantised.max_vertex_error);

@@ -243,9 +243,10 @@ void add_cook_command(Command& program, int& status) {
   Option* exact =
       command.add_flag("--exact", arguments->exact,
                        "Keep every bit of every position [else auto may choose a grid of 24 bits]");
-  Option* tolerance = command.add_option(
-      "--tolerance", arguments->job.options.grid.tolerance,
-      "Positions may be rounded to a grid, but no vertex moves farther, in units of the mesh");
+  Option* tolerance = command.add_option("--tolerance", arguments->job.options.grid.tolerance,
+                                         "Positions may be rounded to the coarsest grid on which "
+                                         "no vertex is found to move farther, in "
+                                         "units of the mesh");
   tolerance->type_name("LENGTH")->above_zero("a length")->excludes(exact);
   Option* grid_bits = command.add_option(
       "--grid-bits", arguments->job.options.grid.bits,

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <optional>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -37,6 +39,27 @@ struct Grid {
 /// if a double can represent one. Errors: kMeshUnsupported if a tolerance or a step needs more than
 /// kMaxGridBits, or a tolerance is not positive and finite.
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice);
+
+/// The grid over the bounds of all `meshes`, which share it. With a tolerance, it is made coarser
+/// by coarsen_together. Errors: as above.
+Result<Grid> choose_grid(std::span<const SourceMesh* const> meshes, const GridChoice& choice);
+
+/// A mesh, its grid over `bounds`, and how far its vertices may move on it.
+struct MeshOnGrid {
+  const SourceMesh* mesh;
+  Eigen::AlignedBox3d bounds;  // contain the mesh
+  Grid grid;
+  double tolerance;  // object space
+  int largest_step_exponent = std::numeric_limits<int>::max();
+};
+
+/// Doubles the steps of all grids as often as no vertex of any mesh moves farther than its
+/// tolerance: of all together, so that what touches on equal grids still does. choose_grid allows
+/// for the farthest that a vertex can move, halfway between points of the grid on every axis;
+/// usually none lies there. Cost: a pass over the vertices for each doubling, of which there are at
+/// most kMaxGridBits, since no step grows beyond the extent of `bounds`; the last pass ends at the
+/// first vertex that moves too far.
+void coarsen_together(std::span<MeshOnGrid> meshes);
 
 /// The positions of a mesh on the grid, in grid steps from the mesh's own centre. Coordinates are
 /// whole numbers: f32 for extents up to 25 bits, f64 above.

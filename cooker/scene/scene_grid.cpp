@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "format/grid.h"
 #include "runtime/query/relative_pose.h"
@@ -36,6 +37,8 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
   for (const SceneMesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh.mesh));
   const Result<Grid> of_scene = choose_grid(world_bounds(scene, plan, bounds), {.bits = bits});
   std::vector<std::optional<Grid>> grids(scene.meshes.size());
+  std::vector<MeshOnGrid> by_tolerance;  // those that nothing but a tolerance decides
+  std::vector<std::size_t> numbers;      // their meshes
   for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
     const PlannedMesh& mesh = plan.meshes[m];
     if (!mesh.kept || mesh.exact || mesh.external || !of_scene) continue;
@@ -46,19 +49,30 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
       return true;
     };
     bool is_possible = true;
+    int largest_step = std::numeric_limits<int>::max();  // by default
     if (mesh.tolerance) {
       is_possible = take_finer(choose_grid(bounds[m], {.tolerance = mesh.tolerance}));
     }
     if (mesh.default_precision || !mesh.tolerance) {
-      is_possible &= take_finer(choose_grid(bounds[m], {.bits = kLeastMeshBits}));
+      const Result<Grid> least = choose_grid(bounds[m], {.bits = kLeastMeshBits});
+      is_possible &= take_finer(least);
       const double scale = mesh.largest_scale > 0 ? mesh.largest_scale : 1;
       const int step = of_scene->step_exponent - exponent_above(scale);
       if (grid && step < grid->step_exponent) {
         is_possible &= take_finer(choose_grid(bounds[m], {.step_exponent = step}));
       }
+      if (least) largest_step = std::min(step, least->step_exponent);
     }
-    if (is_possible) grids[m] = grid;
+    if (!is_possible) continue;
+    grids[m] = grid;
+    if (mesh.tolerance && grid->step_exponent < largest_step) {
+      by_tolerance.push_back(
+          {&scene.meshes[m].mesh, bounds[m], *grid, *mesh.tolerance, largest_step});
+      numbers.push_back(m);
+    }
   }
+  coarsen_together(by_tolerance);
+  for (std::size_t i = 0; i < numbers.size(); ++i) grids[numbers[i]] = by_tolerance[i].grid;
   return grids;
 }
 

@@ -3,7 +3,9 @@
 // grid, face by face and corner by corner, in every codec.
 #include "cooker/quantise/grid.h"
 
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <map>
 #include <random>
@@ -150,11 +152,54 @@ TEST(Grid, HoldsATolerance) {
     options.grid.tolerance = tolerance;
     const cooker::EncodedTree tree = test::require(cooker::cook_as(mesh, CodecId::kWide4, options));
     EXPECT_LE(tree.geometry.max_vertex_error, tolerance);
-    EXPECT_GT(tree.geometry.max_vertex_error, tolerance / 8);  // and is not finer than it must be
+    // And is not finer than it must be.
+    CookOptions coarser = options;
+    coarser.grid = {.step_exponent = tree.geometry.grid_exponent + 1};
+    const cooker::EncodedTree beyond =
+        test::require(cooker::cook_as(mesh, CodecId::kWide4, coarser));
+    EXPECT_GT(beyond.geometry.max_vertex_error, tolerance);
   }
   CookOptions options = on_grid(8);
   options.grid.tolerance = 1e-12;
   EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide4, options).code(), Errc::kMeshUnsupported);
+}
+
+SourceMesh triangle_of(std::initializer_list<float> corners) {
+  SourceMesh mesh;
+  mesh.positions.f32 = corners;
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  return mesh;
+}
+
+// Half a step on every axis, the farthest that a vertex can move, is more than vertices do move.
+TEST(Grid, ToleranceIsOfVerticesAsTheyMoveNotOfTheWorstCase) {
+  const auto step_for = [](const SourceMesh& mesh, double tolerance) {
+    const std::array meshes{&mesh};
+    return test::require(cooker::choose_grid(meshes, {.tolerance = tolerance})).step_exponent;
+  };
+  // The worst case of a step of 2^-4 is 0.055, and of one of 2^-3 0.11.
+  EXPECT_EQ(step_for(triangle_of({0, 0, 0, 8.125f, 0, 0, 0, 8.0625f, 0}), 0.1), -3);
+  EXPECT_EQ(step_for(triangle_of({0, 0, 0, 8, 0, 0, 0.0625f, 8.0625f, 0.0625f}), 0.1), -4);
+  // Whole numbers stay where they are up to a step of 1; none is 3 steps of 2.
+  EXPECT_EQ(step_for(triangle_of({0, 0, 0, 8, 0, 0, 0, 3, 0}), 0.1), 0);
+  // A step of 2^3 is the whole extent, beyond which nothing becomes smaller.
+  EXPECT_EQ(step_for(triangle_of({0, 0, 0, 8, 0, 0, 0, 8, 0}), 0.1), 3);
+}
+
+// Each mesh alone could have a coarser grid than both together.
+TEST(Grid, ToleranceIsOfAllMeshesThatShareTheGrid) {
+  const SourceMesh coarse = triangle_of({0, 0, 0, 8, 0, 0, 0, 8, 0});
+  const SourceMesh fine = triangle_of({0, 0, 0, 8.0625f, 8.0625f, 8.0625f, 0, 8, 0});
+  const std::array meshes{&coarse, &fine};
+  EXPECT_EQ(test::require(cooker::choose_grid(meshes, {.tolerance = 0.1})).step_exponent, -4);
+  const Eigen::AlignedBox3d bounds = cooker::bounds_of(fine);
+  const cooker::Grid grid = test::require(cooker::choose_grid(bounds, {.tolerance = 0.1}));
+  std::vector<cooker::MeshOnGrid> apart = {{&coarse, bounds, grid, 0.1}};
+  cooker::coarsen_together(apart);
+  EXPECT_EQ(apart[0].grid.step_exponent, 3);
+  apart = {{&coarse, bounds, grid, 0.1, -2}};
+  cooker::coarsen_together(apart);
+  EXPECT_EQ(apart[0].grid.step_exponent, -2);
 }
 
 // ilogb of what is no length is no exponent: differences from it overflow.

@@ -528,7 +528,6 @@ translation = [1, 0, 0]
   ASSERT_EQ(cooked.scene.trees().size(), 1u);
   const Tree& tree = cooked.scene.trees()[0];
   ASSERT_EQ(BoundTree::of(tree).geometry(), GeometryId::kGrid);
-  EXPECT_LE(std::ldexp(0.866, BoundTree::of(tree).grid_exponent()), 0.0005);
   std::set<std::array<double, 3>> border[2];
   for (std::uint32_t i = 0; i < 2; ++i) {
     const Pose pose = require(cooked.scene.pose(i));
@@ -544,6 +543,39 @@ translation = [1, 0, 0]
   }
   EXPECT_EQ(border[0].size(), kCells + 1u);
   EXPECT_EQ(border[0], border[1]);
+}
+
+// One mesh alone would allow for a grid of whole numbers.
+TEST(CookScene, ToleranceIsMeasuredOnAllMeshesTogether) {
+  test::TempFolder folder;
+  folder.write("whole.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+  folder.write("eighths.obj", "v 0 0 0\nv 9.125 9.125 9.125\nv 0 9 0\nf 1 2 3\n");
+  const char* const one = R"([scene]
+tolerance = 0.2
+for = "memory"
+[[mesh]]
+name = "whole"
+file = "whole.obj"
+[[instance]]
+mesh = "whole"
+)";
+  const char* const other = R"([[mesh]]
+name = "eighths"
+file = "eighths.obj"
+[[instance]]
+mesh = "eighths"
+)";
+  const auto steps_of = [&](const std::string& profile) {
+    std::vector<int> steps;
+    const CookedFileOf cooked({}, CookOptions(), folder.write("scene.toml", profile));
+    for (const CookedTree& each : cooked.summary.trees) {
+      EXPECT_EQ(each.tree.geometry.geometry, GeometryId::kGrid) << each.tree.name;
+      steps.push_back(each.tree.geometry.grid_exponent);
+    }
+    return steps;
+  };
+  EXPECT_EQ(steps_of(one), (std::vector{0}));
+  EXPECT_EQ(steps_of(std::string(one) + other), (std::vector{-3, -3}));
 }
 
 // The materials of each instance's faces, by id.
