@@ -199,6 +199,7 @@ Json trees_json(const Summary& summary) {
     const CookedTree& cooked = summary.trees[i];
     Json tree = {{"name", cooked.tree.name},
                  {"triangles", cooked.tree.triangle_count},
+                 {"lost_area", cooked.collapsed},
                  {"chosen", codec_name(cooked.tree.nodes.codec)},
                  {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)},
                  {"surface", surface_json(cooked.edges)}};
@@ -235,6 +236,7 @@ Json imports_json(const std::vector<ImportReport>& imports) {
 Json summary_json(const Summary& summary) {
   Json json;
   json["trees"] = trees_json(summary);
+  json["warnings"] = warnings_of(summary);
   if (!summary.scene) return json;
   const SceneSummary& scene = *summary.scene;
   add_left_out(scene, json["trees"]);
@@ -278,7 +280,25 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
   return warnings;
 }
 
-// Names that several inputs gave their trees.
+// With this share of its triangles gone, a surface is no longer that of the mesh.
+constexpr double kShareToWarnOf = 0.5;
+
+// Trees that a grid left little of.
+std::vector<std::string> lost_surfaces(const std::vector<CookedTree>& trees) {
+  std::vector<std::string> warnings;
+  for (const CookedTree& cooked : trees) {
+    const std::uint32_t all = cooked.tree.triangle_count;
+    if (cooked.collapsed == 0 || cooked.collapsed < kShareToWarnOf * all) continue;
+    warnings.push_back(fmt::format(
+        "tree {}: {} of {} triangles lost their area on a grid of step 2^{}, which moved a vertex "
+        "by up to {:.3g}; a smaller tolerance or more --grid-bits keep it, --exact keeps all",
+        cooked.tree.name, cooked.collapsed, all, cooked.tree.geometry.grid_exponent,
+        cooked.tree.geometry.max_vertex_error));
+  }
+  return warnings;
+}
+
+// Names that several inputs, or several meshes of a scene, gave their trees.
 std::vector<std::string> shared_names(const std::vector<CookedTree>& trees) {
   std::map<std::string, std::size_t> counts;
   for (const CookedTree& cooked : trees) ++counts[cooked.tree.name];
@@ -301,11 +321,9 @@ std::vector<std::string> warnings_of(const Summary& summary) {
     }
   };
   for (const ImportReport& import : summary.imports) add(warnings_of(import));
-  if (summary.scene) {
-    add(summary.scene->notices);
-  } else {
-    add(shared_names(summary.trees));
-  }
+  if (summary.scene) add(summary.scene->notices);
+  add(shared_names(summary.trees));
+  add(lost_surfaces(summary.trees));
   return all;
 }
 

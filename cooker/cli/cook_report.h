@@ -14,12 +14,13 @@ namespace boxtree::cooker {
 /// to one, what import did.
 [[nodiscard]] Json trees_json(const Summary& summary);
 [[nodiscard]] Json imports_json(const std::vector<ImportReport>& imports);
-/// The trees; of a scene its counts and every line of --why, too.
+/// The trees and all warnings; of a scene its counts and every line of --why, too.
 [[nodiscard]] Json summary_json(const Summary& summary);
 
 /// What is wrong with a source, though it could be read; each begins with its name.
 [[nodiscard]] std::vector<std::string> warnings_of(const ImportReport& import);
-/// Those of all sources, once each, and lines of the profile without effect.
+/// Those of all sources, once each; lines of the profile without effect; trees of one name; trees
+/// that a grid left little of.
 [[nodiscard]] std::vector<std::string> warnings_of(const Summary& summary);
 
 /// What was chosen for each tree, or the table of its `candidates`; and what import found.

@@ -61,6 +61,20 @@ expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 31
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --exact
 for length in 0 -1 inf nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --tolerance=$length; done
+# What a grid takes is told where it is half of the triangles or more, and is in the JSON where it is less.
+expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 100 --for memory --quiet --json
+same "$(cat err)" 'boxtree: warning: tree cube: 12 of 12 triangles lost their area on a grid of step 2^6, which moved a vertex by up to 1.73; a smaller tolerance or more --grid-bits keep it, --exact keeps all'
+same "boxtree: warning: $(jq -r '.warnings[]' out)" "$(cat err)"
+same "$(jq '.trees[0].lost_area' out)" 12
+expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 0.1 --for memory --json
+same "$(cat err; jq -c '[.warnings, .trees[0].lost_area]' out)" '[[],0]'
+# Trees of one name, too.
+mkdir -p other && cp uneven.obj other/cube.obj && cp cube.obj crate.obj
+expect 0 "$boxtree" cook cube.obj other/cube.obj crate.obj -o named.bxt --json
+same "$(cat err)" 'boxtree: warning: tree cube: 2 trees of the file have this name; --tree cube and find_tree() take the first, --tree NUMBER any'
+same "boxtree: warning: $(jq -r '.warnings[]' out)" "$(cat err)"
+expect 0 "$boxtree" cook --scene cube.obj other/cube.obj crate.obj -o named.bxt --quiet
+same "$(cat err)" 'boxtree: warning: tree cube: 2 trees of the file have this name; --tree cube and find_tree() take the first, --tree NUMBER any'
 # Finer than any grid: exact geometry keeps to it.
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 1e-20 --json
 jq -e '.trees[0].chosen_geometry | . == "exact" or . == "arrays"' out >/dev/null
