@@ -2,6 +2,7 @@
 // The scene of a file as JSON, and the JSON as text.
 #include "cooker/cli/scene_info.h"
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
@@ -69,6 +70,15 @@ Json left_out_json(const File& file) {
 
 }  // namespace
 
+std::uint32_t instances_left_out(const Scene& scene) {
+  std::uint32_t of_source = 0;
+  for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+    const Result<InstanceInfo> info = scene.info(i);
+    if (info) of_source = std::max(of_source, info->id + 1);
+  }
+  return of_source - std::min(of_source, scene.instance_count());
+}
+
 Result<Json> scene_json(const File& file) {
   if (!file.has_scene()) return Json(nullptr);
   const Result<Scene> scene = bind_without_meshes(file);
@@ -103,6 +113,7 @@ Result<Json> scene_json(const File& file) {
               {"layers", layers},
               {"materials", materials},
               {"left_out", left_out_json(file)},
+              {"instances_left_out", instances_left_out(*scene)},
               {"instances", instances}};
 }
 
@@ -126,6 +137,11 @@ void print_scene(const Json& scene) {
         part["tree"].is_null() ? "" : fmt::format(" of tree {}", part["tree"].get<std::uint32_t>());
     fmt::print("  left out: {}{}, by {}\n", shown(part["part"].get<std::string>()), owner,
                shown(part["by"].get<std::string>()));
+  }
+  const auto instances = scene["instances_left_out"].get<std::uint32_t>();
+  if (instances > 0) {
+    fmt::print("  left out: {} or more instances of the source, whose ids are not there\n",
+               instances);
   }
 }
 

@@ -2,7 +2,10 @@
 // What `boxtree info` says of a scene.
 #pragma once
 
+#include <cstdint>
+
 #include <boxtree/file.h>
+#include <boxtree/scene.h>
 
 #include "cooker/cli/json_output.h"
 
@@ -11,6 +14,10 @@ namespace boxtree::cooker {
 /// Counts, instances, layers, materials and what was left out; null for a file without a scene.
 /// Errors: those of Scene::bind.
 Result<Json> scene_json(const File& file);
+
+/// Instances of the source that are not in the file, as far as it shows: ids are numbers in the
+/// source, so those before the last instance in the file leave gaps.
+[[nodiscard]] std::uint32_t instances_left_out(const Scene& scene);
 
 void print_scene(const Json& scene);
 

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/scene_info.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -125,12 +126,9 @@ struct Move {
 // A name may not be found because it is misspelt, or names or the instance were left out.
 Error no_instance(const File& file, const Scene& scene, const std::string& name) {
   std::vector<std::string> names;
-  std::uint32_t source_instances = 0;  // at least; ids are their numbers in the source
   for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
     const Result<InstanceInfo> info = scene.info(i);
-    if (!info) continue;
-    if (!info->name.empty()) names.emplace_back(info->name);
-    source_instances = std::max(source_instances, info->id + 1);
+    if (info && !info->name.empty()) names.emplace_back(info->name);
   }
   if (names.empty()) {
     SceneOptions needed;
@@ -142,11 +140,17 @@ Error no_instance(const File& file, const Scene& scene, const std::string& name)
     }
   }
   std::string detail = fmt::format("--move: no instance is named \"{}\"", name);
-  if (source_instances > scene.instance_count()) {
-    detail += fmt::format(", and {} or more instances of the source were left out of the file",
-                          source_instances - scene.instance_count());
+  const std::uint32_t left_out = instances_left_out(scene);
+  if (left_out > 0) {
+    detail +=
+        fmt::format(", and {} or more instances of the source were left out of the file", left_out);
   }
-  return {Errc::kInstanceIndex, detail + suggestion(name, names)};
+  const std::string meant = suggestion(name, names);
+  if (!meant.empty()) return {Errc::kInstanceIndex, detail + meant};
+  return {Errc::kInstanceIndex,
+          detail +
+              "; if the source has it, the profile left it out, by leave_out or queries = []: "
+              "cook --why says which line"};
 }
 
 Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {

@@ -246,6 +246,19 @@ says 1 'instance_index: parts.bxt: --move: no instance is named "Barrel 8", and 
 says 1 'instance_index: level.bxt: --move: no instance is named "Crata"; did you mean '"'Crate'?" level.bxt $ray --move Crata=0,0,0
 # shellcheck disable=SC2086
 says 1 'instance_index: parts.bxt: --move 52: expected a number from 0 to 51' parts.bxt $ray --move 52=0,0,0
+# The last instance of the source leaves no gap; without a name like it, the profile is the likely cause.
+printf '[scene]\nsource = "level.gltf"\n[[object]]\nname = "crate"\nmatch = ["Crate"]\nleave_out = true\n' >crateless.toml
+expect 0 "$boxtree" cook --profile crateless.toml -o crateless.bxt --why
+grep -q 'object crate .*crateless.toml:6: leave_out = true' out
+# shellcheck disable=SC2086
+says 1 'instance_index: crateless.bxt: --move: no instance is named "Crate"; if the source has it, the profile left it out, by '\
+'leave_out or queries = []: cook --why says which line' crateless.bxt $ray --move Crate=0,0,0
+expect 0 "$boxtree" info parts.bxt --json
+same "$(jq .scene.instances_left_out out)" 1
+expect 0 "$boxtree" info parts.bxt
+grep -q '^  left out: 1 or more instances of the source, whose ids are not there$' out
+expect 0 "$boxtree" info level.bxt
+[ "$(grep -c 'or more instances' out)" = 0 ]
 sed '3s/.*/names = false/' parts.toml >unnamed.toml
 expect 0 "$boxtree" cook --profile unnamed.toml -o unnamed.bxt -q
 # shellcheck disable=SC2086
