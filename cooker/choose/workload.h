@@ -21,6 +21,10 @@ struct WorkloadSize {
 /// What Workload::boxes are, for texts.
 inline constexpr const char* kBoxMeaning = "cubes with an edge of 5 % of the diagonal";
 
+/// What Workload::poses are, for texts.
+inline constexpr const char* kPoseMeaning =
+    "a copy at 0.6, 0.8, 0.9 and 1.0 of the distance at which boxes touch";
+
 struct Workload {
   /// From a sphere with twice the bounding radius toward random points of the bounds.
   std::vector<Ray> rays;

@@ -128,7 +128,8 @@ void print_row(const Json& row) {
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
-  fmt::print("  means; boxes are {}, contacts those with a copy\n", kBoxMeaning);
+  fmt::print("  measured means; boxes are {};\n  contacts are those with {}\n", kBoxMeaning,
+             kPoseMeaning);
   fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
@@ -169,8 +170,8 @@ int run_calibration(const Arguments& arguments) {
   }
   fmt::print(
       "ns of a query, of a node expanded and of a leaf read, for rays, boxes ({}), points and "
-      "pairs (all contacts)\n",
-      kBoxMeaning);
+      "pairs ({})\n",
+      kBoxMeaning, kShallowMeaning);
   for (const CodecCost& cost : calibration->costs) print_row(cost);
   fmt::print("modelled and measured times differ by at most {:.2f} times\n",
              calibration->worst_ratio);

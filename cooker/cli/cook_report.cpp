@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/choose/work.h"
 #include "cooker/choose/workload.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
@@ -78,13 +79,13 @@ Json import_json(const ImportReport& report) {
 void add_contest(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(cooked.contest);
-  text += fmt::format("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>8}  {:>9}\n",
+  text += fmt::format("    {:<10} {:<8} {:>10} {:>10}  {:>8} {:>7} {:>7} {:>7} {:>10}  {:>9}\n",
                       "codec", "geometry", "tree B/tri", "with geom.", "slowdown", "ray ns",
-                      "box ns", "point ns", "pairs us", "error");
+                      "box ns", "point ns", "shallow us", "error");
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     text += fmt::format(
-        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>8.1f}"
+        "  {} {:<10} {:<8} {:>10.2f} {:>10.2f}  {:>8.2f} {:>7.0f} {:>7.0f} {:>7.0f} {:>10.1f}"
         "  {:>9.2g}{}{}\n",
         candidate.rejected.empty() ? '*' : ' ', codec_name(candidate.codec),
         geometry_name(candidate.geometry), per_triangle(candidate.tree_bytes, cooked.tree),
@@ -93,9 +94,9 @@ void add_contest(const CookedTree& cooked, std::string& text) {
         candidate.rejected.empty() ? "" : "  ", candidate.rejected);
   }
   text += fmt::format(
-      "    times: modelled means; boxes are {}, pairs all\n"
-      "    contacts of the tree and its copy\n",
-      kBoxMeaning);
+      "    times: modelled means; boxes are {};\n"
+      "    shallow: {}\n",
+      kBoxMeaning, kShallowMeaning);
   // Codecs that share a reason stand together.
   const std::vector<NotTried>& others = cooked.contest.not_tried;
   for (std::size_t i = 0; i < others.size();) {
