@@ -340,7 +340,9 @@ void add_report_command(Command& program, int& status) {
   Command& command = program.add_command(
       "report",
       "Show which encoding to use for meshes: bytes, times and errors\n"
-      "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells.");
+      "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells. The page has "
+      "grids of so many bits; what a tolerance of your own takes, cook --tolerance LENGTH "
+      "--candidates tells.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,

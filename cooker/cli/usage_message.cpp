@@ -99,7 +99,13 @@ std::string unknown_option(const Command& command, const std::string& word) {
     if (has_option(*inner, word)) owners.push_back(inner->name());
   }
   if (!owners.empty()) return start + "an option of " + listed(owners) + ", which comes before it";
-  return start + "no option" + suggestion(word, option_names(command));
+  const std::string meant = suggestion(word, option_names(command));
+  if (!meant.empty() || command.parent() == nullptr) return start + "no option" + meant;
+  for (const Command* other : command.parent()->commands()) {
+    if (has_option(*other, word)) owners.push_back(other->name());
+  }
+  if (owners.empty()) return start + "no option";
+  return start + "no option of " + command.name() + ", but of " + listed(owners);
 }
 
 // What CLI11 says of an option that has too few values or is there too often, by counts: "--at: 1

@@ -363,6 +363,10 @@ misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--ori
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
+misspelt "boxtree: usage: report: '--tolerance' is no option of report, but of cook
+See 'boxtree report --help'." report cube.obj --tolerance 0.001
+misspelt "boxtree: usage: cook: '--frobnicate' is no option
+See 'boxtree cook --help'." cook cube.obj --frobnicate
 misspelt "boxtree: usage: query ray: --origin: expected X,Y,Z, found \"1,2\"
 See 'boxtree query ray --help'." query cube.bxt ray --origin 1,2
 misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?" help quary
