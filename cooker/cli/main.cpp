@@ -16,7 +16,9 @@
 #include "cooker/cli/commands.h"
 #include "cooker/cli/exit_status.h"
 #include "cooker/cli/output.h"
+#include "cooker/import/assimp_import.h"
 #include "cooker/version.h"
+#include "runtime/blob/compressor.h"
 
 namespace {
 
@@ -50,6 +52,13 @@ void grow_stack() {
   touch_stack();
 }
 
+// All versions that bytes of a file may depend on, for keys of caches.
+std::string version_text() {
+  using namespace boxtree;
+  return fmt::format("boxtree {}\nassimp {}, liblzma {}, zstd {}", cooker::kVersion,
+                     cooker::assimp_version(), lzma_version(), zstd_version());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -66,7 +75,7 @@ int main(int argc, char** argv) {
                         "Cooks meshes into small collision trees and queries them.\n"
                         "A file called - is standard input or standard output; one of that name is "
                         "./-.",
-                        fmt::format("boxtree {}", cooker::kVersion));
+                        version_text());
     cooker::add_cook_command(app, status);
     cooker::add_info_command(app, status);
     cooker::add_verify_command(app, status);

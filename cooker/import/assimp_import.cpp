@@ -17,6 +17,7 @@
 #include <assimp/Importer.hpp>
 #include <assimp/config.h>
 #include <assimp/scene.h>
+#include <assimp/version.h>
 #include <fmt/format.h>
 
 #include "cooker/import/file_error.h"
@@ -204,6 +205,10 @@ std::vector<std::string> assimp_endings() {
     endings.push_back(in_lower_case(std::string_view(pattern).substr(pattern.rfind('.') + 1)));
   }
   return endings;
+}
+
+std::string assimp_version() {
+  return fmt::format("{}.{}.{}", aiGetVersionMajor(), aiGetVersionMinor(), aiGetVersionPatch());
 }
 
 }  // namespace boxtree::cooker

@@ -21,4 +21,7 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
 /// Endings of the names of files that assimp reads, in lower case.
 [[nodiscard]] std::vector<std::string> assimp_endings();
 
+/// "5.2.5": of the library that runs, on which what is read depends.
+[[nodiscard]] std::string assimp_version();
+
 }  // namespace boxtree::cooker

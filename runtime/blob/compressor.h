@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <boxtree/error.h>
@@ -22,5 +23,9 @@ Status decompress_zstd(Bytes stream, std::span<std::byte> out, std::uint64_t mem
 /// The strongest setting that stays practical for a build farm.
 Result<std::vector<std::byte>> compress_lzma(Bytes bytes);
 Result<std::vector<std::byte>> compress_zstd(Bytes bytes);
+
+/// "5.4.1": of the library that runs, on which compressed bytes depend.
+[[nodiscard]] std::string lzma_version();
+[[nodiscard]] std::string zstd_version();
 
 }  // namespace boxtree

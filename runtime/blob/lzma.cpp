@@ -65,4 +65,8 @@ Result<std::vector<std::byte>> compress_lzma(Bytes bytes) {
   return out;
 }
 
+std::string lzma_version() {
+  return lzma_version_string();
+}
+
 }  // namespace boxtree

@@ -47,4 +47,8 @@ Result<std::vector<std::byte>> compress_zstd(Bytes bytes) {
   return out;
 }
 
+std::string zstd_version() {
+  return ZSTD_versionString();
+}
+
 }  // namespace boxtree
