@@ -32,18 +32,18 @@ Error unreadable(const fs::path& path, const std::string& why) {
 
 }  // namespace
 
-Status check_source_file(const SourceFile& source) {
+Status check_source_file(const SourceFile& source, const std::string& named_in) {
   const Error empty{Errc::kImportFailed, source.title() + ": the file is empty"};
   if (source.bytes()) return source.bytes()->empty() ? Status(empty) : Status();
   const fs::path& path = source.path();
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return read_failure(path.string(), error.value());
+  if (!fs::exists(status)) return read_failure(path.string(), error.value(), named_in);
   if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
   // A pipe or a device cannot be read twice, and assimp reads most files more than once.
   if (!fs::is_regular_file(status)) return unreadable(path, "is not a regular file");
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return read_failure(path.string(), errno);
+  if (!file) return read_failure(path.string(), errno, named_in);
   if (std::fgetc(file.get()) != EOF) return {};
   if (std::ferror(file.get()) != 0) return read_failure(path.string(), errno);
   return empty;
@@ -89,7 +89,7 @@ fs::path RecordingIo::found(const char* path) const {
 
 void RecordingIo::note_failure(const fs::path& file) {
   if (use_.failure) return;
-  const Status status = check_source_file(SourceFile(tidied(file)));
+  const Status status = check_source_file(SourceFile(tidied(file)), source_.path().string());
   if (!status.ok()) use_.failure = status.error();
 }
 

@@ -2,14 +2,19 @@
 // Collects meshes and instances; numbers of a later file follow those of the earlier ones.
 #include "cooker/scene/cook_input.h"
 
+#include <cerrno>
 #include <map>
 #include <optional>
+#include <string_view>
+#include <system_error>
 #include <utility>
 #include <variant>
 
 #include <fmt/format.h>
 
+#include "cooker/import/file_error.h"
 #include "format/limits.h"
+#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -101,6 +106,16 @@ Result<SourceScene> import_listed(const fs::path& path, const ImportOptions& opt
   return scene;
 }
 
+// Whether a file that the profile names by `key` is there, since its name counts from the folder of
+// the profile.
+Status check_named(const Profile& profile, std::string_view key, const Stated<fs::path>& file) {
+  std::error_code error;
+  if (fs::status(file.value, error).type() != fs::file_type::not_found) return {};
+  const std::string path = profile.path.string();
+  return in_file(fmt::format("{}:{}: {}", path, file.line, key),
+                 read_failure(file.value.string(), ENOENT, path));
+}
+
 // Each mesh of a profile becomes a mesh of the scene. A file that several name is read once for
 // each, because each may be cooked differently.
 Result<CookInput> load_listed(const Profile& profile, const ImportOptions& options,
@@ -112,6 +127,7 @@ Result<CookInput> load_listed(const Profile& profile, const ImportOptions& optio
   for (const ProfileMesh& listed : profile.meshes) {
     numbers.push_back(static_cast<std::uint32_t>(input.scene.meshes.size()));
     if (!listed.file) continue;
+    if (Status status = check_named(profile, "file", *listed.file); !status) return status.error();
     const std::string name = listed.file->value.filename().string();
     announce(progress, "import " + name);
     Result<SourceScene> imported = import_listed(listed.file->value, options);
@@ -146,6 +162,11 @@ Result<CookInput> load_scene(std::span<const fs::path> inputs, const Profile& pr
                               "or [[instance]] in a profile")};
   }
   if (is_listed) return load_listed(profile, options, progress);
+  if (profile.source) {
+    if (Status status = check_named(profile, "source", *profile.source); !status) {
+      return status.error();
+    }
+  }
   CookInput input;
   const std::span<const fs::path> files =
       profile.source ? std::span(&profile.source->value, 1) : inputs;

@@ -12,6 +12,7 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/profile_fields.h"
 #include "cooker/scene/profile_pose.h"
+#include "runtime/file/read_failure.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -309,8 +310,11 @@ void ProfileReader::read_hidden_faces(Fields& fields, ProfileMesh& mesh) {
   const std::filesystem::path path = beside(*list).value;
   const Result<std::string> text = read_whole_file(path, kMaxFaceListBytes);
   if (!text) {
+    const Error error = text.code() == Errc::kFileNotFound
+                            ? read_failure(path.string(), ENOENT, profile_.path.string())
+                            : text.error();
     complaints_.expected(list->line, "hidden_faces", "the name of a list of faces",
-                         text.error().message());
+                         error.message());
     return;
   }
   profile_.files_read.push_back(path);

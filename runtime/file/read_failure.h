@@ -11,6 +11,8 @@ namespace boxtree {
 
 /// The error for `path` by the system's `reason`, a value of errno: kFileNotFound if there is no
 /// such file, also if something on the way to it is no folder; kOutOfMemory; else kFileUnreadable.
-[[nodiscard]] Error read_failure(const std::string& path, int reason);
+/// `named_in`: the file that names it, relative to its folder; by default the user does.
+[[nodiscard]] Error read_failure(const std::string& path, int reason,
+                                 const std::string& named_in = {});
 
 }  // namespace boxtree

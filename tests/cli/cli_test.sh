@@ -284,7 +284,6 @@ expect 1 "$boxtree" cook cube.obj
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0 --direction 0,0,1
 expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0 --direction 0,0,0
 # A file that is not there has one name and one message, whatever it was to be.
-printf '[scene]\nsource = "missing"\n' >missing_source.toml
 printf '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}\n' >one.jsonl
 missing() {
   expect 2 "$boxtree" "$@"
@@ -295,7 +294,14 @@ missing cook missing -o none.bxt
 missing cook missing cube.obj -o none.bxt
 missing cook cube.obj --costs missing -o none.bxt
 missing cook --profile missing -o none.bxt
-missing cook --profile missing_source.toml -o none.bxt
+# But what a profile names is told by its line, and by the folder from which names count.
+mkdir -p profiles
+printf '[scene]\nsource = "missing"\n' >profiles/source.toml
+printf '[[mesh]]\nname = "m"\nfile = "missing"\n[[instance]]\nmesh = "m"\n' >profiles/mesh.toml
+expect 2 "$boxtree" cook --profile profiles/source.toml -o none.bxt
+same "$(cat err)" 'boxtree: file_not_found: profiles/source.toml:2: source: profiles/missing: no such file; names in profiles/source.toml are relative to its folder'
+expect 2 "$boxtree" cook --profile profiles/mesh.toml -o none.bxt
+same "$(cat err)" 'boxtree: file_not_found: profiles/mesh.toml:3: file: profiles/missing: no such file; names in profiles/mesh.toml are relative to its folder'
 missing info missing
 missing verify missing
 missing verify cube.bxt --mesh missing

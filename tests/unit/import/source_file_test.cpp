@@ -100,8 +100,9 @@ TEST_F(SourceFileTest, ABufferThatIsNotThereIsAFileThatIsNotFound) {
     std::filesystem::remove_all(buffer);
     const Result<Imported> missing = import_mesh(path, options);
     ASSERT_EQ(missing.code(), Errc::kFileNotFound);
-    EXPECT_TRUE(has(missing.error().detail,
-                    path.string() + ": it refers to " + buffer + ": no such file; check the name"))
+    EXPECT_TRUE(has(missing.error().detail, path.string() + ": it refers to " + buffer +
+                                                ": no such file; names in " + path.string() +
+                                                " are relative to its folder"))
         << missing.error().detail;
     std::filesystem::create_directory(buffer);
     const Result<Imported> folder = import_mesh(path, options);

@@ -439,7 +439,8 @@ TEST_F(ProfileTest, FaultsOfLists) {
   EXPECT_EQ(missing,
             "scene.toml:3: hidden_faces: expected the name of a list of faces, found "
             "file_not_found: " +
-                (folder_ / "none.txt").string() + ": no such file; check the name");
+                (folder_ / "none.txt").string() + ": no such file; names in " +
+                (folder_ / "scene.toml").string() + " are relative to its folder");
 }
 
 TEST_F(ProfileTest, FilesThatCannotBeRead) {
