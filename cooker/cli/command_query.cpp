@@ -211,8 +211,8 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
       return answer(scene->file, *moved, line.request, others);
     });
   }
-  const Result<OpenedTree> tree =
-      bind_tree(std::move(opened->file), arguments.file, arguments.tree, arguments.mesh);
+  const Result<OpenedTree> tree = bind_tree(
+      std::move(opened->file), {arguments.file, arguments.tree, arguments.mesh, "--tree"});
   if (!tree) return fail(tree.error());
   return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
     if (!line.moves.empty()) {

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cli/open_file.h"
+#include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/tree_kinds.h"
 #include "cooker/import/import.h"
@@ -508,15 +509,14 @@ Result<BatchRequest> request_of(std::string_view kind, const BatchLine& of,
 
 }  // namespace
 
-Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
-                             const std::filesystem::path& mesh) {
-  Result<OpenedFile> opened = open_file(path);
+Result<OpenedTree> open_tree(const TreeWanted& wanted) {
+  Result<OpenedFile> opened = open_file(wanted.path);
   if (!opened) return opened.error();
-  return bind_tree(std::move(opened->file), path, which, mesh);
+  return bind_tree(std::move(opened->file), wanted);
 }
 
-Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
-                             const std::string& which, const std::filesystem::path& mesh) {
+Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
+  const auto& [path, which, mesh, option] = wanted;
   File* const file = &opened;
   const Result<std::uint32_t> index = find_tree(*file, which);
   const std::string name = input_name(path);
@@ -538,13 +538,19 @@ Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
   if (!tree) return Error{tree.code(), name + ": " + tree.error().detail};
   const Result<QueryKinds> kinds = kinds_of_tree(*file, *index);
   if (!kinds) return kinds.error();
+  if (which.empty() && file->tree_count() > 1) {
+    const std::string_view called = file->tree_name(*index);
+    warn(fmt::format("{}: has {} trees, and this is about tree {}{}; {} names another, or this one",
+                     name, file->tree_count(), *index,
+                     called.empty() ? std::string() : fmt::format(", \"{}\"", called), option));
+  }
   return OpenedTree{std::move(*file), std::move(source), std::move(*tree), *index, *kinds};
 }
 
 Result<const Tree*> TreeCache::get(const SecondTree& second) {
   std::unique_ptr<OpenedTree>& place = opened_[{second.file.string(), second.tree}];
   if (place == nullptr) {
-    Result<OpenedTree> opened = open_tree(second.file, second.tree, second.mesh);
+    Result<OpenedTree> opened = open_tree({second.file, second.tree, second.mesh, "--tree2"});
     if (!opened) return opened.error();
     if ((opened->kinds & kPairQueries) == 0) {
       const Error error = kind_left_out(opened->file, opened->index, kPairQueries);

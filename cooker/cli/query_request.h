@@ -246,13 +246,19 @@ struct OpenedTree {
 /// The kind that a scene needs for a query.
 [[nodiscard]] QueryKinds kind_of(const QueryRequest& request);
 
-/// Opens `path` and binds the tree with that name or number. `mesh` names the source of trees that
-/// were cooked with --external; it is imported and compared by content.
-Result<OpenedTree> open_tree(const std::filesystem::path& path, const std::string& which,
-                             const std::filesystem::path& mesh);
-/// The same for a file that is open; `path` serves messages.
-Result<OpenedTree> bind_tree(File opened, const std::filesystem::path& path,
-                             const std::string& which, const std::filesystem::path& mesh);
+/// What users say of a tree to bind.
+struct TreeWanted {
+  const std::filesystem::path& path;
+  const std::string&
+      which;  // name or number; if empty, tree 0, and a warning where there are others
+  const std::filesystem::path& mesh;  // of a tree cooked with --external; compared by content
+  const char* option;                 // that says which, for messages
+};
+
+/// Opens the file and binds the tree.
+Result<OpenedTree> open_tree(const TreeWanted& wanted);
+/// The same for a file that is open; the path serves messages.
+Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted);
 
 /// Second trees of queries about two, each opened once. Errors: kPartLeftOut, too, if its profile
 /// left pair queries out.

@@ -749,6 +749,20 @@ for tree in 1 flat; do
 done
 misvalued 'tree_index: both.bxt: there is no tree 2; expected 0 or 1' query both.bxt point --at 0,0,0 --tree 2
 misvalued 'tree_index: cube.bxt: there is no tree 1; expected 0' query cube.bxt point --at 0,0,0 --tree 1
+# Which tree answers is told where nobody said it, once.
+printf '{"kind":"point","at":[0.2,0.2,1]}\n{"kind":"point","at":[0.2,0.2,2]}\n' >points.jsonl
+for query in 'point --at 0.2,0.2,1' '--batch points.jsonl'; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" query both.bxt $query
+  same "$(cat err)" 'boxtree: warning: both.bxt: has 2 trees, and this is about tree 0, "cube"; --tree names another, or this one'
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" query both.bxt --tree 0 $query
+  same "$(cat err)" ''
+done
+expect 0 "$boxtree" query cube.bxt pair both.bxt
+same "$(cat err)" 'boxtree: warning: both.bxt: has 2 trees, and this is about tree 0, "cube"; --tree2 names another, or this one'
+expect 0 "$boxtree" query cube.bxt pair both.bxt --tree2 cube
+same "$(cat err)" ''
 misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query both.bxt point --at 0,0,0 --tree nobody
 misvalued 'tree_index: both.bxt: no tree is called "nobody"; expected cube or flat' query cube.bxt pair both.bxt --tree2 nobody
 
