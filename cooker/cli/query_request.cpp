@@ -588,7 +588,10 @@ Error explained_pose(std::string_view whose, const Pose& pose) {
 }
 
 Error explained(const Error& error, const QueryRequest& request) {
-  if (!error.detail.empty()) return error;
+  // Of numbers that are not valid the library names one argument, without what was expected.
+  const bool is_name =
+      error.code == Errc::kInvalidQuery && error.detail.find(' ') == std::string::npos;
+  if (!error.detail.empty() && !is_name) return error;
   if (error.code == Errc::kInvalidPose) {
     return std::visit(
         [&]<class Kind>(const Kind& q) -> Error {

@@ -300,8 +300,8 @@ Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults&
 /// kInvalidPose with what is wrong; `whose`: "the second tree's".
 [[nodiscard]] Error explained_pose(std::string_view whose, const Pose& pose);
 
-/// The error of a query, which has only a code if its numbers or its pose are not valid: then with
-/// the kind, what was expected and what was found.
+/// The error of a query, which has only a code and a name if its numbers or its pose are not valid:
+/// then with the kind, what was expected and what was found.
 [[nodiscard]] Error explained(const Error& error, const QueryRequest& request);
 
 /// Answers queries about one thing by alone(request), those about it and a second tree by

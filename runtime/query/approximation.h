@@ -9,10 +9,13 @@
 
 namespace boxtree {
 
-/// Whether no field is NaN or negative.
-[[nodiscard]] inline bool is_valid(const Approximation& approximation) noexcept {
-  return approximation.relative_error >= 0 && approximation.absolute_error >= 0 &&
-         approximation.max_distance >= 0;
+/// The first field that is NaN or negative; null if there is none. As the details of all invalid
+/// queries, it is short enough for a std::string to take without allocating.
+[[nodiscard]] inline const char* invalid_field(const Approximation& approximation) noexcept {
+  if (!(approximation.relative_error >= 0)) return "relative_error";
+  if (!(approximation.absolute_error >= 0)) return "absolute_error";
+  if (!(approximation.max_distance >= 0)) return "max_distance";
+  return nullptr;
 }
 
 /// The distance from which candidates can be skipped, given that some point is `upper` away.

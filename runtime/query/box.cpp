@@ -12,7 +12,9 @@ Result<Visit> overlap_box(const Tree& queried, const Eigen::AlignedBox3d& box, F
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
+  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
+    return Error{Errc::kInvalidQuery, "box"};
+  }
   const BoxQuery query{
       tree.frame().to_tree(box.min()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate),
       tree.frame().to_tree(box.max()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate)};

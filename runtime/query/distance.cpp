@@ -52,7 +52,7 @@ Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const 
   const DefaultFloatState state;
   const BoundTree& first = BoundTree::of(first_tree);
   const BoundTree& second = BoundTree::of(second_tree);
-  if (!is_valid(options)) return Errc::kInvalidQuery;
+  if (const char* field = invalid_field(options)) return Error{Errc::kInvalidQuery, field};
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;

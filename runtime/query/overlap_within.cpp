@@ -180,7 +180,7 @@ Result<PairOverlap> overlap_within(const Tree& first_tree, const Pose& first_pos
   const DefaultFloatState state;
   const BoundTree& first = BoundTree::of(first_tree);
   const BoundTree& second = BoundTree::of(second_tree);
-  if (!(distance >= 0)) return Errc::kInvalidQuery;
+  if (!(distance >= 0)) return Error{Errc::kInvalidQuery, "distance"};
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
@@ -206,9 +206,10 @@ Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedB
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite() || !(distance >= 0)) {
-    return Errc::kInvalidQuery;
+  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
+    return Error{Errc::kInvalidQuery, "box"};
   }
+  if (!(distance >= 0)) return Error{Errc::kInvalidQuery, "distance"};
   if (tree.empty()) return BoxOverlap();
   // Beyond kMaxCoordinate there is nothing to touch, and the predicates could overflow.
   const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {

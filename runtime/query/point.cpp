@@ -129,7 +129,8 @@ PointResult closest_point(const Tree& queried, const Eigen::Vector3d& point, dou
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_point = tree.frame().to_tree(point);
-  if (!is_within_range(tree_point) || !(max_distance >= 0)) return Errc::kInvalidQuery;
+  if (!is_within_range(tree_point)) return {Errc::kInvalidQuery, "point"};
+  if (!(max_distance >= 0)) return {Errc::kInvalidQuery, "max_distance"};
   const double tree_distance = max_distance * tree.frame().inverse_scale;
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);
@@ -147,7 +148,8 @@ Result<ApproximatePoint> closest_point(const Tree& queried, const Eigen::Vector3
   const BoundTree& tree = BoundTree::of(queried);
   const Frame& frame = tree.frame();
   const Eigen::Vector3d tree_point = frame.to_tree(point);
-  if (!is_within_range(tree_point) || !is_valid(options)) return Errc::kInvalidQuery;
+  if (!is_within_range(tree_point)) return Error{Errc::kInvalidQuery, "point"};
+  if (const char* field = invalid_field(options)) return Error{Errc::kInvalidQuery, field};
   ApproximatePoint result;
   result.lower = std::numeric_limits<double>::infinity();
   if (tree.empty()) return result;

@@ -10,7 +10,7 @@ namespace boxtree {
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit) {
   const double length = largest_magnitude(ray.direction);
-  if (!is_valid(ray, length)) return Errc::kInvalidQuery;
+  if (invalid_field(ray, length) != nullptr) return Errc::kInvalidQuery;
   WalkBound nodes(tree.node_count(), &work);
   RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit);
   if (!(query.origin_max_abs <= kMaxCoordinate)) return Errc::kInvalidQuery;  // NaN, too
@@ -36,6 +36,7 @@ RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first,
   QueryWork work(limits);
   RayCandidate hit;
   const Errc error = cast_ray(tree, ray, stop_at_first, work, hit);
+  if (error == Errc::kInvalidQuery) return {error, refused_field(ray)};
   if (error != Errc::kOk || !hit.is_hit) return error;
   return RayHit{hit.t,
                 hit.face,

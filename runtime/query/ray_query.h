@@ -162,11 +162,19 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
   return std::clamp(RayQuery::scaled(scaled, -exponent), ray.t_min, ray.t_max);
 }
 
-/// Whether a ray has a finite direction, whose largest component is `length`, and an ordered
-/// interval. Its origin is checked once it is in tree space.
-[[nodiscard]] inline bool is_valid(const Ray& ray, double length) noexcept {
-  return length > 0 && length <= std::numeric_limits<double>::max() && ray.t_min >= 0 &&
-         ray.t_min <= ray.t_max;  // false for NaN
+/// The field of a ray that is not valid: the direction, whose largest component is `length`, unless
+/// it is finite and not zero, or an end of the interval; null if there is none. The origin is
+/// checked once it is in tree space.
+[[nodiscard]] inline const char* invalid_field(const Ray& ray, double length) noexcept {
+  if (!(length > 0 && length <= std::numeric_limits<double>::max())) return "direction";
+  if (!(ray.t_min >= 0)) return "t_min";
+  return ray.t_min <= ray.t_max ? nullptr : "t_max";  // the comparisons are false for NaN
+}
+
+/// The same for a ray that was refused.
+[[nodiscard]] inline const char* refused_field(const Ray& ray) noexcept {
+  const char* const field = invalid_field(ray, largest_magnitude(ray.direction));
+  return field != nullptr ? field : "origin";
 }
 
 /// The power of two that scales the largest component of a direction into [1/2, 1). Precondition:

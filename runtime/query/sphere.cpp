@@ -21,9 +21,8 @@ Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center,
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
-  if (!(radius >= 0) || !std::isfinite(radius) || !is_within_range(tree_center)) {
-    return Errc::kInvalidQuery;
-  }
+  if (!is_within_range(tree_center)) return Error{Errc::kInvalidQuery, "center"};
+  if (!(radius >= 0) || !std::isfinite(radius)) return Error{Errc::kInvalidQuery, "radius"};
   // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
   const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
   QueryWork work(limits);

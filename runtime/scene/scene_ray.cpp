@@ -87,8 +87,8 @@ SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, La
   QueryWork work(limits);
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
   const double length = largest_magnitude(ray.direction);
-  if (!is_valid(ray, length) || !is_within_range(scene.to_units(ray.origin))) {
-    return Errc::kInvalidQuery;
+  if (invalid_field(ray, length) != nullptr || !is_within_range(scene.to_units(ray.origin))) {
+    return {Errc::kInvalidQuery, refused_field(ray)};
   }
   SceneRayQuery query(scene, ray, stop_at_first, layers, work, exponent_of(length));
   const Errc walked = visit_nearest_instances(scene, query);

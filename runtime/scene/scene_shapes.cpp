@@ -180,7 +180,9 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) return Errc::kInvalidQuery;
+  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
+    return Error{Errc::kInvalidQuery, "box"};
+  }
   // No instance extends farther.
   const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     const Eigen::Vector3d a = low.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
@@ -201,8 +203,8 @@ Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(center);
   const double length = scene.to_units(radius);
-  if (!(length >= 0) || !(length <= kMaxCoordinate) || !is_within_range(at))
-    return Errc::kInvalidQuery;
+  if (!is_within_range(at)) return Error{Errc::kInvalidQuery, "center"};
+  if (!(length >= 0) || !(length <= kMaxCoordinate)) return Error{Errc::kInvalidQuery, "radius"};
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, scene_error(scene, at))};
   return query_scene(scene, shape, visitor, layers, limits);
@@ -216,7 +218,8 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   if ((scene.query_kinds() & kPointQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(point);
   const double most = scene.to_units(max_distance);
-  if (!is_within_range(at) || !(most >= 0)) return Errc::kInvalidQuery;
+  if (!is_within_range(at)) return {Errc::kInvalidQuery, "point"};
+  if (!(most >= 0)) return {Errc::kInvalidQuery, "max_distance"};
   PointInScene query{{scene, kPointQueries, layers, work},
                      at,
                      scene.to_frame(at),

@@ -35,8 +35,8 @@ class [[nodiscard]] QueryResult {
   QueryResult() = default;
   /// An answer.
   QueryResult(const T& answer) : value_(answer), has_value_(true) {}
-  /// An error.
-  QueryResult(Errc code) noexcept : code_(code) {}
+  /// An error. `detail`: a text that outlives it.
+  QueryResult(Errc code, const char* detail = "") noexcept : detail_(detail), code_(code) {}
 
   /// Whether there is an answer.
   [[nodiscard]] bool has_value() const noexcept { return has_value_; }
@@ -55,11 +55,13 @@ class [[nodiscard]] QueryResult {
   [[nodiscard]] bool ok() const noexcept { return code_ == Errc::kOk; }
   /// The error, or Errc::kOk.
   [[nodiscard]] Errc code() const noexcept { return code_; }
-  /// The same for code that takes an Error.
-  [[nodiscard]] Error error() const { return {code_, {}}; }
+  /// The same for code that takes an Error, with its detail: of kInvalidQuery the argument, or the
+  /// field of it, that is not valid.
+  [[nodiscard]] Error error() const { return {code_, detail_}; }
 
  private:
   T value_{};
+  const char* detail_ = "";
   Errc code_ = Errc::kOk;
   bool has_value_ = false;
 };

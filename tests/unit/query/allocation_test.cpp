@@ -51,7 +51,13 @@ TEST(Allocation, QueriesNeverAllocate) {
   }
   const std::size_t before = allocations;
   EXPECT_GT(tree->prefetch(100), 0u);
-  const bool refused = closest_point(*tree, {NAN, 0, 0}).code() == Errc::kInvalidQuery;
+  const bool refused =
+      closest_point(*tree, {NAN, 0, 0}).error().detail == "point" &&
+      closest_hit(*tree, {{0, 0, 0}, {0, 0, 0}}).error().detail == "direction" &&
+      closest_point(*tree, {0, 0, 0}, PointOptions{-1}).error().detail == "relative_error" &&
+      distance(*tree, Pose::Identity(), *tree, Pose::Identity(), DistanceOptions{0, -1})
+              .error()
+              .detail == "absolute_error";
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(refused);
 }

@@ -403,15 +403,17 @@ TEST(Distance, PosesMayUndoTheScalesOfMeshes) {
 
 TEST(Distance, RefusesWhatHasNoMeaning) {
   const test::CookedTree cube = test::cook_tree(test::city(1, 2), CodecId::kWide8);
-  const auto code = [&](const DistanceOptions& options) {
-    return distance(cube.tree, Pose::Identity(), cube.tree, Pose::Identity(), options).code();
+  const auto refused = [&](const DistanceOptions& options) {
+    return distance(cube.tree, Pose::Identity(), cube.tree, Pose::Identity(), options)
+        .error()
+        .message();
   };
-  EXPECT_EQ(code({-1, 0}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({NAN, 0}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, -1}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, NAN}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, 0, -1}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, 0, NAN}), Errc::kInvalidQuery);
+  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error");
+  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error");
+  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error");
+  EXPECT_EQ(refused({0, NAN}), "invalid_query: absolute_error");
+  EXPECT_EQ(refused({0, 0, -1}), "invalid_query: max_distance");
+  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance");
   Pose flat = Pose::Identity();
   flat.linear().row(1).setZero();
   EXPECT_EQ(distance(cube.tree, flat, cube.tree, Pose::Identity()).code(), Errc::kInvalidPose);

@@ -229,13 +229,14 @@ TEST_P(OverlapWithin, RefusesWhatHasNoMeaning) {
   const test::CookedTree cooked = test::cook_tree(test::city(1, 2), GetParam());
   const Pose here = Pose::Identity();
   for (const double bad : {-1.0, static_cast<double>(NAN)}) {
-    EXPECT_EQ(overlap_within(cooked.tree, here, cooked.tree, here, bad).code(),
-              Errc::kInvalidQuery);
-    EXPECT_EQ(
-        overlap_box_within(cooked.tree, Eigen::AlignedBox3d(Eigen::Vector3d(0, 0, 0)), bad).code(),
-        Errc::kInvalidQuery);
+    EXPECT_EQ(overlap_within(cooked.tree, here, cooked.tree, here, bad).error().message(),
+              "invalid_query: distance");
+    const Eigen::AlignedBox3d box(Eigen::Vector3d(0, 0, 0));
+    EXPECT_EQ(overlap_box_within(cooked.tree, box, bad).error().message(),
+              "invalid_query: distance");
   }
-  EXPECT_EQ(overlap_box_within(cooked.tree, Eigen::AlignedBox3d(), 0).code(), Errc::kInvalidQuery);
+  EXPECT_EQ(overlap_box_within(cooked.tree, Eigen::AlignedBox3d(), 0).error().message(),
+            "invalid_query: box");
   Pose flat = here;
   flat.linear().row(1).setZero();
   EXPECT_EQ(overlap_within(cooked.tree, here, cooked.tree, flat, 0).code(), Errc::kInvalidPose);

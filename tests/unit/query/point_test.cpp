@@ -206,14 +206,15 @@ TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
 
 TEST_P(ApproximatePoints, RefuseWhatHasNoMeaning) {
   const test::CookedTree cooked = test::cook_tree(test::city(1, 2), GetParam());
-  const auto code = [&](const PointOptions& options) {
-    return closest_point(cooked.tree, {0, 0, 0}, options).code();
+  const auto refused = [&](const PointOptions& options) {
+    return closest_point(cooked.tree, {0, 0, 0}, options).error().message();
   };
-  EXPECT_EQ(code({-1, 0}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({NAN, 0}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, -1}), Errc::kInvalidQuery);
-  EXPECT_EQ(code({0, 0, NAN}), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_point(cooked.tree, {NAN, 0, 0}, PointOptions()).code(), Errc::kInvalidQuery);
+  EXPECT_EQ(refused({-1, 0}), "invalid_query: relative_error");
+  EXPECT_EQ(refused({NAN, 0}), "invalid_query: relative_error");
+  EXPECT_EQ(refused({0, -1}), "invalid_query: absolute_error");
+  EXPECT_EQ(refused({0, 0, NAN}), "invalid_query: max_distance");
+  EXPECT_EQ(closest_point(cooked.tree, {NAN, 0, 0}, PointOptions()).error().message(),
+            "invalid_query: point");
 }
 
 // A mesh that is one place, and points beside it: the square of the way there is no double.

@@ -370,12 +370,20 @@ TEST_P(Queries, InvalidQueriesAreRefused) {
   const Tree* tree = &cooked.tree;
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
-  EXPECT_EQ(closest_hit(*tree, {zero, zero}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_hit(*tree, {{nan, 0, 0}, {1, 0, 0}}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_hit(*tree, {zero, {1, 0, 0}, 2, 1}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_point(*tree, {nan, 0, 0}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(overlap_sphere(*tree, zero, -1, [](const FaceRef&) { return true; }).code(),
-            Errc::kInvalidQuery);
+  const auto refused = [](const auto& result, const char* argument) {
+    EXPECT_EQ(result.error().message(), std::string("invalid_query: ") + argument);
+  };
+  const auto all = [](const FaceRef&) { return true; };
+  refused(closest_hit(*tree, {zero, zero}), "direction");
+  refused(any_hit(*tree, {zero, {nan, 0, 0}}), "direction");
+  refused(closest_hit(*tree, {{nan, 0, 0}, {1, 0, 0}}), "origin");
+  refused(closest_hit(*tree, {zero, {1, 0, 0}, 2, 1}), "t_max");
+  refused(closest_hit(*tree, {zero, {1, 0, 0}, -1, 1}), "t_min");
+  refused(closest_point(*tree, {nan, 0, 0}), "point");
+  refused(closest_point(*tree, zero, nan), "max_distance");
+  refused(overlap_box(*tree, Eigen::AlignedBox3d(), all), "box");
+  refused(overlap_sphere(*tree, zero, -1, all), "radius");
+  refused(overlap_sphere(*tree, {0, 0, nan}, 1, all), "center");
   Pose flat = Pose::Identity();
   flat.linear().setZero();
   EXPECT_EQ(first_contact(*tree, flat, *tree, Pose::Identity()).code(), Errc::kInvalidPose);

@@ -348,13 +348,16 @@ TEST(SceneQueriesErrors, InvalidQueriesAreRefused) {
   const Scene scene = require(Scene::bind(cooked.file));
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto none = [](const SceneFace&) { return true; };
-  EXPECT_EQ(closest_hit(scene, {{nan, 0, 0}, {1, 0, 0}}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(any_hit(scene, {{0, 0, 0}, {0, 0, 0}}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(overlap_box(scene, {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(0, 2, 2)}, none).code(),
-            Errc::kInvalidQuery);
-  EXPECT_EQ(overlap_sphere(scene, {0, 0, 0}, -1, none).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_point(scene, {0, nan, 0}).code(), Errc::kInvalidQuery);
-  EXPECT_EQ(closest_point(scene, {0, 0, 0}, nan).code(), Errc::kInvalidQuery);
+  const auto refused = [](const auto& result, const char* argument) {
+    EXPECT_EQ(result.error().message(), std::string("invalid_query: ") + argument);
+  };
+  refused(closest_hit(scene, {{nan, 0, 0}, {1, 0, 0}}), "origin");
+  refused(any_hit(scene, {{0, 0, 0}, {0, 0, 0}}), "direction");
+  refused(overlap_box(scene, {Eigen::Vector3d(1, 1, 1), Eigen::Vector3d(0, 2, 2)}, none), "box");
+  refused(overlap_sphere(scene, {0, 0, 0}, -1, none), "radius");
+  refused(overlap_sphere(scene, {nan, 0, 0}, 1, none), "center");
+  refused(closest_point(scene, {0, nan, 0}), "point");
+  refused(closest_point(scene, {0, 0, 0}, nan), "max_distance");
   EXPECT_EQ(contacts_of(scene, 4, [](const ScenePair&) { return true; }).code(),
             Errc::kInstanceIndex);
 }
