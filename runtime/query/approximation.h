@@ -11,12 +11,7 @@ namespace boxtree {
 
 /// The first field that is NaN or negative; null if there is none. As the details of all invalid
 /// queries, it is short enough for a std::string to take without allocating.
-[[nodiscard]] inline const char* invalid_field(const Approximation& approximation) noexcept {
-  if (!(approximation.relative_error >= 0)) return "relative_error";
-  if (!(approximation.absolute_error >= 0)) return "absolute_error";
-  if (!(approximation.max_distance >= 0)) return "max_distance";
-  return nullptr;
-}
+[[nodiscard]] const char* invalid_field(const Approximation& approximation) noexcept;
 
 /// The distance from which candidates can be skipped, given that some point is `upper` away.
 [[nodiscard]] inline double converged_beyond(const Approximation& approximation,

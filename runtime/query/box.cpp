@@ -3,6 +3,7 @@
 #include <boxtree/overlap.h>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -11,10 +12,7 @@ Result<Visit> overlap_box(const Tree& queried, const Eigen::AlignedBox3d& box, F
                           const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
-    return Error{Errc::kInvalidQuery, "box"};
-  }
+  if (!is_finite_box(box)) return invalid_query("box");
   const BoxQuery query{
       tree.frame().to_tree(box.min()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate),
       tree.frame().to_tree(box.max()).cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate)};

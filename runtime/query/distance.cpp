@@ -5,6 +5,7 @@
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/query/distance_walk.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/tree/root_box.h"
 #include "runtime/walk/erased_codec.h"
 
@@ -52,7 +53,7 @@ Result<Distance> distance(const Tree& first_tree, const Pose& first_pose, const 
   const DefaultFloatState state;
   const BoundTree& first = BoundTree::of(first_tree);
   const BoundTree& second = BoundTree::of(second_tree);
-  if (const char* field = invalid_field(options)) return Error{Errc::kInvalidQuery, field};
+  if (const char* field = invalid_field(options)) return invalid_query(field);
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;

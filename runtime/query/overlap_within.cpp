@@ -12,6 +12,7 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/rounding.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/query/pair_walk.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/query/shape_query.h"
@@ -180,7 +181,7 @@ Result<PairOverlap> overlap_within(const Tree& first_tree, const Pose& first_pos
   const DefaultFloatState state;
   const BoundTree& first = BoundTree::of(first_tree);
   const BoundTree& second = BoundTree::of(second_tree);
-  if (!(distance >= 0)) return Error{Errc::kInvalidQuery, "distance"};
+  if (!(distance >= 0)) return invalid_query("distance");
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
@@ -205,11 +206,8 @@ Result<BoxOverlap> overlap_box_within(const Tree& queried, const Eigen::AlignedB
                                       double distance, std::uint64_t node_budget) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
-    return Error{Errc::kInvalidQuery, "box"};
-  }
-  if (!(distance >= 0)) return Error{Errc::kInvalidQuery, "distance"};
+  if (!is_finite_box(box)) return invalid_query("box");
+  if (!(distance >= 0)) return invalid_query("distance");
   if (tree.empty()) return BoxOverlap();
   // Beyond kMaxCoordinate there is nothing to touch, and the predicates could overflow.
   const auto clamped = [&](const Eigen::Vector3d& corner) -> Eigen::Vector3d {

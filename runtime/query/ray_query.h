@@ -172,10 +172,7 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
 }
 
 /// The same for a ray that was refused.
-[[nodiscard]] inline const char* refused_field(const Ray& ray) noexcept {
-  const char* const field = invalid_field(ray, largest_magnitude(ray.direction));
-  return field != nullptr ? field : "origin";
-}
+[[nodiscard, gnu::cold]] const char* refused_field(const Ray& ray) noexcept;
 
 /// The power of two that scales the largest component of a direction into [1/2, 1). Precondition:
 /// it is finite and not zero.

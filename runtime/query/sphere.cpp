@@ -6,6 +6,7 @@
 #include <boxtree/overlap.h>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -21,8 +22,8 @@ Result<Visit> overlap_sphere(const Tree& queried, const Eigen::Vector3d& center,
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   const Eigen::Vector3d tree_center = tree.frame().to_tree(center);
-  if (!is_within_range(tree_center)) return Error{Errc::kInvalidQuery, "center"};
-  if (!(radius >= 0) || !std::isfinite(radius)) return Error{Errc::kInvalidQuery, "radius"};
+  if (!is_within_range(tree_center)) return invalid_query("center");
+  if (!(radius >= 0) || !std::isfinite(radius)) return invalid_query("radius");
   // Twice kMaxCoordinate spans every distance that can occur; a larger radius changes no answer.
   const double tree_radius = std::min(radius * tree.frame().inverse_scale, 4 * kMaxCoordinate);
   QueryWork work(limits);

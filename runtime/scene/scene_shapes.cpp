@@ -6,6 +6,7 @@
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/rounding.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/query/point_query.h"
 #include "runtime/query/shape_query.h"
 #include "runtime/scene/placed_box.h"
@@ -179,10 +180,7 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
   const DefaultFloatState state;
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  const bool ordered = (box.min().array() <= box.max().array()).all();  // false for NaN
-  if (!ordered || !box.min().allFinite() || !box.max().allFinite()) {
-    return Error{Errc::kInvalidQuery, "box"};
-  }
+  if (!is_finite_box(box)) return invalid_query("box");
   // No instance extends farther.
   const auto clamped = [](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     const Eigen::Vector3d a = low.cwiseMax(-kMaxCoordinate).cwiseMin(kMaxCoordinate);
@@ -203,8 +201,8 @@ Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   const Eigen::Vector3d at = scene.to_units(center);
   const double length = scene.to_units(radius);
-  if (!is_within_range(at)) return Error{Errc::kInvalidQuery, "center"};
-  if (!(length >= 0) || !(length <= kMaxCoordinate)) return Error{Errc::kInvalidQuery, "radius"};
+  if (!is_within_range(at)) return invalid_query("center");
+  if (!(length >= 0) || !(length <= kMaxCoordinate)) return invalid_query("radius");
   const SphereInUnits shape{at, length, scene.to_frame(at),
                             frame_bound(length, scene_error(scene, at))};
   return query_scene(scene, shape, visitor, layers, limits);
