@@ -101,7 +101,7 @@ class Cook {
 
   // The grid of each mesh that must not choose one itself.
   Result<std::vector<std::optional<Grid>>> grids() {
-    if (input_.has_top_level) return scene_grids(input_.scene, plan_, options_.grid.bits);
+    if (input_.has_top_level) return scene_grids(input_.scene, plan_, options_.grid);
     std::vector<std::optional<Grid>> grids(plan_.meshes.size());
     const bool may_choose_grid =
         options_.may_use_grid && (options_.try_all || may_grid_win(options_.wishes));

@@ -17,6 +17,7 @@ namespace {
 nlohmann::ordered_json grid_record(const CookOptions& options) {
   if (options.geometry != GeometryId::kGrid && !options.may_use_grid) return nullptr;
   if (options.grid.tolerance) return {{"tolerance", *options.grid.tolerance}};
+  if (options.grid.step_exponent) return {{"step_exponent", *options.grid.step_exponent}};
   return {{"bits", options.grid.bits}};
 }
 

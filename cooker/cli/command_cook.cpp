@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
 // `boxtree cook`: meshes in, one .bxt file out.
 #include <algorithm>
+#include <charconv>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <sys/resource.h>
 
 #include <fmt/format.h>
@@ -35,6 +38,7 @@ struct Arguments {
   std::string goal = "balance";
   std::string builder = "sah";
   std::string widths = "exact";
+  std::string grid_step;
   bool why = false;
   bool candidates = false;
   bool exact = false;
@@ -87,6 +91,25 @@ std::string ending_fault(const std::string& text) {
                      suggestion(text, mesh_endings()));
 }
 
+// The exponent of a step as `cook` prints it, "2^-13"; nothing if the text is none.
+std::optional<int> step_exponent_of(std::string_view text) {
+  constexpr std::string_view kBase = "2^";
+  if (!text.starts_with(kBase)) return std::nullopt;
+  text.remove_prefix(kBase.size());
+  int exponent = 0;
+  const char* const end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, exponent);
+  const bool is_number = error == std::errc() && parsed == end;
+  return is_number && std::abs(exponent) <= kMaxStepExponent ? std::optional(exponent)
+                                                             : std::nullopt;
+}
+std::string step_fault(const std::string& text) {
+  if (step_exponent_of(text)) return {};
+  return fmt::format(
+      "expected a power of two from 2^-{0} to 2^{0}, as cook prints it (2^-13), found \"{1}\"",
+      kMaxStepExponent, text);
+}
+
 // The options of the cook that names on the command line stand for.
 void set_options(Arguments& arguments) {
   CookOptions& options = arguments.job.options;
@@ -103,6 +126,8 @@ void set_options(Arguments& arguments) {
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
+  options.grid.step_exponent = step_exponent_of(arguments.grid_step);
+  if (options.grid.step_exponent) options.geometry = GeometryId::kGrid;
   // The grid of 24 bits that is tried by default would cost the digits that --f64 requests.
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
@@ -255,6 +280,15 @@ void add_cook_command(Command& program, int& status) {
       ->between(kMinGridBits, kMaxGridBits, fmt::format("{} to {}", kMinGridBits, kMaxGridBits))
       ->excludes(exact)
       ->excludes(tolerance);
+  Option* grid_step = command.add_option(
+      "--grid-step", arguments->grid_step,
+      "Round positions to a grid of this step, in units of the mesh, which files that are cooked "
+      "apart have in common");
+  grid_step->type_name("2^E")
+      ->check(step_fault)
+      ->excludes(exact)
+      ->excludes(tolerance)
+      ->excludes(grid_bits);
   Option* budget = command
                        .add_option("--max-bytes-per-triangle",
                                    arguments->job.options.wishes.max_bytes_per_triangle,
@@ -303,7 +337,8 @@ void add_cook_command(Command& program, int& status) {
                             "arrays"))
           ->excludes(exact)
           ->excludes(tolerance)
-          ->excludes(grid_bits);
+          ->excludes(grid_bits)
+          ->excludes(grid_step);
   rare(command.add_flag("--f64", arguments->f64,
                         "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
@@ -324,8 +359,8 @@ void add_cook_command(Command& program, int& status) {
   rare(command.add_flag("--try-all", arguments->job.options.try_all,
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
-  for (Option* option :
-       {codec, goal, exact, tolerance, grid_bits, budget, slowdown, no_face_ids, external}) {
+  for (Option* option : {codec, goal, exact, tolerance, grid_bits, grid_step, budget, slowdown,
+                         no_face_ids, external}) {
     profile->excludes(option);
   }
   command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");

@@ -16,10 +16,6 @@
 namespace boxtree::cooker {
 namespace {
 
-// The scale of a tree on the grid maps extents of 1 to 2^30 steps to 2^14, so it differs from the
-// step by at most 16 binary orders.
-constexpr int kMaxStepExponent = kMaxScaleExponent - 16;
-
 // Halves the largest extent, as the whole of it may not be finite.
 double half_extent(const Eigen::AlignedBox3d& bounds) {
   return (bounds.max() / 2 - bounds.min() / 2).maxCoeff();

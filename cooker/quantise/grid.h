@@ -13,8 +13,14 @@
 #include <boxtree/error.h>
 
 #include "cooker/import/source_mesh.h"
+#include "format/limits.h"
 
 namespace boxtree::cooker {
+
+/// Steps are powers of two, from 2^-kMaxStepExponent to 2^kMaxStepExponent: the scale of a tree on
+/// the grid maps extents of 1 to 2^30 steps to 2^14, so it differs from the step by at most 16
+/// binary orders.
+inline constexpr int kMaxStepExponent = kMaxScaleExponent - 16;
 
 /// The resolution of a grid: the last member that is set counts.
 struct GridChoice {

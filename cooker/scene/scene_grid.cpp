@@ -32,10 +32,12 @@ Eigen::AlignedBox3d world_bounds(const SourceScene& scene, const ScenePlan& plan
 }  // namespace
 
 std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const ScenePlan& plan,
-                                             int bits) {
+                                             const GridChoice& choice) {
   std::vector<Eigen::AlignedBox3d> bounds;
   for (const SceneMesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh.mesh));
-  const Result<Grid> of_scene = choose_grid(world_bounds(scene, plan, bounds), {.bits = bits});
+  const Result<Grid> of_scene =
+      choose_grid(world_bounds(scene, plan, bounds),
+                  {.bits = choice.bits, .step_exponent = choice.step_exponent});
   std::vector<std::optional<Grid>> grids(scene.meshes.size());
   std::vector<MeshOnGrid> by_tolerance;  // those that nothing but a tolerance decides
   std::vector<std::size_t> numbers;      // their meshes

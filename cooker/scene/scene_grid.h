@@ -17,10 +17,11 @@ inline constexpr int kLeastMeshBits = 16;
 
 /// The grid of each mesh that the plan keeps; empty for meshes that must not be rounded, or for
 /// which no grid is fine enough. Steps are powers of two, and the origin of object space is on all
-/// grids, so a coarser grid is part of a finer one. By default there are `bits` steps over the
-/// scene's largest extent in the world; a tolerance of the plan makes the step smaller or larger.
-/// Steps that tolerances decide are doubled together as far as all allow (coarsen_together).
+/// grids, so a coarser grid is part of a finer one. `choice`: of the step in the world; a tolerance
+/// of the plan makes the step smaller or larger. Steps that tolerances decide are doubled together
+/// as far as all allow (coarsen_together).
 [[nodiscard]] std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene,
-                                                           const ScenePlan& plan, int bits);
+                                                           const ScenePlan& plan,
+                                                           const GridChoice& choice);
 
 }  // namespace boxtree::cooker

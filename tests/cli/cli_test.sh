@@ -61,6 +61,26 @@ expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 31
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-bits 8 --exact
 for length in 0 -1 inf nan; do expect 1 "$boxtree" cook cube.obj -o grid.bxt --tolerance=$length; done
+# Tiles that are cooked apart have what they share in one place on grids of one step, whatever their extents. A tolerance
+# takes the step by what each of them holds.
+printf 'v %s\n' '0 0 0' '1.3 0 0' '1.3 1.7 0.3' '0 1.5 0' >left.obj
+printf 'v %s\n' '1.3 0 0' '90.1 0 0' '88.9 1.2 2' '1.3 1.7 0.3' >right.obj
+for tile in left right; do
+  printf 'f %s\n' '1 2 3' '1 3 4' >>$tile.obj
+  expect 0 "$boxtree" cook $tile.obj -o $tile.bxt --grid-step 2^-5
+  same "$(grep -o 'step 2^[-0-9]*' out)" 'step 2^-5'
+  expect 0 "$boxtree" export $tile.bxt -o $tile.stored.obj --triangles
+done
+same "$(grep -h '^v ' left.stored.obj right.stored.obj | sort -u | grep -c '^v 1\.3125 ')" 2
+same "$(grep -h '^v ' left.stored.obj right.stored.obj | sort -u | grep '^v 1\.3125 1')" 'v 1.3125 1.6875 0.3125'
+for step in 5 0.25 -5 2^ 2^x 2^0.5 2^9999; do
+  expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step="$step"
+  same "$(head -1 err)" "boxtree: usage: cook: --grid-step: expected a power of two from 2^-994 to 2^994, as cook prints it (2^-13), found \"$step\""
+done
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --tolerance 1
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --grid-bits 8
+expect 5 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-40
+grep -q 'a step of 2^-40' err
 # What a grid takes is told where it is half of the triangles or more, and is in the JSON where it is less.
 expect 0 "$boxtree" cook cube.obj -o grid.bxt --tolerance 100 --for memory --quiet --json
 same "$(cat err)" 'boxtree: warning: tree cube: 12 of 12 triangles lost their area on a grid of step 2^6, which moved a vertex by up to 1.73; a smaller tolerance or more --grid-bits keep it, --exact keeps all'

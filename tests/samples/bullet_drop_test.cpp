@@ -76,7 +76,7 @@ TEST(BulletDrop, EveryCodecRestsWhereBulletsMeshDoes) {
 TEST(BulletDrop, GridGeometryRestsThereToo) {
   boxtree::cooker::CookOptions options;
   options.geometry = boxtree::GeometryId::kGrid;
-  options.grid.tolerance = 1e-3;
+  options.grid.tolerance = 5e-4;
   expect_at_rest_like_bullets(drop_on_file(options));
 }
 
