@@ -126,6 +126,7 @@ void set_options(Arguments& arguments) {
   if (arguments.widths == "estimated") options.widths = FieldWidths::kEstimated;
   if (arguments.external) options.geometry = GeometryId::kExternal;
   if (arguments.f64) options.import.precision = Precision::kF64;
+  options.import.keep_doubles = arguments.exact;
   options.grid.step_exponent = step_exponent_of(arguments.grid_step);
   if (options.grid.step_exponent) options.geometry = GeometryId::kGrid;
   // The grid of 24 bits that is tried by default would cost the digits that --f64 requests.
@@ -267,7 +268,11 @@ void add_cook_command(Command& program, int& status) {
                      ->shows_default();
   Option* exact =
       command.add_flag("--exact", arguments->exact,
-                       "Keep every bit of every position [else auto may choose a grid of 24 bits]");
+                       "Keep every bit of every position: f32, or f64 with --f64 and of PLY files "
+                       "with doubles [else auto may choose a grid of 24 bits]");
+  command.add_flag("--f64", arguments->f64,
+                   "Hold positions as f64, not f32: all digits of OBJ, OFF and PLY files, for "
+                   "meshes far from the origin");
   Option* tolerance = command.add_option("--tolerance", arguments->job.options.grid.tolerance,
                                          "Positions may be rounded to the coarsest grid on which "
                                          "no vertex is found to move farther, in "
@@ -339,8 +344,6 @@ void add_cook_command(Command& program, int& status) {
           ->excludes(tolerance)
           ->excludes(grid_bits)
           ->excludes(grid_step);
-  rare(command.add_flag("--f64", arguments->f64,
-                        "Hold positions as f64: all digits of OBJ, OFF and PLY files"));
   rare(command.add_flag("--strip", arguments->strip, "Leave the cook record out"));
   rare(command.add_flag("--trusted", arguments->trusted,
                         "Read formats that assimp reads once, not first in another process that "

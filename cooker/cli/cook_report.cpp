@@ -63,6 +63,7 @@ Json import_json(const ImportReport& report) {
                {"ngons_split", report.ngons_split},
                {"vertices_welded", report.vertices_welded},
                {"degenerate_faces", report.degenerate_faces},
+               {"moved_by_f32", report.moved_by_f32},
                {"open_end", report.has_open_end}};
   json["files_missing"] = Json::array();
   for (const std::filesystem::path& file : report.files_missing) {
@@ -277,6 +278,13 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
     warnings.push_back(fmt::format(
         "{}: the last line has no end{}{}", source,
         import.has_half_face ? " and is half a face, which is left out" : "", kAsIfCut));
+  }
+  if (import.moved_by_f32 > 0) {
+    warnings.push_back(
+        fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
+                    "by up to {:.3g}; "
+                    "--f64 keeps all digits, and with --tolerance LENGTH in few bytes",
+                    source, import.moved_by_f32));
   }
   return warnings;
 }

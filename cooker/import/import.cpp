@@ -11,6 +11,7 @@
 
 #include "cooker/import/assimp_import.h"
 #include "cooker/import/exception_error.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/face_materials.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/foreign_file.h"
@@ -36,6 +37,7 @@ struct Request {
 // Formats with one mesh and no nodes. Only OBJ has materials.
 struct MeshReader {
   const char* extension;
+  bool keeps_f64;  // with Precision::kF64
   Status (*read)(const SourceFile& source, const ImportOptions& options, Imported& out,
                  FaceMaterials& materials);
 };
@@ -47,10 +49,10 @@ Status without_materials(const SourceFile& source, const ImportOptions& options,
 }
 
 constexpr std::array kMeshReaders = {
-    MeshReader{"obj", import_obj},
-    MeshReader{"off", without_materials<import_off>},
-    MeshReader{"ply", without_materials<import_ply>},
-    MeshReader{"stl", without_materials<import_stl>},
+    MeshReader{"obj", true, import_obj},
+    MeshReader{"off", true, without_materials<import_off>},
+    MeshReader{"ply", true, without_materials<import_ply>},
+    MeshReader{"stl", false, without_materials<import_stl>},
 };
 
 SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
@@ -64,12 +66,29 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
   return scene;
 }
 
+Status measure_digits(const MeshReader& reader, const Request& request, Imported& mesh) {
+  const Positions& positions = mesh.mesh.positions;
+  if (!reader.keeps_f64 || positions.precision != Precision::kF32 || !has_few_digits(positions)) {
+    return {};
+  }
+  ImportOptions options = request.options;
+  options.precision = Precision::kF64;
+  Imported exact;
+  FaceMaterials materials;
+  if (Status status = reader.read(request.source, options, exact, materials); !status.ok()) {
+    return status;
+  }
+  mesh.report.moved_by_f32 = moved_by_f32(exact.mesh.positions);
+  return {};
+}
+
 Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile& out) {
   Imported mesh;
   FaceMaterials materials;
   if (Status status = reader.read(request.source, request.options, mesh, materials); !status.ok()) {
     return status;
   }
+  if (Status status = measure_digits(reader, request, mesh); !status.ok()) return status;
   if (request.wanted == ImportWanted::kScene) {
     out = scene_of(std::move(mesh), std::move(materials), request.source.path().stem().string());
   } else {

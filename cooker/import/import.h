@@ -25,6 +25,9 @@ struct ImportOptions {
   /// [kF32] Precision of positions. kF64 keeps all digits of OBJ, OFF and PLY files; in other
   /// formats it only makes node transforms more exact.
   Precision precision = Precision::kF32;
+  /// [false] Take kF64 for a PLY file whose coordinates are doubles, if f32 does not hold all of
+  /// them.
+  bool keep_doubles = false;
   /// [false] Let assimp read the file in a copy of this process first (trial.h). A file that
   /// crashes assimp's reader or makes it loop forever is then an error: kImportFailed. Costs a
   /// second reading. No effect on formats that assimp does not read. The copy is made by fork(): do
@@ -62,6 +65,9 @@ struct ImportReport {
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
+  /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most. Measured, by a
+  /// second reading, only where f32 has few digits for the mesh (f32_digits.h).
+  double moved_by_f32 = 0;
   bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <type_traits>
 #include <utility>
 
 #include <fmt/format.h>
@@ -117,7 +119,12 @@ std::optional<FaceFault> IndexedMesh<T>::fault_of(std::span<const std::uint32_t>
     }
     if (all_finite_ || is_finite(vertex)) continue;
     const T* p = &positions_[std::size_t{3} * vertex];
-    return vertex_not_finite(name_of(vertex), {p[0], p[1], p[2]});
+    FaceFault fault = vertex_not_finite(name_of(vertex), {p[0], p[1], p[2]});
+    const bool is_too_large = std::isinf(p[0]) || std::isinf(p[1]) || std::isinf(p[2]);
+    if (std::is_same_v<T, float> && is_too_large) {
+      fault.reason += "; f32 ends at 3.4e38, --f64 at 1.8e308";
+    }
+    return fault;
   }
   return std::nullopt;
 }

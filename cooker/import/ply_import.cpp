@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/import/ply_import.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cooker/import/binary_ply.h"
 #include "cooker/import/direct_import.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/text_ply.h"
 #include "cooker/import/text_tokens.h"
@@ -22,6 +24,20 @@ Status import_ply(const SourceFile& source, const ImportOptions& options, Import
   layout.header = std::move(*header);
   if (Status status = find_ply_parts(layout); !status.ok())
     return in_file(source.title(), status.error());
+
+  const bool has_doubles = std::any_of(
+      layout.xyz.begin(), layout.xyz.end(),
+      [](const PlyProperty* coordinate) { return coordinate->type == PlyType::kFloat64; });
+  if (options.keep_doubles && has_doubles && options.precision == Precision::kF32) {
+    ImportOptions keeping = options;
+    keeping.precision = Precision::kF64;
+    Imported kept;
+    if (Status status = import_ply(source, keeping, kept); !status.ok()) return status;
+    if (moved_by_f32(kept.mesh.positions) > 0) {
+      out = std::move(kept);
+      return {};
+    }
+  }
 
   const std::string& file = source.title();
   return read_into(*stream, source, options, out,

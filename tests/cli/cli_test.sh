@@ -849,6 +849,21 @@ jq -e '.files[0].approximate | [.point, .distance] | all(
     and .measured_error <= .relative_error + 1e-9)) and
   (.by_budget | length > 3 and all(.nodes <= .node_budget and .false_bounds == 0)))' out >/dev/null
 
+# What f32 takes far from the origin is told, and kept on request: whole, or on a grid over the mesh.
+printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
+printf 'f 1 2 3\n' >>far.obj
+expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
+same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
+jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
+for options in --f64 '--f64 --tolerance 0.001'; do
+  expect 0 "$boxtree" cook far.obj -o far.bxt -q $options
+  same "$(cat err)" ''
+  expect 0 "$boxtree" query far.bxt point --at 459123.4321,5412345.6789,7 --json
+  jq -e '.distance - 7 | fabs < 1e-6' out >/dev/null
+done
+expect 0 "$boxtree" query far.bxt ray --origin 459123.48,5412345.72,7 --direction 0,0,-1 --json
+same "$(jq .hit out)" true
+
 # f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
 printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj
 for codec in packed-f64 plain-f16; do

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// Meshes far from the origin for their size: what f32 takes is measured, and doubles of a PLY file
+// are kept where every bit is wanted.
+#include "cooker/import/f32_digits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "temp_files.h"
+
+namespace boxtree::cooker {
+namespace {
+
+using F32DigitsTest = ImportTest;
+
+constexpr const char* kTriangle = "f 1 2 3\n";
+
+// A right triangle with legs of 0.1 at (459123.4321, 5412345.6789, 0), where f32 counts in steps of
+// 1/32 and 1/2.
+constexpr const char* kFar =
+    "v 459123.4321 5412345.6789 0\nv 459123.5321 5412345.6789 0\nv 459123.4321 5412345.7789 0\n";
+
+TEST_F(F32DigitsTest, MeasuresWhatF32MovesFarFromTheOrigin) {
+  const Imported far = load("far.obj", std::string(kFar) + kTriangle);
+  const auto off = [](double x) { return std::abs(x - double{static_cast<float>(x)}); };
+  const double farthest = std::max({std::hypot(off(459123.4321), off(5412345.6789)),
+                                    std::hypot(off(459123.5321), off(5412345.6789)),
+                                    std::hypot(off(459123.4321), off(5412345.7789))});
+  EXPECT_GT(farthest, 0.2);
+  EXPECT_DOUBLE_EQ(far.report.moved_by_f32, farthest);
+}
+
+TEST_F(F32DigitsTest, SaysNothingWhereDigitsSufficeOrNoneAreLost) {
+  const std::string small = "v 0.1 0 0\nv 1.1 0 0\nv 0.1 1 0\n";
+  EXPECT_EQ(load("near.obj", small + kTriangle).report.moved_by_f32, 0);
+  // f32 has these numbers.
+  const std::string even = "v 4000000 0 0\nv 4000001 0 0\nv 4000000 1 0\n";
+  EXPECT_EQ(load("even.obj", even + kTriangle).report.moved_by_f32, 0);
+  ImportOptions options;
+  options.precision = Precision::kF64;
+  EXPECT_EQ(load("far.obj", std::string(kFar) + kTriangle, options).report.moved_by_f32, 0);
+}
+
+TEST_F(F32DigitsTest, FewDigitsAreLessThan16BitsOfTheExtent) {
+  const auto at = [](float x) {
+    Positions positions;
+    positions.f32 = {x, 0, 0, x + 1, 0, 0, x, 1, 0};
+    return positions;
+  };
+  // Above 2^8, f32 has less than 24 - 8 bits for an extent of 1.
+  EXPECT_FALSE(has_few_digits(at(255)));
+  EXPECT_TRUE(has_few_digits(at(256)));
+  EXPECT_FALSE(has_few_digits({}));
+}
+
+std::string ply_of_doubles(const std::string& vertices) {
+  return "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\n"
+         "property double z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+         vertices + "3 0 1 2\n";
+}
+
+TEST_F(F32DigitsTest, KeepsDoublesOfPlyThatF32DoesNotHold) {
+  ImportOptions options;
+  options.keep_doubles = true;
+  const Imported kept = load("d.ply", ply_of_doubles("0.1 0 0\n1 0 0\n0 1 0\n"), options);
+  EXPECT_EQ(kept.mesh.positions.precision, Precision::kF64);
+  EXPECT_EQ(kept.mesh.positions[0][0], 0.1);
+  // f32 holds all of these.
+  const Imported even = load("e.ply", ply_of_doubles("0.25 0 0\n1 0 0\n0 1 0\n"), options);
+  EXPECT_EQ(even.mesh.positions.precision, Precision::kF32);
+  EXPECT_EQ(even.mesh.positions[0][0], 0.25);
+  options.keep_doubles = false;
+  const Imported rounded = load("r.ply", ply_of_doubles("0.1 0 0\n1 0 0\n0 1 0\n"), options);
+  EXPECT_EQ(rounded.mesh.positions[0][0], double{0.1f});
+}
+
+TEST_F(F32DigitsTest, NamesF64WhereANumberIsBeyondF32) {
+  const std::string file = "v 1e39 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const Error error = fail("big.obj", file);
+  EXPECT_EQ(error.code, Errc::kMeshNotFinite);
+  EXPECT_TRUE(has(error.detail, "f32 ends at 3.4e38, --f64 at 1.8e308"));
+  ImportOptions options;
+  options.precision = Precision::kF64;
+  EXPECT_EQ(load("big.obj", file, options).mesh.positions[0][0], 1e39);
+}
+
+}  // namespace
+}  // namespace boxtree::cooker
