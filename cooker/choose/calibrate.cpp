@@ -67,10 +67,10 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   return Sample{work, *ns};
 }
 
-// `arrays`: of the same codec, or null where these are fitted.
-CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& samples,
-              const CodecCost* arrays) {
-  CodecCost cost{codec, geometry, {}};
+// `arrays`: of the same codec and precision, or null where these are fitted.
+CodecCost fit(CodecId codec, GeometryId geometry, Precision precision,
+              const std::vector<Sample>& samples, const CodecCost* arrays) {
+  CodecCost cost{codec, geometry, {}, precision == Precision::kF64};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     std::vector<Measured> measured;
     measured.reserve(samples.size());
@@ -83,6 +83,18 @@ CodecCost fit(CodecId codec, GeometryId geometry, const std::vector<Sample>& sam
   return cost;
 }
 
+// The same positions as f64.
+SourceMesh in_f64(const SourceMesh& mesh) {
+  SourceMesh out = mesh;
+  out.positions = {};
+  out.positions.precision = Precision::kF64;
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+    const Eigen::Vector3d p = mesh.positions[i];
+    out.positions.f64.insert(out.positions.f64.end(), {p[0], p[1], p[2]});
+  }
+  return out;
+}
+
 }  // namespace
 
 Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t runs,
@@ -90,29 +102,38 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
   if (std::all_of(meshes.begin(), meshes.end(), [](const auto& m) { return m.faces.empty(); })) {
     return Errc::kNoFaces;
   }
+  std::vector<SourceMesh> doubles;
+  for (const SourceMesh& mesh : meshes) doubles.push_back(in_f64(mesh));
   Calibration out;
   for (const CodecInfo& codec : kCodecs) {
-    std::optional<CodecCost> arrays;
-    for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
-      if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
-      std::vector<Sample> samples;
-      for (const SourceMesh& mesh : meshes) {
-        if (mesh.faces.empty()) continue;
-        if (progress) {
-          progress(fmt::format("{}: {}, {}", mesh.name, codec.name, geometry_name(geometry)));
+    for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+      std::optional<CodecCost> arrays;
+      for (const GeometryId geometry :
+           {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
+        if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
+        const bool is_f64 = precision == Precision::kF64;
+        if (is_f64 && !has_f64_cost(codec.id, geometry)) continue;
+        std::vector<Sample> samples;
+        for (const SourceMesh& mesh : is_f64 ? std::span<const SourceMesh>(doubles) : meshes) {
+          if (mesh.faces.empty()) continue;
+          if (progress) {
+            progress(fmt::format("{}: {}, {}{}", mesh.name, codec.name, geometry_name(geometry),
+                                 is_f64 ? " of f64" : ""));
+          }
+          Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
+          if (!of_mesh) return of_mesh.error();
+          samples.push_back(*of_mesh);
         }
-        Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
-        if (!of_mesh) return of_mesh.error();
-        samples.push_back(*of_mesh);
-      }
-      out.costs.push_back(fit(codec.id, geometry, samples, arrays ? &*arrays : nullptr));
-      if (geometry == GeometryId::kArrays) arrays = out.costs.back();
-      for (const Sample& of_mesh : samples) {
-        const QueryCost modelled =
-            cost_of(of_mesh.work, codec.id, geometry, std::span(&out.costs.back(), 1));
-        for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-          const double ratio = modelled[kind] / of_mesh.ns[kind];
-          out.worst_ratio = std::max({out.worst_ratio, ratio, 1 / ratio});
+        out.costs.push_back(
+            fit(codec.id, geometry, precision, samples, arrays ? &*arrays : nullptr));
+        if (geometry == GeometryId::kArrays) arrays = out.costs.back();
+        for (const Sample& of_mesh : samples) {
+          const QueryCost modelled =
+              cost_of(of_mesh.work, codec.id, geometry, precision, std::span(&out.costs.back(), 1));
+          for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+            const double ratio = modelled[kind] / of_mesh.ns[kind];
+            out.worst_ratio = std::max({out.worst_ratio, ratio, 1 / ratio});
+          }
         }
       }
     }

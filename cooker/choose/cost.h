@@ -6,6 +6,7 @@
 #include <span>
 
 #include "cooker/choose/work.h"
+#include "cooker/import/source_mesh.h"
 #include "format/codec.h"
 
 namespace boxtree::cooker {
@@ -25,14 +26,23 @@ struct CodecCost {
   CodecId codec;
   GeometryId geometry;
   std::array<StepCost, kQueryKinds> of_kind;
+  bool is_f64 = false;  // positions of f64, which queries of wide codecs read without vectors
 };
+
+/// Whether a codec with a store has steps of its own for positions of f64: grids have none of them,
+/// and binary codecs read all alike.
+[[nodiscard]] constexpr bool has_f64_cost(CodecId codec, GeometryId geometry) noexcept {
+  return is_wide(codec) && geometry != GeometryId::kGrid;
+}
 
 /// The constants that the cooker uses, measured by `boxtree bench --calibrate`. They are compiled
 /// in, so that the choice is the same on every machine.
 [[nodiscard]] std::span<const CodecCost> compiled_costs() noexcept;
 
-/// The cost of `work`. External geometry costs as much as arrays.
+/// The cost of `work` on a mesh with positions of `precision`. External geometry costs as much as
+/// arrays.
 [[nodiscard]] QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry,
+                                Precision precision = Precision::kF32,
                                 std::span<const CodecCost> costs = compiled_costs());
 
 /// A measurement of one mesh: mean work and mean time of a query of one kind.

@@ -19,6 +19,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kStores = {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid};
 constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
+constexpr const char* kF32Positions = "f32";
+constexpr const char* kF64Positions = "f64";
 
 Error fault(std::string what) {
   return {Errc::kDocumentInvalid, "costs: " + std::move(what)};
@@ -62,7 +64,12 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
     return fault(
         fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
   }
-  CodecCost cost{*id, *store, {}};
+  const std::string positions = member(row, "positions");
+  if (positions != kF32Positions && positions != kF64Positions) {
+    return fault(fmt::format("row {}: positions \"{}\": expected {} or {}", number, positions,
+                             kF32Positions, kF64Positions));
+  }
+  CodecCost cost{*id, *store, {}, positions == kF64Positions};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     const Result<StepCost> steps =
         parse_steps(row, fmt::format("{}, {}", codec, geometry), kQueryNames[kind]);
@@ -77,7 +84,9 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
 std::string costs_to_json(const Calibration& calibration) {
   Json costs = Json::array();
   for (const CodecCost& cost : calibration.costs) {
-    Json row = {{"codec", codec_name(cost.codec)}, {"geometry", geometry_name(cost.geometry)}};
+    Json row = {{"codec", codec_name(cost.codec)},
+                {"geometry", geometry_name(cost.geometry)},
+                {"positions", cost.is_f64 ? kF64Positions : kF32Positions}};
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       const StepCost& step = cost.of_kind[kind];
       row[kQueryNames[kind]] = {
@@ -104,12 +113,15 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId store : kStores) {
       if (store == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
-      const auto count = std::count_if(costs.begin(), costs.end(), [&](const CodecCost& cost) {
-        return cost.codec == codec.id && cost.geometry == store;
-      });
-      if (count != 1) {
-        return fault(fmt::format("{}, {}: expected one row, found {}", codec.name,
-                                 geometry_name(store), count));
+      for (const bool is_f64 : {false, true}) {
+        if (is_f64 && !has_f64_cost(codec.id, store)) continue;
+        const auto count = std::count_if(costs.begin(), costs.end(), [&](const CodecCost& cost) {
+          return cost.codec == codec.id && cost.geometry == store && cost.is_f64 == is_f64;
+        });
+        if (count == 1) continue;
+        return fault(fmt::format("{}, {}, {}: expected one row, found {}", codec.name,
+                                 geometry_name(store), is_f64 ? kF64Positions : kF32Positions,
+                                 count));
       }
     }
   }

@@ -209,7 +209,8 @@ Result<Candidate> examine(const EncodedTree& tree, const SourceMesh& mesh, const
   const Result<WorkOfKinds> work = count_work(*bound, queries);
   if (!work) return work.error();
   candidate.work = *work;
-  candidate.cost = cost_of(*work, candidate.codec, candidate.geometry, costs);
+  candidate.cost =
+      cost_of(*work, candidate.codec, candidate.geometry, mesh.positions.precision, costs);
   return candidate;
 }
 
@@ -275,7 +276,9 @@ class Search {
       if (!counted) return counted.error();
       work = *counted;
     }
-    out_.contest.baseline = cost_of(work, CodecId::kWide8, GeometryId::kArrays, costs_);
+    const Precision precision =
+        options_.geometry == GeometryId::kGrid ? Precision::kF32 : mesh_.positions.precision;
+    out_.contest.baseline = cost_of(work, CodecId::kWide8, GeometryId::kArrays, precision, costs_);
     has_baseline_ = true;
     return {};
   }

@@ -2,21 +2,37 @@
 #include "cooker/import/f32_digits.h"
 
 #include <algorithm>
-#include <limits>
 
 #include <Eigen/Geometry>
 
+#include "runtime/primitive/rounding.h"
+
 namespace boxtree::cooker {
 
-bool has_few_digits(const Positions& positions) {
-  constexpr int kBits = 16;
-  constexpr int kBitsTaken = std::numeric_limits<float>::digits - kBits;
+namespace {
+
+Eigen::AlignedBox3d bounds_of_all(const Positions& positions) {
   Eigen::AlignedBox3d bounds;
   for (std::size_t i = 0; i < positions.size(); ++i) bounds.extend(positions[i]);
+  return bounds;
+}
+
+double unnoticed_in(const Eigen::AlignedBox3d& bounds) {
+  constexpr double kHalfStep = 0x1p-17;
+  return bounds.isEmpty() ? 0 : kHalfStep * bounds.sizes().maxCoeff();
+}
+
+}  // namespace
+
+double unnoticed_move(const Positions& positions) {
+  return unnoticed_in(bounds_of_all(positions));
+}
+
+bool may_have_moved(const Positions& positions) {
+  const Eigen::AlignedBox3d bounds = bounds_of_all(positions);
   if (bounds.isEmpty()) return false;
-  const double farthest =
-      std::max(bounds.min().cwiseAbs().maxCoeff(), bounds.max().cwiseAbs().maxCoeff());
-  return farthest > bounds.sizes().maxCoeff() * (1 << kBitsTaken);
+  const Eigen::Vector3d farthest = bounds.min().cwiseAbs().cwiseMax(bounds.max().cwiseAbs());
+  return kRoundoffF32 * farthest.norm() > unnoticed_in(bounds);
 }
 
 double moved_by_f32(const Positions& positions) {

@@ -7,9 +7,12 @@
 
 namespace boxtree::cooker {
 
-/// Whether f32 leaves less than 16 bits for the largest extent of a mesh that was read as f32, the
-/// least that a mesh of a scene gets on a grid by default (kLeastMeshBits).
-[[nodiscard]] bool has_few_digits(const Positions& positions);
+/// How far f32 may move a vertex before it is told: half a step of a grid of 16 bits over the
+/// largest extent, the least that a mesh of a scene gets by default (kLeastMeshBits).
+[[nodiscard]] double unnoticed_move(const Positions& positions);
+
+/// Whether rounding to these positions of f32 can have moved a vertex farther than that.
+[[nodiscard]] bool may_have_moved(const Positions& positions);
 
 /// The largest distance of a position from the nearest one with coordinates of f32.
 [[nodiscard]] double moved_by_f32(const Positions& positions);

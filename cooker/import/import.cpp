@@ -68,7 +68,7 @@ SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::
 
 Status measure_digits(const MeshReader& reader, const Request& request, Imported& mesh) {
   const Positions& positions = mesh.mesh.positions;
-  if (!reader.keeps_f64 || positions.precision != Precision::kF32 || !has_few_digits(positions)) {
+  if (!reader.keeps_f64 || positions.precision != Precision::kF32 || !may_have_moved(positions)) {
     return {};
   }
   ImportOptions options = request.options;
@@ -78,7 +78,8 @@ Status measure_digits(const MeshReader& reader, const Request& request, Imported
   if (Status status = reader.read(request.source, options, exact, materials); !status.ok()) {
     return status;
   }
-  mesh.report.moved_by_f32 = moved_by_f32(exact.mesh.positions);
+  const double moved = moved_by_f32(exact.mesh.positions);
+  if (moved > unnoticed_move(positions)) mesh.report.moved_by_f32 = moved;
   return {};
 }
 

@@ -838,7 +838,7 @@ bench_says '^    error 0\.1 +[0-9]+ +[0-9.]+ +[0-9.e-]+$'
 bench_says '^    budget [0-9]+ +[0-9]+ +[0-9.]+ +([0-9.e-]+|-)$'
 expect 0 "$boxtree" bench --calibrate cube.obj --runs 1
 bench_says '^ns of a query, of a node expanded and of a leaf read, for rays, boxes \(cubes with an edge of 5 % of the diagonal\), points and pairs '
-bench_says '^wide8 +exact *( +[0-9.]+){12}$'
+bench_says '^wide8 +exact +f64 *( +[0-9.]+){12}$'
 bench_says '^modelled and measured times differ by at most [0-9.]+ times$'
 expect 1 "$boxtree" bench external.bxt --quick --runs 1
 misvalued 'usage: bench: - (standard input) is no file, and bench times the opening of files, too' bench - --quick
@@ -853,7 +853,7 @@ jq -e '.files[0].approximate | [.point, .distance] | all(
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
 printf 'f 1 2 3\n' >>far.obj
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
-same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
+same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
 jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 for options in --f64 '--f64 --tolerance 0.001'; do
   expect 0 "$boxtree" cook far.obj -o far.bxt -q $options

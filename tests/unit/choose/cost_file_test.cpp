@@ -31,7 +31,10 @@ TEST(CostFile, GivesBackWhatWasWritten) {
   const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
-      EXPECT_EQ(cost_of(work, codec.id, geometry, read), cost_of(work, codec.id, geometry));
+      for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+        EXPECT_EQ(cost_of(work, codec.id, geometry, precision, read),
+                  cost_of(work, codec.id, geometry, precision));
+      }
     }
   }
   EXPECT_EQ(read_costs(folder.path() / "none").code(), Errc::kFileNotFound);
@@ -53,14 +56,18 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
   EXPECT_EQ(refusal([](Json& j) { j.erase("costs"); }),
             "costs: expected an object with an array \"costs\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].erase(0); }),
-            "costs: plain-f32, arrays: expected one row, found 0");
+            "costs: plain-f32, arrays, f32: expected one row, found 0");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].push_back(j["costs"][0]); }),
-            "costs: plain-f32, arrays: expected one row, found 2");
+            "costs: plain-f32, arrays, f32: expected one row, found 2");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][1] = 3; }), "costs: row 1: expected an object");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["codec"] = "wide9"; }),
             "costs: row 0: unknown codec \"wide9\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["geometry"] = "external"; }),
             "costs: row 0: geometry \"external\": expected arrays, exact or grid");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["positions"] = "f16"; }),
+            "costs: row 0: positions \"f16\": expected f32 or f64");
+  EXPECT_EQ(refusal([](Json& j) { j["costs"].erase(j["costs"].size() - 1); }),
+            "costs: wide4, exact, f64: expected one row, found 0");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0].erase("box"); }),
             "costs: plain-f32, arrays: expected an object \"box\"");
   EXPECT_EQ(refusal([](Json& j) { j["costs"][0]["ray"].erase("node_ns"); }),

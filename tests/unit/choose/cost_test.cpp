@@ -11,8 +11,9 @@ TEST(Cost, IsASumOfSteps) {
       {CodecId::kWide8, GeometryId::kArrays, {{{100, 10, 1}, {0, 2, 0}, {0, 0, 3}, {7, 0, 0}}}}};
   const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {1, 1}}};
   const QueryCost expected = {152, 12, 24, 7};
-  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kArrays, known), expected);
-  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kExternal, known), expected);
+  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kArrays, Precision::kF32, known), expected);
+  EXPECT_EQ(cost_of(work, CodecId::kWide8, GeometryId::kExternal, Precision::kF32, known),
+            expected);
 }
 
 TEST(Cost, EveryCodecAndStoreHasConstants) {
@@ -20,8 +21,26 @@ TEST(Cost, EveryCodecAndStoreHasConstants) {
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
       if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
-      for (const double ns : cost_of(work, codec.id, geometry)) EXPECT_GT(ns, 0) << codec.name;
+      for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+        for (const double ns : cost_of(work, codec.id, geometry, precision)) {
+          EXPECT_GT(ns, 0) << codec.name;
+        }
+      }
     }
+  }
+}
+
+// Vectors read neither f64 arrays nor their clusters.
+TEST(Cost, PositionsOfF64TakeTheirOwnTime) {
+  const WorkOfKinds work = {{{5, 2}, {6, 9}, {4, 8}, {3, 3}}};
+  for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+    for (const GeometryId geometry : {GeometryId::kArrays, GeometryId::kExact}) {
+      const QueryCost f32 = cost_of(work, codec, geometry);
+      const QueryCost f64 = cost_of(work, codec, geometry, Precision::kF64);
+      for (std::size_t kind = 0; kind < kQueryKinds; ++kind) EXPECT_GT(f64[kind], f32[kind]);
+    }
+    EXPECT_EQ(cost_of(work, codec, GeometryId::kGrid, Precision::kF64),
+              cost_of(work, codec, GeometryId::kGrid));
   }
 }
 
@@ -65,7 +84,7 @@ TEST(FitLeaf, FindsTheLeafAndKeepsTheRest) {
 TEST(Cost, StoresOfACodecDifferInLeaves) {
   for (const CodecCost& cost : compiled_costs()) {
     for (const CodecCost& other : compiled_costs()) {
-      if (other.codec != cost.codec) continue;
+      if (other.codec != cost.codec || other.is_f64 != cost.is_f64) continue;
       for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
         EXPECT_EQ(other.of_kind[kind].query, cost.of_kind[kind].query);
         EXPECT_EQ(other.of_kind[kind].node, cost.of_kind[kind].node);

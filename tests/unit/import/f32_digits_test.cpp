@@ -37,21 +37,25 @@ TEST_F(F32DigitsTest, SaysNothingWhereDigitsSufficeOrNoneAreLost) {
   // f32 has these numbers.
   const std::string even = "v 4000000 0 0\nv 4000001 0 0\nv 4000000 1 0\n";
   EXPECT_EQ(load("even.obj", even + kTriangle).report.moved_by_f32, 0);
+  // f32 has x and y, and moves z, but by little.
+  const std::string flat = "v 4000000 0 1e-9\nv 4000001 0 0\nv 4000000 1 0\n";
+  EXPECT_EQ(load("flat.obj", flat + kTriangle).report.moved_by_f32, 0);
   ImportOptions options;
   options.precision = Precision::kF64;
   EXPECT_EQ(load("far.obj", std::string(kFar) + kTriangle, options).report.moved_by_f32, 0);
 }
 
-TEST_F(F32DigitsTest, FewDigitsAreLessThan16BitsOfTheExtent) {
+TEST_F(F32DigitsTest, LooksAgainWhereF32CountsInStepsOf16BitsOfTheExtent) {
   const auto at = [](float x) {
     Positions positions;
     positions.f32 = {x, 0, 0, x + 1, 0, 0, x, 1, 0};
     return positions;
   };
-  // Above 2^8, f32 has less than 24 - 8 bits for an extent of 1.
-  EXPECT_FALSE(has_few_digits(at(255)));
-  EXPECT_TRUE(has_few_digits(at(256)));
-  EXPECT_FALSE(has_few_digits({}));
+  // Up to 2^7 and up to that times an extent of 1, half of the last digit is 2^-24 times that.
+  EXPECT_EQ(unnoticed_move(at(1)), 0x1p-17);
+  EXPECT_FALSE(may_have_moved(at(126)));
+  EXPECT_TRUE(may_have_moved(at(128)));
+  EXPECT_FALSE(may_have_moved({}));
 }
 
 std::string ply_of_doubles(const std::string& vertices) {
