@@ -176,6 +176,34 @@ Error in_queried_file(const Arguments& arguments, const std::filesystem::path& s
   return in_file(input_name(arguments.file), {error.code, what});
 }
 
+// Contacts are those of moving instances: where there is none, the answer is always the same.
+class StillSceneWarning {
+ public:
+  explicit StillSceneWarning(const Arguments& arguments) : arguments_(arguments) {}
+
+  // Once for all lines of a batch.
+  void warn_of(const Scene& scene, const QueryRequest& request) {
+    if (is_told_ || !std::holds_alternative<ContactsRequest>(request) || has_moving(scene)) return;
+    is_told_ = true;
+    warn(
+        fmt::format("{}: no instance moves, so that contacts has none to look at: use --move "
+                    "INSTANCE=POSE, or a profile with motion = \"moving\"",
+                    input_name(arguments_.file)));
+  }
+
+ private:
+  static bool has_moving(const Scene& scene) {
+    for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
+      const Result<InstanceInfo> info = scene.info(i);
+      if (info && info->moves) return true;
+    }
+    return false;
+  }
+
+  const Arguments& arguments_;
+  bool is_told_ = false;
+};
+
 // Without a batch, `defaults` is the query.
 int run(const Arguments& arguments, const RequestDefaults& defaults) {
   const bool is_file =
@@ -203,11 +231,15 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
     if (!scene) return fail(in_queried_file(arguments, {}, scene.error()));
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
-      if (line.moves.empty()) return answer(scene->file, scene->scene, line.request, others);
+      if (line.moves.empty()) {
+        still.warn_of(scene->scene, line.request);
+        return answer(scene->file, scene->scene, line.request, others);
+      }
       std::vector<std::string> moves = arguments.moves;
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
+    StillSceneWarning still(arguments);
       return answer(scene->file, *moved, line.request, others);
     });
   }

@@ -59,6 +59,9 @@ same "$(jq -c '[.distance, .name]' out)" '[2,"Floor"]'
 
 # Instances that are moved for a query; contacts of what moves with the rest.
 expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.25,-7' --json
+same "$(cat err; jq -c '[.hit, .count]' out)" '[false,0]'
+expect 0 "$boxtree" query level.bxt contacts --json
+same "$(cat err)" 'boxtree: warning: level.bxt: no instance moves, so that contacts has none to look at: use --move INSTANCE=POSE, or a profile with motion = "moving"'
 same "$(jq -c '[.hit, .count]' out)" '[false,0]'
 expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --json
 jq -e '.hit and ([.pairs[][0].name] | unique == ["Crate"]) and ([.pairs[][1].name] | unique == ["Landing"])' out >/dev/null
@@ -114,6 +117,7 @@ jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
 printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind":"contacts"}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
+same "$(grep -c 'no instance moves' err)" 1
 # A line of a profile without effect is a warning, which --quiet keeps.
 printf '[[object]]\nname = "rocks"\nmatch = ["Rock*"]\n' >rocks.toml
 expect 0 "$boxtree" cook --profile rocks.toml "$level/level.gltf" -o rocks.bxt --quiet
