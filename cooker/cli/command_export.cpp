@@ -164,6 +164,11 @@ Result<std::vector<Tree>> bind_trees(const Arguments& arguments, const File& fil
       options.mesh = absent_arrays(OpenFile::of(file).tree_record(i));
     }
     Result<Tree> tree = Tree::bind(file, i, options);
+    if (tree.code() == Errc::kExternalMeshNeeded) {
+      return Error{tree.code(),
+                   fmt::format("{}: {}: name the one that it was cooked of with --mesh MESH",
+                               input_name(arguments.file), tree.error().detail)};
+    }
     if (!tree) {
       return Error{tree.code(), arguments.file.string() + ": " + tree.error().detail};
     }

@@ -229,7 +229,14 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
   };
   if (file.has_scene() && arguments.tree.empty()) {
     const Result<OpenedScene> scene = open_scene(std::move(opened->file), arguments.moves);
+    if (scene.code() == Errc::kExternalMeshNeeded) {
+      return fail(
+          {scene.code(), fmt::format("{}: {}: a scene is queried with geometry in its file; "
+                                     "for one tree name --tree TREE and --mesh MESH",
+                                     input_name(arguments.file), scene.error().detail)});
+    }
     if (!scene) return fail(in_queried_file(arguments, {}, scene.error()));
+    StillSceneWarning still(arguments);
     return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
       if (line.moves.empty()) {
         still.warn_of(scene->scene, line.request);
@@ -239,12 +246,12 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
-    StillSceneWarning still(arguments);
       return answer(scene->file, *moved, line.request, others);
     });
   }
-  const Result<OpenedTree> tree = bind_tree(
-      std::move(opened->file), {arguments.file, arguments.tree, arguments.mesh, "--tree"});
+  const Result<OpenedTree> tree =
+      bind_tree(std::move(opened->file),
+                {arguments.file, arguments.tree, arguments.mesh, "--tree", "--mesh"});
   if (!tree) return fail(tree.error());
   return answer_all([&](const BatchRequest& line, TreeCache& others) -> Result<Json> {
     if (!line.moves.empty()) {
@@ -393,10 +400,8 @@ void add_query_command(Command& program, int& status) {
       "of a kind that is given here do not say is taken from its options. Answers are JSON, too, "
       "each with the number of its \"line\", at once where lines come from a pipe");
   command.add_flag("--json", arguments->json, "Print one JSON document");
-  command
-      .add_file("--mesh", arguments->mesh, Values::kMeshes,
-                "The source mesh of a tree cooked with --external")
-      ->group(kRareOptions);
+  command.add_file("--mesh", arguments->mesh, Values::kMeshes,
+                   "The source mesh of a tree cooked with --external");
   command.takes_kinds();
   const Around around{command, batch, arguments};
   for_each_kind([&]<class Kind>() { add_kind<Kind>(around, status); });

@@ -516,7 +516,7 @@ Result<OpenedTree> open_tree(const TreeWanted& wanted) {
 }
 
 Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
-  const auto& [path, which, mesh, option] = wanted;
+  const auto& [path, which, mesh, option, mesh_option] = wanted;
   File* const file = &opened;
   const Result<std::uint32_t> index = find_tree(*file, which);
   const std::string name = input_name(path);
@@ -535,6 +535,10 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
     options.verify_mesh = true;
   }
   Result<Tree> tree = Tree::bind(*file, *index, options);
+  if (tree.code() == Errc::kExternalMeshNeeded) {
+    return Error{tree.code(), fmt::format("{}: {}: name the one that it was cooked of with {} MESH",
+                                          name, tree.error().detail, mesh_option)};
+  }
   if (!tree) return Error{tree.code(), name + ": " + tree.error().detail};
   const Result<QueryKinds> kinds = kinds_of_tree(*file, *index);
   if (!kinds) return kinds.error();
@@ -550,7 +554,8 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
 Result<const Tree*> TreeCache::get(const SecondTree& second) {
   std::unique_ptr<OpenedTree>& place = opened_[{second.file.string(), second.tree}];
   if (place == nullptr) {
-    Result<OpenedTree> opened = open_tree({second.file, second.tree, second.mesh, "--tree2"});
+    Result<OpenedTree> opened =
+        open_tree({second.file, second.tree, second.mesh, "--tree2", "--mesh2"});
     if (!opened) return opened.error();
     if ((opened->kinds & kPairQueries) == 0) {
       const Error error = kind_left_out(opened->file, opened->index, kPairQueries);

@@ -253,6 +253,7 @@ struct TreeWanted {
       which;  // name or number; if empty, tree 0, and a warning where there are others
   const std::filesystem::path& mesh;  // of a tree cooked with --external; compared by content
   const char* option;                 // that says which, for messages
+  const char* mesh_option;            // that names the mesh, likewise
 };
 
 /// Opens the file and binds the tree.

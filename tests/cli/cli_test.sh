@@ -467,7 +467,7 @@ for kind in ray point box sphere pair distance overlap contacts; do
 done
 
 # Help says where the options are that it does not show, if there are any, and that command runs.
-for command in cook report query 'query pair'; do
+for command in cook report 'query pair'; do
   # shellcheck disable=SC2086
   expect 0 "$boxtree" help $command
   same "$(tail -1 out)" "More options: boxtree $command --help-all"
@@ -571,6 +571,14 @@ grep -q 'not looked at' out
 expect 0 "$boxtree" verify external.bxt --mesh cube.obj
 grep -q 'every triangle inside' out
 expect 1 "$boxtree" query external.bxt point --at 0,0,0
+same "$(cat err)" 'boxtree: external_mesh_needed: external.bxt: tree 0: no mesh was given: name the one that it was cooked of with --mesh MESH'
+expect 1 "$boxtree" query cube.bxt pair external.bxt
+same "$(cat err)" 'boxtree: external_mesh_needed: external.bxt: tree 0: no mesh was given: name the one that it was cooked of with --mesh2 MESH'
+expect 0 "$boxtree" query --help
+grep -q -- '^  --mesh ' out
+expect 0 "$boxtree" cook cube.obj -o external_scene.bxt --external --scene
+expect 1 "$boxtree" query external_scene.bxt point --at 0,0,0
+grep -q '^boxtree: external_mesh_needed: external_scene.bxt: tree 0: no mesh was given: .* --tree TREE and --mesh MESH$' err
 expect 0 "$boxtree" query external.bxt point --at 0.5,0.5,3 --mesh cube.obj --json
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
 sed 's/^v 1 1 1/v 1 1 2/' cube.obj >other.obj
@@ -953,6 +961,7 @@ same "$(grep -c '^f ' boxes.obj)" 6
 expect 0 "$boxtree" export cube.bxt -o boxes.obj --leaves --json
 same "$(jq -c '[.trees[0] | .triangles,.levels,.leaves > 0]' out)" '[12,[],true]'
 expect 1 "$boxtree" export external.bxt -o external.obj
+same "$(cat err)" 'boxtree: external_mesh_needed: external.bxt: tree 0: no mesh was given: name the one that it was cooked of with --mesh MESH'
 expect 0 "$boxtree" export external.bxt -o external.obj --boxes
 expect 0 "$boxtree" export external.bxt -o external.obj --mesh cube.obj --triangles
 expect 0 "$boxtree" verify external.bxt --mesh external.obj
