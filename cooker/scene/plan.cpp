@@ -73,6 +73,13 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
                                          profile.cite(object.match.front().line),
                                          object.name.value));
     }
+    if (count[o] == 0 && is_spawned(profile, o) && !object.never_collides_with.empty()) {
+      plan.notices.push_back(
+          fmt::format("{}: object \"{}\" has no instances, and bodies that a "
+                      "program places have no layer: it leaves layers out of the mask that "
+                      "overlap_pairs() takes",
+                      profile.cite(object.never_collides_with.front().line), object.name.value));
+    }
     const bool is_idle =
         is_other && count[o] == 0 && !plan.layers.empty() && !is_spawned(profile, o);
     if (dropped || is_idle) continue;

@@ -82,7 +82,7 @@ struct PlannedMesh {
   std::optional<double> tolerance;
   /// Some object states no tolerance: no coarser than the cooker's default.
   bool default_precision = true;
-  double largest_scale = 0;  // of its instances, kept or placed later; 0: there are none
+  double largest_scale = 0;  // of its instances and bodies; 0: there are none
 
   std::vector<FaceRange> hidden_faces;  // source face numbers to drop, ascending
   std::uint32_t hidden_face_count = 0;  // number of faces of SourceMesh with these numbers

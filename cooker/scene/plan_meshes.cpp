@@ -373,7 +373,7 @@ Status MeshPlanner::run() {
     const ProfileMesh* said = said_of_[mesh];
     const bool is_spawned = said != nullptr && said->spawned_as;
     decide(mesh, Aspect::kMesh, true,
-           is_spawned ? std::string("instances of it are placed later")
+           is_spawned ? std::string("the program places bodies of it")
                       : fmt::format("object \"{}\" has instances of it",
                                     object_of(uses_[mesh].front()).name.value),
            is_spawned ? said->spawned_as->line : object_of(uses_[mesh].front()).name.line);

@@ -46,7 +46,7 @@ struct Needs {
   Stated<bool> names{true};
   std::optional<Stated<double>> tolerance;  // world length; never together with exact = true
   Stated<bool> exact{false};
-  std::optional<Stated<double>> largest_scale;  // of instances that are placed later
+  std::optional<Stated<double>> largest_scale;  // of poses that the program sets
   std::optional<Stated<CodecId>> codec;
   Stated<Goal> goal{Goal::kBalance};
   Stated<bool> external{false};
@@ -77,7 +77,7 @@ struct ProfileMesh {
   Stated<std::string> name;
   std::optional<Stated<std::filesystem::path>> file;  // empty: a mesh of the source
   std::optional<Stated<bool>> external;
-  std::optional<Stated<std::uint32_t>> spawned_as;  // object whose instances are placed later
+  std::optional<Stated<std::uint32_t>> spawned_as;  // object of bodies that the program places
   /// Faces that may be dropped, from a list file: ascending, disjoint.
   std::vector<FaceRange> hidden_faces;
   std::uint32_t hidden_faces_line = 0;

@@ -458,11 +458,31 @@ largest_scale = 4
 )");
   EXPECT_FALSE(planned.meshes[1].external);
   EXPECT_TRUE(planned.meshes[0].external && planned.meshes[3].external);
-  EXPECT_TRUE(planned.meshes[3].kept) << "placed later";
+  EXPECT_TRUE(planned.meshes[3].kept) << "placed by the program";
   EXPECT_EQ(planned.meshes[3].tolerance, 0.125);
   EXPECT_EQ(planned.meshes[3].largest_scale, 4);
   expect_decision(planned, Aspect::kMesh, OwnerKind::kMesh, 3, true, 9,
-                  "instances of it are placed later");
+                  "the program places bodies of it");
+}
+
+TEST_F(PlanTest, WhatDoesNotApplyToBodiesOfTheProgramIsTold) {
+  const std::string shots = R"([[object]]
+name = "shots"
+never_collides_with = ["other"]
+[[mesh]]
+name = "m"
+spawned_as = "shots"
+)";
+  const ScenePlan planned = plan(scene_of({mesh_of("m")}, {}), shots);
+  ASSERT_EQ(planned.notices.size(), 1u);
+  EXPECT_EQ(planned.notices[0],
+            "scene.toml:3: never_collides_with = [\"other\"]: object \"shots\" has no instances, "
+            "and bodies that a "
+            "program places have no layer: it leaves layers out of the mask that overlap_pairs() "
+            "takes");
+  const ScenePlan placing = plan(scene_of({mesh_of("m")}, {placed("s", 0)}),
+                                 "[[object]]\nname = 'all'\nmatch = ['*']\n" + shots);
+  EXPECT_EQ(placing.notices.size(), 1u) << "instances of another object do not count";
 }
 
 TEST_F(PlanTest, SpawnedAsOtherKeepsThatLayer) {
