@@ -85,7 +85,7 @@ int main(int argc, char** argv) {
     cooker::add_export_command(app, status);
     cooker::add_completion_command(app, status);
     cooker::add_help_command(app, status);
-    if (const std::optional<int> ended = app.run(argc, argv); ended) return *ended;
+    if (const std::optional<int> ended = app.run(argc, argv); ended) status = *ended;
   } catch (const std::bad_alloc&) {
     // Not by complain(), which takes memory. The command is what the error is in.
     static_cast<void>(std::fprintf(stderr,
@@ -97,5 +97,7 @@ int main(int argc, char** argv) {
     cooker::complain(fmt::format("internal: {}: {}", argc > 1 ? argv[1] : "boxtree", error.what()));
     return cooker::kExitInternal;
   }
-  return std::fflush(stdout) == 0 ? status : cooker::fail_to_print();
+  // What was printed before may have failed, too.
+  const bool is_printed = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
+  return is_printed ? status : cooker::fail_to_print();
 }

@@ -736,7 +736,10 @@ expect 2 "$boxtree" query cube.bxt --batch missing.jsonl
 expect 2 "$boxtree" query cube.bxt --batch .
 expect 2 sh -c "'$boxtree' query cube.bxt point --batch - <."
 expect 1 "$boxtree" query cube.bxt point --batch /dev/zero
-expect 2 sh -c "'$boxtree' info cube.bxt >/dev/full"
+for line in 'info cube.bxt' --version --help --help-all 'cook --help' 'query ray --help-all' help; do
+  expect 2 sh -c "'$boxtree' $line >/dev/full"
+  same "$(cat err)" 'boxtree: write_failed: standard output: No space left on device'
+done
 grep -q 'standard output: No space left on device' err
 
 # Own constants: what the calibration prints decides; what makes no sense is refused by name.
