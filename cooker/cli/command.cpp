@@ -204,6 +204,9 @@ Command::Command(const std::string& name, const std::string& description, Comman
 Command::~Command() = default;
 
 std::optional<int> Command::run(int argc, char** argv) {
+  const std::vector<std::string> words(argv, argv + argc);
+  const auto end = std::find(words.begin(), words.end(), kEndOfOptions);
+  if (end != words.end()) behind_end_.assign(end + 1, words.end());
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -248,7 +251,17 @@ std::string Command::help() const {
   return app_->get_formatter()->make_help(app_.get(), name_, CLI::AppFormatMode::Normal);
 }
 
+// CLI11 takes the = of "-o=c.bxt" for the first character of the value.
 Option* Command::add(CLI::Option* parsed) {
+  if (!parsed->get_snames().empty() && parsed->get_expected_max() > 0) {
+    const std::string name = parsed->get_snames().front();
+    const std::string long_name = parsed->get_lnames().front();
+    parsed->check([name, long_name](const std::string& value) {
+      if (!value.starts_with('=')) return std::string();
+      return fmt::format("expected -{0} {2} or --{1}={2}, found -{0}={2}", name, long_name,
+                         value.substr(1));
+    });
+  }
   return options_.emplace_back(std::make_unique<Option>(parsed)).get();
 }
 

@@ -104,6 +104,9 @@ class Option {
 /// The command as CLI11 has it: cooker/cli/command_app.h.
 class CommandApp;
 
+/// Ends options, as POSIX has it: words behind it are operands.
+inline constexpr const char* kEndOfOptions = "--";
+
 /// A command, a kind of query, or the program itself.
 class Command {
  public:
@@ -121,6 +124,8 @@ class Command {
   Command& add_command(const std::string& name, const std::string& description);
 
   [[nodiscard]] const std::string& name() const { return name_; }
+  /// Of the program: the words of the command line behind --.
+  [[nodiscard]] const std::vector<std::string>& behind_end() const { return behind_end_; }
   /// The command that contains this one; null for the program.
   [[nodiscard]] const Command* parent() const { return parent_; }
   [[nodiscard]] std::vector<const Command*> commands() const;
@@ -179,6 +184,7 @@ class Command {
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<Example> examples_;
   bool stands_too_early_ = false;
+  std::vector<std::string> behind_end_;
 };
 
 /// Of a callback: `what` is required and was not given.

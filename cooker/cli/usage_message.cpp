@@ -3,11 +3,13 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <filesystem>
 #include <string_view>
 #include <vector>
 
 #include "cooker/cli/command_app.h"
 #include "cooker/cli/output.h"
+#include "cooker/import/import.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -50,15 +52,21 @@ std::string without_value(const std::string& option) {
   return option.substr(0, option.find('='));
 }
 
-// Where a command or a kind of query should be and none was recognised: the word that was probably
-// meant to be one, whatever options follow it. `rest`: what nobody took, in order. The name of the
-// file may have been put behind the kind, so that it is the kind that was taken for it.
-std::string misspelt_command(const Command& command, const std::vector<std::string>& rest) {
+// The values of positionals, in order.
+std::vector<std::string> operands(const Command& command) {
   std::vector<std::string> words;
   for (const CLI::Option* option : command.app().get_options()) {
     if (!option->get_positional()) continue;
     words.insert(words.end(), option->results().begin(), option->results().end());
   }
+  return words;
+}
+
+// Where a command or a kind of query should be and none was recognised: the word that was probably
+// meant to be one, whatever options follow it. `rest`: what nobody took, in order. The name of the
+// file may have been put behind the kind, so that it is the kind that was taken for it.
+std::string misspelt_command(const Command& command, const std::vector<std::string>& rest) {
+  std::vector<std::string> words = operands(command);
   const auto first_option = std::find_if(rest.begin(), rest.end(), is_option);
   words.insert(words.end(), rest.begin(), first_option);
   const std::vector<std::string> names = command_names(command);
@@ -125,12 +133,48 @@ std::string mismatch(const std::string& said) {
   return said;
 }
 
+// What was probably meant to be the value of --output, which is missing: an input that is no mesh,
+// or a word that nobody took; empty if there is none.
+std::string meant_output(const Command& command, const std::vector<std::string>& rest) {
+  if (!rest.empty()) return is_option(rest.back()) ? std::string() : rest.back();
+  const std::vector<std::string> inputs = operands(command);
+  if (inputs.size() < 2) return {};
+  const std::string ending = std::filesystem::path(inputs.back()).extension().string();
+  return ending.empty() || is_mesh_ending(ending.substr(1)) ? std::string() : inputs.back();
+}
+
+// What is missing.
+std::string missing(const Command& command, const std::vector<std::string>& rest,
+                    const CLI::Error& error) {
+  const std::string what = error.what();
+  if (what != "--output is required") return what;
+  const std::string output = meant_output(command, rest);
+  return output.empty() ? what : what + "; did you mean -o " + output + "?";
+}
+
+// Of a line with --, behind which all words are operands; empty if that is not the fault.
+std::string fault_behind_end(const Command& command, const std::vector<std::string>& behind,
+                             const std::vector<std::string>& rest, const std::string& missing) {
+  const auto extra = std::find_first_of(behind.begin(), behind.end(), rest.begin(), rest.end());
+  if (extra != behind.end()) {
+    return "'" + *extra + "' was not expected behind --, where no option" +
+           (command.commands().empty() ? "" : " and no " + below(command)) + " stands";
+  }
+  const bool has_option = std::any_of(behind.begin(), behind.end(), is_option);
+  return missing.empty() || !has_option ? std::string()
+                                        : missing + "; options come before --, which ends them";
+}
+
 // What was misspelt comes before what is missing because of it.
 std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
   const bool is_extra = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
   if (!is_missing && !is_extra) return mismatch(error.what());
-  const std::vector<std::string> rest = app.remaining(true);
+  std::vector<std::string> rest = app.remaining(true);
+  std::erase(rest, kEndOfOptions);
+  const std::string behind_end = fault_behind_end(command, command_of(app).behind_end(), rest,
+                                                  is_missing ? error.what() : std::string());
+  if (!behind_end.empty()) return behind_end;
   if (!rest.empty() && !command.commands().empty()) {
     const std::string word = misspelt_command(command, rest);
     if (!word.empty()) return unknown_command(command, word);
@@ -138,7 +182,7 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
   const auto option = std::find_if(rest.begin(), rest.end(), is_option);
   if (option != rest.end()) return unknown_option(command, without_value(*option));
   if (is_extra) return "'" + rest.front() + "' was not expected";
-  return app.get_subcommands().empty() ? "a command is required" : error.what();
+  return app.get_subcommands().empty() ? "a command is required" : missing(command, rest, error);
 }
 
 }  // namespace

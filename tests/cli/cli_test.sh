@@ -466,6 +466,32 @@ for kind in ray point box sphere pair distance overlap contacts; do
   grep -q "^Usage: boxtree query FILE $kind " help
 done
 
+# -- ends options: what stands behind it is a file, and neither an option nor a kind of query.
+cp cube.obj ./-cube.obj
+expect 0 "$boxtree" cook -o dashed.bxt --quiet -- -cube.obj
+expect 0 "$boxtree" verify -- dashed.bxt
+refused_words() {
+  local message=$1
+  shift
+  expect 1 "$boxtree" "$@"
+  same "$(head -1 err)" "boxtree: usage: $message"
+}
+refused_words "cook: --output is required; options come before --, which ends them" cook -- cube.obj -o d.bxt
+refused_words "query: 'point' was not expected behind --, where no option and no kind of query stands" \
+  query -- cube.bxt point --at 1,2,3
+refused_words "query: 'point' was not expected behind --, where no option and no kind of query stands" \
+  query cube.bxt -- point --at 1,2,3
+refused_words "query point: '--at' was not expected behind --, where no option stands" query cube.bxt point -- --at 1,2,3
+refused_words 'a command is required' -- cook
+refused_words 'verify: FILE is required' verify --
+# The value of a short option is not joined to it by =.
+refused_words 'cook: --output: expected -o d.bxt or --output=d.bxt, found -o=d.bxt' cook cube.obj -o=d.bxt
+[ ! -e =d.bxt ]
+# A file that was meant to be the output.
+refused_words 'cook: --output is required; did you mean -o d.bxt?' cook cube.obj d.bxt
+refused_words 'export: --output is required; did you mean -o d.glb?' export cube.bxt d.glb
+refused_words 'cook: --output is required' cook cube.obj cube.obj
+
 # Help says where the options are that it does not show, if there are any, and that command runs.
 for command in cook report 'query pair'; do
   # shellcheck disable=SC2086
