@@ -195,7 +195,7 @@ int run(Arguments& arguments) {
     arguments.job.options.import.bytes = *mesh;
   }
   const Result<OutputTarget> output = output_target(arguments.job.output, "bxt");
-  if (!output) return fail(output.error());
+  if (!output) return usage("cook: " + output.error().detail);
   arguments.job.output = output->path;
   arguments.job.output_stream = output->stream;
 

@@ -18,6 +18,7 @@
 #include "cooker/cli/output.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/export/export.h"
+#include "cooker/import/file_error.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/import/source_scene.h"
@@ -261,7 +262,10 @@ int run(const Arguments& arguments) {
   }
   const Result<OutputTarget> output =
       output_target(arguments.output, arguments.format.empty() ? "glb" : arguments.format);
-  if (!output) return fail(output.error());
+  if (!output) return usage("export: " + output.error().detail);
+  if (const Result<bool> is_glb = is_glb_name(output->path); !is_glb) {
+    return usage("export: --output: " + is_glb.error().detail);
+  }
   std::vector<std::filesystem::path> inputs{arguments.file};
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
   if (!output->stream) {
@@ -276,6 +280,9 @@ int run(const Arguments& arguments) {
   if (!trees) return fail(trees.error());
   const Result<ExportReport> exported =
       export_file(arguments, *output, opened->file, *trees, *options);
+  if (exported.code() == Errc::kInvalidQuery) {  // of levels, which are those of the file
+    return fail(in_file(input_name(arguments.file), exported.error()));
+  }
   if (!exported) return fail(exported.error());
   if (arguments.json) {
     print(report_json(arguments, *exported));

@@ -59,7 +59,8 @@ Result<OutputTarget> output_target(const std::filesystem::path& requested,
                                    const std::string& format) {
   if (!is_standard_stream(requested)) return OutputTarget(requested);
   if (::isatty(STDOUT_FILENO) == 1) {
-    return Error{Errc::kInvalidQuery, "standard output is a terminal; expected a file or a pipe"};
+    return Error{Errc::kInvalidQuery,
+                 "--output: expected a file or a pipe, and standard output is a terminal"};
   }
   return OutputTarget("stdout." + format, OutputStream{STDOUT_FILENO, "standard output"});
 }

@@ -76,12 +76,6 @@ ExportReport report_of(const Shown& shown, bool is_glb) {
   return report;
 }
 
-Result<bool> is_glb_name(const std::filesystem::path& output) {
-  if (has_extension(output, "glb")) return true;
-  if (has_extension(output, "obj")) return false;
-  return Error{Errc::kInvalidQuery, output.string() + ": expected a name in .obj or .glb"};
-}
-
 // `is_chosen(i)`: whether tree i is exported.
 template <class IsChosen>
 Result<std::vector<ShownTree>> choose_trees(std::span<const Tree> trees,
@@ -181,6 +175,12 @@ Result<ExportReport> write_file(const Shown& shown, const OutputTarget& output, 
 }
 
 }  // namespace
+
+Result<bool> is_glb_name(const std::filesystem::path& output) {
+  if (has_extension(output, "glb")) return true;
+  if (has_extension(output, "obj")) return false;
+  return Error{Errc::kInvalidQuery, output.string() + ": expected a name in .obj or .glb"};
+}
 
 Result<ExportReport> export_trees(std::span<const Tree> trees, const OutputTarget& output,
                                   const ExportOptions& options) {

@@ -43,6 +43,9 @@ struct ExportReport {
   std::uint64_t placed_triangles = 0;      // of all instances
 };
 
+/// Whether a name is of glTF (.glb) or of OBJ (.obj). Error: kInvalidQuery for another extension.
+Result<bool> is_glb_name(const std::filesystem::path& output);
+
 /// Writes `trees` to `output`, as Wavefront OBJ or binary glTF 2.0 depending on the extension of
 /// its path (.obj, .glb). Positions are in object space. On any error `output` is unchanged. Trees
 /// with external geometry must be bound to their mesh, unless `triangles` is false.

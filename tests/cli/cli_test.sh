@@ -999,7 +999,10 @@ cp shown.obj before.obj
 for levels in 90 0-1,90 3-1 1- x 0,; do
   expect 1 "$boxtree" export cube.bxt -o shown.obj --levels "$levels"
 done
+expect 1 "$boxtree" export cube.bxt -o shown.obj --levels 90
+grep -q '^boxtree: invalid_query: cube.bxt: no boxes on level 90: the deepest is [0-9]*$' err
 expect 1 "$boxtree" export cube.bxt -o shown.stl
+same "$(head -1 err)" 'boxtree: usage: export: --output: shown.stl: expected a name in .obj or .glb'
 expect 1 "$boxtree" export cube.bxt
 expect 1 "$boxtree" export both.bxt -o shown.obj --tree 2
 expect 1 "$boxtree" export both.bxt -o shown.obj --tree nobody

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Cook shows its steps on a terminal and only there, and only once it has worked half a second.
+"""Cook shows its steps on a terminal and only there, and only once it has worked half a second. It writes no
+file to a terminal.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
 silence is required only of runs that took less than half a second from start to end.
@@ -33,7 +34,7 @@ def write_grid(path, cells):
                 file.write(f"f {first} {first + 1} {first + cells + 2} {first + cells + 1}\n")
 
 
-def run_on_terminal(command, names, **others):
+def run_on_terminal(command, names, expected=0, **others):
     """Runs the command with a terminal as its streams of these names. Returns the seconds it took
     and what the terminal was sent."""
     ours, theirs = pty.openpty()
@@ -50,7 +51,7 @@ def run_on_terminal(command, names, **others):
         status = child.wait()
     seconds = time.monotonic() - start
     os.close(ours)
-    assert status == 0, f"exit {status}: {command}"
+    assert status == expected, f"exit {status}: {command}"
     return seconds, sent.decode()
 
 
@@ -99,6 +100,11 @@ def main(boxtree):
             assert "wrote grid.bxt" in sent, f"no report: {sent!r}"
         _, sent = run_on_terminal(cook(boxtree, count, "--quiet"), ["stdout", "stderr"])
         assert sent == "", f"not quiet: {sent!r}"
+        for command in (["cook", "grid.obj", "-o", "-"], ["export", "grid.bxt", "-o", "-"]):
+            _, sent = run_on_terminal([boxtree, *command], ["stdout", "stderr"], expected=1)
+            wanted = (f"boxtree: usage: {command[0]}: --output: expected a file or a pipe, and standard output is a "
+                      "terminal\r\n")
+            assert sent == wanted, f"not refused: {sent!r}"
     print(f"steps of {count // 2} inputs shown on a terminal, of more of them nowhere else")
 
 
