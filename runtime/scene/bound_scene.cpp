@@ -39,9 +39,14 @@ void BoundScene::rebuild() {
 
 Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
   const DefaultFloatState state;
-  if (instance >= instance_count()) return Errc::kInstanceIndex;
+  if (instance >= instance_count()) {
+    return index_error(Errc::kInstanceIndex, "instance", instance, instance_count());
+  }
   const Moving* found = find_moving(instance);
-  if (found == nullptr) return Errc::kInstanceStatic;
+  if (found == nullptr) {
+    return error_with(Errc::kInstanceStatic, {},
+                      "instance # was bound as static; make_movable() lets it move", {instance});
+  }
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
   const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
   if (!placement) return Errc::kInvalidPose;

@@ -29,7 +29,7 @@ Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
 Status BoundScene::bind_sections(const File& opened) {
   const OpenFile& file = OpenFile::of(opened);
   const Bytes section = file.section(SectionKind::kScene);
-  if (section.empty()) return Error{Errc::kNoScene, "the file has no section \"scene\""};
+  if (section.empty()) return Errc::kNoScene;
   const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
     return sized_section(file.section(kind), kind, "", count, element);
   };

@@ -54,15 +54,17 @@ enum class Errc : std::uint16_t {
   // 50..59: binding and querying.
   kInvalidQuery = 50,  ///< NaN, infinite or empty query.
   kInvalidPose = 51,   ///< Pose is not finite or not invertible.
-  kPartLeftOut = 52,   ///< The query needs a part that was left out.
+  /// A needed part was left out; SceneOptions at Scene::bind() tells by which line.
+  kPartLeftOut = 52,
   /// The tree was cooked without geometry; give the mesh when binding.
   kExternalMeshNeeded = 53,
   kExternalMeshMismatch = 54,  ///< The mesh given is not the one the tree was cooked from.
   kTreeIndex = 55,             ///< No tree with this number in the file.
-  kNoScene = 56,               ///< The file holds trees but no scene.
+  kNoScene = 56,               ///< The file holds trees but no scene; Tree::bind() binds a tree.
   kInstanceIndex = 57,         ///< No instance with this number in the scene.
-  kInstanceStatic = 58,        ///< An instance that was bound as static cannot be moved.
-  kWorkLimit = 59,             ///< The query would cost more than its caller allows.
+  /// An instance that was bound as static cannot be moved; make_movable() allows it.
+  kInstanceStatic = 58,
+  kWorkLimit = 59,  ///< The query would cost more than its caller allows.
 
   // 60..69: the operating system.
   kFileNotFound = 60,    ///< No such file.
