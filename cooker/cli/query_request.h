@@ -64,9 +64,11 @@ struct OverlapOptions {
 
   template <class Fields>
   void describe(Fields& fields, bool* given = nullptr) {
-    fields.optional("within", within,
-                    "May end with undecided where parts are closer than this, and so sooner [0]",
-                    given);
+    fields.optional(
+        "within", within,
+        "May end with undecided where parts are closer than this, and so sooner; disjoint does not "
+        "say that they are farther apart, which distance --max-distance tells [0]",
+        given);
     fields.optional("budget", node_budget, "Stop after so many nodes", given);
   }
 };
@@ -79,7 +81,7 @@ struct BoxRequest {
       "finite corners, min not above max on any axis, and within of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The faces in a box", "boxtree query bunny.bxt box --min -1,-1,-1 --max 1,1,1"},
-      {"Whether anything is closer to it than 0.1",
+      {"Whether anything touches it, gaps of less than 0.1 left undecided",
        "boxtree query bunny.bxt box --min -9,-9,-9 --max -8,-8,-8 --within 0.1"}};
 
   Eigen::AlignedBox3d box;
@@ -174,7 +176,9 @@ struct DistanceRequest {
   static constexpr const char* kHelp = "Distance of two trees";
   static constexpr const char* kExpected = "a max_distance and errors of 0 or more";
   static constexpr KindExample kExamples[] = {
-      {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"}};
+      {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"},
+      {"Whether they are closer than 0.1: found says it",
+       "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0 --max-distance 0.1"}};
 
   SecondTree second;
   DistanceOptions options;

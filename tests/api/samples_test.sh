@@ -80,6 +80,8 @@ END
 grep -Eq '^height 0.375, within 0.0625: (overlapping|undecided)$' overlap_within.out
 grep -Eq '^height 0.53125, within 0.0625: (disjoint|undecided)$' overlap_within.out
 grep -q '^height 2, within 0.0625: disjoint$' overlap_within.out
+grep -q '^height 0.375, within 16: undecided$' overlap_within.out
+grep -q '^height 2, within 16: disjoint$' overlap_within.out
 # Below 0.375: the floor and the lower plate, 64 + 4.
 prints traverse level.bxt <<<"68 square metres"
 # Step 6 of make_level.py ends at 6 * 0.18 and at z from -4.65 to -4.35; the crate reaches from -4.9 to -4.1, into both neighbours.
