@@ -101,9 +101,14 @@ function(boxtree_nearest_keyword result word)
 endfunction()
 
 # A keyword that the function does not know is a value of the list before it. A mesh has an ending, so a name in
-# capitals is none; as the value of an option it may be meant, unless it begins as a keyword does.
+# capitals is none; as the value of an option it may be meant, unless it begins as a keyword does. Nor is a keyword in
+# small letters.
 function(boxtree_refuse_unknown_keywords list values)
   foreach(value IN LISTS values)
+    string(TOUPPER "${value}" upper)
+    if(NOT value STREQUAL upper AND upper MATCHES "^(TARGET|MESHES|OPTIONS|OUTPUT_DIR|DEFINITION)$")
+      boxtree_refuse_call("'${value}' in ${list} is no keyword; did you mean ${upper}?")
+    endif()
     if(NOT value MATCHES "^[A-Z][A-Z_]+$")
       continue()
     endif()

@@ -166,6 +166,10 @@ CMAKE
 }
 refused_call "'OPTION' in MESHES is no keyword; did you mean OPTIONS?" \
   TARGET all_assets MESHES ../meshes/level.obj OPTION --exact
+refused_call "'options' in MESHES is no keyword; did you mean OPTIONS?" \
+  TARGET all_assets MESHES ../meshes/level.obj options --exact
+refused_call "'output_dir' in OPTIONS is no keyword; did you mean OUTPUT_DIR?" \
+  TARGET all_assets MESHES ../meshes/level.obj OPTIONS --exact output_dir other
 refused_call "'OUTPUT_DIRECTORY' in MESHES is no keyword; did you mean OUTPUT_DIR?" \
   TARGET all_assets MESHES ../meshes/level.obj OUTPUT_DIRECTORY other
 refused_call "'OUTDIR' in OPTIONS is no keyword; did you mean OUTPUT_DIR?" \
