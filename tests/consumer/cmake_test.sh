@@ -379,6 +379,7 @@ target_link_libraries(game PRIVATE boxtree::runtime)
 CMAKE
   echo 'int main() {}' >"$work/parent/game.cpp"
   configured parent -DCMAKE_BUILD_TYPE= -DSOURCE="$source"
+  grep -q 'boxtree: CMAKE_BUILD_TYPE is empty, so nothing is optimised' "$work/log" || fail "slow code without a word"
   if grep -rl --include=cmake_install.cmake 'file(INSTALL' "$work/parent/build"; then fail "boxtree installs itself"; fi
   ninja -C "$work/parent/build" -n game >"$work/log"
   grep -q 'Cooking assets/level.bxt' "$work/log" || fail "nothing would be cooked"
