@@ -22,6 +22,7 @@
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/import/source_scene.h"
+#include "cooker/text/counted.h"
 #include "cooker/write/outputs.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -223,25 +224,21 @@ Json report_json(const Arguments& arguments, const ExportReport& report) {
   return json;
 }
 
-std::string counted(std::uint64_t count, const char* one, const char* several) {
-  return fmt::format("{} {}", count, count == 1 ? one : several);
-}
-
 // `output`: the name of what was written.
 std::string report_text(const std::string& output, const ExportReport& report) {
   std::string text = fmt::format("{}: {} bytes\n", shown(output), report.bytes);
   if (report.instances) {
-    text +=
-        fmt::format("scene: {}, {} triangles placed\n",
-                    counted(*report.instances, "instance", "instances"), report.placed_triangles);
+    text += fmt::format("scene: {}, {} placed\n", counted(*report.instances, "instance"),
+                        counted(report.placed_triangles, "triangle"));
   }
   for (const ExportedTree& tree : report.trees) {
-    text += fmt::format("{}: {} triangles", shown(tree.name), tree.triangles);
+    text += fmt::format("{}: {}", shown(tree.name), counted(tree.triangles, "triangle"));
     for (const BoxGroup& group : tree.boxes) {
-      text += fmt::format(", {}: {}", group.name(), counted(group.count, "box", "boxes"));
+      text += fmt::format(", {}: {}", group.name(),
+                          group.count == 1 ? "1 box" : fmt::format("{} boxes", group.count));
     }
     if (report.instances) {
-      text += fmt::format(", {}", counted(tree.instances, "instance", "instances"));
+      text += fmt::format(", {}", counted(tree.instances, "instance"));
     }
     text += fmt::format("\n");
   }

@@ -16,6 +16,7 @@
 #include "cooker/cli/surface_text.h"
 #include "cooker/import/file_error.h"
 
+#include "cooker/text/counted.h"
 namespace boxtree::cooker {
 namespace {
 
@@ -115,12 +116,12 @@ void add_contest(const CookedTree& cooked, std::string& text) {
 void add_import(const ImportReport& import, std::string& text) {
   std::string notes;
   if (import.points_skipped + import.lines_skipped > 0) {
-    notes =
-        fmt::format("skipped {} points and {} lines", import.points_skipped, import.lines_skipped);
+    notes = fmt::format("skipped {} and {}", counted(import.points_skipped, "point"),
+                        counted(import.lines_skipped, "line"));
   }
   if (import.degenerate_faces > 0) {
-    notes += fmt::format("{}kept {} faces without area", notes.empty() ? "" : "; ",
-                         import.degenerate_faces);
+    notes += fmt::format("{}kept {} without area", notes.empty() ? "" : "; ",
+                         counted(import.degenerate_faces, "face"));
   }
   if (!notes.empty()) text += fmt::format("  {}\n", notes);
   for (const SkippedFace& face : import.skipped) {
@@ -131,17 +132,18 @@ void add_import(const ImportReport& import, std::string& text) {
 void add_grid(const CookedTree& cooked, std::string& text) {
   if (cooked.tree.geometry.geometry != GeometryId::kGrid) return;
   text += fmt::format(
-      "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} triangles lost their "
-      "area and are kept\n",
-      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error, cooked.collapsed);
+      "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} lost {} area and {} kept\n",
+      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
+      counted(cooked.collapsed, "triangle"), cooked.collapsed == 1 ? "its" : "their",
+      cooked.collapsed == 1 ? "is" : "are");
 }
 
 // What was chosen for the only tree.
 void add_choice(const CookedTree& cooked, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(cooked.contest);
-  text += fmt::format("{}: {} triangles, {}\n", shown(cooked.tree.name), cooked.tree.triangle_count,
-                      surface_text(cooked.edges));
+  text += fmt::format("{}: {}, {}\n", shown(cooked.tree.name),
+                      counted(cooked.tree.triangle_count, "triangle"), surface_text(cooked.edges));
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const Candidate& candidate = candidates[i];
     if (!candidate.rejected.empty()) continue;
@@ -340,8 +342,9 @@ std::string trees_text(const Summary& summary, bool candidates) {
   std::string text;
   if (candidates) {
     for (const CookedTree& cooked : summary.trees) {
-      text += fmt::format("{}: {} triangles, {}\n", shown(cooked.tree.name),
-                          cooked.tree.triangle_count, surface_text(cooked.edges));
+      text +=
+          fmt::format("{}: {}, {}\n", shown(cooked.tree.name),
+                      counted(cooked.tree.triangle_count, "triangle"), surface_text(cooked.edges));
       add_contest(cooked, text);
       add_grid(cooked, text);
     }
@@ -357,13 +360,14 @@ std::string trees_text(const Summary& summary, bool candidates) {
 std::string scene_text(const Summary& summary, bool candidates) {
   const SceneSummary& scene = *summary.scene;
   std::string text = trees_text(summary, candidates);
-  text +=
-      fmt::format("scene: {} instances ({} moving) of {} trees, {} triangles placed, {} bytes\n",
-                  scene.instances, scene.moving, summary.trees.size(), scene.placed_triangles,
-                  summary.file_bytes);
+  text += fmt::format("scene: {} ({} moving) of {}, {} placed, {} bytes\n",
+                      counted(scene.instances, "instance"), scene.moving,
+                      counted(summary.trees.size(), "tree"),
+                      counted(scene.placed_triangles, "triangle"), summary.file_bytes);
   if (scene.instances_left_out > 0 || scene.meshes > summary.trees.size()) {
-    text += fmt::format("  left out: {} instances, {} meshes\n", scene.instances_left_out,
-                        scene.meshes - summary.trees.size());
+    text += fmt::format("  left out: {}, {} {}\n", counted(scene.instances_left_out, "instance"),
+                        scene.meshes - summary.trees.size(),
+                        scene.meshes - summary.trees.size() == 1 ? "mesh" : "meshes");
   }
   return text;
 }

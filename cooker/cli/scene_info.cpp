@@ -12,6 +12,7 @@
 
 #include "cooker/cli/output.h"
 #include "cooker/import/mesh_arrays.h"
+#include "cooker/text/counted.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
@@ -118,17 +119,19 @@ Result<Json> scene_json(const File& file) {
 }
 
 void print_scene(const Json& scene) {
-  fmt::print("scene: {} instances ({} moving), {} triangles placed; answers {}\n",
-             scene["instance_count"].get<std::uint32_t>(), scene["moving"].get<std::size_t>(),
-             scene["placed_triangles"].get<std::uint64_t>(), line_of(scene["queries"]));
+  fmt::print("scene: {} ({} moving), {} placed; answers {}\n",
+             counted(scene["instance_count"].get<std::uint32_t>(), "instance"),
+             scene["moving"].get<std::size_t>(),
+             counted(scene["placed_triangles"].get<std::uint64_t>(), "triangle"),
+             line_of(scene["queries"]));
   std::map<std::uint32_t, std::size_t> of_layer;
   for (const Json& instance : scene["instances"]) {
     if (instance.contains("layer")) ++of_layer[instance["layer"].get<std::uint32_t>()];
   }
   for (std::uint32_t i = 0; i < scene["layers"].size(); ++i) {
     const Json& layer = scene["layers"][i];
-    fmt::print("  layer {} {}: {} instances, answers {}, collides with layers {}\n", i,
-               line_of(layer["name"]), of_layer[i], line_of(layer["queries"]),
+    fmt::print("  layer {} {}: {}, answers {}, collides with layers {}\n", i,
+               line_of(layer["name"]), counted(of_layer[i], "instance"), line_of(layer["queries"]),
                line_of(layer["collides_with"]));
   }
   if (!scene["materials"].empty()) fmt::print("  materials {}\n", line_of(scene["materials"]));

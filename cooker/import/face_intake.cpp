@@ -70,15 +70,21 @@ Status check_taken(const std::string& file, const Imported& imported) {
 Status check_any_taken(const std::string& file, std::size_t faces, const ImportReport& report) {
   if (faces > 0) return {};
   std::string why = "no faces";
-  if (!report.skipped.empty()) why = fmt::format("all {} faces are bad", report.source_faces);
+  if (!report.skipped.empty()) {
+    why = report.source_faces == 1 ? "its only face is bad"
+                                   : fmt::format("all {} faces are bad", report.source_faces);
+  }
   std::string also;
-  const auto add = [&also](std::size_t count, const char* what) {
-    if (count > 0) also += fmt::format("{}{} {}", also.empty() ? " (" : ", ", count, what);
+  const auto add = [&also](std::size_t count, const char* one, const char* several) {
+    if (count == 0) return;
+    also += fmt::format("{}{} {}", also.empty() ? " (" : ", ", count, count == 1 ? one : several);
   };
-  add(report.points_skipped, "points");
-  add(report.lines_skipped, "lines");
-  add(report.empty_skipped, "faces without corners");
-  if (report.source_faces == 0) add(report.vertices_unused, "vertices that no face uses");
+  add(report.points_skipped, "point", "points");
+  add(report.lines_skipped, "line", "lines");
+  add(report.empty_skipped, "face without corners", "faces without corners");
+  if (report.source_faces == 0) {
+    add(report.vertices_unused, "vertex that no face uses", "vertices that no face uses");
+  }
   if (!also.empty()) also += ")";
   return Error{Errc::kNoFaces, fmt::format("{}: {}{}", file, why, also)};
 }

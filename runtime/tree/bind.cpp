@@ -41,10 +41,14 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
 }
 
 Result<Tree> Tree::bind(const File& file, const BindOptions& options) {
-  if (file.has_scene() || file.tree_count() != 1) {
+  if (file.has_scene()) {
     return error_with(Errc::kTreeIndex, {},
-                      "the file holds # trees and # scenes: say which tree, or bind the scene",
-                      {file.tree_count(), file.has_scene() ? 1u : 0u});
+                      "the file holds a scene: bind that, or say which tree, by a number below #",
+                      {file.tree_count()});
+  }
+  if (file.tree_count() != 1) {
+    return error_with(Errc::kTreeIndex, {}, "the file holds # trees: say which",
+                      {file.tree_count()});
   }
   return bind(file, 0, options);
 }

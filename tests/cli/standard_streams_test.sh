@@ -234,7 +234,7 @@ printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0.3 0.7 0\np 1\nl 1 2\nf 1 2 3\nf 1 1 2\nf 
 expect 0 "$boxtree" cook notes.obj -o notes.bxt --grid-bits 10
 [ "$(wc -l <out)" -le 6 ] || { cat out; exit 1; }
 same "$(awk 'length > 100' out)" ""
-grep -q 'skipped 1 points and 1 lines; kept 1 faces without area$' out
+grep -q 'skipped 1 point and 1 line; kept 1 face without area$' out
 grep -qE '^  slowdown [0-9.]+ \(time over that of wide8 with arrays, mean over the kinds of queries\); [0-9]+ tried$' out
 expect 0 "$boxtree" cook --help
 head -3 out | grep -q '24 bits'

@@ -308,7 +308,7 @@ TEST_F(BinaryPlyTest, FaultsAreNamed) {
   ply.faces = {{0}, {0, 1}, {}};
   const Error none = fail("a.ply", ply.write());
   EXPECT_EQ(none.code, Errc::kNoFaces);
-  EXPECT_TRUE(has(none.detail, "1 points, 1 lines, 1 faces without corners"));
+  EXPECT_TRUE(has(none.detail, "1 point, 1 line, 1 face without corners"));
 }
 
 // Stated counts and lengths are held against the bytes that are there, before any room is made.

@@ -333,7 +333,7 @@ TEST_F(ImportSceneTest, BadFacesNameTheirMesh) {
   lost.add_mesh("lost", {{{kSecondBad.begin() + 9, kSecondBad.end()}}});
   const Error none = fail_scene(lost.text(R"({"mesh":0})"), {.skip_bad = true});
   EXPECT_EQ(none.code, Errc::kNoFaces);
-  EXPECT_TRUE(has(none.detail, "all 1 faces are bad"));
+  EXPECT_TRUE(has(none.detail, "its only face is bad"));
 }
 
 TEST_F(ImportSceneTest, PosesThatCannotBeInvertedAreNamed) {

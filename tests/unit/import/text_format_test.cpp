@@ -256,7 +256,7 @@ TEST_F(TextFormatTest, LinesOfOffMeanNothingButBehindColors) {
                   "line 6: 'red' behind a face is no number of a color"));
   const Error none = fail("e.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n0 1 1 1\n");
   EXPECT_EQ(none.code, Errc::kNoFaces);
-  EXPECT_TRUE(has(none.detail, "1 faces without corners"));
+  EXPECT_TRUE(has(none.detail, "1 face without corners"));
 }
 
 TEST_F(TextFormatTest, CornersOfObjHaveThreeNumbersAtMost) {
