@@ -255,19 +255,25 @@ void add_bench_command(Command& program, int& status) {
       .add_file("FILE", arguments->files, Values::kCookedFilesAndMeshes,
                 "Files with geometry inside; with --calibrate meshes")
       ->required();
-  command
-      .add_flag("--calibrate", arguments->calibrate,
-                "Measure the constants that auto chooses by; files are meshes, best three or more")
-      ->group(kRareOptions);
+  Option* calibrate =
+      command
+          .add_flag(
+              "--calibrate", arguments->calibrate,
+              "Measure the constants that auto chooses by; files are meshes, best three or more")
+          ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->type_name("N")
       ->between(1, 1000, "1 to 1000")
       ->shows_default();
-  command.add_flag("--pages", arguments->pages,
-                   "Count the pages of a cold file that queries read, in place of times");
+  Option* pages =
+      command.add_flag("--pages", arguments->pages,
+                       "Count the pages of a cold file that queries read, in place of times");
   command.add_flag("--quick", arguments->quick, "A tenth of the queries");
-  command.add_flag("--approximate", arguments->approximate,
-                   "Instead: closest points and distances against the error that is allowed");
+  Option* approximate =
+      command.add_flag("--approximate", arguments->approximate,
+                       "Instead: closest points and distances against the error that is allowed");
+  approximate->excludes(pages);
+  calibrate->excludes(pages)->excludes(approximate);
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.example("A first impression", "boxtree bench bunny.bxt --quick --runs 1");
   command.callback([arguments, &status] { status = run(*arguments); });

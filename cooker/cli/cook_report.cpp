@@ -3,6 +3,7 @@
 #include "cooker/cli/cook_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <map>
 #include <string>
@@ -15,8 +16,8 @@
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/surface_text.h"
 #include "cooker/import/file_error.h"
-
 #include "cooker/text/counted.h"
+
 namespace boxtree::cooker {
 namespace {
 
@@ -158,6 +159,32 @@ void add_choice(const CookedTree& cooked, std::string& text) {
   add_grid(cooked, text);
 }
 
+// Trees of a file share a grid, which the largest extent decides: how many steps the least of them
+// has, where that is fewer by a power of two or more.
+void add_shared_grid(const std::vector<CookedTree>& trees, std::string& text) {
+  const EncodedTree* least = nullptr;
+  int least_bits = 0, most_bits = 0;
+  for (const CookedTree& cooked : trees) {
+    const EncodedTree& tree = cooked.tree;
+    const Box<double>& box = tree.nodes.root_box;
+    double extent = 0;
+    for (std::size_t k = 0; k < 3; ++k) extent = std::max(extent, box.high[k] - box.low[k]);
+    if (tree.geometry.geometry != GeometryId::kGrid || !(extent > 0)) continue;
+    const int bits = std::ilogb(extent) + tree.scale_exponent - tree.geometry.grid_exponent;
+    if (least == nullptr || bits < least_bits) {
+      least = &tree;
+      least_bits = bits;
+    }
+    most_bits = std::max(most_bits, bits);
+  }
+  if (least == nullptr || least_bits == most_bits) return;
+  text += fmt::format(
+      "  one grid for all, step 2^{}: some 2^{} steps over {}, 2^{} over the largest; cooked apart "
+      "it "
+      "has a finer one, --exact keeps every bit\n",
+      least->geometry.grid_exponent, least_bits, shown(least->name), most_bits);
+}
+
 // What was chosen for each tree, a line each.
 void add_choices(const Summary& summary, std::string& text) {
   std::size_t width = 4;
@@ -179,6 +206,7 @@ void add_choices(const Summary& summary, std::string& text) {
           surface_text(cooked.edges));
     }
   }
+  if (!summary.scene) add_shared_grid(summary.trees, text);
 }
 
 // The parts of one tree that were left out, for tools that look at trees alone.
