@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
 // `boxtree info`: what a file holds and what each part costs.
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -17,6 +19,7 @@
 #include "cooker/cli/scene_info.h"
 #include "cooker/cli/surface_text.h"
 #include "cooker/export/decoded_faces.h"
+#include "cooker/text/counted.h"
 #include "format/container.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -94,6 +97,9 @@ Json tree_json(const File& file, std::uint32_t index) {
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)}};
   json["max_vertex_error"] = record.max_vertex_error;
+  json["face_ids"] = bytes.face_ids > 0                              ? "stored"
+                     : (record.flags & kTreeFacesInSourceOrder) != 0 ? "source order"
+                                                                     : "none";
   const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -124,31 +130,62 @@ Json file_json(const File& file) {
   return json;
 }
 
+// What stands behind the bytes of face ids.
+const char* meaning_of_ids(const std::string& face_ids) {
+  if (face_ids == "stored") return "of the source's faces";
+  if (face_ids == "source order") return "none needed, the tree's faces are in the source's order";
+  return "none, queries number faces in the tree's order";
+}
+
+// All bytes of the file, by the kind of section; the rest is what a reader opens it by.
+std::string text_of_bytes(const Json& json) {
+  std::vector<std::pair<std::string, std::uint64_t>> kinds;
+  std::uint64_t rest = json["file_bytes"].get<std::uint64_t>();
+  for (const Json& section : json["sections"]) {
+    const auto kind = section["kind"].get<std::string>();
+    const auto bytes = section["bytes"].get<std::uint64_t>();
+    const auto known = std::find_if(kinds.begin(), kinds.end(),
+                                    [&](const auto& each) { return each.first == kind; });
+    if (known == kinds.end()) {
+      kinds.emplace_back(kind, bytes);
+    } else {
+      known->second += bytes;
+    }
+    rest -= bytes;
+  }
+  std::string text;
+  for (const auto& [kind, bytes] : kinds) text += fmt::format("{} {}, ", kind, bytes);
+  return text + fmt::format("header, section table and alignment {}", rest);
+}
+
 void print_file(const Json& json) {
   fmt::print("format {}, {} bytes\n", json["version"].get<std::string>(),
              json["file_bytes"].get<std::uint64_t>());
   for (std::size_t i = 0; i < json["trees"].size(); ++i) {
     const Json& tree = json["trees"][i];
     const auto name = tree["name"].get<std::string>();
-    fmt::print("{}: {} triangles, {}, geometry {}, {} nodes, depth {}\n",
+    fmt::print("{}: {}, {}, geometry {}, {}, depth {}\n",
                name.empty() ? fmt::format("tree {}", i) : shown(name),
-               tree["triangles"].get<std::uint32_t>(), tree["codec"].get<std::string>(),
-               tree["geometry"].get<std::string>(), tree["nodes"].get<std::uint32_t>(),
+               counted(tree["triangles"].get<std::uint32_t>(), "triangle"),
+               tree["codec"].get<std::string>(), tree["geometry"].get<std::string>(),
+               counted(tree["nodes"].get<std::uint32_t>(), "node"),
                tree["depth"].get<std::uint32_t>());
     if (const auto copies = tree["duplicates"].get<std::uint32_t>(); copies > 0) {
-      fmt::print("  {} of {} faces are copies of others\n", copies,
-                 tree["faces"].get<std::uint32_t>());
+      fmt::print("  {} of {} faces {} of others\n", copies, tree["faces"].get<std::uint32_t>(),
+                 copies == 1 ? "is a copy" : "are copies");
     }
     fmt::print("  bytes per triangle: tree {:.2f}, with geometry {:.2f}, face ids {:.2f}\n",
                tree["bytes_per_triangle"]["tree"].get<double>(),
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
+    fmt::print("  face ids: {}\n", meaning_of_ids(tree["face_ids"].get<std::string>()));
     fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
                line_of(tree["bounds"]["max"]));
   }
   if (json.contains("scene")) print_scene(json["scene"]);
+  fmt::print("bytes: {}\n", text_of_bytes(json));
 }
 
 Result<Json> info_on(const std::filesystem::path& path) {

@@ -978,7 +978,7 @@ expect 0 "$boxtree" verify external.bxt --mesh shown.obj
 expect 0 "$boxtree" export both.bxt -o shown.glb --triangles
 same "$(head -c 4 shown.glb)" glTF
 grep -q '^cube: 12 triangles$' out
-grep -q '^flat: 1 triangles$' out
+grep -q '^flat: 1 triangle$' out
 expect 0 "$boxtree" cook shown.glb -o again.bxt --flatten --json
 same "$(jq -r '.trees[0].triangles' out)" 13
 for tree in 1 flat; do
@@ -1010,6 +1010,44 @@ expect 2 "$boxtree" export missing.bxt -o shown.obj
 expect 2 "$boxtree" export cube.bxt -o no/such/folder/shown.obj
 expect 3 "$boxtree" export cube.obj -o shown.obj
 cmp shown.obj before.obj
+# What `info` prints accounts for every byte, and says why there are no face ids.
+awk 'BEGIN { for (i = 0; i < 200; i++) { x = i * 37 % 200; printf "v %d 0 0\nv %d 1 0\nv %d 0 1\nf -3 -2 -1\n", x, x, x } }' >apart.obj
+for ids in stored none 'source order'; do
+  options=()
+  [ "$ids" = none ] && options=(--no-face-ids)
+  [ "$ids" = 'source order' ] && options=(--write-reordered ordered_apart.obj)
+  expect 0 "$boxtree" cook apart.obj -o ids.bxt --quiet "${options[@]}"
+  expect 0 "$boxtree" info ids.bxt --json
+  same "$(jq -r '.trees[0].face_ids' out)" "$ids"
+  expect 0 "$boxtree" info ids.bxt
+  same "$(sed -n 's/^bytes: //p' out | grep -o '[0-9]*' | awk '{ sum += $1 } END { print sum }')" "$(stat -c %s ids.bxt)"
+  case $ids in
+    stored) grep -q "^  face ids: of the source's faces$" out ;;
+    none) grep -q "^  face ids: none, queries number faces in the tree's order$" out ;;
+    *) grep -q "^  face ids: none needed, the tree's faces are in the source's order$" out ;;
+  esac
+done
+# One of a thing has no plural.
+printf 'v %s\n' '0 0 0' '1 0 0' '0 1 0' >one.obj
+printf 'f 1 2 3\n' >>one.obj
+expect 0 "$boxtree" cook one.obj -o one.bxt --grid-bits 8
+grep -q '^one: 1 triangle, ' out
+expect 0 "$boxtree" info one.bxt
+grep -q '^one: 1 triangle, ' out
+expect 0 "$boxtree" cook one.obj -o one.bxt --scene
+grep -q '^scene: 1 instance (0 moving) of 1 tree, 1 triangle placed, ' out
+sed 's/^v 1 0 0/v nan 0 0/' one.obj >bad_one.obj
+expect 3 "$boxtree" cook bad_one.obj -o bad_one.bxt --skip-bad
+grep -q 'its only face is bad' err
+# A small mesh beside a large one has few steps of their grid, and is told so.
+sed 's/^v .*/& /; s/\(v .*\)1 /\11000 /' cube.obj >large.obj
+expect 0 "$boxtree" cook cube.obj large.obj -o sizes.bxt --grid-bits 20
+grep -q '^  one grid for all, step 2^-10: some 2^10 steps over cube, 2^19 over the largest; cooked apart it has a finer one, --exact keeps every bit$' out
+expect 0 "$boxtree" cook cube.obj other/cube.obj -o sizes.bxt --grid-bits 20
+same "$(grep -c 'one grid for all' out)" 0
+# Two measures at once are refused.
+expect 1 "$boxtree" bench cube.bxt --pages --approximate
+grep -q '^boxtree: usage: bench: --' err
 # What an export is made from is never its output, whatever the name it goes by.
 cp cube.bxt link-target.bxt
 ln -s link-target.bxt link.obj
