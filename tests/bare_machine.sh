@@ -19,7 +19,7 @@ git clone --quiet "$source" "$root/boxtree"
 
 run() {
   echo "== $*"
-  chroot "$root" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C "$@"
+  chroot "$root" /usr/bin/env -i PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LC_ALL=C "$@"
 }
 python3 "$source/tests/docs/blocks.py" "$source/README.md" sh >"$root/readme.sh"
 run bash -c 'cd /boxtree; sudo() { "$@"; }; set -euo pipefail; . /readme.sh' 2>&1 | tee "$root/readme.log"
