@@ -59,6 +59,9 @@ class Cook {
       : input_(std::move(input)), profile_(profile), options_(options), progress_(progress) {}
 
   Result<CookedFile> run() {
+    for (const ImportReport& report : input_.imports) {
+      if (Status status = check_digits(report); !status) return status.error();
+    }
     if (Status status = plan(); !status) return status.error();
     if (Status status = try_meshes(); !status) return status.error();
     if (Status status = choose_encodings(); !status) return status.error();
@@ -89,11 +92,24 @@ class Cook {
     return {};
   }
 
+  // A tolerance is for what the source says, and f32 has taken from that already.
+  [[nodiscard]] Status check_digits(const ImportReport& report) const {
+    const std::optional<double>& tolerance = options_.grid.tolerance;
+    if (!tolerance || report.moved_by_f32 <= *tolerance) return {};
+    const std::string source = report.files_read.empty() ? "-" : report.files_read.front().string();
+    return Error{
+        Errc::kMeshUnsupported,
+        fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
+                    "{}; cook --f64 keeps all digits",
+                    source, report.moved_by_f32, *tolerance)};
+  }
+
   // Called for one mesh after another; may be called again for an imported mesh.
   Status import_mesh(std::size_t mesh) {
     if (!input_.importer || mesh < input_.imports.size()) return {};
     Result<Imported> imported = input_.importer(mesh);
     if (!imported) return imported.error();
+    if (Status status = check_digits(imported->report); !status) return status;
     input_.scene.meshes[mesh].mesh = std::move(imported->mesh);
     input_.imports.push_back(std::move(imported->report));
     return {};
