@@ -9,10 +9,6 @@
 
 namespace boxtree {
 
-/// The first field that is NaN or negative; null if there is none. As the details of all invalid
-/// queries, it is short enough for a std::string to take without allocating.
-[[nodiscard]] const char* invalid_field(const Approximation& approximation) noexcept;
-
 /// The distance from which candidates can be skipped, given that some point is `upper` away.
 [[nodiscard]] inline double converged_beyond(const Approximation& approximation,
                                              double upper) noexcept {

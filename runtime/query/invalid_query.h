@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 
 #include <boxtree/error.h>
+#include <boxtree/query.h>
 
 namespace boxtree {
 
@@ -14,5 +15,8 @@ namespace boxtree {
 
 /// Whether the corners of a box are finite and in order.
 [[nodiscard]] bool is_finite_box(const Eigen::AlignedBox3d& box) noexcept;
+
+/// The first field that is NaN or negative; null if there is none.
+[[nodiscard]] const char* invalid_field(const Approximation& approximation) noexcept;
 
 }  // namespace boxtree

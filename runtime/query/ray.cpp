@@ -7,6 +7,11 @@
 
 namespace boxtree {
 
+const char* refused_field(const Ray& ray) noexcept {
+  const char* const field = invalid_field(ray, largest_magnitude(ray.direction));
+  return field != nullptr ? field : "origin";
+}
+
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit) {
   const double length = largest_magnitude(ray.direction);

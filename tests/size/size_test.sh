@@ -40,6 +40,13 @@ smaller 'every query and library, MinSizeRel' "$work/whole-small/program" $((400
 smaller 'rays of wide4' "$work/small-fast/program" $((120 * 1024))
 smaller 'rays of wide4, MinSizeRel without vectors' "$work/small/program" $((60 * 1024))
 
+# What all queries share needs none of them: each is built without the others.
+for query in box point sphere pair distance within; do
+  cmake -S "$source" -B "$work/alone" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DBOXTREE_BUILD_COOKER=OFF -DBOXTREE_BUILD_TESTS=OFF \
+    -DBOXTREE_CODECS=wide4 -DBOXTREE_QUERIES=$query -DBOXTREE_BLOB=OFF -DBOXTREE_SIMD=OFF >"$work/log" 2>&1 &&
+    cmake --build "$work/alone" -j2 >>"$work/log" 2>&1 || { tail -30 "$work/log"; fail "$query alone does not build"; }
+done
+
 # What was left out is in none of the small programs, and the same list finds it in the whole one. The
 # runtime has no codec of the paper and no decompressor of its own.
 left_out='PairWalk|DistanceWalk|walk_wide_pairs|triangles_intersect|triangle_distance|PointQuery|BoxQuery|SphereQuery|PackedCodec|PlainCodec|Wide8Node|lzma_|ZSTD_|decompress'
