@@ -21,9 +21,10 @@ constexpr std::size_t kChunkBytes = std::size_t{1} << 18;
 }  // namespace
 
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
-                   const std::function<void(const char* bytes, std::size_t count)>& sink) {
+                   const std::function<void(const char* bytes, std::size_t count)>& sink,
+                   const std::string& named_in) {
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return read_failure(path.string(), errno);
+  if (!file) return read_failure(path.string(), errno, named_in);
   std::vector<char> chunk(kChunkBytes);
   std::uint64_t left = most;
   for (;;) {
@@ -40,14 +41,16 @@ Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
   }
 }
 
-Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most) {
+Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most,
+                                    const std::string& named_in) {
   std::string text;
   // Without this, the text takes twice its size while it grows for the last time.
   std::error_code none;
   const std::uintmax_t size = std::filesystem::file_size(path, none);
   if (!none) text.reserve(static_cast<std::size_t>(std::min<std::uintmax_t>(size, most)));
   const Status status = read_chunks(
-      path, most, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); });
+      path, most, [&text](const char* bytes, std::size_t count) { text.append(bytes, count); },
+      named_in);
   if (!status.ok()) return status.error();
   return text;
 }

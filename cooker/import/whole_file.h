@@ -19,12 +19,14 @@ inline constexpr std::uint64_t kMaxCostsBytes = std::uint64_t{1} << 20;
 inline constexpr std::uint64_t kMaxResultsBytes = std::uint64_t{256} << 20;
 inline constexpr std::uint64_t kAnyBytes = std::numeric_limits<std::uint64_t>::max();
 
-/// Passes the bytes of `path` to `sink` in chunks. Errors: kFileNotFound; kFileUnreadable, also for
-/// a file of more than `most` bytes.
+/// Passes the bytes of `path` to `sink` in chunks. `named_in`: as for read_failure. Errors:
+/// kFileNotFound; kFileUnreadable, also for a file of more than `most` bytes.
 Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
-                   const std::function<void(const char* bytes, std::size_t count)>& sink);
+                   const std::function<void(const char* bytes, std::size_t count)>& sink,
+                   const std::string& named_in = {});
 
 /// The whole file. Errors: the same.
-Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most);
+Result<std::string> read_whole_file(const std::filesystem::path& path, std::uint64_t most,
+                                    const std::string& named_in = {});
 
 }  // namespace boxtree::cooker

@@ -12,7 +12,6 @@
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/profile_fields.h"
 #include "cooker/scene/profile_pose.h"
-#include "runtime/file/read_failure.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -308,13 +307,10 @@ void ProfileReader::read_hidden_faces(Fields& fields, ProfileMesh& mesh) {
   const auto list = fields.text("hidden_faces");
   if (!list) return;
   const std::filesystem::path path = beside(*list).value;
-  const Result<std::string> text = read_whole_file(path, kMaxFaceListBytes);
+  const Result<std::string> text = read_whole_file(path, kMaxFaceListBytes, profile_.path.string());
   if (!text) {
-    const Error error = text.code() == Errc::kFileNotFound
-                            ? read_failure(path.string(), ENOENT, profile_.path.string())
-                            : text.error();
     complaints_.expected(list->line, "hidden_faces", "the name of a list of faces",
-                         error.message());
+                         text.error().message());
     return;
   }
   profile_.files_read.push_back(path);
