@@ -43,7 +43,7 @@ struct Bounds {
   }
 };
 
-Bounds bounds_of(const Positions& positions) {
+Bounds bounds_with_plus_zeros(const Positions& positions) {
   Bounds bounds;
   for (std::size_t i = 0; i < positions.size(); ++i) bounds.include(positions[i]);
   return bounds;
@@ -63,7 +63,7 @@ Box<float> face_box(const MeshView& mesh, const Frame& frame, std::size_t face) 
 
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
   if (positions.size() == 0) return;
-  const Bounds in_object_space = bounds_of(positions);
+  const Bounds in_object_space = bounds_with_plus_zeros(positions);
   Bounds bounds = in_object_space;
   const bool is_centred = positions.precision == Precision::kF64 && origin == Origin::kByPrecision;
   if (is_centred) {

@@ -11,12 +11,6 @@ namespace boxtree::cooker {
 
 namespace {
 
-Eigen::AlignedBox3d bounds_of_all(const Positions& positions) {
-  Eigen::AlignedBox3d bounds;
-  for (std::size_t i = 0; i < positions.size(); ++i) bounds.extend(positions[i]);
-  return bounds;
-}
-
 double unnoticed_in(const Eigen::AlignedBox3d& bounds) {
   constexpr double kHalfStep = 0x1p-17;
   return bounds.isEmpty() ? 0 : kHalfStep * bounds.sizes().maxCoeff();
@@ -25,11 +19,11 @@ double unnoticed_in(const Eigen::AlignedBox3d& bounds) {
 }  // namespace
 
 double unnoticed_move(const Positions& positions) {
-  return unnoticed_in(bounds_of_all(positions));
+  return unnoticed_in(bounds_of(positions));
 }
 
 bool may_have_moved(const Positions& positions) {
-  const Eigen::AlignedBox3d bounds = bounds_of_all(positions);
+  const Eigen::AlignedBox3d bounds = bounds_of(positions);
   if (bounds.isEmpty()) return false;
   const Eigen::Vector3d farthest = bounds.min().cwiseAbs().cwiseMax(bounds.max().cwiseAbs());
   return kRoundoffF32 * farthest.norm() > unnoticed_in(bounds);

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace boxtree::cooker {
 
@@ -33,6 +33,13 @@ struct Positions {
                : Eigen::Vector3d(f64[3 * i], f64[3 * i + 1], f64[3 * i + 2]);
   }
 };
+
+/// Bounds of all; empty if there are none.
+[[nodiscard]] inline Eigen::AlignedBox3d bounds_of(const Positions& positions) {
+  Eigen::AlignedBox3d bounds;
+  for (std::size_t i = 0; i < positions.size(); ++i) bounds.extend(positions[i]);
+  return bounds;
+}
 
 /// Marks the missing fourth corner of a triangle.
 inline constexpr std::uint32_t kNoCorner = 0xffffffffu;

@@ -129,9 +129,7 @@ int exponent_above(double x) {
 }
 
 Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
-  Eigen::AlignedBox3d bounds;
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) bounds.extend(mesh.positions[i]);
-  return bounds;
+  return bounds_of(mesh.positions);
 }
 
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice) {
