@@ -52,7 +52,7 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
       {"geometry", options.may_use_grid ? "auto" : std::string(geometry_name(options.geometry))},
       {"grid", grid_record(options)},
       {"face_ids", options.face_ids},
-      {"precision", options.import.precision == Precision::kF64 ? "f64" : "f32"},
+      {"precision", precision_name(options.import.precision)},
       {"skip_bad", options.import.skip_bad}};
   // Recorded only if not the default, so that records of other files stay the same.
   if (options.number_by_tree) record["options"]["faces"] = "reordered";

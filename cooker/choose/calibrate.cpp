@@ -67,10 +67,27 @@ Result<Sample> sample(const SourceMesh& mesh, CodecId codec, GeometryId geometry
   return Sample{work, *ns};
 }
 
+Result<std::vector<Sample>> sample_all(
+    std::span<const SourceMesh> meshes, const CodecInfo& codec, GeometryId geometry,
+    std::size_t runs, const std::function<void(const std::string& step)>& progress) {
+  std::vector<Sample> samples;
+  for (const SourceMesh& mesh : meshes) {
+    if (mesh.faces.empty()) continue;
+    if (progress) {
+      progress(fmt::format("{}: {}, {} of {}", mesh.name, codec.name, geometry_name(geometry),
+                           precision_name(mesh.positions.precision)));
+    }
+    const Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
+    if (!of_mesh) return of_mesh.error();
+    samples.push_back(*of_mesh);
+  }
+  return samples;
+}
+
 // `arrays`: of the same codec and precision, or null where these are fitted.
 CodecCost fit(CodecId codec, GeometryId geometry, Precision precision,
               const std::vector<Sample>& samples, const CodecCost* arrays) {
-  CodecCost cost{codec, geometry, {}, precision == Precision::kF64};
+  CodecCost cost{codec, geometry, {}, precision};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     std::vector<Measured> measured;
     measured.reserve(samples.size());
@@ -81,6 +98,20 @@ CodecCost fit(CodecId codec, GeometryId geometry, Precision precision,
         arrays == nullptr ? fit_steps(measured) : fit_leaf(measured, arrays->of_kind[kind]);
   }
   return cost;
+}
+
+// By how many times modelled and measured times differ at most.
+double worst_ratio(const CodecCost& cost, const std::vector<Sample>& samples) {
+  double worst = 0;
+  for (const Sample& of_mesh : samples) {
+    const QueryCost modelled =
+        cost_of(of_mesh.work, cost.codec, cost.geometry, cost.precision, std::span(&cost, 1));
+    for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
+      const double ratio = modelled[kind] / of_mesh.ns[kind];
+      worst = std::max({worst, ratio, 1 / ratio});
+    }
+  }
+  return worst;
 }
 
 // The same positions as f64.
@@ -107,34 +138,19 @@ Result<Calibration> calibrate(std::span<const SourceMesh> meshes, std::size_t ru
   Calibration out;
   for (const CodecInfo& codec : kCodecs) {
     for (const Precision precision : {Precision::kF32, Precision::kF64}) {
+      const std::span<const SourceMesh> sampled =
+          precision == Precision::kF64 ? std::span<const SourceMesh>(doubles) : meshes;
       std::optional<CodecCost> arrays;
       for (const GeometryId geometry :
            {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid}) {
-        if (geometry == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
-        const bool is_f64 = precision == Precision::kF64;
-        if (is_f64 && !has_f64_cost(codec.id, geometry)) continue;
-        std::vector<Sample> samples;
-        for (const SourceMesh& mesh : is_f64 ? std::span<const SourceMesh>(doubles) : meshes) {
-          if (mesh.faces.empty()) continue;
-          if (progress) {
-            progress(fmt::format("{}: {}, {}{}", mesh.name, codec.name, geometry_name(geometry),
-                                 is_f64 ? " of f64" : ""));
-          }
-          Result<Sample> of_mesh = sample(mesh, codec.id, geometry, runs);
-          if (!of_mesh) return of_mesh.error();
-          samples.push_back(*of_mesh);
-        }
-        out.costs.push_back(
-            fit(codec.id, geometry, precision, samples, arrays ? &*arrays : nullptr));
-        if (geometry == GeometryId::kArrays) arrays = out.costs.back();
-        for (const Sample& of_mesh : samples) {
-          const QueryCost modelled =
-              cost_of(of_mesh.work, codec.id, geometry, precision, std::span(&out.costs.back(), 1));
-          for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-            const double ratio = modelled[kind] / of_mesh.ns[kind];
-            out.worst_ratio = std::max({out.worst_ratio, ratio, 1 / ratio});
-          }
-        }
+        if (!has_cost(codec.id, geometry, precision)) continue;
+        const auto samples = sample_all(sampled, codec, geometry, runs, progress);
+        if (!samples) return samples.error();
+        const CodecCost cost =
+            fit(codec.id, geometry, precision, *samples, arrays ? &*arrays : nullptr);
+        if (geometry == GeometryId::kArrays) arrays = cost;
+        out.worst_ratio = std::max(out.worst_ratio, worst_ratio(cost, *samples));
+        out.costs.push_back(cost);
       }
     }
   }

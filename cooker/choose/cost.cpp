@@ -13,10 +13,10 @@ namespace boxtree::cooker {
 QueryCost cost_of(const WorkOfKinds& work, CodecId codec, GeometryId geometry, Precision precision,
                   std::span<const CodecCost> costs) {
   const GeometryId stored = geometry == GeometryId::kExternal ? GeometryId::kArrays : geometry;
-  const bool is_f64 = precision == Precision::kF64 && has_f64_cost(codec, stored);
+  if (!has_cost(codec, stored, precision)) precision = Precision::kF32;
   QueryCost cost{};
   for (const CodecCost& known : costs) {
-    if (known.codec != codec || known.geometry != stored || known.is_f64 != is_f64) continue;
+    if (known.codec != codec || known.geometry != stored || known.precision != precision) continue;
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       const StepCost& step = known.of_kind[kind];
       cost[kind] = step.query + work[kind].nodes * step.node + work[kind].leaves * step.leaf;

@@ -26,13 +26,16 @@ struct CodecCost {
   CodecId codec;
   GeometryId geometry;
   std::array<StepCost, kQueryKinds> of_kind;
-  bool is_f64 = false;  // positions of f64, which queries of wide codecs read without vectors
+  Precision precision = Precision::kF32;  // of positions
 };
 
-/// Whether a codec with a store has steps of its own for positions of f64: grids have none of them,
-/// and binary codecs read all alike.
-[[nodiscard]] constexpr bool has_f64_cost(CodecId codec, GeometryId geometry) noexcept {
-  return is_wide(codec) && geometry != GeometryId::kGrid;
+/// Whether a codec has steps of its own with a store of positions of `precision`. Binary codecs
+/// have arrays in place of exact, and read f64 as they read f32; wide ones read f64 without
+/// vectors. No grid has positions of f64.
+[[nodiscard]] constexpr bool has_cost(CodecId codec, GeometryId geometry,
+                                      Precision precision) noexcept {
+  if (!is_wide(codec)) return geometry != GeometryId::kExact && precision == Precision::kF32;
+  return geometry != GeometryId::kGrid || precision == Precision::kF32;
 }
 
 /// The constants that the cooker uses, measured by `boxtree bench --calibrate`. They are compiled

@@ -19,8 +19,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr std::array kStores = {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid};
 constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
-constexpr const char* kF32Positions = "f32";
-constexpr const char* kF64Positions = "f64";
+constexpr std::array kPrecisions = {Precision::kF32, Precision::kF64};
 
 Error fault(std::string what) {
   return {Errc::kDocumentInvalid, "costs: " + std::move(what)};
@@ -65,11 +64,12 @@ Result<CodecCost> parse_row(const Json& row, std::size_t number) {
         fmt::format("row {}: geometry \"{}\": expected arrays, exact or grid", number, geometry));
   }
   const std::string positions = member(row, "positions");
-  if (positions != kF32Positions && positions != kF64Positions) {
-    return fault(fmt::format("row {}: positions \"{}\": expected {} or {}", number, positions,
-                             kF32Positions, kF64Positions));
+  const auto precision = std::find_if(kPrecisions.begin(), kPrecisions.end(),
+                                      [&](Precision p) { return precision_name(p) == positions; });
+  if (precision == kPrecisions.end()) {
+    return fault(fmt::format("row {}: positions \"{}\": expected f32 or f64", number, positions));
   }
-  CodecCost cost{*id, *store, {}, positions == kF64Positions};
+  CodecCost cost{*id, *store, {}, *precision};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     const Result<StepCost> steps =
         parse_steps(row, fmt::format("{}, {}", codec, geometry), kQueryNames[kind]);
@@ -86,7 +86,7 @@ std::string costs_to_json(const Calibration& calibration) {
   for (const CodecCost& cost : calibration.costs) {
     Json row = {{"codec", codec_name(cost.codec)},
                 {"geometry", geometry_name(cost.geometry)},
-                {"positions", cost.is_f64 ? kF64Positions : kF32Positions}};
+                {"positions", precision_name(cost.precision)}};
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
       const StepCost& step = cost.of_kind[kind];
       row[kQueryNames[kind]] = {
@@ -112,16 +112,14 @@ Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
   }
   for (const CodecInfo& codec : kCodecs) {
     for (const GeometryId store : kStores) {
-      if (store == GeometryId::kExact && !is_wide(codec.id)) continue;  // they have arrays
-      for (const bool is_f64 : {false, true}) {
-        if (is_f64 && !has_f64_cost(codec.id, store)) continue;
+      for (const Precision precision : kPrecisions) {
+        if (!has_cost(codec.id, store, precision)) continue;
         const auto count = std::count_if(costs.begin(), costs.end(), [&](const CodecCost& cost) {
-          return cost.codec == codec.id && cost.geometry == store && cost.is_f64 == is_f64;
+          return cost.codec == codec.id && cost.geometry == store && cost.precision == precision;
         });
         if (count == 1) continue;
         return fault(fmt::format("{}, {}, {}: expected one row, found {}", codec.name,
-                                 geometry_name(store), is_f64 ? kF64Positions : kF32Positions,
-                                 count));
+                                 geometry_name(store), precision_name(precision), count));
       }
     }
   }

@@ -148,7 +148,7 @@ void print_row(const Json& row) {
 // A row for each codec and store: nanoseconds of a query, a node and a leaf for each kind.
 void print_row(const CodecCost& cost) {
   fmt::print("{:<10} {:<6} {}", codec_name(cost.codec), geometry_name(cost.geometry),
-             cost.is_f64 ? "f64" : "f32");
+             precision_name(cost.precision));
   for (const StepCost& step : cost.of_kind) {
     fmt::print("  {:8.1f} {:6.2f} {:6.2f}", step.query, step.node, step.leaf);
   }

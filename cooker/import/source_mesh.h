@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -15,6 +16,10 @@ namespace boxtree::cooker {
 
 /// The type of vertex positions. f32 unless the caller needs f64: most sources are f32.
 enum class Precision : std::uint8_t { kF32, kF64 };
+
+[[nodiscard]] constexpr std::string_view precision_name(Precision precision) noexcept {
+  return precision == Precision::kF32 ? "f32" : "f64";
+}
 
 /// Positions of all vertices, three numbers each, in object space (the units of the source). Only
 /// the array of `precision` is filled.

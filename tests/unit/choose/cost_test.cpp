@@ -84,7 +84,7 @@ TEST(FitLeaf, FindsTheLeafAndKeepsTheRest) {
 TEST(Cost, StoresOfACodecDifferInLeaves) {
   for (const CodecCost& cost : compiled_costs()) {
     for (const CodecCost& other : compiled_costs()) {
-      if (other.codec != cost.codec || other.is_f64 != cost.is_f64) continue;
+      if (other.codec != cost.codec || other.precision != cost.precision) continue;
       for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
         EXPECT_EQ(other.of_kind[kind].query, cost.of_kind[kind].query);
         EXPECT_EQ(other.of_kind[kind].node, cost.of_kind[kind].node);
