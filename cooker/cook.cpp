@@ -96,12 +96,11 @@ class Cook {
   [[nodiscard]] Status check_digits(const ImportReport& report) const {
     const std::optional<double>& tolerance = options_.grid.tolerance;
     if (!tolerance || report.moved_by_f32 <= *tolerance) return {};
-    const std::string source = report.files_read.empty() ? "-" : report.files_read.front().string();
     return Error{
         Errc::kMeshUnsupported,
         fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
                     "{}; cook --f64 keeps all digits",
-                    source, report.moved_by_f32, *tolerance)};
+                    source_of(report).string(), report.moved_by_f32, *tolerance)};
   }
 
   // Called for one mesh after another; may be called again for an imported mesh.

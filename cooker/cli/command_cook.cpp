@@ -128,7 +128,6 @@ void set_options(Arguments& arguments) {
   if (arguments.f64) options.import.precision = Precision::kF64;
   options.import.keep_doubles = arguments.exact;
   options.grid.step_exponent = step_exponent_of(arguments.grid_step);
-  if (options.grid.step_exponent) options.geometry = GeometryId::kGrid;
   // The grid of 24 bits that is tried by default would cost the digits that --f64 requests.
   const bool is_grid_welcome = options.grid.tolerance || !arguments.f64;
   options.may_use_grid = options.geometry == GeometryId::kExact && !arguments.exact &&
@@ -375,11 +374,12 @@ void add_cook_command(Command& program, int& status) {
                   "boxtree cook level.gltf -o level.bxt --why");
   command.example("A scene by its profile", "boxtree cook --profile scene.toml -o profiled.bxt");
   command.example("Through a pipe", "boxtree cook - --format obj -o - < bunny.obj > piped.bxt");
-  command.callback([arguments, inputs, profile, grid_bits, &status] {
+  command.callback([arguments, inputs, profile, grid_bits, grid_step, &status] {
     if (inputs->count() == 0 && profile->count() == 0) {
       refuse_without("MESH, or --profile with a source");
     }
-    if (grid_bits->count() > 0) arguments->job.options.geometry = GeometryId::kGrid;
+    if (grid_bits->count() + grid_step->count() > 0)
+      arguments->job.options.geometry = GeometryId::kGrid;
     status = run(*arguments);
   });
 }

@@ -180,8 +180,7 @@ void add_shared_grid(const std::vector<CookedTree>& trees, std::string& text) {
   if (least == nullptr || least_bits == most_bits) return;
   text += fmt::format(
       "  one grid for all, step 2^{}: some 2^{} steps over {}, 2^{} over the largest; cooked apart "
-      "it "
-      "has a finer one, --exact keeps every bit\n",
+      "it has a finer one, --exact keeps every bit\n",
       least->geometry.grid_exponent, least_bits, shown(least->name), most_bits);
 }
 
@@ -294,9 +293,7 @@ Json summary_json(const Summary& summary) {
 }
 
 std::vector<std::string> warnings_of(const ImportReport& import) {
-  // No file is read where the source is bytes.
-  const std::string source =
-      input_name(import.files_read.empty() ? "-" : import.files_read.front());
+  const std::string source = input_name(source_of(import));
   std::vector<std::string> warnings;
   for (const std::filesystem::path& file : import.files_missing) {
     warnings.push_back(
@@ -312,9 +309,8 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
   if (import.moved_by_f32 > 0) {
     warnings.push_back(
         fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
-                    "by up to {:.3g}; "
-                    "queries are slow, too; cook --f64 keeps all digits, and with --tolerance "
-                    "LENGTH in few bytes",
+                    "by up to {:.3g}; queries are slow, too; cook --f64 keeps all digits, and with "
+                    "--tolerance LENGTH in few bytes",
                     source, import.moved_by_f32));
   }
   return warnings;

@@ -274,8 +274,7 @@ class KeyFields {
       if (key != second) continue;
       return fmt::format(
           "{}: \"{}\" is of the second tree of a line of the kind {}; FILE, --tree and --mesh of "
-          "the "
-          "command line say which tree a batch queries",
+          "the command line say which tree a batch queries",
           kind_, key, listed(kinds_of_two()));
     }
     const std::string& written = written_.at(key);

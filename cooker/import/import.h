@@ -65,8 +65,8 @@ struct ImportReport {
   std::size_t vertices_welded = 0;   // bit-equal duplicates removed
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
-  /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther than
-  /// unnoticed_move (f32_digits.h).
+  /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther
+  /// than unnoticed_move (f32_digits.h).
   double moved_by_f32 = 0;
   bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
@@ -77,6 +77,11 @@ struct ImportReport {
   /// XXH3 over the bytes of files_read, in order of first read, or over ImportOptions::bytes.
   std::uint64_t content_hash = 0;
 };
+
+/// The file that was imported, - for ImportOptions::bytes.
+[[nodiscard]] inline std::filesystem::path source_of(const ImportReport& report) {
+  return report.files_read.empty() ? "-" : report.files_read.front();
+}
 
 struct Imported {
   SourceMesh mesh;

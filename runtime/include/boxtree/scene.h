@@ -134,8 +134,8 @@ class BOXTREE_API Scene {
   /// O(moving instances), allocates. Errors: kInstanceIndex, kRecordInvalid.
   Status make_movable(std::uint32_t instance);
   /// Gives a moving instance another pose and refits the tree over the moving ones; O(log) of their
-  /// number; allocates for the text of an error alone. Errors: kInstanceIndex, kInstanceStatic, kInvalidPose (then nothing
-  /// has changed).
+  /// number; allocates for the text of an error alone. Errors: kInstanceIndex, kInstanceStatic,
+  /// kInvalidPose (then nothing has changed).
   Status update(std::uint32_t instance, const Pose& pose);
   /// Builds the tree over moving instances anew, for after many of them have gone far. Allocates.
   void rebuild();
