@@ -34,8 +34,8 @@ inline constexpr std::size_t kClusterPadding = 72;
 /// What the numbers of a store stand for.
 enum class ClusterNumbers : std::uint8_t {
   kGrid,  // 32 bits: places on a grid
-  kF32,   // 32 bits: floats, see float_of_number
-  kF64,   // 64 bits: doubles likewise
+  kF32,   // 32 bits: floats that count from the tree's origin, see float_of_number
+  kF64,   // 64 bits: doubles of object space, likewise
 };
 
 /// What the numbers of a store with clusters stand for. `is_f64`: whether positions of the source

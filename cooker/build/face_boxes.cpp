@@ -14,6 +14,11 @@ namespace {
 
 // The largest extent is in [2^14, 2^15): f16 cuts then resolve 2^-39 of it.
 constexpr int kExtentExponent = 14;
+// From so many extents away on, f32 positions are moved to their centre: floats of tree space, by
+// which queries decide nearly everything, would lose as many binary digits as this is a power of
+// two. No position is then more than twice another or the centre, so that differences are floats
+// (Sterbenz). Nearer positions stay what they are.
+constexpr double kFarExtents = 8;
 // A single point has coordinates of 2^-300 or more in tree space, so that differences of a unit in
 // their last place are above kShortestDirection (runtime/primitive/separation.h).
 constexpr int kPlaceExponent = 300;
@@ -87,14 +92,13 @@ void choose_frame(const Positions& positions, Origin origin, BuildTree& tree) {
     halved = 0;
   }
   if (size == 0) return;
-  // A coordinate that all f32 positions share, and that is far larger than their extent, is moved
-  // to zero. This is exact and keeps tree space in the range of float that readers need. Where
-  // positions differ, a coordinate is at most 2^24 times the difference.
   if (positions.precision == Precision::kF32 && origin == Origin::kByPrecision && halved == 1) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const double low = bounds.low[static_cast<Eigen::Index>(k)];
-      const bool is_flat = low == bounds.high[static_cast<Eigen::Index>(k)];
-      if (is_flat && std::abs(low) > 0x1p25 * size) tree.origin[k] = low;
+      const auto axis = static_cast<Eigen::Index>(k);
+      const double centre = bounds.low[axis] / 2 + bounds.high[axis] / 2;
+      if (std::abs(centre) > kFarExtents * 2 * size) {
+        tree.origin[k] = static_cast<double>(static_cast<float>(centre));
+      }
     }
   }
   tree.scale_exponent = std::clamp(std::ilogb(size) + halved - kExtentExponent, -kMaxScaleExponent,

@@ -9,8 +9,8 @@
 namespace boxtree::cooker {
 
 /// Chooses the frame. With Origin::kByPrecision, the origin of f32 positions is zero, except on an
-/// axis on which all positions share one large coordinate; f32 positions are then represented
-/// without rounding. The origin of f64 positions is their centre, so that f32 boxes resolve them.
+/// axis on which they are eight extents or more away; all differences from it are floats. The
+/// origin of f64 positions is their centre, so that f32 boxes resolve them.
 /// With Origin::kZero, the origin is zero for both precisions, because steps of a grid are counted
 /// from zero.
 void choose_frame(const Positions& positions, Origin origin, BuildTree& tree);

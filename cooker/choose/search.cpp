@@ -112,7 +112,7 @@ void encode_geometry(const Source& source, const SearchOptions& options,
   const auto encode_clusters = [&](LeafOrder faces) {
     return source.quantised
                ? encode_grid_geometry(source.mesh.faces, *source.quantised, order, faces)
-               : encode_exact_geometry(source.mesh, order, faces);
+               : encode_exact_geometry(source.mesh, source.known.origin, order, faces);
   };
   if (has_clusters(options.geometry) && has_duplicates && leaf_order == LeafOrder::kFree) {
     // The order of the originals decides the order of their duplicates, so clusters come first.

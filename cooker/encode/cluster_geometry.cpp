@@ -402,11 +402,13 @@ struct FloatNumbers {
   using Number = Whole;
   static constexpr bool kAreFloats = true;
   std::span<const Float> positions;
+  std::array<Float, 3> origin;  // no difference from it is rounded
 
   [[nodiscard]] std::array<Number, 3> operator[](std::uint32_t vertex) const {
     std::array<Number, 3> point;
     for (std::size_t k = 0; k < 3; ++k) {
-      point[k] = number_of<Number>(positions[std::size_t{3} * vertex + k]);
+      // Keeps -0 where the origin is 0.
+      point[k] = number_of<Number>(positions[std::size_t{3} * vertex + k] - origin[k]);
     }
     return point;
   }
@@ -495,15 +497,18 @@ EncodedGeometry encode_grid_geometry(std::span<const Face> faces,
   return out;
 }
 
-EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, std::vector<std::uint32_t>& order,
-                                      LeafOrder leaf_order) {
+EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const std::array<double, 3>& origin,
+                                      std::vector<std::uint32_t>& order, LeafOrder leaf_order) {
   const Positions& positions = mesh.positions;
+  const auto origin_f32 = [&](std::size_t k) { return static_cast<float>(origin[k]); };
   EncodedGeometry out =
       positions.precision == Precision::kF64
-          ? encode_clusters(mesh.faces, FloatNumbers<std::int64_t, double>{positions.f64}, order,
-                            leaf_order)
-          : encode_clusters(mesh.faces, FloatNumbers<std::int32_t, float>{positions.f32}, order,
-                            leaf_order);
+          ? encode_clusters(mesh.faces, FloatNumbers<std::int64_t, double>{positions.f64, {}},
+                            order, leaf_order)
+          : encode_clusters(mesh.faces,
+                            FloatNumbers<std::int32_t, float>{
+                                positions.f32, {origin_f32(0), origin_f32(1), origin_f32(2)}},
+                            order, leaf_order);
   out.geometry = GeometryId::kExact;
   return out;
 }

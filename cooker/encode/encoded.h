@@ -83,8 +83,10 @@ struct EncodedGeometry {
 enum class LeafOrder : std::uint8_t { kFixed, kFree };
 
 /// Faces in `order`, as clusters (see format/cluster.h), positions on a grid or bit for bit. Faces
-/// may be reordered within groups of kLeafFaces; on return, `order` is the order stored.
+/// may be reordered within groups of kLeafFaces; on return, `order` is the order stored. `origin`:
+/// of the tree, from which f32 positions count; see choose_frame().
 [[nodiscard]] EncodedGeometry encode_exact_geometry(const SourceMesh& mesh,
+                                                    const std::array<double, 3>& origin,
                                                     std::vector<std::uint32_t>& order,
                                                     LeafOrder leaf_order);
 [[nodiscard]] EncodedGeometry encode_grid_geometry(std::span<const Face> faces,

@@ -26,6 +26,17 @@ std::vector<std::uint32_t> face_ids_of(const Tree& tree) {
   return ids;
 }
 
+// A position of a cluster. Sums are exact but on a grid, whose points may have more digits.
+Eigen::Vector3d in_object_space(const LeafReader& leaves, const std::array<double, 3>& stored) {
+  Eigen::Vector3d p(stored[0], stored[1], stored[2]);
+  if (!leaves.is_from_origin()) return p;
+  if (leaves.is_grid()) p *= leaves.grid_step() * leaves.frame().scale;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    if (leaves.frame().origin[k] != 0) p[k] += leaves.frame().origin[k];  // 0 would take -0 away
+  }
+  return p;
+}
+
 // The order of stored faces; empty if they are stored in the requested order.
 Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder order) {
   const std::uint32_t count = tree.face_count();
@@ -107,8 +118,7 @@ Status DecodedFaces::weld_clusters(const Tree& tree, std::vector<Scalar>& positi
     number.fill(kNoCorner);
     const auto vertex = [&](std::uint8_t v) {
       if (number[v] != kNoCorner) return number[v];
-      Eigen::Vector3d p(leaf.position[v][0], leaf.position[v][1], leaf.position[v][2]);
-      if (leaves.is_grid()) p = leaves.frame().to_object(p * leaves.grid_step());
+      const Eigen::Vector3d p = in_object_space(leaves, leaf.position[v]);
       return number[v] = welder.add(
                  {static_cast<Scalar>(p[0]), static_cast<Scalar>(p[1]), static_cast<Scalar>(p[2])});
     };

@@ -11,8 +11,8 @@
 //                                 coordinate in either tree's space
 // for R <= 2^40 and E <= 2^20. From R = 1 on, errors that are multiples of u R exceed 2^-24 and
 // their squares 2^-48, far above what underflow takes from products. Cookers scale the largest
-// extent into [2^14, 2^15); only surfaces that are extremely flat and far from the origin, or that
-// lie within 2^-1000 of each other, are out of range. The scalar walks answer for those.
+// extent into [2^14, 2^15) and move what is far from the origin there; only surfaces that lie
+// within 2^-1000 of each other are out of range. The scalar walks answer for those.
 #pragma once
 
 #include <algorithm>

@@ -54,8 +54,16 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
   // Three times the number of a vertex fits into 32 bits.
   constexpr std::uint32_t kMaxVertices32 = 1u << 30;
   floats_.scale = static_cast<float>(frame_.inverse_scale);
-  const bool is_scaled_exactly = double{floats_.scale} == frame_.inverse_scale &&
-                                 std::isnormal(floats_.scale) && frame_.origin.isZero(0);
+  bool is_scaled_exactly =
+      double{floats_.scale} == frame_.inverse_scale && std::isnormal(floats_.scale);
+  if (!is_from_origin() && !frame_.origin.isZero(0)) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double shift = frame_.origin[static_cast<Eigen::Index>(k)] * frame_.inverse_scale;
+      floats_.shift[k] = static_cast<float>(shift);
+      is_scaled_exactly &= double{floats_.shift[k]} == shift;
+    }
+    floats_.direct_rounding = floats_.rounding;
+  }
   const bool are_readable = has_clusters() ? clusters_.numbers == ClusterNumbers::kF32
                                            : !mesh_.positions_f64 &&
                                                  mesh_.position_stride == 3 * sizeof(float) &&
@@ -90,8 +98,9 @@ Errc LeafReader::read_clusters(std::uint32_t first, std::uint32_t count,
       }
       for (std::uint32_t v = 0; v < leaf.vertex_count; ++v) {
         std::array<double, 3>& p = leaf.position[v];
-        const Eigen::Vector3d position = is_grid() ? Eigen::Vector3d(p[0], p[1], p[2]) * grid_step_
-                                                   : frame_.to_tree({p[0], p[1], p[2]});
+        const Eigen::Vector3d stored(p[0], p[1], p[2]);
+        const Eigen::Vector3d position =
+            is_from_origin() ? stored * stored_scale() : frame_.to_tree(stored);
         if (!is_within_range(position)) return Errc::kVertexNotFinite;
         p = {position[0], position[1], position[2]};
       }

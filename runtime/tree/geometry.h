@@ -55,6 +55,7 @@ struct TriangleBatch {
 /// What walks by vectors read of a store once per query, computed when a tree is bound.
 struct FloatLeaves {
   float scale = 1;            // of stored coordinates, to tree space
+  float shift[3] = {};        // of arrays: subtracted after that
   float rounding = 0;         // how far a coordinate is off once rounded to float
   float direct_rounding = 0;  // the same for coordinates that are scaled as they are stored
   bool is_direct = false;     // full leaves are scaled as they are stored
@@ -89,6 +90,14 @@ class LeafReader {
     return has_clusters() && clusters_.numbers == ClusterNumbers::kGrid;
   }
   [[nodiscard]] double grid_step() const noexcept { return grid_step_; }
+  /// Whether stored coordinates count from the tree's origin; otherwise they are in object space.
+  [[nodiscard]] bool is_from_origin() const noexcept {
+    return has_clusters() && clusters_.numbers != ClusterNumbers::kF64;
+  }
+  /// From stored coordinates, less the origin unless is_from_origin(), to tree space.
+  [[nodiscard]] double stored_scale() const noexcept {
+    return is_grid() ? grid_step_ : frame_.inverse_scale;
+  }
   [[nodiscard]] const Frame& frame() const noexcept { return frame_; }
   /// Whether face n of the tree is face n of the mesh.
   [[nodiscard]] bool is_in_tree_order() const noexcept { return !order_; }

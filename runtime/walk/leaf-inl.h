@@ -165,12 +165,15 @@ class LeafFloats {
   // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
     const bool is_grid = reader_.is_grid();
-    const double scale = is_grid ? reader_.grid_step() : reader_.frame().inverse_scale;
+    const double scale = reader_.stored_scale();
+    const Eigen::Vector3d origin =
+        reader_.is_from_origin() ? Eigen::Vector3d::Zero() : reader_.frame().origin;
     double corner[3][3];
     read_corners(lane, corner);
     bool is_finite = true;
     for (std::size_t c = 0; c < 3; ++c) {
-      triangle.corner[c] = {corner[c][0] * scale, corner[c][1] * scale, corner[c][2] * scale};
+      triangle.corner[c] =
+          (Eigen::Vector3d(corner[c][0], corner[c][1], corner[c][2]) - origin) * scale;
       is_finite &= is_grid || is_within_range(triangle.corner[c]);
     }
     if (!is_finite) {
@@ -323,8 +326,9 @@ class LeafFloats {
       const auto z01 = hn::BitCast(pairs, hn::InterleaveUpper(d, r0, r1));
       const auto z23 = hn::BitCast(pairs, hn::InterleaveUpper(d, r2, r3));
       const auto store = [&](std::size_t axis, auto values) {
-        hn::Store(hn::Mul(hn::BitCast(d, values), scale), Floats(),
-                  &leaf_->coordinate[corner][axis][lane]);
+        // The product is exact, so that it does not matter whether it is rounded.
+        hn::Store(hn::MulSub(hn::BitCast(d, values), scale, hn::Set(d, floats_.shift[axis])),
+                  Floats(), &leaf_->coordinate[corner][axis][lane]);
       };
       store(0, hn::InterleaveLower(pairs, xy01, xy23));
       store(1, hn::InterleaveUpper(pairs, xy01, xy23));

@@ -890,7 +890,7 @@ jq -e '.files[0].approximate | [.point, .distance] | all(
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
 printf 'f 1 2 3\n' >>far.obj
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
-same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; queries are slow, too; cook --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
+same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
 jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 expect 5 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.001
 same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; cook --f64 keeps all digits'

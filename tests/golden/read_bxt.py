@@ -266,8 +266,8 @@ class Bits:
 
 
 class Clusters:
-    """Geometry exact and grid (section 8.1): faces as lists of corners, which are floats of object
-    space, or places on the grid."""
+    """Geometry exact and grid (section 8.1): faces as lists of corners, which are f64 of object
+    space, f32 from the tree's origin on, or places on the grid."""
 
     CLUSTER_FACES, LEAF_FACES, HEADER, PADDING = 512, 8, 24, 72
 
@@ -437,8 +437,8 @@ class Tree:
 
     def triangles(self, face):
         """Triangles of a face in tree space."""
-        if self.geometry == GRID:
-            step = 2.0 ** (self.grid_exponent - self.exponent)
+        if self.geometry == GRID or self.geometry == EXACT and not self.flags & 2:
+            step = 2.0 ** (self.grid_exponent - self.exponent)  # exact: grid_exponent is 0
             points = [tuple(n * step for n in point) for point in self.stored(face)]
         else:
             points = [tuple((point[k] - self.origin[k]) * 2.0 ** -self.exponent for k in range(3))
@@ -446,7 +446,7 @@ class Tree:
         return [(points[0], points[i], points[i + 1]) for i in range(1, len(points) - 1)]
 
     def stored(self, face):
-        """Corners of a face as the file holds them: places on the grid, or in object space."""
+        """Corners of a face as the file holds them; see Clusters and array_points."""
         if self.geometry == ARRAYS:
             return self.array_points(face)
         return self.clusters.faces[face]
