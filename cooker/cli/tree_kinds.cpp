@@ -67,9 +67,11 @@ Error kind_left_out(const File& file, std::uint32_t tree, QueryKinds kind) {
   }
   const std::string_view name = file.tree_name(tree);
   return {Errc::kPartLeftOut,
-          fmt::format("tree {}: {} were left out for the objects that place it: {}",
-                      name.empty() ? std::to_string(tree) : fmt::format("\"{}\"", name),
-                      part_name(part_of(kind)), objects)};
+          fmt::format(
+              "tree {}: {} were left out for the objects that place it, {}: by \"queries\" of its "
+              "profile",
+              name.empty() ? std::to_string(tree) : fmt::format("\"{}\"", name),
+              part_name(part_of(kind)), objects)};
 }
 
 }  // namespace boxtree::cooker

@@ -43,7 +43,8 @@ Result<std::vector<std::uint32_t>> stored_order(const Tree& tree, ExportOrder or
   if (order == ExportOrder::kSource && !tree.has_face_ids() && !tree.empty()) {
     return Error{Errc::kPartLeftOut,
                  fmt::format("{}: face ids were left out when it was cooked, so that the order of "
-                             "its source is not known",
+                             "its source is not known: use --order tree, or cook without "
+                             "--no-face-ids",
                              tree.name())};
   }
   const bool stored_as_source = is_external(tree) || BoundTree::of(tree).is_in_source_order();

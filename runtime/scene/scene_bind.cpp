@@ -125,6 +125,21 @@ Status BoundScene::check_parts(const SceneOptions& options) const {
   return {};
 }
 
+namespace {
+
+// Where a file records no reason: what a cook leaves such parts out by.
+std::string unrecorded_reason(Part part) {
+  const bool is_of_source = part == Part::kMaterials || part == Part::kNames;
+  const char* const key = part == Part::kMaterials ? "materials = false"
+                          : part == Part::kNames   ? "names = false"
+                          : part == Part::kFaceIds ? "face_ids = false"
+                                                   : "queries";
+  return std::string(" when it was cooked, by ") + key + " of its profile" +
+         (is_of_source ? ", or its source has none" : "");
+}
+
+}  // namespace
+
 // The error for a part that was left out, with the reason if the file records one: for the tree,
 // else for the whole scene, else for any tree.
 Error BoundScene::left_out(Part part, std::uint32_t owner, const std::string& what) const {
@@ -141,7 +156,7 @@ Error BoundScene::left_out(Part part, std::uint32_t owner, const std::string& wh
   }
   return {Errc::kPartLeftOut,
           what + ": " + std::string(part_name(part)) + " were left out" +
-              (reason.empty() ? " when it was cooked" : " by " + std::string(reason))};
+              (reason.empty() ? unrecorded_reason(part) : " by " + std::string(reason))};
 }
 
 bool BoundScene::has_names() const noexcept {

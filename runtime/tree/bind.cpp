@@ -184,7 +184,10 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place
   }
   if (are_needed && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
-    return error_with(Errc::kPartLeftOut, place, "face ids were left out when it was cooked");
+    return error_with(
+        Errc::kPartLeftOut, place,
+        "face ids were left out when it was cooked: cook without --no-face-ids, or face_ids = "
+        "false of its profile");
   }
   return {};
 }

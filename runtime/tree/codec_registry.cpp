@@ -74,7 +74,8 @@ Status bind_codec(CodecId id, const TreeCounts& counts, Bytes nodes,
     return error_with(Errc::kCodecUnsupported, codec_name(id),
                       is_built(id)
                           ? " is a codec of boxtree::paper: link it and call use_paper_codecs()"
-                          : " was left out of this build, which has " BOXTREE_CODEC_NAMES);
+                          : " was left out of this build, which has " BOXTREE_CODEC_NAMES
+                            "; BOXTREE_CODECS of CMake chooses");
   }
   functions = found;
   return found->bind(counts, nodes, codec);

@@ -234,7 +234,7 @@ by='were left out by parts.toml:3: queries = ["ray", "box"]'
 says 5 "part_left_out: parts.bxt: the scene: point queries $by" parts.bxt --tree barrel point --at 0,0,0
 says 5 "part_left_out: parts.bxt: the scene: pair queries $by" parts.bxt --tree barrel pair flat.bxt
 says 5 "part_left_out: parts.bxt: the scene: pair queries $by" flat.bxt distance parts.bxt --tree2 barrel
-says 5 'part_left_out: parts.bxt: tree "crate": box queries were left out for the objects that place it: targets' \
+says 5 'part_left_out: parts.bxt: tree "crate": box queries were left out for the objects that place it, targets: by "queries" of its profile' \
   parts.bxt --tree crate box --min 0,0,0 --max 1,1,1
 expect 0 "$boxtree" query parts.bxt --tree crate ray --origin 0,0,4 --direction 0,0,-1
 expect 0 "$boxtree" query parts.bxt --tree barrel box --min 0,0,0 --max 1,1,1

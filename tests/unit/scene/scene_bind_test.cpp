@@ -112,7 +112,8 @@ TEST(SceneBind, NamesTheLineThatLeftAPartOut) {
   options = {};
   options.require_materials = true;
   EXPECT_EQ(Scene::bind(cooked.file, options).error().detail,
-            "the scene: materials were left out when it was cooked");
+            "the scene: materials were left out when it was cooked, by materials = false of its "
+            "profile, or its source has none");
 }
 
 // With no more than one kind in the file, queries of the others are refused, each of them.
@@ -165,7 +166,10 @@ TEST(SceneBind, NamesTheLineThatFitsBest) {
   EXPECT_EQ(refusal({of_names, of_tree}), materials + "by line 7");
   EXPECT_EQ(refusal({of_tree, of_scene}), materials + "by line 8");
   EXPECT_EQ(refusal({of_scene, of_tree}), materials + "by line 8");
-  EXPECT_EQ(refusal({of_names}), materials + "when it was cooked");
+  EXPECT_EQ(refusal({of_names}),
+            materials +
+                "when it was cooked, by materials = false of its profile, or its "
+                "source has none");
 }
 
 // The reason for a tree is that of this tree, else that of the scene, else that of any tree.
@@ -208,7 +212,10 @@ TEST(SceneBind, NamesAreMissedWhereNoInstanceHasOne) {
   EXPECT_TRUE(Scene::bind(unnamed.file).ok());
   const Result<Scene> refused = Scene::bind(unnamed.file, options);
   EXPECT_EQ(refused.code(), Errc::kPartLeftOut);
-  EXPECT_EQ(refused.error().detail, "the scene: names were left out when it was cooked");
+  EXPECT_EQ(
+      refused.error().detail,
+      "the scene: names were left out when it was cooked, by names = false of its profile, or "
+      "its source has none");
   for (std::size_t named = 0; named < parts.instances.size(); ++named) {
     cooker::SceneParts one = parts;
     one.instances[named].name = "door";

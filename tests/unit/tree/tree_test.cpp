@@ -259,7 +259,11 @@ TEST_P(Trees, FaceIdsCanBeLeftOutAndRequested) {
   EXPECT_EQ(hit->face.id, kNoFaceId);
   BindOptions bind;
   bind.require_face_ids = true;
-  EXPECT_EQ(Tree::bind(cooked.file, 0, bind).code(), Errc::kPartLeftOut);
+  const Result<Tree> refused = Tree::bind(cooked.file, 0, bind);
+  EXPECT_EQ(refused.code(), Errc::kPartLeftOut);
+  EXPECT_EQ(refused.error().detail,
+            "tree 0: face ids were left out when it was cooked: cook without --no-face-ids, or "
+            "face_ids = false of its profile");
 }
 
 TEST_P(Trees, DoublesFarFromTheOriginKeepTheirDigits) {
