@@ -39,6 +39,11 @@ void apply_options(const CookOptions& options, ScenePlan& plan) {
   }
 }
 
+// Digits of f64 are requested explicitly: only a tolerance gives them up.
+void keep_digits(ScenePlan& plan) {
+  for (PlannedMesh& mesh : plan.meshes) mesh.exact |= mesh.default_precision;
+}
+
 void drop_hidden_faces(SourceMesh& mesh, const std::vector<FaceRange>& ranges) {
   if (ranges.empty()) return;
   SourceMesh kept;
@@ -88,7 +93,11 @@ class Cook {
     Result<ScenePlan> plan = plan_scene(input_.scene, profile_);
     if (!plan) return plan.error();
     plan_ = std::move(*plan);
-    if (profile_.path.empty()) apply_options(options_, plan_);
+    if (profile_.path.empty()) {
+      apply_options(options_, plan_);
+    } else if (options_.import.precision == Precision::kF64) {
+      keep_digits(plan_);
+    }
     return {};
   }
 

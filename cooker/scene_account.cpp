@@ -168,7 +168,10 @@ class Account {
                          tree.geometry.max_vertex_error);
     }
     if (kind == SectionKind::kVertices) {
-      return tree.positions_f64 ? "exact, f64" : "exact, f32";
+      if (tree.positions_f64) return "exact, f64";
+      const double moved = tree.geometry.max_vertex_error;
+      return moved > 0 ? fmt::format("exact, f32, which moved a vertex by up to {:.2g}", moved)
+                       : "exact, f32";
     }
     return tree.geometry.corner_bytes == 2 ? "16 bits number every vertex"
                                            : "vertices take numbers of 32 bits";

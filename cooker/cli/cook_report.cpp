@@ -310,7 +310,7 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
     warnings.push_back(
         fmt::format("{}: f32 has few digits for a mesh so far from the origin and moved a vertex "
                     "by up to {:.3g}; cook --f64 keeps all digits, and with "
-                    "--tolerance LENGTH in few bytes",
+                    "--tolerance LENGTH or the tolerance of a profile in few bytes",
                     source, import.moved_by_f32));
   }
   return warnings;

@@ -89,6 +89,7 @@ EncodedGeometry encode_array_geometry(const SourceMesh& mesh,
                                       std::span<const std::uint32_t> order) {
   EncodedGeometry out;
   out.geometry = GeometryId::kArrays;
+  out.max_vertex_error = mesh.moved_by_f32;
   const bool quads =
       std::any_of(mesh.faces.begin(), mesh.faces.end(), [](const Face& f) { return f.is_quad(); });
   out.corners_per_face = quads ? 4 : 3;

@@ -510,6 +510,7 @@ EncodedGeometry encode_exact_geometry(const SourceMesh& mesh, const std::array<d
                                 positions.f32, {origin_f32(0), origin_f32(1), origin_f32(2)}},
                             order, leaf_order);
   out.geometry = GeometryId::kExact;
+  out.max_vertex_error = mesh.moved_by_f32;
   return out;
 }
 

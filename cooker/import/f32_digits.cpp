@@ -2,10 +2,12 @@
 #include "cooker/import/f32_digits.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <Eigen/Geometry>
 
 #include "runtime/primitive/rounding.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree::cooker {
 
@@ -14,6 +16,12 @@ namespace {
 double unnoticed_in(const Eigen::AlignedBox3d& bounds) {
   constexpr double kHalfStep = 0x1p-17;
   return bounds.isEmpty() ? 0 : kHalfStep * bounds.sizes().maxCoeff();
+}
+
+// A call, as g++ 12.2 -O2 takes x - double(float(x)) for 0 where it computes two of them in a
+// vector.
+[[gnu::noinline]] double lost_to_f32(double x) {
+  return x - static_cast<double>(static_cast<float>(x));
 }
 
 }  // namespace
@@ -29,11 +37,14 @@ bool may_have_moved(const Positions& positions) {
   return kRoundoffF32 * farthest.norm() > unnoticed_in(bounds);
 }
 
+// The result goes into files, so it is computed in a fixed order, which Eigen's norms do not have.
 double moved_by_f32(const Positions& positions) {
   double farthest = 0;
   for (std::size_t i = 0; i < positions.size(); ++i) {
     const Eigen::Vector3d p = positions[i];
-    farthest = std::max(farthest, (p - p.cast<float>().cast<double>()).norm());
+    const Eigen::Vector3d off(lost_to_f32(p[0]), lost_to_f32(p[1]), lost_to_f32(p[2]));
+    const double scale = scale_to_one(off);
+    farthest = std::max(farthest, std::sqrt(squared_length(off * scale)) / scale);
   }
   return farthest;
 }

@@ -79,7 +79,7 @@ Status measure_digits(const MeshReader& reader, const Request& request, Imported
     return status;
   }
   const double moved = moved_by_f32(exact.mesh.positions);
-  if (moved > unnoticed_move(positions)) mesh.report.moved_by_f32 = moved;
+  if (moved > unnoticed_move(positions)) mesh.report.moved_by_f32 = mesh.mesh.moved_by_f32 = moved;
   return {};
 }
 

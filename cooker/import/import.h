@@ -66,7 +66,7 @@ struct ImportReport {
   std::size_t degenerate_faces = 0;  // zero area; kept
   bool has_open_end = false;         // OBJ, OFF, PLY, NFF, RAW: the last line has no end
   /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther
-  /// than unnoticed_move (f32_digits.h).
+  /// than unnoticed_move (f32_digits.h). The mesh has it, too.
   double moved_by_f32 = 0;
   bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad

@@ -67,6 +67,8 @@ struct SourceMesh {
   /// Of each face, which corners of its source polygon it has, from 0; the last is kNoCorner for a
   /// triangle. Empty unless import was told to keep it (ImportOptions::keep_polygon_corners).
   std::vector<std::array<std::uint32_t, 4>> polygon_corners;
+  /// How far f32 moved a vertex at most from what the source says (ImportReport::moved_by_f32).
+  double moved_by_f32 = 0;
 
   [[nodiscard]] std::uint32_t face_id(std::size_t face) const;
   [[nodiscard]] std::size_t triangle_count() const {

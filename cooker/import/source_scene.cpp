@@ -34,6 +34,7 @@ bool is_equal(const SceneMesh& a, const SceneMesh& b) {
 
 bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
   if (a.source_faces != b.source_faces) return false;
+  if (a.mesh.moved_by_f32 != b.mesh.moved_by_f32) return false;  // they differ in the source
   const Shape of_a = shape_of(a), of_b = shape_of(b);
   for (std::size_t i = 0; i < of_a.size(); ++i) {
     if (of_a[i].size() != of_b[i].size()) return false;

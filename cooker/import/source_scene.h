@@ -28,7 +28,7 @@ struct SceneMesh {
 };
 
 /// Whether two meshes are equal except for name and materials: positions bit for bit (-0 is not
-/// +0), faces and their numbers. Equal meshes have the same hash.
+/// +0), how far f32 moved them, faces and their numbers. Equal meshes have the same hash.
 [[nodiscard]] bool has_same_shape(const SceneMesh& a, const SceneMesh& b);
 [[nodiscard]] std::uint64_t hash_of_shape(const SceneMesh& mesh);
 

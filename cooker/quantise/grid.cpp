@@ -115,8 +115,9 @@ bool is_within_tolerance(const MeshOnGrid& each, const Eigen::AlignedBox3d& mesh
   const Positions& positions = each.mesh->positions;
   if (positions.size() == 0) return true;
   const Rounding round(mesh_bounds, grid);
+  const double left = tolerance_left(each.tolerance, *each.mesh);
   for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (round(positions[i]).moved > each.tolerance) return false;
+    if (round(positions[i]).moved > left) return false;
   }
   return true;
 }
@@ -130,6 +131,12 @@ int exponent_above(double x) {
 
 Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh) {
   return bounds_of(mesh.positions);
+}
+
+// A length of at most the result makes no sum with moved_by_f32 that rounds to more than tolerance.
+double tolerance_left(double tolerance, const SourceMesh& mesh) noexcept {
+  const double left = tolerance - mesh.moved_by_f32;
+  return left + mesh.moved_by_f32 > tolerance ? std::nextafter(left, 0.0) : left;
 }
 
 Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& choice) {
@@ -166,8 +173,13 @@ Result<Grid> choose_grid(const Eigen::AlignedBox3d& bounds, const GridChoice& ch
 
 Result<Grid> choose_grid(std::span<const SourceMesh* const> meshes, const GridChoice& choice) {
   Eigen::AlignedBox3d bounds;
-  for (const SourceMesh* mesh : meshes) bounds.extend(bounds_of(*mesh));
-  const Result<Grid> grid = choose_grid(bounds, choice);
+  GridChoice finest = choice;
+  for (const SourceMesh* mesh : meshes) {
+    bounds.extend(bounds_of(*mesh));
+    if (!choice.tolerance) continue;
+    finest.tolerance = std::min(*finest.tolerance, tolerance_left(*choice.tolerance, *mesh));
+  }
+  const Result<Grid> grid = choose_grid(bounds, finest);
   if (!grid || !choice.tolerance || choice.step_exponent || bounds.isEmpty()) return grid;
   std::vector<MeshOnGrid> all;
   all.reserve(meshes.size());
@@ -221,6 +233,7 @@ QuantisedPositions quantise(const SourceMesh& mesh, const Grid& grid) {
     }
     out.max_vertex_error = std::max(out.max_vertex_error, rounded.moved);
   }
+  out.max_vertex_error += mesh.moved_by_f32;
   return out;
 }
 

@@ -25,7 +25,7 @@ inline constexpr int kMaxStepExponent = kMaxScaleExponent - 16;
 /// The resolution of a grid: the last member that is set counts.
 struct GridChoice {
   int bits = 24;                     // steps in the largest extent of the scene: 2^bits
-  std::optional<double> tolerance;   // no vertex moves farther, in object space
+  std::optional<double> tolerance;   // no vertex moves farther from its source, in object space
   std::optional<int> step_exponent;  // the step is 2^step_exponent, in object space
 };
 
@@ -41,6 +41,10 @@ struct Grid {
 /// Bounds of all positions; empty for a mesh without any.
 [[nodiscard]] Eigen::AlignedBox3d bounds_of(const SourceMesh& mesh);
 
+/// How far the vertices of a mesh may still move if none may be farther than `tolerance` from where
+/// the source has it: what f32 moved them by is taken from it. 0 or less if that is all of it.
+[[nodiscard]] double tolerance_left(double tolerance, const SourceMesh& mesh) noexcept;
+
 /// A grid over `bounds`, the bounds of all meshes in a file. Its origin is a multiple of its step
 /// if a double can represent one. Errors: kMeshUnsupported if a tolerance or a step needs more than
 /// kMaxGridBits, or a tolerance is not positive and finite.
@@ -55,7 +59,7 @@ struct MeshOnGrid {
   const SourceMesh* mesh;
   Eigen::AlignedBox3d bounds;  // contain the mesh
   Grid grid;
-  double tolerance;  // object space
+  double tolerance;  // object space; from the source, as in GridChoice
   int largest_step_exponent = std::numeric_limits<int>::max();
 };
 
@@ -73,7 +77,8 @@ struct QuantisedPositions {
   Positions positions;
   std::array<double, 3> origin{};  // of its coordinates, object space
   int step_exponent = 0;
-  double max_vertex_error = 0;  // largest distance of a vertex from its source, object space
+  /// Largest distance of a vertex from its source, object space, with what f32 moved it by.
+  double max_vertex_error = 0;
 };
 
 /// Moves the vertices of a mesh onto the grid. Precondition: the grid's bounds contain the mesh.

@@ -115,7 +115,7 @@ struct ScenePlan {
 /// "other". An object is dropped if the profile states so, or if it answers no query, because then
 /// no query can reach it. Settings for a mesh apply to all meshes with its name. Errors:
 /// kProfileInvalid for a mesh that is not in the source, and for hidden faces that a mesh does not
-/// have.
+/// have; kMeshUnsupported for a mesh that f32 has moved farther than the profile tolerates.
 Result<ScenePlan> plan_scene(const SourceScene& scene, const Profile& profile = {});
 
 }  // namespace boxtree::cooker

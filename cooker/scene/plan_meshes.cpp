@@ -73,7 +73,7 @@ class MeshPlanner {
   void decide_part(std::uint32_t mesh, Aspect aspect, Stated<bool> Needs::*needed, bool& kept);
   void decide_queries(std::uint32_t mesh);
   void decide_geometry(std::uint32_t mesh);
-  void decide_precision(std::uint32_t mesh);
+  Status decide_precision(std::uint32_t mesh);
   void decide_codec(std::uint32_t mesh);
   Status decide_hidden_faces(std::uint32_t mesh);
   void decide(std::uint32_t mesh, Aspect aspect, bool kept, std::string reason,
@@ -276,7 +276,7 @@ void MeshPlanner::decide_geometry(std::uint32_t mesh) {
          by.needs.external.line);
 }
 
-void MeshPlanner::decide_precision(std::uint32_t mesh) {
+Status MeshPlanner::decide_precision(std::uint32_t mesh) {
   PlannedMesh& planned = plan_.meshes[mesh];
   planned.default_precision = false;
   std::string reason = "the cooker's own choice";
@@ -313,8 +313,18 @@ void MeshPlanner::decide_precision(std::uint32_t mesh) {
             needs.contact->stiffness.line);
     }
   }
-  if (planned.exact || planned.external) return;
+  if (planned.external) return {};
+  const SourceMesh& source = scene_.meshes[mesh].mesh;
+  if (planned.tolerance && source.moved_by_f32 > *planned.tolerance) {
+    return Error{
+        Errc::kMeshUnsupported,
+        fmt::format("{}:{}: {}; f32 moves a vertex of mesh \"{}\" by up to {:.3g}, farther "
+                    "than that; cook --f64 keeps all digits",
+                    profile_.path.string(), line, reason, source.name, source.moved_by_f32)};
+  }
+  if (planned.exact) return {};
   decide(mesh, Aspect::kPrecision, !planned.tolerance, std::move(reason), line);
+  return {};
 }
 
 void MeshPlanner::decide_codec(std::uint32_t mesh) {
@@ -379,7 +389,7 @@ Status MeshPlanner::run() {
            is_spawned ? said->spawned_as->line : object_of(uses_[mesh].front()).name.line);
     decide_parts(mesh);
     decide_queries(mesh);
-    decide_precision(mesh);
+    if (Status status = decide_precision(mesh); !status) return status;
     decide_codec(mesh);
     if (Status status = decide_hidden_faces(mesh); !status) return status;
   }

@@ -53,7 +53,8 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
     bool is_possible = true;
     int largest_step = std::numeric_limits<int>::max();  // by default
     if (mesh.tolerance) {
-      is_possible = take_finer(choose_grid(bounds[m], {.tolerance = mesh.tolerance}));
+      const double left = tolerance_left(*mesh.tolerance, scene.meshes[m].mesh);
+      is_possible = take_finer(choose_grid(bounds[m], {.tolerance = left}));
     }
     if (mesh.default_precision || !mesh.tolerance) {
       const Result<Grid> least = choose_grid(bounds[m], {.bits = kLeastMeshBits});

@@ -890,11 +890,27 @@ jq -e '.files[0].approximate | [.point, .distance] | all(
 printf 'v %s\n' '459123.4321 5412345.6789 0' '459123.5321 5412345.6789 0' '459123.4321 5412345.7789 0' >far.obj
 printf 'f 1 2 3\n' >>far.obj
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
-same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH in few bytes'
+same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
 jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 expect 5 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.001
 same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; cook --f64 keeps all digits'
 expect 5 "$boxtree" cook far.obj cube.obj -o far.bxt -q --tolerance 0.001
+# What f32 took counts: in the file, and of a profile's tolerance.
+expect 0 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.3 --json
+jq -e '.trees[0].candidates | all(.error.max_vertex_error > 0.2 and .error.max_vertex_error <= 0.3)' out >/dev/null
+expect 0 "$boxtree" cook far.obj -o far.bxt -q --exact
+expect 0 "$boxtree" info far.bxt --json
+jq -e '.trees[0] | .geometry != "grid" and .max_vertex_error > 0.2 and .max_vertex_error < 0.3' out >/dev/null
+printf '[scene]\nsource = "far.obj"\ntolerance = 0.001\n' >far.toml
+expect 5 "$boxtree" cook --profile far.toml -o far.bxt -q
+same "$(cat err)" 'boxtree: mesh_unsupported: far.toml:3: tolerance: at most 0.001 off in the world, 0.001 in the mesh at scale 1; f32 moves a vertex of mesh "far" by up to 0.221, farther than that; cook --f64 keeps all digits'
+expect 0 "$boxtree" cook --profile far.toml -o far.bxt -q --f64
+same "$(cat err)" ''
+expect 0 "$boxtree" info far.bxt --json
+jq -e '.trees[0].max_vertex_error <= 0.001' out >/dev/null
+printf '[scene]\nsource = "far.obj"\nexact = true\n' >far.toml
+expect 0 "$boxtree" cook --profile far.toml -o far.bxt --why
+grep -q 'exact, f32, which moved a vertex by up to 0.22' out
 for options in --f64 '--f64 --tolerance 0.001'; do
   expect 0 "$boxtree" cook far.obj -o far.bxt -q $options
   same "$(cat err)" ''

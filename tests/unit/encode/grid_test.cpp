@@ -164,6 +164,34 @@ TEST(Grid, HoldsATolerance) {
   EXPECT_EQ(cooker::cook_as(mesh, CodecId::kWide4, options).code(), Errc::kMeshUnsupported);
 }
 
+// Of a tolerance, a grid gets what f32 left of it.
+TEST(Grid, ToleranceIsOfTheSourceThatF32HasMoved) {
+  SourceMesh mesh = test::torus(40, 30);
+  for (const double moved : {0.009, 0.1 + 0.2, 0.01}) {
+    mesh.moved_by_f32 = moved;
+    for (const double tolerance : {0.01, 0.31, 0.5}) {
+      CookOptions options = on_grid(8);
+      options.grid.tolerance = tolerance;
+      const Result<cooker::EncodedTree> tree = cooker::cook_as(mesh, CodecId::kWide4, options);
+      ASSERT_EQ(tree.ok(), moved < tolerance) << moved << " of " << tolerance;
+      if (!tree) continue;
+      EXPECT_LE(tree->geometry.max_vertex_error, tolerance);
+      EXPECT_GT(tree->geometry.max_vertex_error, moved);
+    }
+  }
+}
+
+TEST(Grid, StoresOfEveryBitCountWhatF32Moved) {
+  SourceMesh mesh = test::torus(40, 30);
+  mesh.moved_by_f32 = 0.25;
+  for (const GeometryId store : {GeometryId::kExact, GeometryId::kArrays, GeometryId::kExternal}) {
+    CookOptions options;
+    options.geometry = store;
+    const cooker::EncodedTree tree = test::require(cooker::cook_as(mesh, CodecId::kWide8, options));
+    EXPECT_EQ(tree.geometry.max_vertex_error, store == GeometryId::kExternal ? 0 : 0.25);
+  }
+}
+
 SourceMesh triangle_of(std::initializer_list<float> corners) {
   SourceMesh mesh;
   mesh.positions.f32 = corners;

@@ -29,6 +29,7 @@ TEST_F(F32DigitsTest, MeasuresWhatF32MovesFarFromTheOrigin) {
                                     std::hypot(off(459123.4321), off(5412345.7789))});
   EXPECT_GT(farthest, 0.2);
   EXPECT_DOUBLE_EQ(far.report.moved_by_f32, farthest);
+  EXPECT_EQ(far.mesh.moved_by_f32, far.report.moved_by_f32);
 }
 
 TEST_F(F32DigitsTest, SaysNothingWhereDigitsSufficeOrNoneAreLost) {

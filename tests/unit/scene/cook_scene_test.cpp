@@ -547,6 +547,41 @@ translation = [1, 0, 0]
   EXPECT_EQ(border[0], border[1]);
 }
 
+// 24 bits over the extent, tried by default, are fewer than f64 has.
+TEST(CookScene, F64KeepsEveryDigitWhereAProfileStatesNoTolerance) {
+  test::TempFolder folder;
+  folder.write("tilted.obj", "v 0.1 0 0\nv 1 0.2 0\nv 0 1 0.3\nf 1 2 3\n");
+  CookOptions options;
+  options.import.precision = Precision::kF64;
+  const auto error_with = [&](const char* needs) {
+    const CookedFileOf cooked(
+        {}, options,
+        folder.write("scene.toml", std::string("[scene]\nsource = \"tilted.obj\"\n"
+                                               "for = \"memory\"\n") +
+                                       needs));
+    return cooked.summary.trees.at(0).tree.geometry.max_vertex_error;
+  };
+  EXPECT_EQ(error_with(""), 0);
+  EXPECT_GT(error_with("tolerance = 0.001\n"), 0);
+}
+
+// What f32 took is part of what a tolerance allows, and of what the file says.
+TEST(CookScene, ToleranceCountsWhatF32Moved) {
+  test::TempFolder folder;
+  folder.write("far.obj",
+               "v 459123.4321 5412345.6789 0\nv 459123.5321 5412345.6789 0\n"
+               "v 459123.4321 5412345.7789 0\nf 1 2 3\n");
+  const CookedFileOf cooked({}, CookOptions(),
+                            folder.write("scene.toml",
+                                         "[scene]\nsource = \"far.obj\"\ntolerance = 0.25\n"
+                                         "for = \"memory\"\n"));
+  const double moved = cooked.summary.imports.at(0).moved_by_f32;
+  EXPECT_GT(moved, 0.2);
+  const double error = OpenFile::of(cooked.file).tree_record(0).max_vertex_error;
+  EXPECT_GE(error, moved);
+  EXPECT_LE(error, 0.25);
+}
+
 // One mesh alone would allow for a grid of whole numbers.
 TEST(CookScene, ToleranceIsMeasuredOnAllMeshesTogether) {
   test::TempFolder folder;

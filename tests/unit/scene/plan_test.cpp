@@ -419,6 +419,25 @@ invisible = true
   EXPECT_TRUE(planned.meshes[0].default_precision);
 }
 
+TEST_F(PlanTest, RefusesAToleranceThatF32HasExceeded) {
+  SourceScene scene = forest();
+  scene.meshes[1].mesh.moved_by_f32 = 0.006;
+  const auto refused = [&](std::string_view text) {
+    const Result<ScenePlan> plan = plan_scene(scene, load(text));
+    EXPECT_EQ(plan.code(), Errc::kMeshUnsupported) << text;
+    return plan.ok() ? std::string() : plan.error().detail;
+  };
+  EXPECT_TRUE(refused("[scene]\ntolerance = 0.01\n")
+                  .ends_with("scene.toml:2: tolerance: at most 0.01 off in the world, 0.005 in the "
+                             "mesh at scale 2; f32 moves a vertex of mesh \"tree\" by up to 0.006, "
+                             "farther than that; cook --f64 keeps all digits"));
+  EXPECT_TRUE(refused("[contact]\nstiffness = 1e6\nmass = 1\n").find("toml:2: stiff contact: ") !=
+              std::string::npos);
+  plan(scene, "[scene]\ntolerance = 0.012\n");
+  plan(scene, "[scene]\nexact = true\n");
+  plan(scene, "[scene]\ntolerance = 0.01\nexternal = true\n");
+}
+
 TEST_F(PlanTest, ExternalOnlyIfNobodyWantsTheGeometry) {
   const ScenePlan planned = plan(forest(), R"([scene]
 face_ids = false
