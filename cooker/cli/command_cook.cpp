@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <charconv>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
@@ -91,23 +92,48 @@ std::string ending_fault(const std::string& text) {
                      suggestion(text, mesh_endings()));
 }
 
-// The exponent of a step as `cook` prints it, "2^-13"; nothing if the text is none.
+// All of `text` as a number; nothing if it is none.
+template <class T>
+std::optional<T> number_of(std::string_view text) {
+  T number{};
+  const char* const end = text.data() + text.size();
+  const auto [parsed, error] = std::from_chars(text.data(), end, number);
+  return error == std::errc() && parsed == end ? std::optional(number) : std::nullopt;
+}
+
+bool is_step_exponent(int exponent) {
+  return std::abs(exponent) <= kMaxStepExponent;
+}
+
+// The exponent of a step as `cook` prints it, "2^-13", or as a decimal, "0.125"; nothing if the
+// text is no power of two.
 std::optional<int> step_exponent_of(std::string_view text) {
   constexpr std::string_view kBase = "2^";
-  if (!text.starts_with(kBase)) return std::nullopt;
-  text.remove_prefix(kBase.size());
-  int exponent = 0;
-  const char* const end = text.data() + text.size();
-  const auto [parsed, error] = std::from_chars(text.data(), end, exponent);
-  const bool is_number = error == std::errc() && parsed == end;
-  return is_number && std::abs(exponent) <= kMaxStepExponent ? std::optional(exponent)
-                                                             : std::nullopt;
+  std::optional<int> exponent;
+  if (text.starts_with(kBase)) {
+    exponent = number_of<int>(text.substr(kBase.size()));
+  } else if (const auto step = number_of<double>(text); step && *step > 0 && std::isfinite(*step)) {
+    const int above = exponent_above(*step);
+    if (std::ldexp(1.0, above) == *step) exponent = above;
+  }
+  return exponent && is_step_exponent(*exponent) ? exponent : std::nullopt;
 }
+
+// "; the nearest are 2^-4 and 2^-3" of a length between them.
+std::string nearest_steps(std::string_view text) {
+  const auto step = number_of<double>(text);
+  if (!step || !(*step > 0) || !std::isfinite(*step)) return {};
+  const int above = exponent_above(*step);
+  if (!is_step_exponent(above) || !is_step_exponent(above - 1)) return {};
+  return fmt::format("; the nearest are 2^{} and 2^{}", above - 1, above);
+}
+
 std::string step_fault(const std::string& text) {
   if (step_exponent_of(text)) return {};
   return fmt::format(
-      "expected a power of two from 2^-{0} to 2^{0}, as cook prints it (2^-13), found \"{1}\"",
-      kMaxStepExponent, text);
+      "expected a power of two from 2^-{0} to 2^{0}, as cook prints it (2^-13) or in decimals, "
+      "found \"{1}\"{2}",
+      kMaxStepExponent, text, nearest_steps(text));
 }
 
 // The options of the cook that names on the command line stand for.
@@ -286,8 +312,8 @@ void add_cook_command(Command& program, int& status) {
       ->excludes(tolerance);
   Option* grid_step = command.add_option(
       "--grid-step", arguments->grid_step,
-      "Round positions to a grid of this step, in units of the mesh, which files that are cooked "
-      "apart have in common");
+      "Round positions to a grid of this step, a power of two in units of the mesh, 2^-3 or 0.125, "
+      "which files that are cooked apart have in common");
   grid_step->type_name("2^E")
       ->check(step_fault)
       ->excludes(exact)

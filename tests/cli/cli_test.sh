@@ -73,9 +73,18 @@ for tile in left right; do
 done
 same "$(grep -h '^v ' left.stored.obj right.stored.obj | sort -u | grep -c '^v 1\.3125 ')" 2
 same "$(grep -h '^v ' left.stored.obj right.stored.obj | sort -u | grep '^v 1\.3125 1')" 'v 1.3125 1.6875 0.3125'
-for step in 5 0.25 -5 2^ 2^x 2^0.5 2^9999; do
+power='boxtree: usage: cook: --grid-step: expected a power of two from 2^-994 to 2^994, as cook prints it (2^-13) or in decimals, found'
+for step in -5 0 nan inf 1e-310 1e999 2^ 2^x 2^0.5 2^9999 0.25m; do
   expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step="$step"
-  same "$(head -1 err)" "boxtree: usage: cook: --grid-step: expected a power of two from 2^-994 to 2^994, as cook prints it (2^-13), found \"$step\""
+  same "$(head -1 err)" "$power \"$step\""
+done
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 0.1
+same "$(head -1 err)" "$power \"0.1\"; the nearest are 2^-4 and 2^-3"
+expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 5
+same "$(head -1 err)" "$power \"5\"; the nearest are 2^2 and 2^3"
+for step in 0.125=-3 1.25e-1=-3 1=0 4=2; do
+  expect 0 "$boxtree" cook cube.obj -o grid.bxt --grid-step "${step%=*}"
+  same "$(grep -o 'step 2^[-0-9]*' out)" "step 2^${step#*=}"
 done
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --grid-bits 8
