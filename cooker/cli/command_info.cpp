@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `boxtree info`: what a file holds and what each part costs.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -96,6 +97,7 @@ Json tree_json(const File& file, std::uint32_t index) {
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)}};
+  json["grid_step"] = grid_step_json(record.geometry, record.grid_exponent);
   json["max_vertex_error"] = record.max_vertex_error;
   json["face_ids"] = bytes.face_ids > 0                              ? "stored"
                      : (record.flags & kTreeFacesInSourceOrder) != 0 ? "source order"
@@ -135,6 +137,17 @@ const char* meaning_of_ids(const std::string& face_ids) {
   if (face_ids == "stored") return "of the source's faces";
   if (face_ids == "source order") return "none needed, the tree's faces are in the source's order";
   return "none, queries number faces in the tree's order";
+}
+
+// How far vertices were moved, and onto which grid; empty if nothing moved them.
+std::string text_of_moves(const Json& tree) {
+  const auto moved = tree["max_vertex_error"].get<double>();
+  const Json& step = tree["grid_step"];
+  if (!step.is_null()) {
+    return fmt::format("  grid: step 2^{}, no vertex moved by more than {:.3g}\n",
+                       std::ilogb(step.get<double>()), moved);
+  }
+  return moved > 0 ? fmt::format("  f32 moved a vertex by up to {:.3g}\n", moved) : std::string();
 }
 
 // All bytes of the file, by the kind of section; the rest is what a reader opens it by.
@@ -179,6 +192,7 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
     fmt::print("  face ids: {}\n", meaning_of_ids(tree["face_ids"].get<std::string>()));
+    fmt::print("{}", text_of_moves(tree));
     fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),

@@ -159,8 +159,8 @@ void add_choice(const CookedTree& cooked, std::string& text) {
   add_grid(cooked, text);
 }
 
-// Trees of a file share a grid, which the largest extent decides: how many steps the least of them
-// has, where that is fewer by a power of two or more.
+// Trees of a file share a grid, which the largest extent decides: its step, and how many the least
+// of them has, where that is fewer by a power of two or more.
 void add_shared_grid(const std::vector<CookedTree>& trees, std::string& text) {
   const EncodedTree* least = nullptr;
   int least_bits = 0, most_bits = 0;
@@ -177,7 +177,11 @@ void add_shared_grid(const std::vector<CookedTree>& trees, std::string& text) {
     }
     most_bits = std::max(most_bits, bits);
   }
-  if (least == nullptr || least_bits == most_bits) return;
+  if (least == nullptr) return;
+  if (least_bits == most_bits) {
+    text += fmt::format("  grid: step 2^{}\n", least->geometry.grid_exponent);
+    return;
+  }
   text += fmt::format(
       "  one grid for all, step 2^{}: some 2^{} steps over {}, 2^{} over the largest; cooked apart "
       "it has a finer one, --exact keeps every bit\n",
@@ -233,6 +237,8 @@ Json trees_json(const Summary& summary) {
                  {"lost_area", cooked.collapsed},
                  {"chosen", codec_name(cooked.tree.nodes.codec)},
                  {"chosen_geometry", geometry_name(cooked.tree.geometry.geometry)},
+                 {"grid_step", grid_step_json(cooked.tree.geometry.geometry,
+                                              cooked.tree.geometry.grid_exponent)},
                  {"surface", surface_json(cooked.edges)}};
     tree["candidates"] = Json::array();
     const std::vector<double> slower = slowdowns(cooked.contest);

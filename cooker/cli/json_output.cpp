@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/cli/json_output.h"
 
+#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
@@ -22,6 +23,10 @@ void drop_signs_of_zero(Json& value) {
 
 Json to_json(const Eigen::Vector3d& vector) {
   return {vector[0], vector[1], vector[2]};
+}
+
+Json grid_step_json(GeometryId geometry, int step_exponent) {
+  return geometry == GeometryId::kGrid ? Json(std::ldexp(1.0, step_exponent)) : Json(nullptr);
 }
 
 std::string document_text(const Json& document) {

@@ -8,6 +8,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
+#include "format/codec.h"
+
 namespace boxtree::cooker {
 
 using Json = nlohmann::ordered_json;
@@ -26,5 +28,7 @@ void print_files(std::vector<Json> documents, bool are_several);
 
 /// A vector as three numbers.
 [[nodiscard]] Json to_json(const Eigen::Vector3d& vector);
+/// The step of a tree's grid, as `cook --grid-step` takes it; null for other stores.
+[[nodiscard]] Json grid_step_json(GeometryId geometry, int step_exponent);
 
 }  // namespace boxtree::cooker

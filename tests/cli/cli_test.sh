@@ -86,6 +86,18 @@ for step in 0.125=-3 1.25e-1=-3 1=0 4=2; do
   expect 0 "$boxtree" cook cube.obj -o grid.bxt --grid-step "${step%=*}"
   same "$(grep -o 'step 2^[-0-9]*' out)" "step 2^${step#*=}"
 done
+# The step of one cook is that of the next: as its text, its JSON and `info` say it.
+expect 0 "$boxtree" cook uneven.obj cube.obj -o steps.bxt --tolerance 0.01 --for memory --json
+step=$(jq '.trees[0].grid_step' out)
+same "$(jq -c '[.trees[].grid_step]' out)" "[$step,$step]"
+expect 0 "$boxtree" info steps.bxt --json
+same "$(jq -c '[.trees[].grid_step]' out)" "[$step,$step]"
+expect 0 "$boxtree" info steps.bxt
+same "$(grep -c "^  grid: step 2^-[0-9]*, no vertex moved by more than [0-9.e-]*$" out)" 2
+expect 0 "$boxtree" cook uneven.obj -o steps.bxt --grid-step "$step" --json
+same "$(jq '.trees[0].grid_step' out)" "$step"
+expect 0 "$boxtree" cook cube.obj -o steps.bxt --exact --json
+same "$(jq -c '[.trees[].grid_step]' out)" '[null]'
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --tolerance 1
 expect 1 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-5 --grid-bits 8
 expect 5 "$boxtree" cook cube.obj -o grid.bxt --grid-step 2^-40
@@ -1073,6 +1085,7 @@ expect 0 "$boxtree" cook cube.obj large.obj -o sizes.bxt --grid-bits 20
 grep -q '^  one grid for all, step 2^-10: some 2^10 steps over cube, 2^19 over the largest; cooked apart it has a finer one, --exact keeps every bit$' out
 expect 0 "$boxtree" cook cube.obj other/cube.obj -o sizes.bxt --grid-bits 20
 same "$(grep -c 'one grid for all' out)" 0
+grep -q '^  grid: step 2^-19$' out
 # Two measures at once are refused.
 expect 1 "$boxtree" bench cube.bxt --pages --approximate
 grep -q '^boxtree: usage: bench: --' err
