@@ -185,20 +185,41 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
   return app.get_subcommands().empty() ? "a command is required" : missing(command, rest, error);
 }
 
+// A file in the place of a command: what is most likely wanted of it; empty of other words.
+std::string command_for(const std::string& word) {
+  const std::filesystem::path file(word);
+  const std::string ending = file.extension().string();
+  if (ending == ".bxt") return "boxtree info " + word;
+  if (ending.empty() || !is_mesh_ending(ending.substr(1))) return {};
+  return "boxtree cook " + word + " -o " + file.stem().string() + ".bxt";
+}
+
+// "; did you mean 'ray'?" of "raycast", which is too long to be near any name.
+std::string part_that_is_one(const std::string& word, const std::vector<std::string>& names) {
+  const auto part = std::find_if(names.begin(), names.end(), [&](const std::string& name) {
+    return word.find(name) != std::string::npos;
+  });
+  return part == names.end() ? std::string() : "; did you mean '" + *part + "'?";
+}
+
 }  // namespace
 
 std::string unknown_command(const Command& command, const std::string& word) {
   const std::string start = "'" + word + "' is no " + below(command);
+  const std::string file = command.parent() == nullptr ? command_for(word) : std::string();
+  if (!file.empty()) return start + "; did you mean '" + file + "'?";
   for (const Command* inner : command.commands()) {
     if (const Command* const kind = inner->find(word)) {
       return start + " but a " + below(*inner) + "; see '" + help_of(*kind) + "'";
     }
   }
-  const std::string similar = suggestion(word, command_names(command));
+  const std::vector<std::string> names = command_names(command);
+  const std::string similar = suggestion(word, names);
   if (!similar.empty()) return start + similar;
   std::vector<std::string> owners;
   add_owners(command, "--" + word, owners);
-  return owners.empty() ? start : start + " but an option; see " + listed(owners);
+  if (!owners.empty()) return start + " but an option; see " + listed(owners);
+  return start + "; expected " + listed(names) + part_that_is_one(word, names);
 }
 
 std::string usage_message(const CLI::App* app, const CLI::Error& error) {

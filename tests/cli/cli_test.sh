@@ -403,12 +403,24 @@ misspelt() {
 }
 misspelt "boxtree: usage: 'quary' is no command; did you mean 'query'?
 See 'boxtree --help'." quary
-misspelt "boxtree: usage: 'xyzzy' is no command
+misspelt "boxtree: usage: 'xyzzy' is no command; expected cook, info, verify, query, bench, report, export, completion or help
 See 'boxtree --help'." xyzzy cube.bxt
 misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
 misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
+kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
+misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds
+See 'boxtree query --help'." query cube.bxt shapecast --at 0,0,0
+misspelt "boxtree: usage: query: 'raycast' is no kind of query; expected $kinds; did you mean 'ray'?
+See 'boxtree query --help'." query cube.bxt raycast --origin 0,0,9
+# A file in the place of a command.
+misspelt "boxtree: usage: 'sub/cube.obj' is no command; did you mean 'boxtree cook sub/cube.obj -o cube.bxt'?
+See 'boxtree --help'." sub/cube.obj
+misspelt "boxtree: usage: 'cube.STL' is no command; did you mean 'boxtree cook cube.STL -o cube.bxt'?
+See 'boxtree --help'." cube.STL -o x.bxt
+misspelt "boxtree: usage: 'cube.bxt' is no command; did you mean 'boxtree info cube.bxt'?
+See 'boxtree --help'." cube.bxt
 misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--origin'?
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
