@@ -204,9 +204,9 @@ Command::Command(const std::string& name, const std::string& description, Comman
 Command::~Command() = default;
 
 std::optional<int> Command::run(int argc, char** argv) {
-  const std::vector<std::string> words(argv, argv + argc);
-  const auto end = std::find(words.begin(), words.end(), kEndOfOptions);
-  if (end != words.end()) behind_end_.assign(end + 1, words.end());
+  words_.assign(argv, argv + argc);
+  const auto end = std::find(words_.begin(), words_.end(), kEndOfOptions);
+  if (end != words_.end()) behind_end_.assign(end + 1, words_.end());
   try {
     app_->parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -219,6 +219,11 @@ Command& Command::add_command(const std::string& name, const std::string& descri
   commands_.emplace_back(new Command(name, description, *this));
   app_->add_subcommand(commands_.back()->app_);
   return *commands_.back();
+}
+
+bool Command::is_word(const std::string& word) const {
+  if (parent_ != nullptr) return parent_->is_word(word);
+  return std::find(words_.begin(), words_.end(), word) != words_.end();
 }
 
 std::vector<const Command*> Command::commands() const {
@@ -251,12 +256,19 @@ std::string Command::help() const {
   return app_->get_formatter()->make_help(app_.get(), name_, CLI::AppFormatMode::Normal);
 }
 
-// CLI11 takes the = of "-o=c.bxt" for the first character of the value.
+// CLI11 takes the = of "-o=c.bxt" for the first character of the value, and the end of "-output"
+// for the whole of it.
 Option* Command::add(CLI::Option* parsed) {
   if (!parsed->get_snames().empty() && parsed->get_expected_max() > 0) {
     const std::string name = parsed->get_snames().front();
     const std::string long_name = parsed->get_lnames().front();
-    parsed->check([name, long_name](const std::string& value) {
+    parsed->check([this, name, long_name](const std::string& value) {
+      const std::string joined = "-" + name + value;
+      const std::string meant = "-" + joined.substr(0, joined.find('='));
+      if (is_word(joined) && app_->get_option_no_throw(meant) != nullptr) {
+        throw CLI::ArgumentMismatch(
+            fmt::format("'{}' is no option; did you mean '{}'?", joined, meant));
+      }
       if (!value.starts_with('=')) return std::string();
       return fmt::format("expected -{0} {2} or --{1}={2}, found -{0}={2}", name, long_name,
                          value.substr(1));

@@ -175,6 +175,8 @@ class Command {
  private:
   Command(const std::string& name, const std::string& description, Command& parent);
   Option* add(CLI::Option* parsed);
+  /// Whether the command line has this word.
+  [[nodiscard]] bool is_word(const std::string& word) const;
 
   const std::string name_;
   const std::string description_;
@@ -184,6 +186,7 @@ class Command {
   std::vector<std::unique_ptr<Option>> options_;
   std::vector<Example> examples_;
   bool stands_too_early_ = false;
+  std::vector<std::string> words_;  // of the program: the command line
   std::vector<std::string> behind_end_;
 };
 

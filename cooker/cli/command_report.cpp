@@ -303,11 +303,27 @@ int run_tradeoff(const Arguments& arguments) {
                       tradeoff_summary(*report), std::move(written));
 }
 
+// A mesh by whose ending an output was meant; empty if there is none.
+std::string misplaced_output(const Arguments& arguments) {
+  constexpr std::array<std::pair<const char*, const char*>, 4> kOptions = {
+      {{".html", "-o"}, {".htm", "-o"}, {".csv", "--csv"}, {".json", "--json-out"}}};
+  for (const std::filesystem::path& mesh : arguments.meshes) {
+    const std::string ending = in_lower_case(mesh.extension().string());
+    for (const auto& [of, option] : kOptions) {
+      if (ending != of) continue;
+      return fmt::format("{0} is no mesh; did you mean {1} {0}?", shown(mesh.string()), option);
+    }
+  }
+  return {};
+}
+
 int run(const Arguments& arguments) {
   const auto& meshes = arguments.meshes;
   if (std::any_of(meshes.begin(), meshes.end(), is_standard_stream)) {
     return usage("report: - (standard input) is no file; expected names of meshes");
   }
+  if (const std::string fault = misplaced_output(arguments); !fault.empty())
+    return usage("report: " + fault);
   std::vector<std::filesystem::path> inputs = arguments.meshes;
   inputs.insert(inputs.end(), arguments.included.begin(), arguments.included.end());
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {

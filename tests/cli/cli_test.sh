@@ -520,9 +520,23 @@ refused_words 'verify: FILE is required' verify --
 # The value of a short option is not joined to it by =.
 refused_words 'cook: --output: expected -o d.bxt or --output=d.bxt, found -o=d.bxt' cook cube.obj -o=d.bxt
 [ ! -e =d.bxt ]
+# Nor has a long option one dash: -output would be -o utput.
+refused_words "cook: '-output' is no option; did you mean '--output'?" cook cube.obj -output d.bxt
+refused_words "cook: '-output=d.bxt' is no option; did you mean '--output'?" cook cube.obj -output=d.bxt
+refused_words "cook: '-jobs' is no option; did you mean '--jobs'?" cook cube.obj -o d.bxt -jobs 1
+refused_words "cook: '-json' is no option; did you mean '--json'?" cook cube.obj -o d.bxt -json
+refused_words "report: '-output' is no option; did you mean '--output'?" report cube.obj -output d.html
+refused_words "export: '-output' is no option; did you mean '--output'?" export cube.bxt -output d.glb
+[ ! -e utput ]
+expect 0 "$boxtree" cook cube.obj -outpu -q
+expect 0 "$boxtree" cook cube.obj -o utput -j1 -q
+rm utpu utput
 # A file that was meant to be the output.
 refused_words 'cook: --output is required; did you mean -o d.bxt?' cook cube.obj d.bxt
 refused_words 'export: --output is required; did you mean -o d.glb?' export cube.bxt d.glb
+refused_words 'report: d.html is no mesh; did you mean -o d.html?' report cube.obj d.html
+refused_words 'report: d.csv is no mesh; did you mean --csv d.csv?' report cube.obj d.csv --quick
+refused_words 'report: d.json is no mesh; did you mean --json-out d.json?' report cube.obj d.json
 refused_words 'cook: --output is required' cook cube.obj cube.obj
 
 # Help says where the options are that it does not show, if there are any, and that command runs.
