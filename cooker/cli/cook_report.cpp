@@ -140,7 +140,7 @@ void add_grid(const CookedTree& cooked, std::string& text) {
 }
 
 // What was chosen for the only tree.
-void add_choice(const CookedTree& cooked, std::string& text) {
+void add_choice(const CookedTree& cooked, std::uint64_t file_bytes, std::string& text) {
   const std::vector<Candidate>& candidates = cooked.contest.candidates;
   const std::vector<double> slower = slowdowns(cooked.contest);
   text += fmt::format("{}: {}, {}\n", shown(cooked.tree.name),
@@ -149,12 +149,13 @@ void add_choice(const CookedTree& cooked, std::string& text) {
     const Candidate& candidate = candidates[i];
     if (!candidate.rejected.empty()) continue;
     text += fmt::format(
-        "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry\n"
+        "  {}, geometry {}: {:.2f} bytes per triangle of tree, {:.2f} with geometry, {:.2f} in the "
+        "file\n"
         "  slowdown {:.2f} ({}); {} tried\n",
         codec_name(candidate.codec), geometry_name(candidate.geometry),
         per_triangle(candidate.tree_bytes, cooked.tree),
-        per_triangle(candidate.bytes(), cooked.tree), slower[i], kSlowdownMeaning,
-        candidates.size());
+        per_triangle(candidate.bytes(), cooked.tree), per_triangle(file_bytes, cooked.tree),
+        slower[i], kSlowdownMeaning, candidates.size());
   }
   add_grid(cooked, text);
 }
@@ -380,7 +381,7 @@ std::string trees_text(const Summary& summary, bool candidates) {
       add_grid(cooked, text);
     }
   } else if (summary.trees.size() == 1 && !summary.scene) {
-    add_choice(summary.trees.front(), text);
+    add_choice(summary.trees.front(), summary.file_bytes, text);
   } else {
     add_choices(summary, text);
   }

@@ -130,8 +130,9 @@ double rms_move(const SourceMesh& mesh, const QuantisedPositions& quantised) {
 }
 
 ByteParts bytes_of(const EncodedTree& tree, std::size_t file_bytes) {
-  ByteParts parts{tree.nodes.bytes.size(), tree.geometry.vertices.size(),
-                  tree.geometry.corners.size(), tree.geometry.face_ids.size(), 0};
+  ByteParts parts{tree.nodes.bytes.size() + tree.geometry.duplicates.size(),
+                  tree.geometry.vertices.size(), tree.geometry.corners.size(),
+                  tree.geometry.face_ids.size(), 0};
   parts.rest = file_bytes - parts.total();
   return parts;
 }

@@ -30,13 +30,15 @@ inline constexpr std::array kApproximateCodecs = {CodecId::kWide8, CodecId::kWid
 
 /// Bytes of one file with one tree, by purpose.
 struct ByteParts {
-  std::uint64_t nodes = 0;
+  std::uint64_t nodes = 0;  // and duplicates
   std::uint64_t vertices = 0;
   std::uint64_t corners = 0;
   std::uint64_t face_ids = 0;
   std::uint64_t rest = 0;  // header, records, name, padding
 
   [[nodiscard]] std::uint64_t total() const { return nodes + vertices + corners + face_ids + rest; }
+  /// Nodes and geometry, which queries need: what `cook` counts.
+  [[nodiscard]] std::uint64_t queried() const { return nodes + vertices + corners; }
 };
 
 /// Differences from the answers of exact geometry; lengths as shares of the mesh's diagonal.
