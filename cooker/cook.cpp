@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cook_record.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/scene/hidden_faces.h"
 #include "cooker/scene/plan.h"
@@ -101,15 +102,11 @@ class Cook {
     return {};
   }
 
-  // A tolerance is for what the source says, and f32 has taken from that already.
+  // A tolerance of the options; plan_scene checks those of a profile.
   [[nodiscard]] Status check_digits(const ImportReport& report) const {
-    const std::optional<double>& tolerance = options_.grid.tolerance;
-    if (!tolerance || report.moved_by_f32 <= *tolerance) return {};
-    return Error{
-        Errc::kMeshUnsupported,
-        fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
-                    "{}; cook --f64 keeps all digits",
-                    source_of(report).string(), report.moved_by_f32, *tolerance)};
+    if (!options_.grid.tolerance) return {};
+    return check_moved_by_f32(source_of(report).string(), report.moved_by_f32,
+                              *options_.grid.tolerance);
   }
 
   // Called for one mesh after another; may be called again for an imported mesh.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -20,6 +21,7 @@
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/step_printer.h"
 #include "cooker/cli/worker_threads.h"
+#include "cooker/import/f32_digits.h"
 #include "cooker/import/import.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/report/paper_tables.h"
@@ -42,6 +44,8 @@ struct Arguments {
   bool paper = false;
   bool quick = false;
   bool no_times = false;
+  bool f64 = false;
+  std::optional<double> tolerance;
   bool quiet = false;
   int jobs = kAllThreads;
 };
@@ -214,13 +218,22 @@ std::string command_of(const Arguments& arguments) {
   if (arguments.paper) command += " --paper";
   if (arguments.quick) command += " --quick";
   if (arguments.no_times && !arguments.paper) command += " --no-times";
+  if (arguments.f64) command += " --f64";
+  if (arguments.tolerance) command += fmt::format(" --tolerance {}", *arguments.tolerance);
   for (const auto& mesh : arguments.meshes) command += " " + mesh.filename().string();
   return command;
 }
 
-Result<SourceMesh> read_mesh(const std::filesystem::path& path) {
-  Result<Imported> imported = import_mesh(path, careful_import());
+Result<SourceMesh> read_mesh(const std::filesystem::path& path, const Arguments& arguments) {
+  ImportOptions options = careful_import();
+  if (arguments.f64) options.precision = Precision::kF64;
+  Result<Imported> imported = import_mesh(path, options);
   if (!imported) return imported.error();
+  const double moved = imported->report.moved_by_f32;
+  if (arguments.tolerance) {
+    const Status status = check_moved_by_f32(path.string(), moved, *arguments.tolerance);
+    if (!status) return status.error();
+  }
   for (const std::string& warning : warnings_of(imported->report)) warn(warning);
   imported->mesh.name = path.stem().string();
   return std::move(imported->mesh);
@@ -230,7 +243,7 @@ int run_paper(const Arguments& arguments) {
   PaperReport report;
   report.command = command_of(arguments);
   for (const std::filesystem::path& path : arguments.meshes) {
-    const Result<SourceMesh> mesh = read_mesh(path);
+    const Result<SourceMesh> mesh = read_mesh(path, arguments);
     if (!mesh) return fail(mesh.error());
     Result<PaperFigures> figures = paper_figures(*mesh);
     if (!figures) return fail(figures.error());
@@ -272,10 +285,10 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
   for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
     const auto before = static_cast<double>(i);
     steps("import " + arguments.meshes[i].filename().string(), part(before));
-    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i]);
+    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i], arguments);
     if (!mesh) return mesh.error();
     Result<MeshTradeoff> figures = measure_tradeoff(
-        *mesh, {arguments.quick, !arguments.no_times},
+        *mesh, {arguments.quick, !arguments.no_times, arguments.tolerance},
         [&](const std::string& step, double share) { steps(step, part(before + share)); });
     if (!figures) return figures.error();
     report.meshes.push_back(std::move(*figures));
@@ -357,8 +370,7 @@ void add_report_command(Command& program, int& status) {
       "report",
       "Show which encoding to use for meshes: bytes, times and errors\n"
       "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells. The page has "
-      "grids of so many bits; what a tolerance of your own takes, cook --tolerance LENGTH "
-      "--candidates tells.");
+      "grids of so many bits, and with --tolerance that of a tolerance of your own.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,
@@ -375,6 +387,19 @@ void add_report_command(Command& program, int& status) {
       .add_file("--csv-approximate", arguments->approximate_csv, Values::kFiles,
                 "Write a row for each allowed error and budget of approximate queries as CSV")
       ->excludes(paper);
+  command
+      .add_flag("--f64", arguments->f64,
+                "Hold positions as f64, not f32: all digits of OBJ, OFF and PLY files, for meshes "
+                "far from the origin")
+      ->excludes(paper);
+  command
+      .add_option(
+          "--tolerance", arguments->tolerance,
+          "Recommend what moves no vertex farther, in units of the mesh, and show its grid [a "
+          "ten-thousandth of the diagonal for the smallest, a millionth for the balanced]")
+      ->type_name("LENGTH")
+      ->above_zero("a length")
+      ->excludes(paper);
   command.add_flag("--quick", arguments->quick, "Few encodings, queries and runs: for a look");
   command.add_flag("--no-times", arguments->no_times,
                    "Count only: the same figures on every machine");
@@ -390,6 +415,8 @@ void add_report_command(Command& program, int& status) {
       ->type_name("PROGRAM")
       ->group(kRareOptions);
   command.example("A page, for a look", "boxtree report bunny.obj -o bunny.html --quick");
+  command.example("What a vertex may be off by 0.001 saves",
+                  "boxtree report bunny.obj -o bunny.html --quick --tolerance 0.001");
   command.example("Counted figures alone, the same on every machine",
                   "boxtree report bunny.obj --quick --no-times --csv bunny.csv");
   command.callback([arguments, &status] { status = run(*arguments); });

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
@@ -47,6 +48,14 @@ double moved_by_f32(const Positions& positions) {
     farthest = std::max(farthest, std::sqrt(squared_length(off * scale)) / scale);
   }
   return farthest;
+}
+
+Status check_moved_by_f32(const std::string& source, double moved, double tolerance) {
+  if (moved <= tolerance) return {};
+  return Error{Errc::kMeshUnsupported,
+               fmt::format("{}: f32 moves a vertex by up to {:.3g}, farther than the tolerance of "
+                           "{}; --f64 keeps all digits",
+                           source, moved, tolerance)};
 }
 
 }  // namespace boxtree::cooker

@@ -3,6 +3,10 @@
 // map, the fewer bits are left for its shape.
 #pragma once
 
+#include <string>
+
+#include <boxtree/error.h>
+
 #include "cooker/import/source_mesh.h"
 
 namespace boxtree::cooker {
@@ -16,5 +20,9 @@ namespace boxtree::cooker {
 
 /// The largest distance of a position from the nearest one with coordinates of f32.
 [[nodiscard]] double moved_by_f32(const Positions& positions);
+
+/// kMeshUnsupported if f32 has moved a vertex of `source` farther than a tolerance, which is for
+/// what the source says.
+Status check_moved_by_f32(const std::string& source, double moved, double tolerance);
 
 }  // namespace boxtree::cooker

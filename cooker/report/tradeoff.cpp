@@ -152,18 +152,24 @@ class Measurement {
     out_.triangles = mesh.triangle_count();
     out_.vertices = mesh.positions.size();
     out_.diagonal = bounds_of(mesh).diagonal().norm();
+    out_.is_f64 = mesh.positions.precision == Precision::kF64;
+    out_.moved_by_f32 = mesh.moved_by_f32;
+    out_.tolerance = options.tolerance;
+    if (options.tolerance) {
+      out_.tolerance_left = in_diagonals(tolerance_left(*options.tolerance, mesh));
+    }
     out_.timed = options.times;
     const std::uint64_t coordinate = mesh.positions.precision == Precision::kF64 ? 8 : 4;
     out_.source.vertices = out_.vertices * 3 * coordinate;
     out_.source.corners = out_.triangles * 3 * 4;
-    const std::size_t grids = grid_sweep(options.quick).size();
+    const std::size_t grids = grid_sweep(options.quick).size() + (options.tolerance ? 1 : 0);
     steps_ = kCodecs.size() + 2 + kApproximateCodecs.size() + 2 * grids;
   }
 
   Result<MeshTradeoff> run() {
     if (Status status = measure_store({}); !status) return status.error();
-    for (const int bits : grid_sweep(options_.quick)) {
-      const Status status = measure_store(bits);
+    for (const SweptGrid& grid : grids()) {
+      const Status status = measure_store(grid);
       // The grid is too fine for positions so far from zero.
       if (!status && status.error().code != Errc::kMeshUnsupported) return status.error();
     }
@@ -172,6 +178,34 @@ class Measurement {
   }
 
  private:
+  // A grid of the sweep, or that of the tolerance.
+  struct SweptGrid {
+    GridChoice choice;
+    int bits;
+  };
+
+  // Coarsest first. Those that cannot be are left out.
+  [[nodiscard]] std::vector<SweptGrid> grids() const {
+    std::vector<SweptGrid> grids;
+    std::optional<int> extent_exponent;
+    for (const int bits : grid_sweep(options_.quick)) {
+      const Result<Grid> grid = choose_grid(bounds_of(mesh_), {.bits = bits});
+      if (grid && !extent_exponent) extent_exponent = grid->step_exponent + bits;
+      grids.push_back({{.bits = bits}, bits});
+    }
+    const std::array meshes{&mesh_};
+    const Result<Grid> grid = options_.tolerance && extent_exponent
+                                  ? choose_grid(meshes, {.tolerance = options_.tolerance})
+                                  : Errc::kMeshUnsupported;
+    if (!grid) return grids;
+    // A step as large as the mesh has a bit, too: 0 stands for exact positions.
+    const int bits = std::max(*extent_exponent - grid->step_exponent, 1);
+    const auto finer = std::find_if(grids.begin(), grids.end(),
+                                    [bits](const SweptGrid& other) { return other.bits > bits; });
+    grids.insert(finer, {{.tolerance = options_.tolerance}, bits});
+    return grids;
+  }
+
   void announce(const std::string& what) {
     if (progress_) {
       progress_(mesh_.name + ": " + what,
@@ -180,19 +214,24 @@ class Measurement {
   }
 
   // All candidates with exact geometry, or those of the wide codecs on a grid.
-  Status measure_store(std::optional<int> grid_bits) {
-    announce(grid_bits ? fmt::format("grid of {} bits", *grid_bits) : "exact geometry");
+  Status measure_store(const std::optional<SweptGrid>& swept) {
+    announce(!swept                    ? "exact geometry"
+             : swept->choice.tolerance ? fmt::format("tolerance of {}", *swept->choice.tolerance)
+                                       : fmt::format("grid of {} bits", swept->bits));
     SearchOptions search;
-    search.try_all = !grid_bits;
+    search.try_all = !swept;
     search.keep_all = true;
-    search.geometry = grid_bits ? GeometryId::kGrid : GeometryId::kExact;
+    search.geometry = swept ? GeometryId::kGrid : GeometryId::kExact;
     search.may_use_arrays = true;
     double rms = 0;
     double bound = 0;
-    if (grid_bits) {
-      search.grid.bits = *grid_bits;
-      const Result<Grid> grid = choose_grid(bounds_of(mesh_), search.grid);
+    int step_exponent = 0;
+    if (swept) {
+      search.grid = swept->choice;
+      const std::array meshes{&mesh_};
+      const Result<Grid> grid = choose_grid(meshes, search.grid);
       if (!grid) return grid.error();
+      step_exponent = grid->step_exponent;
       rms = rms_move(mesh_, quantise(mesh_, *grid));
       // A vertex moves at most half a step along each axis.
       bound = std::sqrt(3.0) / 2 * std::ldexp(1.0, grid->step_exponent);
@@ -200,13 +239,17 @@ class Measurement {
     Result<TriedTree> tried = try_encodings(mesh_, search);
     if (!tried) return tried.error();
     const std::vector<Candidate>& candidates = tried->contest.candidates;
-    if (!grid_bits) {
+    if (!swept) {
       if (Status status = find_exact_answers(*tried); !status) return status;
     }
     for (std::size_t i = 0; i < candidates.size(); ++i) {
-      if (grid_bits && !is_wide(candidates[i].codec)) continue;
+      if (swept && !is_wide(candidates[i].codec)) continue;
       TradePoint point = point_of(candidates[i]);
-      point.grid_bits = grid_bits.value_or(0);
+      if (swept) {
+        point.grid_bits = swept->bits;
+        point.tolerance = swept->choice.tolerance;
+        point.grid_step_exponent = step_exponent;
+      }
       point.surface_rms = in_diagonals(rms);
       point.surface_bound = in_diagonals(bound);
       announce("query " + point.name());
@@ -228,7 +271,7 @@ class Measurement {
     point.gates = candidate.gates;
     point.work = candidate.work;
     point.reference = is_wide(candidate.codec) ? CodecId::kWide8 : CodecId::kPlainF32;
-    point.surface_max = in_diagonals(candidate.max_vertex_error);
+    point.surface_max = in_diagonals(candidate.max_vertex_error - mesh_.moved_by_f32);
     point.modelled = candidate.cost;
     return point;
   }
@@ -333,8 +376,9 @@ class Measurement {
 }  // namespace
 
 std::string TradePoint::name() const {
-  return grid_bits == 0 ? fmt::format("{}, {}", codec_name(codec), geometry_name(geometry))
-                        : fmt::format("{}, grid {}", codec_name(codec), grid_bits);
+  if (grid_bits == 0) return fmt::format("{}, {}", codec_name(codec), geometry_name(geometry));
+  return tolerance ? fmt::format("{}, tolerance {}", codec_name(codec), *tolerance)
+                   : fmt::format("{}, grid {}", codec_name(codec), grid_bits);
 }
 
 std::span<const int> grid_sweep(bool quick) noexcept {

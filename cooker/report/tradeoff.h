@@ -5,6 +5,7 @@
 
 #include <array>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -54,13 +55,16 @@ struct TradePoint {
   CodecId codec{};
   GeometryId geometry = GeometryId::kExact;
   int grid_bits = 0;  // 0: exact positions
+  int grid_step_exponent = 0;
+  std::optional<double> tolerance;  // of TradeoffOptions, if it decided the grid
   ByteParts bytes;
   Gates gates;
   WorkOfKinds work{};
   CodecId reference{};  // baseline of extra work: the same mesh with exact geometry
   std::array<double, kQueryKinds> extra_nodes{};       // nodes / nodes of the reference - 1
   std::array<double, kQueryKinds> false_leaf_tests{};  // the same for leaves
-  double surface_max = 0;    // largest movement of a point of the surface; share of the diagonal
+  // Moves of the surface from where it was read, as shares of the diagonal.
+  double surface_max = 0;    // largest of a point
   double surface_rms = 0;    // over the vertices
   double surface_bound = 0;  // the grid's bound
   AnswerErrors answers;
@@ -71,15 +75,19 @@ struct TradePoint {
   /// For exact geometry and the codecs in kApproximateCodecs; otherwise empty.
   ApproximateFigures approximate;
 
-  [[nodiscard]] std::string name() const;  // "wide8, grid 24"
+  [[nodiscard]] std::string name() const;  // "wide8, grid 24", "wide8, tolerance 0.001"
 };
 
 struct MeshTradeoff {
   std::string name;
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
-  double diagonal = 0;  // of the bounds, object space
-  ByteParts source;     // positions and 32-bit corners, as in an application
+  double diagonal = 0;              // of the bounds, object space
+  bool is_f64 = false;              // its positions
+  double moved_by_f32 = 0;          // SourceMesh::moved_by_f32
+  std::optional<double> tolerance;  // of TradeoffOptions
+  double tolerance_left = 0;        // of it for moves of the surface; share of the diagonal
+  ByteParts source;                 // positions and 32-bit corners, as in an application
   std::vector<TradePoint> points;
   bool timed = false;
 
@@ -91,6 +99,7 @@ struct MeshTradeoff {
 struct TradeoffOptions {
   bool quick = false;  // fewer grids, fewer queries
   bool times = true;
+  std::optional<double> tolerance;  // a grid of that, too, object space
 };
 
 /// Called with each step and the share that is done, 0 to 1; may be empty.
@@ -100,10 +109,10 @@ using ShareProgress = std::function<void(const std::string& step, double share)>
 [[nodiscard]] std::span<const int> grid_sweep(bool quick) noexcept;
 
 /// Encodes a mesh with every codec and exact geometry, and with wide8 and wide4 on each grid of the
-/// sweep. A grid that double precision cannot hold is skipped. The reference for work is plain-f32
-/// (whose boxes are exact for f32 positions) for codecs with one triangle per leaf, and wide8 for
-/// those with full leaves, whose tree differs. The reference for answers is plain-f32. Errors:
-/// kNoFaces, and those of cooking and queries.
+/// sweep and on that of a tolerance. A grid that double precision cannot hold is skipped. The
+/// reference for work is plain-f32 (whose boxes are exact for f32 positions) for codecs with one
+/// triangle per leaf, and wide8 for those with full leaves, whose tree differs. The reference for
+/// answers is plain-f32. Errors: kNoFaces, and those of cooking and queries.
 Result<MeshTradeoff> measure_tradeoff(const SourceMesh& mesh, const TradeoffOptions& options,
                                       const ShareProgress& progress = {});
 

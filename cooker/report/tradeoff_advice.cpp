@@ -52,12 +52,20 @@ std::optional<std::size_t> least(const std::vector<bool>& may_be_advised,
   return best;
 }
 
+// Whether cook tries a grid unless told one: that of a tolerance, else one of 24 bits, which --f64
+// forbids.
+bool is_cooks_grid(const MeshTradeoff& mesh, const TradePoint& point) {
+  if (mesh.tolerance) return point.tolerance.has_value();
+  return !mesh.is_f64 && point.grid_bits == GridChoice().bits;
+}
+
 PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::string& role,
                     double slowdown) {
   const TradePoint& point = mesh.points[place];
   const std::uint64_t bytes = point.bytes.total();
   const std::string surface = point.surface_max == 0
-                                  ? "No position changes by a single bit."
+                                  ? fmt::format("No position changes by a single bit{}.",
+                                                mesh.moved_by_f32 > 0 ? " of f32" : "")
                                   : fmt::format("No point of the surface moves by more than {}.",
                                                 move_in_words(mesh, point.surface_max));
   const auto time = [&](std::size_t kind) {
@@ -81,7 +89,7 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
                   mesh.per_triangle(bytes), bytes,
                   100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
                   mesh.per_triangle(point.bytes.queried()), surface, times, slowdown,
-                  cook_options(point))};
+                  cook_options(mesh, point))};
 }
 
 }  // namespace
@@ -127,10 +135,12 @@ std::optional<Advice> advise(const MeshTradeoff& mesh) {
   };
   const auto moved = [&](std::size_t i) { return mesh.points[i].surface_max; };
   const auto is_exact = [&](std::size_t i) { return is_lossless(mesh.points[i].geometry); };
+  const double coarse = mesh.tolerance ? mesh.tolerance_left : kCoarse;
+  const double fine = mesh.tolerance ? mesh.tolerance_left : kFine;
   const auto smallest =
-      least(may, [&](std::size_t i) { return moved(i) <= kCoarse ? bytes(i) : kNone; });
+      least(may, [&](std::size_t i) { return moved(i) <= coarse ? bytes(i) : kNone; });
   const auto balanced =
-      least(may, [&](std::size_t i) { return moved(i) <= kFine ? bytes(i) * slower[i] : kNone; });
+      least(may, [&](std::size_t i) { return moved(i) <= fine ? bytes(i) * slower[i] : kNone; });
   // Among equal surfaces: triangles that a coarse grid makes points take no time.
   const auto fastest = least(may, [&](std::size_t i) { return is_exact(i) ? slower[i] : kNone; });
   const auto exact = least(may, [&](std::size_t i) { return is_exact(i) ? bytes(i) : kNone; });
@@ -145,7 +155,7 @@ std::optional<std::size_t> cooks_choice(const MeshTradeoff& mesh, Goal goal) {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < mesh.points.size(); ++i) {
     const TradePoint& point = mesh.points[i];
-    if (point.grid_bits != 0 && point.grid_bits != GridChoice().bits) continue;
+    if (point.grid_bits != 0 && !is_cooks_grid(mesh, point)) continue;
     Candidate candidate;
     candidate.codec = point.codec;
     candidate.geometry = point.geometry;
@@ -172,12 +182,19 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
     std::string name;
     std::size_t place;
   };
+  const auto within = [&](const char* share) {
+    return mesh.tolerance ? fmt::format("the tolerance of {}", *mesh.tolerance)
+                          : fmt::format("{} of the diagonal", share);
+  };
+  const char* const every_bit = mesh.moved_by_f32 > 0 ? "with every f32 position bit for bit"
+                                                      : "with every position bit for bit";
   const std::array roles = {
-      Role{"Balanced, for most uses (surface within a millionth of the diagonal)",
+      Role{fmt::format("Balanced, for most uses (surface within {})", within("a millionth")),
            advice->balanced},
-      Role{"Smallest (surface within a ten-thousandth of the diagonal)", advice->smallest},
-      Role{"Fastest with every position bit for bit", advice->fastest_exact},
-      Role{"Smallest with every position bit for bit", advice->smallest_exact}};
+      Role{fmt::format("Smallest (surface within {})", within("a ten-thousandth")),
+           advice->smallest},
+      Role{fmt::format("Fastest {}", every_bit), advice->fastest_exact},
+      Role{fmt::format("Smallest {}", every_bit), advice->smallest_exact}};
   static_assert(kFine == 1e-6 && kCoarse == 1e-4, "as the words say");
   // An encoding that is best in several ways is listed once.
   std::vector<Role> merged;
@@ -197,11 +214,13 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
   return words;
 }
 
-std::string cook_options(const TradePoint& point) {
+std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point) {
   const auto positions = [&]() -> std::string {
     switch (point.geometry) {
       case GeometryId::kGrid:
-        return fmt::format("--grid-bits {}", point.grid_bits);
+        // A tolerance may take a store that keeps every bit.
+        return point.tolerance ? fmt::format("--grid-step 2^{}", point.grid_step_exponent)
+                               : fmt::format("--grid-bits {}", point.grid_bits);
       case GeometryId::kArrays:  // of the two stores that keep every bit, the faster
         return "--exact --for speed";
       case GeometryId::kExact:  // and the smaller
@@ -211,7 +230,8 @@ std::string cook_options(const TradePoint& point) {
     }
     return "--external";
   };
-  return fmt::format("--codec {} {} --flatten --strip", codec_name(point.codec), positions());
+  return fmt::format("--codec {} {}{} --flatten --strip", codec_name(point.codec), positions(),
+                     mesh.is_f64 ? " --f64" : "");
 }
 
 std::string time_in_words(double nanoseconds) {

@@ -19,8 +19,9 @@ inline constexpr double kFine = 1e-6;
 
 /// The recommended points of a mesh, as indices into MeshTradeoff::points.
 struct Advice {
-  std::size_t smallest = 0;        // fewest bytes, surface moved by at most kCoarse
-  std::size_t balanced = 0;        // smallest product of bytes and slowdown, moved by at most kFine
+  // Surface moved by at most the tolerance, if there is one, else kCoarse or kFine.
+  std::size_t smallest = 0;        // fewest bytes, kCoarse
+  std::size_t balanced = 0;        // smallest product of bytes and slowdown, kFine
   std::size_t fastest_exact = 0;   // least slowdown with every position bit for bit
   std::size_t smallest_exact = 0;  // fewest bytes with every position bit for bit
 };
@@ -44,7 +45,7 @@ struct Advice {
 [[nodiscard]] std::optional<Advice> advise(const MeshTradeoff& mesh);
 
 /// The point that `boxtree cook --for GOAL` chooses without budgets: by counted work, among exact
-/// geometry and the default grid. Empty if no point passes its gates.
+/// geometry and the default grid, or that of the tolerance. Empty if no point passes its gates.
 [[nodiscard]] std::optional<std::size_t> cooks_choice(const MeshTradeoff& mesh, Goal goal);
 
 /// A paragraph for each recommendation.
@@ -52,7 +53,7 @@ struct Advice {
 
 /// The options of `boxtree cook` that produce a file of a point's bytes: the first input is one
 /// tree, and no record of the cook follows.
-[[nodiscard]] std::string cook_options(const TradePoint& point);
+[[nodiscard]] std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point);
 
 /// "820 ns", "3.4 µs".
 [[nodiscard]] std::string time_in_words(double nanoseconds);

@@ -125,6 +125,7 @@ Json to_json(const MeshTradeoff& mesh, const TradePoint& point) {
       {"codec", codec_name(point.codec)},
       {"geometry", geometry_name(point.geometry)},
       {"grid_bits", point.grid_bits == 0 ? Json(nullptr) : Json(point.grid_bits)},
+      {"tolerance", point.tolerance ? Json(*point.tolerance) : Json(nullptr)},
       {"bytes", to_json(point.bytes)},
       {"bytes_per_triangle", mesh.per_triangle(point.bytes.total())},
       {"gates",
@@ -151,6 +152,8 @@ Json to_json(const MeshTradeoff& mesh) {
                {"triangles", mesh.triangles},
                {"vertices", mesh.vertices},
                {"diagonal", mesh.diagonal},
+               {"positions", precision_name(mesh.is_f64 ? Precision::kF64 : Precision::kF32)},
+               {"moved_by_f32", mesh.moved_by_f32},
                {"source_bytes", to_json(mesh.source)}};
   json["advice"] = nullptr;
   if (const auto advice = advise(mesh)) {
@@ -274,7 +277,7 @@ std::string to_csv(const TradeoffReport& report) {
   out += ",pages_file,pages_open";
   for (const char* kind : {"ray", "box", "point"})
     out += fmt::format(",pages_{0},pages_{0}_worst", kind);
-  out += '\n';
+  out += ",tolerance\n";
   for (const MeshTradeoff& mesh : report.meshes) {
     for (const TradePoint& point : mesh.points) {
       const ByteParts& b = point.bytes;
@@ -299,7 +302,7 @@ std::string to_csv(const TradeoffReport& report) {
       for (const PageCount& count : {point.pages.ray, point.pages.box, point.pages.point}) {
         out += fmt::format(",{},{}", count.median, count.worst);
       }
-      out += '\n';
+      out += fmt::format(",{}\n", point.tolerance ? fmt::format("{}", *point.tolerance) : "");
     }
   }
   return out;

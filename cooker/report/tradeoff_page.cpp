@@ -199,7 +199,17 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       "holds the record of its cook, some 0.3 KB. Without face ids, nodes and geometry alone, is "
       "the figure \"with geometry\" of boxtree cook.",
       mesh.triangles, mesh.vertices, mesh.diagonal);
+  if (mesh.is_f64) section.text += " Positions are f64.";
   section.conclusions = advice_in_words(mesh);
+  if (mesh.moved_by_f32 > 0) {
+    section.conclusions.insert(
+        section.conclusions.begin(),
+        {"Far from the origin.",
+         fmt::format(
+             "Reading the mesh as f32 moved a vertex by up to {}. Moves of the surface below "
+             "are from there, a tolerance is of both together, and --f64 keeps all digits.",
+             move_in_words(mesh, mesh.moved_by_f32 / mesh.diagonal))});
+  }
   const auto advice = advise(mesh);
   if (!advice) return section;
   PageTable table{{"choice", "encoding", "bytes / triangle", "without face ids", "of source",
@@ -235,13 +245,15 @@ PageSection advice_section(const MeshTradeoff& mesh) {
                          goal_name(goal));
   }
   section.text += fmt::format(
-      " Unless told a codec, boxtree cook chooses by counted work, the same on every machine: {}. "
+      " Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
+      "{}. "
       "The choices below go by the times on this page, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
-      cooks, kSlowdownMeaning, mesh.timed ? "measured" : "modelled", kBoxMeaning,
-      contacts_meaning(mesh));
+      mesh.is_f64 ? " --f64" : "",
+      mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "", cooks,
+      kSlowdownMeaning, mesh.timed ? "measured" : "modelled", kBoxMeaning, contacts_meaning(mesh));
   if (mesh.timed) {
     section.text += fmt::format(
         " boxtree cook has the same kinds by modelled times, of fewer queries, and of contacts "
@@ -443,8 +455,9 @@ PageSection words_section() {
             {{"codec", "how the nodes of the tree are stored; all give the same answers"},
              {"wide8, wide4", "our own: eight children a node, 8 or 4 bits for a side of a box"},
              {"plain, packed, dedup", "two children a node, as in the thesis"},
-             {"exact", "every position of the mesh is kept bit for bit"},
+             {"exact", "every position of the mesh, as it was read, is kept bit for bit"},
              {"grid 24", "positions rounded to 2^24 steps over the largest extent"},
+             {"tolerance", "positions rounded to the grid of --tolerance"},
              {"diagonal", "of the mesh's bounding box; errors are shares of it"},
              {"gates", "what every file must pass: no face missed, every box holds what is below"},
              {"extra nodes", "nodes decoded beyond those of the reference tree"},

@@ -425,8 +425,8 @@ misspelt "boxtree: usage: query ray: '--orgin' is no option; did you mean '--ori
 See 'boxtree query ray --help'." query cube.bxt ray --orgin 1,2,3
 misspelt "boxtree: usage: cook: '--outptu' is no option; did you mean '--output'?
 See 'boxtree cook --help'." cook cube.obj --outptu out.bxt
-misspelt "boxtree: usage: report: '--tolerance' is no option of report, but of cook
-See 'boxtree report --help'." report cube.obj --tolerance 0.001
+misspelt "boxtree: usage: report: '--grid-bits' is no option of report, but of cook
+See 'boxtree report --help'." report cube.obj --grid-bits 16
 misspelt "boxtree: usage: cook: '--frobnicate' is no option
 See 'boxtree cook --help'." cook cube.obj --frobnicate
 misspelt "boxtree: usage: query ray: --origin: expected X,Y,Z, found \"1,2\"
@@ -940,7 +940,7 @@ expect 0 "$boxtree" cook far.obj -o far.bxt -q --json
 same "$(cat err)" 'boxtree: warning: far.obj: f32 has few digits for a mesh so far from the origin and moved a vertex by up to 0.221; cook --f64 keeps all digits, and with --tolerance LENGTH or the tolerance of a profile in few bytes'
 jq -e '.trees[0].import.moved_by_f32 | . > 0.2 and . < 0.3' out >/dev/null
 expect 5 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.001
-same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; cook --f64 keeps all digits'
+same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
 expect 5 "$boxtree" cook far.obj cube.obj -o far.bxt -q --tolerance 0.001
 # What f32 took counts: in the file, and of a profile's tolerance.
 expect 0 "$boxtree" cook far.obj -o far.bxt -q --tolerance 0.3 --json
@@ -966,6 +966,18 @@ for options in --f64 '--f64 --tolerance 0.001'; do
 done
 expect 0 "$boxtree" query far.bxt ray --origin 459123.48,5412345.72,7 --direction 0,0,-1 --json
 same "$(jq .hit out)" true
+# The page of a report says how far f32 moved the mesh, and its tolerance counts that.
+expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.3
+same "$(grep -c 'moved a vertex by up to 0.221' err)" 1
+for said in out far.html; do
+  grep -q 'Reading the mesh as f32 moved a vertex by up to [0-9.]* of the diagonal (0.22 units of the mesh)' $said
+done
+grep -q 'surface within the tolerance of 0.3' out
+expect 5 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001
+same "$(cat err)" 'boxtree: mesh_unsupported: far.obj: f32 moves a vertex by up to 0.221, farther than the tolerance of 0.001; --f64 keeps all digits'
+expect 0 "$boxtree" report far.obj -o far.html --quick --no-times --tolerance 0.001 --f64
+same "$(cat err)" ''
+grep -q 'Positions are f64' far.html
 
 # f64 from the digits of the file to the answer: layers 1e-9 apart, a million units out.
 printf 'v 1000000 0 0\nv 1000001 0 0\nv 1000000 1 0\nv 1000000 0 -1e-9\nv 1000001 0 -1e-9\nv 1000000 1 -1e-9\nf 1 2 3\nf 4 5 6\n' >layers.obj

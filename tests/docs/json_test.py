@@ -130,7 +130,8 @@ RUNS = {
     "bench --pages": ["bench crate.bxt --pages --quick"],
     "bench --calibrate": ["bench --calibrate crate.obj --runs 1"],
     "report": ["report crate.obj flat.obj --quick --peers ./peers --include results.json",
-               "report crate.obj --quick --no-times"],
+               "report crate.obj --quick --no-times --tolerance 0.001",
+               "report crate.obj --quick --no-times --f64"],
     "report --paper": ["report --paper crate.obj --quick --peers ./peers"],
     "export": ["export crate.bxt -o crate.glb", "export level.bxt -o level.glb --leaves"],
 }

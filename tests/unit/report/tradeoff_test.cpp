@@ -207,6 +207,81 @@ TEST(Tradeoff, TimesComeInOrder) {
   }
 }
 
+TEST(Tradeoff, AToleranceHasTheGridThatCookTakesForIt) {
+  TradeoffOptions options{true, false};
+  options.tolerance = 1e-3;
+  const MeshTradeoff made = require(measure_tradeoff(mesh(), options));
+  std::size_t found = 0;
+  int bits = 0;
+  for (const TradePoint& point : made.points) {
+    if (point.codec == CodecId::kWide8 && point.grid_bits != 0) {
+      EXPECT_GE(point.grid_bits, bits) << "curves follow the grids";
+      bits = point.grid_bits;
+    }
+    if (!point.tolerance) continue;
+    ++found;
+    EXPECT_EQ(point.name(), std::string(codec_name(point.codec)) + ", tolerance 0.001");
+    CookOptions cook;
+    cook.geometry = GeometryId::kGrid;
+    cook.grid.tolerance = options.tolerance;
+    const EncodedTree tree = require(cook_as(mesh(), point.codec, cook));
+    EXPECT_EQ(point.bytes.total(), serialize(std::span(&tree, 1)).size());
+    EXPECT_LE(point.surface_max, made.tolerance_left);
+    EXPECT_EQ(point.surface_max * made.diagonal, tree.geometry.max_vertex_error);
+    EXPECT_NE(cook_options(made, point)
+                  .find("--grid-step 2^" + std::to_string(tree.geometry.grid_exponent) + " "),
+              std::string::npos);
+  }
+  EXPECT_EQ(found, 2u);
+  // It is the limit of what is recommended, and of what cook takes.
+  const auto advice = advise(made);
+  ASSERT_TRUE(advice);
+  EXPECT_TRUE(made.points[advice->smallest].tolerance);
+  EXPECT_NE(advice_in_words(made)[0].lead.find("(surface within the tolerance of 0.001)"),
+            std::string::npos);
+  CookOptions cook;
+  cook.wishes.goal = Goal::kMemory;
+  cook.may_use_grid = cook.may_use_arrays = cook.try_all = true;
+  cook.grid.tolerance = options.tolerance;
+  const TradePoint& chosen = made.points[cooks_choice(made, Goal::kMemory).value()];
+  EXPECT_TRUE(chosen.tolerance);
+  EXPECT_EQ(chosen.codec, require(cook_mesh(mesh(), cook)).tree.nodes.codec);
+}
+
+// Figures are of the positions that were read; how far those are from the source stands beside
+// them.
+TEST(Tradeoff, TellsHowFarF32MovedTheMesh) {
+  SourceMesh far = mesh();
+  far.moved_by_f32 = 0.25;
+  TradeoffReport report;
+  report.meshes = {require(measure_tradeoff(far, {true, false}))};
+  const MeshTradeoff& made = report.meshes.front();
+  EXPECT_EQ(made.moved_by_f32, 0.25);
+  for (const TradePoint& point : made.points) {
+    if (point.grid_bits == 0) EXPECT_EQ(point.surface_max, 0) << point.name();
+    if (point.grid_bits == 24) EXPECT_LT(point.surface_max, 1e-6) << point.name();
+  }
+  ASSERT_TRUE(advise(made));
+  const std::string page = to_text(tradeoff_page(report));
+  EXPECT_NE(page.find("as f32 moved a vertex by up to"), std::string::npos);
+  EXPECT_NE(page.find("No position changes by a single bit of f32."), std::string::npos);
+  EXPECT_EQ(to_text(tradeoff_page({.meshes = {counted()}})).find("moved a vertex"),
+            std::string::npos);
+}
+
+TEST(Tradeoff, CommandsOfAMeshInF64ReadItSo) {
+  SourceMesh precise = mesh();
+  precise.positions.precision = Precision::kF64;
+  precise.positions.f64.assign(precise.positions.f32.begin(), precise.positions.f32.end());
+  precise.positions.f32.clear();
+  const MeshTradeoff made = require(measure_tradeoff(precise, {true, false}));
+  for (const TradePoint& point : made.points) {
+    EXPECT_NE(cook_options(made, point).find(" --f64 "), std::string::npos);
+  }
+  // cook --f64 tries no grid unless told one.
+  EXPECT_EQ(made.points[cooks_choice(made, Goal::kMemory).value()].grid_bits, 0);
+}
+
 TEST(Tradeoff, RefusesAMeshWithoutFaces) {
   EXPECT_EQ(measure_tradeoff({}, {}).code(), Errc::kNoFaces);
 }
@@ -522,8 +597,8 @@ TEST(TradeoffData, JsonAndCsvSayWhatThePointsSay) {
     EXPECT_EQ(std::count(line.begin(), line.end(), ','), commas) << line;
     EXPECT_NE(line.find("," + std::to_string(point.bytes.total()) + ","), std::string::npos);
     EXPECT_TRUE(line.ends_with("," + std::to_string(point.pages.point.median) + "," +
-                               std::to_string(point.pages.point.worst)))
-        << line;
+                               std::to_string(point.pages.point.worst) + ","))
+        << line;  // without a tolerance
   }
   EXPECT_FALSE(std::getline(lines, line));
 }
