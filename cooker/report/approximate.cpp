@@ -70,8 +70,9 @@ class Sweep {
   Sweep(const Tree& tree, const std::vector<Query>& queries,
         const std::vector<TrueDistance>& truths, std::size_t runs)
       : tree_(tree), queries_(queries), truths_(truths), runs_(runs) {
-    const Eigen::AlignedBox3d bounds = bounds_in_object_space(tree);
-    resolution_ = std::ldexp(bounds.diagonal().norm(), -44);
+    const double diagonal = bounds_in_object_space(tree).diagonal().norm();
+    resolution_ = std::ldexp(diagonal, -44);
+    least_distance_ = kLeastDistance * diagonal;
   }
 
   template <class Value>
@@ -107,7 +108,7 @@ class Sweep {
       if (found.converged) ++step.converged;
       if (found.lower > truth.upper || found.upper < truth.lower) ++step.false_bounds;
       if (!found.is_found) continue;
-      const double scale = std::max(truth.upper, resolution_);
+      const double scale = std::max(truth.upper, least_distance_);
       const double error = found.upper - truth.upper;
       errors.push_back(error > resolution_ ? error / scale : 0);
       gaps.push_back((found.upper - found.lower) / scale);
@@ -139,6 +140,7 @@ class Sweep {
   const std::vector<TrueDistance>& truths_;
   const std::size_t runs_;
   double resolution_ = 0;
+  double least_distance_ = 0;
   std::vector<double> before_;  // nodes of each query in the previous step
 };
 

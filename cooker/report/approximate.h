@@ -12,15 +12,19 @@
 
 namespace boxtree::cooker {
 
-/// One setting, over all queries. Errors are shares of the true distance. Bounds resolve about
-/// 2^-44 of the mesh's diagonal: smaller errors count as zero, and smaller distances as that value.
+/// Errors are shares of the true distance, but no shares of less than this share of the mesh's
+/// diagonal: where that is (nearly) 0, any error would be many times as much.
+inline constexpr double kLeastDistance = 1e-3;
+
+/// One setting, over all queries. Errors are shares as above. Bounds resolve about 2^-44 of the
+/// mesh's diagonal: smaller errors count as zero.
 struct ApproximateStep {
   double relative_error = 0;                    // allowed
   std::uint64_t node_budget = kUnlimitedNodes;  // allowed
   KindTimes times;                              // zero unless timed
   double nodes_mean = 0;                        // nodes expanded and leaves read
   double nodes_median = 0;
-  double error_median = 0;  // of answers: excess over the true distance
+  double error_median = 0;  // of answers: excess over the true distance, share
   double error_max = 0;
   double gap_median = 0;         // upper - lower as stated by the answers
   double gap_max = 0;            // the same

@@ -190,7 +190,9 @@ PageSection section_of(const MeshTradeoff& mesh, const std::vector<const TradePo
       "whatever was allowed. With an allowed error E the walk ends when upper <= lower * (1 + E); "
       "with a budget it ends after so many nodes, with what it knows by then. Measured is how far "
       "upper was from the distance that plain-f32 finds with no error allowed; stated is upper - "
-      "lower; both as shares of the true distance, over the answers that found a triangle. The "
+      "lower; both as shares of the true distance, or of a thousandth of the diagonal where that "
+      "is "
+      "more, over the answers that found a triangle. The "
       "largest may come near the bound; the median is far below it, often 0 and then not drawn: "
       "the "
       "first triangle met is often the nearest, and what costs is the proof. {}",

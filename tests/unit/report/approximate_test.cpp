@@ -122,6 +122,24 @@ TEST(Approximate, BoundsHoldTheTruthAndErrorsKeepToWhatIsAllowed) {
   }
 }
 
+// Points of a flat mesh are on it: what their distances are off by is no multiple of 0.
+TEST(Approximate, ErrorsOfPointsOnTheSurfaceAreSharesOfTheDiagonal) {
+  SourceMesh flat = test::torus(24, 40);
+  for (std::size_t i = 2; i < flat.positions.f32.size(); i += 3) flat.positions.f32[i] = 0;
+  const test::CookedTree cooked = test::cook_tree(flat, CodecId::kWide8);
+  const Workload queries = make_workload(bounds_in_object_space(cooked.tree), {0, 0, 200, 0, 4}, 5);
+  const TrueDistances truth = require(true_distances(cooked.tree, queries));
+  const ApproximateFigures figures =
+      require(measure_approximate(cooked.tree, queries, truth, {false, 0}));
+  const auto kPoint = static_cast<std::size_t>(ApproximateKind::kPoint);
+  double largest = 0;
+  for (const ApproximateStep& step : figures[kPoint].by_budget) {
+    largest = std::max(largest, step.error_max);
+  }
+  EXPECT_GT(largest, 0);
+  EXPECT_LE(largest, 1 / kLeastDistance);  // no point is farther than the diagonal from any other
+}
+
 // Pairs are taken in an order that the error does not change, so each query by itself takes no
 // more of them; closest points without a budget are found depth-first, where only the mean is sure
 // to follow. A budget that is larger sees more of the same order: nothing is farther then.
