@@ -122,6 +122,27 @@ for generator in Ninja "Unix Makefiles"; do
   grep -q Generating "$work/log" || fail "$generator: a mesh of a profile did not recook its scene"
 done
 
+# The tiles of GUIDE.md: a file for each, all on one grid; a mesh that comes later is cooked, too, and it alone.
+mkdir -p "$work/world/tiles"
+cp "$work/assets/game.cpp" "$work/world"
+printf 'v %s\n' '0 0 0' '1.3 0 0' '0 1.7 0.3' >"$work/world/tiles/left.obj"
+printf 'v %s\n' '1.3 0 0' '90.1 0 0' '88.9 1.2 2' >"$work/world/tiles/right.obj"
+for tile in left right; do printf 'f 1 2 3\n' >>"$work/world/tiles/$tile.obj"; done
+{
+  printf '%s\n' 'find_package(boxtree CONFIG REQUIRED)' 'add_executable(game game.cpp)' \
+    'target_compile_definitions(game PRIVATE BOXTREE_ASSET_DIR="" SMALL_DIR="")'
+  python3 "$source/tests/docs/blocks.py" "$source/docs/GUIDE.md" cmake |
+    sed -n '/^file(GLOB tiles /,/^boxtree_add_cooked_assets(/p'
+} | project world CXX
+configured world
+out=$work/world/build
+quiet cmake --build "$out"
+cp "$work/world/tiles/left.obj" "$work/world/tiles/up.obj"
+quiet cmake --build "$out"
+[ "$(grep -c Cooking "$work/log")" = 1 ] || fail "a new tile recooked all"
+steps=$("$work/prefix/bin/boxtree" info "$out"/tiles/{left,right,up}.bxt --json | jq -c '[.files[].trees[].grid_step]')
+[ "$steps" = '[0.0009765625,0.0009765625,0.0009765625]' ] || fail "tiles on other grids: $steps"
+
 # What is refused when CMake configures, with what to do about it.
 refused 'level.obj is cooked into' <<'CMAKE'
 find_package(boxtree CONFIG REQUIRED)
