@@ -56,6 +56,17 @@ class RaySlab {
   RaySlab(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction, double max_abs) noexcept
       : RaySlab(AxisLanes(origin), largest_magnitude(origin), AxisLanes(direction), max_abs) {}
 
+  /// The same for boxes that are widened by `extent` on each side: for a shape of that half extent
+  /// around the ray's point. Precondition: `max_abs` holds for widened boxes.
+  [[nodiscard]] RaySlab widened(const AxisLanes& extent) const noexcept {
+    RaySlab slab = *this;
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      slab.low_origin_[k] += extent[k];
+      slab.high_origin_[k] -= extent[k];
+    }
+    return slab;
+  }
+
   template <class S>
   [[nodiscard]] SlabInterval intersect(const Box<S>& box) const noexcept {
     SlabInterval interval{-std::numeric_limits<double>::infinity(),

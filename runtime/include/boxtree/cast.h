@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// Casts: where a shape that moves along a straight line first touches a surface (also called
+// sweeps). The shape does not turn on its way.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+#include <boxtree/configuration.h>
+#include <boxtree/export.h>
+#include <boxtree/query.h>
+#include <boxtree/shape.h>
+
+namespace boxtree {
+
+static_assert(BOXTREE_HAS_CAST_QUERIES, "BOXTREE_QUERIES left casts out of this build of boxtree");
+
+/// How a shape moves: at t it is where it started + t * direction, for 0 <= t <= t_max.
+struct Motion {
+  /// Of any length, the unit of t; object space. Of zero the shape stays where it is.
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();
+  double t_max = std::numeric_limits<double>::infinity();  ///< The end, 0 or more.
+};
+
+/// The part of a triangle that a contact lies on.
+enum class Feature : std::uint8_t {
+  kFace,    ///< Its inside.
+  kEdge,    ///< An edge, without its ends.
+  kVertex,  ///< A corner.
+};
+
+/// The first touch of a moving shape and a surface.
+struct CastHit {
+  /// The shape touches at t or before, in units of the direction; 0 where it touches at its start.
+  double t = std::numeric_limits<double>::infinity();
+  /// And it touches nothing before t_lower: moving it there is safe. Never above t. See
+  /// cast_closest() for how near to each other they are.
+  double t_lower = std::numeric_limits<double>::infinity();
+  FaceRef face;  ///< The face that is touched.
+  /// 0, or 1 for the second half (0,2,3) of a quad. Parts of a quad that import split are faces of
+  /// their own, with the same id, and have 0.
+  std::uint32_t triangle = 0;
+  /// Where they touch, on the surface, in object space. Of several points one of them; where they
+  /// touch at the start, a point of the face that the shape holds.
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();
+  /// Unit vector along which the surface pushes the shape back, orthogonal to both where both are
+  /// smooth; where they overlap at the start, that of the face, to the side of the shape's center.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  Feature feature = Feature::kFace;  ///< What part of the triangle the point lies on.
+  bool initially_touching = false;   ///< Whether the shape touches the face at its start.
+};
+
+/// A touch, nothing, or an error.
+using CastResult = QueryResult<CastHit>;
+
+/// The first touch of the shape on its way; of several at the same t_lower the one with the
+/// smallest face id (index, if the file has no ids), so that all codecs and brute force agree. Both
+/// sides of a face count, and so do faces without area, as the segments or points that they are.
+/// Nothing is missed: a shape that touches is found to, and one that passes within
+/// 2^-46 of the largest coordinate involved (of the surface, of the shape on its way, and 2^-49 of
+/// that of its start) may be. t and t_lower are as far apart as the shape moves while it comes
+/// nearer by at most four times that. Errors: kInvalidQuery (not finite; a negative radius, extent
+/// or t_max; a rotation of 0; a shape farther than 2^185 mesh extents away, or larger), and the
+/// codes of corrupt bytes and limits as for closest_hit(). Never allocates.
+BOXTREE_API CastResult cast_closest(const Tree& tree, const Sphere& sphere, const Motion& motion,
+                                    const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API CastResult cast_closest(const Tree& tree, const Capsule& capsule, const Motion& motion,
+                                    const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API CastResult cast_closest(const Tree& tree, const OrientedBox& box, const Motion& motion,
+                                    const QueryLimits& limits = {});
+
+/// Some touch, or nothing: cheaper than cast_closest() when only the fact matters. Errors as there.
+/// Never allocates.
+BOXTREE_API CastResult cast_any(const Tree& tree, const Sphere& sphere, const Motion& motion,
+                                const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API CastResult cast_any(const Tree& tree, const Capsule& capsule, const Motion& motion,
+                                const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API CastResult cast_any(const Tree& tree, const OrientedBox& box, const Motion& motion,
+                                const QueryLimits& limits = {});
+
+/// Receives one touch after the other; returns the largest t that is still of interest, or a
+/// negative number to stop. Of `t_max` everything on the way is visited, of each hit's own t what
+/// comes before it.
+using CastVisitor = FunctionRef<double(const CastHit&)>;
+
+/// Visits every triangle that the shape touches on its way, each once, with the hit that it would
+/// be alone, in no promised order; copies of a face, too. Errors as for cast_closest(). Never
+/// allocates.
+BOXTREE_API Result<Visit> cast_all(const Tree& tree, const Sphere& sphere, const Motion& motion,
+                                   CastVisitor visitor, const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API Result<Visit> cast_all(const Tree& tree, const Capsule& capsule, const Motion& motion,
+                                   CastVisitor visitor, const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API Result<Visit> cast_all(const Tree& tree, const OrientedBox& box, const Motion& motion,
+                                   CastVisitor visitor, const QueryLimits& limits = {});
+
+}  // namespace boxtree

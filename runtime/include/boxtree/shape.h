@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: MIT
+// The convex shapes that queries take besides boxes along the axes.
+#pragma once
+
+#include <Eigen/Geometry>
+
+namespace boxtree {
+
+/// A ball.
+struct Sphere {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();  ///< Object space.
+  double radius = 0;                                 ///< 0 or more.
+};
+
+/// All points within a radius of a segment.
+struct Capsule {
+  Eigen::Vector3d start = Eigen::Vector3d::Zero();  ///< One end of the segment, object space.
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();    ///< The other end; may be the same.
+  double radius = 0;                                ///< 0 or more.
+};
+
+/// A box along axes of its own.
+struct OrientedBox {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();        ///< Object space.
+  Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  ///< Along its own axes, 0 or more.
+  /// From its axes to those of object space. Need not have a length of 1, but not 0. Unaligned, so
+  /// that its layout does not depend on compiler options.
+  Eigen::Quaternion<double, Eigen::DontAlign> rotation =
+      Eigen::Quaternion<double, Eigen::DontAlign>(1, 0, 0, 0);
+};
+
+}  // namespace boxtree

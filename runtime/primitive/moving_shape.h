@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// When a convex shape that moves along a line first touches a triangle.
+//
+// Every answer rests on one fact: if a direction v separates two convex sets by a gap, and the
+// first moves by d per unit of s, then they cannot touch before s = gap / (v . d), whatever the
+// error in v. So a time that is found along any direction is a lower bound; what is searched for is
+// the direction whose bound is largest.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+
+#include <boxtree/cast.h>
+
+#include "runtime/primitive/triangle.h"
+
+namespace boxtree {
+
+/// All points within `radius` of center + [-1, 1] half[0] axis[0] + ... over `axes` axes: a sphere
+/// (no axis), a capsule (one) or a box (three, then without a radius).
+struct ConvexShape {
+  Eigen::Vector3d center = Eigen::Vector3d::Zero();
+  std::array<Eigen::Vector3d, 3> axis;  // of length 1 but for rounding; of a capsule, any
+  std::array<double, 3> half{};
+  std::uint32_t axes = 0;
+  double radius = 0;
+
+  /// Half the extent of its bounds, on every axis, not rounded down.
+  [[nodiscard]] Eigen::Vector3d half_extents() const noexcept;
+  /// Of a ball around its center that holds it, not rounded down.
+  [[nodiscard]] double outer_radius() const noexcept;
+};
+
+/// A shape on its way: where it starts + s * direction.
+struct MovingShape {
+  ConvexShape shape;
+  Eigen::Vector3d direction;  // its largest component is in [1/2, 1); or zero
+  /// How far coordinates of the shape relative to those of triangles may be off, at any s of
+  /// interest; see doubt_of().
+  double doubt;
+
+  /// `near`: the largest coordinate of triangles, and of the shape while it may touch them;
+  /// `far`: of its center at the start.
+  [[nodiscard]] static double doubt_of(double near, double far) noexcept;
+
+  [[nodiscard]] Eigen::Vector3d center_at(double s) const noexcept {
+    return shape.center + s * direction;
+  }
+
+  /// A lower bound of the first s in [from, to] at which the shape touches the triangle; nothing if
+  /// it does not, or passes farther away than some `doubt`. Precondition: it does not touch before
+  /// `from`, unless `from` is 0.
+  [[nodiscard]] std::optional<double> first_touch(const Triangle& triangle, double from,
+                                                  double to) const noexcept;
+  struct Contact {
+    Eigen::Vector3d point;   // on the triangle
+    Eigen::Vector3d normal;  // from it to the shape
+    Feature feature;
+    double by;  // an s that is not below the first at which they touch
+  };
+  /// Where they touch at `s`, a result of first_touch().
+  [[nodiscard]] Contact contact_at(const Triangle& triangle, double s) const noexcept;
+};
+
+}  // namespace boxtree

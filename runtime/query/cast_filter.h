@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// A cast in single precision: the line of the shape's center against boxes that are widened by the
+// shape.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "runtime/primitive/rounding.h"
+#include "runtime/query/cast_query.h"
+#include "runtime/query/ray_filter.h"
+
+namespace boxtree {
+
+/// The core of a shape, see ConvexShape.
+struct ConvexAxes {
+  std::uint32_t count;
+  float axis[3][3];  // of length 1
+  float half[3];     // rounded up
+};
+
+/// Boxes are decoded, and rounded no further; see RayBoxFilter.
+struct CastFilter : RayBoxFilter {
+  /// Whether single precision resolves the parts of a tree for this cast: not from so far away that
+  /// double precision hardly does, nor for a shape so large beside the tree that its size takes the
+  /// digits.
+  [[nodiscard]] static bool is_near(const CastQuery& query) noexcept {
+    const double max_abs = query.tree.largest_abs();
+    return query.origin_max_abs <= 0x1p30 * max_abs && query.near <= 0x1p10 * max_abs;
+  }
+
+  /// Precondition: is_near(query), which enters the root box.
+  explicit CastFilter(const CastQuery& query) noexcept
+      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, 0.0),
+                     rounding(query.near) + given_away(query.origin_max_abs, query.near)) {
+    // Rounded up twice: the product and the sum.
+    constexpr float kUp = static_cast<float>(1 + 8 * kRoundoffF32);
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      const auto axis = static_cast<Eigen::Index>(std::min<std::size_t>(k, 2));
+      margin[k] = (margin[k] + float_above(query.extent[axis]) * std::abs(inverse[k])) * kUp;
+    }
+    const ConvexShape& shape = query.moving.shape;
+    radius = float_above(shape.radius);
+    outer_radius = float_above(shape.outer_radius());
+    for (std::size_t k = 0; k < 3; ++k) {
+      direction[k] = static_cast<float>(query.moving.direction[static_cast<Eigen::Index>(k)]);
+    }
+    core.count = shape.axes;
+    for (std::uint32_t i = 0; i < shape.axes; ++i) {
+      const double length = std::sqrt(squared_length(shape.axis[i]));
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double component = shape.axis[i][static_cast<Eigen::Index>(k)];
+        core.axis[i][k] = length > 0 ? static_cast<float>(component / length) : 0.0f;
+      }
+      core.half[i] = float_above(shape.half[i] * length);
+    }
+  }
+
+  float radius;
+  float outer_radius;  // of a ball that holds the shape
+  float direction[3];
+  ConvexAxes core;
+};
+
+}  // namespace boxtree

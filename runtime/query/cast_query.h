@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// The state of a cast in one tree, shared by the walks of all codecs.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include <boxtree/cast.h>
+
+#include "runtime/primitive/moving_shape.h"
+#include "runtime/query/ray_query.h"
+#include "runtime/tree/bound_tree.h"
+#include "runtime/walk/traversal.h"
+#include "runtime/walk/work.h"
+
+namespace boxtree {
+
+/// The best touch so far: `s`, a lower bound, in parameters of the query, the triangle in tree
+/// space.
+struct CastCandidate {
+  bool is_hit = false;  // if false, the rest is unspecified
+  double s = 0;
+  FaceRef face;
+  std::uint32_t half = 0;
+  Triangle triangle;
+};
+
+/// A query of traverse_nearest: the line of the shape's center against boxes that are widened by
+/// the shape.
+struct CastQuery : RayInTree {
+  /// Receives each touch; returns the largest parameter that is still of interest, or a negative
+  /// number to stop.
+  using Visitor = FunctionRef<double(const CastCandidate&)>;
+
+  enum class Wanted : std::uint8_t { kClosest, kAny, kAll };
+
+  /// `shape`: in tree space, wherever it is. `line`: of its center; its direction is not zero.
+  /// `visitor`: of kAll, or null.
+  CastQuery(const BoundTree& queried, const ConvexShape& shape, const Ray& line,
+            int direction_exponent, bool is_moving, Wanted wanted_touches, const Visitor* all,
+            WalkBound& bound) noexcept
+      : RayInTree(queried, line, direction_exponent),
+        tree(queried),
+        nodes(bound),
+        extent(shape.half_extents()),
+        near(queried.largest_abs() + 2 * largest_magnitude(extent)),
+        moving{placed(shape), is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
+               MovingShape::doubt_of(near, origin_max_abs)},
+        wanted(wanted_touches),
+        visitor(all) {
+    slab = RaySlab(origin, origin_max_abs, direction, near).widened(AxisLanes(extent));
+  }
+
+  /// Whether the shape comes upon the root box. Call it before any walk.
+  [[nodiscard]] bool enters_root() noexcept {
+    enter = key(tree.root_lanes());
+    return enter <= t_max && enter < std::numeric_limits<double>::infinity();
+  }
+
+  [[nodiscard]] double bound() const noexcept { return t_max; }
+
+  [[nodiscard]] bool leaf(NodeRef ref) noexcept {
+    error = tree.leaves().read(ref.first, ref.second, batch);
+    if (error != Errc::kOk) return false;
+    for (std::uint32_t i = 0; i < batch.count && !is_done(); ++i) {
+      test(batch.triangle(i), batch.face[i], half_of_face(batch, i));
+    }
+    return !is_done();
+  }
+
+  /// Whether no other triangle can matter.
+  [[nodiscard]] bool is_done() const noexcept {
+    return stopped || error != Errc::kOk || (wanted == Wanted::kAny && best.is_hit);
+  }
+
+  void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept;
+
+  const BoundTree& tree;
+  WalkBound& nodes;
+  Eigen::Vector3d extent;  // half, of the shape's bounds
+  double near;             // the largest coordinate of the tree and of the shape while it is near
+  MovingShape moving;
+  Wanted wanted;
+  const Visitor* visitor;
+  double enter = 0;  // where it comes upon the root box
+  CastCandidate best;
+  bool stopped = false;
+  Errc error = Errc::kOk;
+  // In valid files each copy is reported once for each triangle of its face; see FaceWalk.
+  std::uint64_t copies_left = 2 * std::uint64_t{tree.duplicate_count()};
+  TriangleBatch batch;
+
+ private:
+  [[nodiscard]] ConvexShape placed(const ConvexShape& shape) const noexcept {
+    ConvexShape out = shape;
+    out.center = origin.vector();
+    return out;
+  }
+};
+
+/// By vectors; see walk_tree.h.
+Errc walk_wide(const BoundTree& tree, CastQuery& query);
+
+}  // namespace boxtree
