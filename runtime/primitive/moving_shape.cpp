@@ -13,6 +13,7 @@
 
 #include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/normal.h"
+#include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
 #include "runtime/primitive/triangle_distance.h"
@@ -27,57 +28,9 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // elsewhere: after so many nothing that double resolves is left.
 constexpr int kMostSteps = 64;
 
-// A shape and a triangle at some s, both relative to the shape's center, so that what is far from
-// the origin of tree space is computed with the digits of its own size.
-struct Placed {
-  Placed(const MovingShape& moving, const Triangle& triangle, double s) noexcept {
-    const Eigen::Vector3d center = moving.center_at(s);
-    for (std::size_t c = 0; c < 3; ++c) corner[c] = triangle.corner[c] - center;
-  }
-  std::array<Eigen::Vector3d, 3> corner;
-};
-
-// What is known of the distance of a core (a point or a segment) from a triangle.
-struct CoreDistance {
-  double lower;                 // of the distance
-  double upper;                 // likewise
-  double along;                 // of the gap along `between`, or 0
-  double length;                // of `between`
-  Eigen::Vector3d core;         // its closest point
-  Eigen::Vector3d on_triangle;  // and that of the triangle
-  Eigen::Vector3d between;      // from one to the other
-};
-
-CoreDistance distance_of(const ConvexShape& shape,
-                         const std::array<Eigen::Vector3d, 3>& corner) noexcept {
-  // closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
-  constexpr double kPointDistanceError = 16 * kRoundoffF64;
-  CoreDistance found;
-  double max_abs = max_abs_of(corner);
-  if (shape.axes == 0) {
-    const std::array<Eigen::Vector3d, 1> core{Eigen::Vector3d::Zero()};
-    found.core = core[0];
-    found.on_triangle = closest_point_on_triangle(core[0], {corner});
-    found.between = found.on_triangle;
-    found.length = std::sqrt(squared_length(found.between));
-    const double error = kPointDistanceError * max_abs + kSeparationUnderflow;
-    found.lower = std::max(0.0, found.length - error);
-    found.upper = found.length + error;
-    found.along = separation_along(found.between, core, corner, max_abs);
-    return found;
-  }
-  const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
-  max_abs = std::max(max_abs, largest_magnitude(arm));
-  const TriangleDistance distance = triangle_distance({{-arm, arm, arm}}, {corner});
-  found.lower = distance.lower;
-  found.upper = distance.upper;
-  found.core = distance.first;
-  found.on_triangle = distance.second;
-  found.between = distance.second - distance.first;
-  found.length = std::sqrt(squared_length(found.between));
-  found.along =
-      separation_along(found.between, std::array<Eigen::Vector3d, 2>{-arm, arm}, corner, max_abs);
-  return found;
+// The corners of a triangle relative to the shape's center at s.
+Corners placed(const MovingShape& moving, const Triangle& triangle, double s) noexcept {
+  return relative_to(moving.center_at(s), triangle);
 }
 
 // An upper bound of how fast the shape moves along v, per unit of s.
@@ -100,7 +53,7 @@ bool may_touch(const MovingShape& moving, const CoreDistance& at) noexcept {
 // is that of the triangle where its inside is touched. Precondition: as of first_touch.
 double plane_touch(const MovingShape& moving, const Triangle& triangle, double from,
                    double reach) noexcept {
-  const auto corner = Placed(moving, triangle, from).corner;
+  const Corners corner = placed(moving, triangle, from);
   const Eigen::Vector3d n = cross(corner[1] - corner[0], corner[2] - corner[0]);
   const double length = std::sqrt(squared_length(n));
   // Any vector will do, so that only what follows is rounded; of one that is too short to be a
@@ -133,7 +86,7 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
   double s = std::max(from, plane_touch(moving, triangle, from, reach));
   if (s > to || s == kInfinity) return std::nullopt;
   for (int step = 0; step < kMostSteps; ++step) {
-    const CoreDistance at = distance_of(moving.shape, Placed(moving, triangle, s).corner);
+    const CoreDistance at = core_distance(moving.shape, placed(moving, triangle, s));
     if (may_touch(moving, at)) return s;
     // Nothing comes nearer by more than it moves.
     double advance = (at.lower - reach) / length_above(moving.direction);
@@ -153,7 +106,7 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
 // One direction that may separate a box and a triangle: where their projections overlap.
 class Axes {
  public:
-  Axes(const MovingShape& moving, const std::array<Eigen::Vector3d, 3>& corner) noexcept
+  Axes(const MovingShape& moving, const Corners& corner) noexcept
       : moving_(moving), corner_(corner) {
     const ConvexShape& shape = moving.shape;
     double size = max_abs_of(corner);
@@ -187,7 +140,7 @@ class Axes {
 
   // Ends early where they do not touch by `to`.
   void try_all(double to = kInfinity) noexcept {
-    const std::array<Eigen::Vector3d, 3> edge = edges_of(corner_);
+    const Corners edge = edges_of(corner_);
     for (const Eigen::Vector3d& axis : moving_.shape.axis) try_axis(axis);
     if (enter > std::min(leave, to)) return;
     try_axis(unit_normal({corner_}));
@@ -233,99 +186,43 @@ class Axes {
   }
 
   const MovingShape& moving_;
-  const std::array<Eigen::Vector3d, 3>& corner_;
+  const Corners& corner_;
   double error_;
 };
 
 std::optional<double> first_touch_of_box(const MovingShape& moving, const Triangle& triangle,
                                          double from, double to) noexcept {
-  const Placed placed(moving, triangle, from);
-  Axes axes(moving, placed.corner);
+  const Corners corner = placed(moving, triangle, from);
+  Axes axes(moving, corner);
   axes.try_all(to - from);
   if (axes.is_miss()) return std::nullopt;
   const double s = from + axes.enter * (1 - 8 * kRoundoffF64);
   return s <= to ? std::optional(s) : std::nullopt;
 }
 
-// The corners of the triangle that the closest point to `point`, as computed, is a mean of: 3 of
-// the inside, 2 of an edge, 1 of a corner.
-Feature feature_of(const Eigen::Vector3d& point, const std::array<Eigen::Vector3d, 3>& corner,
-                   const Eigen::Vector3d& closest) noexcept {
-  switch (closest_corners(point, {corner}, closest)) {
-    case 1:
-      return Feature::kVertex;
-    case 2:
-      return Feature::kEdge;
-    default:
-      return Feature::kFace;
-  }
-}
-
-// The normal of the triangle's face, to the side of the origin.
-Eigen::Vector3d face_normal(const std::array<Eigen::Vector3d, 3>& corner,
-                            const Eigen::Vector3d& direction) noexcept {
-  Eigen::Vector3d normal = unit_normal({corner});
-  const double side = -dot(normal, corner[0]);
-  if (side < 0 || (side == 0 && dot(normal, direction) > 0)) normal = -normal;
-  return normal;
-}
-
-// The mean of the corners of what a box cuts out of a triangle (Sutherland and Hodgman, "Reentrant
-// Polygon Clipping", 1974); the point of the triangle closest to the center if nothing is left.
-Eigen::Vector3d inside_box(const ConvexShape& box, double widened,
-                           const std::array<Eigen::Vector3d, 3>& corner) noexcept {
-  constexpr std::size_t kMost = 9;  // each of six planes adds one at most
-  std::array<Eigen::Vector3d, kMost + 1> polygon;
-  std::copy(corner.begin(), corner.end(), polygon.begin());
-  std::size_t count = 3;
-  for (std::size_t k = 0; k < 3; ++k) {
-    for (const double side : {-1.0, 1.0}) {
-      std::array<Eigen::Vector3d, kMost + 1> kept;
-      std::size_t left = 0;
-      const auto depth = [&](const Eigen::Vector3d& p) {
-        return box.half[k] + widened - side * dot(box.axis[k], p);
-      };
-      for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d& a = polygon[i];
-        const Eigen::Vector3d& b = polygon[(i + 1) % count];
-        const double of_a = depth(a), of_b = depth(b);
-        if (of_a >= 0 && left < kMost) kept[left++] = a;
-        if ((of_a >= 0) != (of_b >= 0) && left < kMost) {
-          kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
-        }
-      }
-      std::copy(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(left), polygon.begin());
-      count = left;
-    }
-  }
-  if (count == 0) return closest_point_on_triangle(Eigen::Vector3d::Zero(), {corner});
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
-  return sum / static_cast<double>(count);
-}
-
 MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,
                                     double s) noexcept {
-  const Placed at(moving, triangle, s);
-  Axes axes(moving, at.corner);
+  const Corners corner = placed(moving, triangle, s);
+  Axes axes(moving, corner);
   axes.try_all();
   MovingShape::Contact contact;
   const double error = 2 * axes.error();
   contact.by = s + std::min(axes.enter_by, std::max(axes.leave, 0.0)) * (1 + 8 * kRoundoffF64);
-  contact.point = moving.center_at(s) + inside_box(moving.shape, error, at.corner);
+  contact.point = moving.center_at(s) + point_inside_box(moving.shape, error, corner);
   if (!(axes.overlap <= 2 * error)) {  // they have overlapped from the start on
-    contact.normal = face_normal(at.corner, moving.direction);
-    contact.feature = Feature::kFace;
+    const Penetration start = penetration(moving.shape, corner, moving.doubt);
+    contact.normal = start.normal;
+    contact.feature = start.feature;
     return contact;
   }
   contact.normal = axes.normal;
   double nearest = -kInfinity;
-  for (const Eigen::Vector3d& corner : at.corner) {
-    nearest = std::max(nearest, dot(contact.normal, corner));
+  for (const Eigen::Vector3d& c : corner) {
+    nearest = std::max(nearest, dot(contact.normal, c));
   }
-  const auto touching = std::count_if(
-      at.corner.begin(), at.corner.end(),
-      [&](const Eigen::Vector3d& c) { return dot(contact.normal, c) >= nearest - 2 * error; });
+  const auto touching = std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
+    return dot(contact.normal, c) >= nearest - 2 * error;
+  });
   contact.feature = touching == 1   ? Feature::kVertex
                     : touching == 2 ? Feature::kEdge
                                     : Feature::kFace;
@@ -333,19 +230,6 @@ MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& t
 }
 
 }  // namespace
-
-Eigen::Vector3d ConvexShape::half_extents() const noexcept {
-  Eigen::Vector3d extent = Eigen::Vector3d::Constant(radius);
-  for (std::uint32_t i = 0; i < axes; ++i) extent += half[i] * axis[i].cwiseAbs();
-  return extent * (1 + 8 * kRoundoffF64);
-}
-
-double ConvexShape::outer_radius() const noexcept {
-  // Axes of a box are orthogonal but for rounding.
-  double squared = 0;
-  for (std::uint32_t i = 0; i < axes; ++i) squared += half[i] * half[i] * squared_length(axis[i]);
-  return (radius + std::sqrt(squared)) * (1 + 16 * kRoundoffF64);
-}
 
 // A center at s is off by u of s * direction, which is at most as long as both, and u of itself;
 // its difference from a corner by u of that; and the direction, scaled to tree space, not at all.
@@ -361,19 +245,11 @@ std::optional<double> MovingShape::first_touch(const Triangle& triangle, double 
 
 MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s) const noexcept {
   if (shape.axes == 3) return contact_of_box(*this, triangle, s);
-  const Placed placed(*this, triangle, s);
-  CoreDistance at = distance_of(shape, placed.corner);
-  const Eigen::Vector3d closest = closest_point_on_triangle(at.core, {placed.corner});
-  Contact contact;
-  contact.point = center_at(s) + closest;
-  contact.feature = feature_of(at.core, placed.corner, closest);
-  const Eigen::Vector3d between = at.core - closest;
-  const double length = std::sqrt(squared_length(between));
-  // Where the core itself touches, rounding decides which way the line between them points.
-  contact.normal = length > 2 * doubt ? Eigen::Vector3d(between / length)
-                                      : face_normal(placed.corner, direction);
+  const Corners corner = placed(*this, triangle, s);
+  const Penetration found = penetration(shape, corner, doubt);
+  Contact contact{center_at(s) + found.point, found.normal, found.feature, s};
   // Until it is certain that they touch, or the distance does not fall any more.
-  contact.by = s;
+  CoreDistance at = core_distance(shape, corner);
   double step = 0;
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - shape.radius;
@@ -381,7 +257,7 @@ MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s)
     if (!(missing > 0) || !(speed > 0)) break;
     step = std::max(2 * step, 2 * missing * at.length / speed);
     contact.by = s + step;
-    at = distance_of(shape, Placed(*this, triangle, contact.by).corner);
+    at = core_distance(shape, placed(*this, triangle, contact.by));
   }
   return contact;
 }

@@ -7,31 +7,14 @@
 // the direction whose bound is largest.
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <cstdint>
 #include <optional>
 
-#include <boxtree/cast.h>
+#include <boxtree/shape.h>
 
+#include "runtime/primitive/convex_shape.h"
 #include "runtime/primitive/triangle.h"
 
 namespace boxtree {
-
-/// All points within `radius` of center + [-1, 1] half[0] axis[0] + ... over `axes` axes: a sphere
-/// (no axis), a capsule (one) or a box (three, then without a radius).
-struct ConvexShape {
-  Eigen::Vector3d center = Eigen::Vector3d::Zero();
-  std::array<Eigen::Vector3d, 3> axis;  // of length 1 but for rounding; of a capsule, any
-  std::array<double, 3> half{};
-  std::uint32_t axes = 0;
-  double radius = 0;
-
-  /// Half the extent of its bounds, on every axis, not rounded down.
-  [[nodiscard]] Eigen::Vector3d half_extents() const noexcept;
-  /// Of a ball around its center that holds it, not rounded down.
-  [[nodiscard]] double outer_radius() const noexcept;
-};
 
 /// A shape on its way: where it starts + s * direction.
 struct MovingShape {

@@ -5,6 +5,7 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/query/cast_query.h"
 #include "runtime/query/invalid_query.h"
+#include "runtime/query/shape_in_tree.h"
 #include "runtime/walk/face_copies.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -20,7 +21,7 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   if (from > t_max) return;
   const std::optional<double> s = moving.first_touch(triangle, from, t_max);
   if (!s) return;
-  CastCandidate found{true, *s, {kNoFaceId, face_index}, half, triangle};
+  CastCandidate found{true, *s, {kNoFaceId, face_index}, face_index, half, triangle};
   if (wanted == Wanted::kAll) {
     const FaceWithCopies faces(tree, face_index);
     if (faces.count() - 1 > copies_left) {
@@ -45,67 +46,14 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   t_max = found.s;
 }
 
+Errc CastQuery::run() {
+  enter = key(tree.root_lanes());
+  if (tree.empty() || !(enter <= t_max)) return Errc::kOk;
+  const Errc walked = walk_nearest(tree, *this);
+  return walked != Errc::kOk ? walked : error;
+}
+
 namespace {
-
-bool is_unsigned(double x) {
-  return x >= 0 && std::isfinite(x);
-}
-
-// A shape in tree space, or the name of a field that is not valid.
-struct ShapeInTree {
-  ConvexShape shape;
-  Eigen::Vector3d center;  // object space
-  const char* invalid = nullptr;
-};
-
-ShapeInTree in_tree(const BoundTree& tree, const Sphere& sphere) {
-  ShapeInTree out;
-  out.center = sphere.center;
-  out.shape.radius = sphere.radius * tree.frame().inverse_scale;
-  if (!is_within_range(tree.frame().to_tree(sphere.center))) out.invalid = "center";
-  if (!is_unsigned(sphere.radius)) out.invalid = "radius";
-  return out;
-}
-
-ShapeInTree in_tree(const BoundTree& tree, const Capsule& capsule) {
-  ShapeInTree out;
-  const Eigen::Vector3d start = tree.frame().to_tree(capsule.start);
-  const Eigen::Vector3d end = tree.frame().to_tree(capsule.end);
-  if (!is_within_range(start)) out.invalid = "start";
-  if (!is_within_range(end)) out.invalid = "end";
-  if (!is_unsigned(capsule.radius)) out.invalid = "radius";
-  if (out.invalid != nullptr) return out;
-  out.center = capsule.start / 2 + capsule.end / 2;
-  out.shape.axes = 1;
-  out.shape.axis[0] = end / 2 - start / 2;
-  out.shape.half[0] = 1;
-  out.shape.radius = capsule.radius * tree.frame().inverse_scale;
-  return out;
-}
-
-ShapeInTree in_tree(const BoundTree& tree, const OrientedBox& box) {
-  ShapeInTree out;
-  out.center = box.center;
-  out.shape.axes = 3;
-  const auto& q = box.rotation.coeffs();  // x, y, z, w
-  const double largest = std::max(largest_magnitude(q[0], q[1], q[2]), std::abs(q[3]));
-  if (!is_within_range(tree.frame().to_tree(box.center))) out.invalid = "center";
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    if (!is_unsigned(box.half_extents[k])) out.invalid = "half_extents";
-  }
-  if (!(largest > 0) || !std::isfinite(largest)) out.invalid = "rotation";
-  if (out.invalid != nullptr) return out;
-  const double x = q[0] / largest, y = q[1] / largest, z = q[2] / largest, w = q[3] / largest;
-  const double length = ((x * x + y * y) + z * z) + w * w;
-  const double s = 2 / length;
-  out.shape.axis[0] = {1 - s * (y * y + z * z), s * (x * y + w * z), s * (x * z - w * y)};
-  out.shape.axis[1] = {s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)};
-  out.shape.axis[2] = {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)};
-  for (std::size_t k = 0; k < 3; ++k) {
-    out.shape.half[k] = box.half_extents[static_cast<Eigen::Index>(k)] * tree.frame().inverse_scale;
-  }
-  return out;
-}
 
 // One cast of any shape.
 class Cast {
@@ -139,12 +87,9 @@ class Cast {
     const CastQuery::Visitor visitor(all);
     CastQuery query(tree_, shape_.shape, line_, exponent, is_moving_, wanted, &visitor, nodes);
     query_of_visitor = &query;
-    if (tree_.empty() || !query.enters_root()) return Errc::kOk;
-    const Errc walked = walk_nearest(tree_, query);
-    if (walked != Errc::kOk) return walked;
-    if (query.error != Errc::kOk) return query.error;
-    answer(query);
-    return Errc::kOk;
+    const Errc error = query.run();
+    if (error == Errc::kOk) answer(query);
+    return error;
   }
 
   [[nodiscard]] CastHit hit_of(const CastQuery& query, const CastCandidate& found) const {
@@ -155,7 +100,7 @@ class Cast {
     hit.t_lower = parameter_of(line_, found.s, exponent);
     hit.t = hit.initially_touching ? 0 : parameter_of(line_, contact.by, exponent);
     hit.face = found.face;
-    name(tree_, hit.face);
+    name(tree_, hit.face);  // unless a visitor gets it, which has all named
     hit.triangle = found.half;
     hit.point = tree_.frame().to_object(contact.point);
     hit.normal = contact.normal;

@@ -23,6 +23,7 @@ struct CastCandidate {
   bool is_hit = false;  // if false, the rest is unspecified
   double s = 0;
   FaceRef face;
+  std::uint32_t original = 0;  // the face of the tree's order that it is, or is a copy of
   std::uint32_t half = 0;
   Triangle triangle;
 };
@@ -30,7 +31,7 @@ struct CastCandidate {
 /// A query of traverse_nearest: the line of the shape's center against boxes that are widened by
 /// the shape.
 struct CastQuery : RayInTree {
-  /// Receives each touch; returns the largest parameter that is still of interest, or a negative
+  /// Receives each touch, those of copies after their original's; returns the largest parameter that is still of interest, or a negative
   /// number to stop.
   using Visitor = FunctionRef<double(const CastCandidate&)>;
 
@@ -53,11 +54,9 @@ struct CastQuery : RayInTree {
     slab = RaySlab(origin, origin_max_abs, direction, near).widened(AxisLanes(extent));
   }
 
-  /// Whether the shape comes upon the root box. Call it before any walk.
-  [[nodiscard]] bool enters_root() noexcept {
-    enter = key(tree.root_lanes());
-    return enter <= t_max && enter < std::numeric_limits<double>::infinity();
-  }
+  /// Walks the tree; `best` or the visitor has the answers then. Errors: those of corrupt bytes and
+  /// limits.
+  [[nodiscard]] Errc run();
 
   [[nodiscard]] double bound() const noexcept { return t_max; }
 

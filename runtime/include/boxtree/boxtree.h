@@ -11,6 +11,9 @@
 #if BOXTREE_HAS_CAST_QUERIES
 #include <boxtree/cast.h>
 #endif
+#if BOXTREE_HAS_COLLIDE_QUERIES
+#include <boxtree/collide.h>
+#endif
 #if BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_WITHIN_QUERIES
 #include <boxtree/overlap.h>
 #endif

@@ -22,13 +22,6 @@ struct Motion {
   double t_max = std::numeric_limits<double>::infinity();  ///< The end, 0 or more.
 };
 
-/// The part of a triangle that a contact lies on.
-enum class Feature : std::uint8_t {
-  kFace,    ///< Its inside.
-  kEdge,    ///< An edge, without its ends.
-  kVertex,  ///< A corner.
-};
-
 /// The first touch of a moving shape and a surface.
 struct CastHit {
   /// The shape touches at t or before, in units of the direction; 0 where it touches at its start.
@@ -44,7 +37,8 @@ struct CastHit {
   /// touch at the start, a point of the face that the shape holds.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   /// Unit vector along which the surface pushes the shape back, orthogonal to both where both are
-  /// smooth; where they overlap at the start, that of the face, to the side of the shape's center.
+  /// smooth; where they overlap at the start, the one along which the shape leaves the face
+  /// soonest.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Feature feature = Feature::kFace;  ///< What part of the triangle the point lies on.
   bool initially_touching = false;   ///< Whether the shape touches the face at its start.

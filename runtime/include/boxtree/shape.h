@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The convex shapes that queries take besides boxes along the axes.
+// The convex shapes that queries take besides boxes along the axes, and what they touch.
 #pragma once
+
+#include <cstdint>
 
 #include <Eigen/Geometry>
 
@@ -27,6 +29,13 @@ struct OrientedBox {
   /// that its layout does not depend on compiler options.
   Eigen::Quaternion<double, Eigen::DontAlign> rotation =
       Eigen::Quaternion<double, Eigen::DontAlign>(1, 0, 0, 0);
+};
+
+/// The part of a triangle that a contact lies on.
+enum class Feature : std::uint8_t {
+  kFace,    ///< Its inside.
+  kEdge,    ///< An edge, without its ends.
+  kVertex,  ///< A corner.
 };
 
 }  // namespace boxtree

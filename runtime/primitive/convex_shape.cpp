@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: MIT
+// Distances of cores and points of contact.
+#include "runtime/primitive/convex_shape.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/primitive/closest_point.h"
+#include "runtime/primitive/rounding.h"
+#include "runtime/primitive/separation.h"
+#include "runtime/primitive/triangle_distance.h"
+#include "runtime/primitive/vector3.h"
+
+namespace boxtree {
+
+Eigen::Vector3d ConvexShape::half_extents() const noexcept {
+  Eigen::Vector3d extent = Eigen::Vector3d::Constant(radius);
+  for (std::uint32_t i = 0; i < axes; ++i) extent += half[i] * axis[i].cwiseAbs();
+  return extent * (1 + 8 * kRoundoffF64);
+}
+
+double ConvexShape::outer_radius() const noexcept {
+  // Axes of a box are orthogonal but for rounding.
+  double squared = 0;
+  for (std::uint32_t i = 0; i < axes; ++i) squared += half[i] * half[i] * squared_length(axis[i]);
+  return (radius + std::sqrt(squared)) * (1 + 16 * kRoundoffF64);
+}
+
+CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept {
+  // closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
+  constexpr double kPointDistanceError = 16 * kRoundoffF64;
+  CoreDistance found;
+  double max_abs = max_abs_of(corner);
+  if (shape.axes == 0) {
+    const std::array<Eigen::Vector3d, 1> core{Eigen::Vector3d::Zero()};
+    found.core = core[0];
+    found.on_triangle = closest_point_on_triangle(core[0], {corner});
+    found.between = found.on_triangle;
+    found.length = std::sqrt(squared_length(found.between));
+    const double error = kPointDistanceError * max_abs + kSeparationUnderflow;
+    found.lower = std::max(0.0, found.length - error);
+    found.upper = found.length + error;
+    found.along = separation_along(found.between, core, corner, max_abs);
+    return found;
+  }
+  const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
+  max_abs = std::max(max_abs, largest_magnitude(arm));
+  const TriangleDistance distance = triangle_distance({{-arm, arm, arm}}, {corner});
+  found.lower = distance.lower;
+  found.upper = distance.upper;
+  found.core = distance.first;
+  found.on_triangle = distance.second;
+  found.between = distance.second - distance.first;
+  found.length = std::sqrt(squared_length(found.between));
+  found.along =
+      separation_along(found.between, std::array<Eigen::Vector3d, 2>{-arm, arm}, corner, max_abs);
+  return found;
+}
+
+Feature feature_of(const Eigen::Vector3d& point, const Corners& corner,
+                   const Eigen::Vector3d& closest) noexcept {
+  switch (closest_corners(point, {corner}, closest)) {
+    case 1:
+      return Feature::kVertex;
+    case 2:
+      return Feature::kEdge;
+    default:
+      return Feature::kFace;
+  }
+}
+
+// The mean of the corners of what the box cuts out (Sutherland and Hodgman, "Reentrant Polygon
+// Clipping", 1974).
+Eigen::Vector3d point_inside_box(const ConvexShape& box, double widened,
+                                 const Corners& corner) noexcept {
+  constexpr std::size_t kMost = 9;  // each of six planes adds one at most
+  std::array<Eigen::Vector3d, kMost + 1> polygon;
+  std::copy(corner.begin(), corner.end(), polygon.begin());
+  std::size_t count = 3;
+  for (std::size_t k = 0; k < 3; ++k) {
+    for (const double side : {-1.0, 1.0}) {
+      std::array<Eigen::Vector3d, kMost + 1> kept;
+      std::size_t left = 0;
+      const auto depth = [&](const Eigen::Vector3d& p) {
+        return box.half[k] + widened - side * dot(box.axis[k], p);
+      };
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3d& a = polygon[i];
+        const Eigen::Vector3d& b = polygon[(i + 1) % count];
+        const double of_a = depth(a), of_b = depth(b);
+        if (of_a >= 0 && left < kMost) kept[left++] = a;
+        if ((of_a >= 0) != (of_b >= 0) && left < kMost) {
+          kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
+        }
+      }
+      std::copy(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(left), polygon.begin());
+      count = left;
+    }
+  }
+  if (count == 0) return closest_point_on_triangle(Eigen::Vector3d::Zero(), {corner});
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
+  return sum / static_cast<double>(count);
+}
+
+}  // namespace boxtree

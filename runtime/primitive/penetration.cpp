@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: MIT
+// The least of the distances to part along the directions in which two convex shapes can leave each
+// other: the normals of their Minkowski difference, which is a polytope for a segment or a box (van
+// den Bergen, "Proximity Queries and Penetration Depth Computation on 3D Game Objects", 2001).
+#include "runtime/primitive/penetration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "runtime/primitive/closest_point.h"
+#include "runtime/primitive/normal.h"
+#include "runtime/primitive/rounding.h"
+#include "runtime/primitive/separation.h"
+#include "runtime/primitive/vector3.h"
+
+namespace boxtree {
+namespace {
+
+// The direction along which a core leaves a triangle soonest, of those that are tried; an earlier
+// one wins unless a later one is better by more than rounding.
+class LeastDepth {
+ public:
+  LeastDepth(const ConvexShape& shape, const Corners& corner, double doubt) noexcept
+      : shape_(shape),
+        corner_(corner),
+        error_(4 * doubt + 32 * kRoundoffF64 * max_abs_of(corner)) {}
+
+  // Along a vector of length 1, either way, or 0: then it is none.
+  void try_axis(const Eigen::Vector3d& axis) noexcept {
+    if (axis.isZero(0)) return;
+    double low = std::numeric_limits<double>::infinity(), high = -low, half = 0;
+    for (const Eigen::Vector3d& corner : corner_) {
+      const double at = dot(axis, corner);
+      low = std::min(low, at);
+      high = std::max(high, at);
+    }
+    for (std::uint32_t k = 0; k < shape_.axes; ++k) {
+      half += std::abs(dot(axis, shape_.axis[k])) * shape_.half[k];
+    }
+    // Beyond the triangle's high side, or its low one.
+    if (high + half < depth - error_) {
+      depth = high + half;
+      normal = axis;
+    }
+    if (half - low < depth - error_) {
+      depth = half - low;
+      normal = -axis;
+    }
+  }
+
+  void try_all() noexcept {
+    const Corners edge = edges_of(corner_);
+    try_axis(unit_normal({corner_}));
+    if (shape_.axes == 3) {
+      for (const Eigen::Vector3d& axis : shape_.axis) try_axis(axis);
+    }
+    for (const Eigen::Vector3d& of_triangle : edge) {
+      for (std::uint32_t k = 0; k < shape_.axes; ++k) {
+        try_axis(unit_normal({{Eigen::Vector3d::Zero(), of_triangle, shape_.axis[k]}}));
+      }
+    }
+  }
+
+  double depth = std::numeric_limits<double>::infinity();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  [[nodiscard]] double error() const noexcept { return error_; }
+
+ private:
+  const ConvexShape& shape_;
+  const Corners& corner_;
+  double error_;
+};
+
+// The part of the triangle that is farthest along the normal, where the shape leaves it.
+Feature farthest_feature(const Eigen::Vector3d& normal, const Corners& corner,
+                         double error) noexcept {
+  double farthest = -std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& c : corner) farthest = std::max(farthest, dot(normal, c));
+  const auto count = std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
+    return dot(normal, c) >= farthest - error;
+  });
+  if (count == 1) return Feature::kVertex;
+  return count == 2 ? Feature::kEdge : Feature::kFace;
+}
+
+Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) noexcept {
+  LeastDepth least(box, corner, doubt);
+  least.try_all();
+  return {point_inside_box(box, least.error(), corner), least.normal, std::max(0.0, least.depth),
+          farthest_feature(least.normal, corner, least.error())};
+}
+
+}  // namespace
+
+Penetration penetration(const ConvexShape& shape, const Corners& corner, double doubt) noexcept {
+  if (shape.axes == 3) return of_box(shape, corner, doubt);
+  const CoreDistance at = core_distance(shape, corner);
+  const Eigen::Vector3d closest = closest_point_on_triangle(at.core, {corner});
+  const Eigen::Vector3d between = at.core - closest;
+  const double length = std::sqrt(squared_length(between));
+  LeastDepth least(shape, corner, doubt);
+  if (length > 2 * doubt) least.try_axis(between / length);
+  // Rounding tilts the line between points that are near each other, or decides which way it
+  // points: then other directions are better.
+  if (!(least.depth <= least.error() - length)) least.try_all();
+  if (least.normal.isZero(0)) {
+    // A core along a face without area: any direction across both.
+    const Eigen::Vector3d along = shape.axes == 0 ? corner[1] - corner[0] : shape.axis[0];
+    Eigen::Index smallest = 0;
+    static_cast<void>(along.cwiseAbs().minCoeff(&smallest));
+    const Eigen::Vector3d across = Eigen::Vector3d::Unit(smallest);
+    least.normal = unit_normal({{Eigen::Vector3d::Zero(), along, across}});
+    if (least.normal.isZero(0)) least.normal = across;
+    least.depth = 0;
+  }
+  return {closest, least.normal, std::max(0.0, shape.radius + least.depth),
+          feature_of(at.core, corner, closest)};
+}
+
+}  // namespace boxtree

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// How a convex shape that touches a triangle leaves it soonest.
+#pragma once
+
+#include "runtime/primitive/convex_shape.h"
+
+namespace boxtree {
+
+struct Penetration {
+  Eigen::Vector3d point;   // on the triangle, relative to the shape's center
+  Eigen::Vector3d normal;  // from the triangle to the shape
+  double depth;            // along it
+  Feature feature;
+};
+
+/// Precondition: they touch. `corner`: relative to the shape's center; `doubt`: how far these may
+/// be off.
+[[nodiscard]] Penetration penetration(const ConvexShape& shape, const Corners& corner,
+                                      double doubt) noexcept;
+
+}  // namespace boxtree

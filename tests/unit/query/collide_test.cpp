@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// Contacts of shapes against extended precision: which triangles are touched, and how deep.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include <boxtree/boxtree.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/shape_reference.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::SourceMesh;
+using test::LongShape;
+using test::LongTriangle;
+using test::LongVector;
+
+// What collide.h allows, in units of the largest coordinate.
+constexpr long double kDoubt = 0x1p-46L;
+
+// How far the shape has to go along a direction of length 1 until it is beyond the triangle.
+long double depth_along(const LongShape& shape, const LongVector& direction,
+                        const LongTriangle& triangle) {
+  long double highest = -std::numeric_limits<long double>::infinity(), lowest = -highest;
+  for (const LongVector& corner : triangle) highest = std::max(highest, corner.dot(direction));
+  for (const LongTriangle& part : shape.core) {
+    for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
+  }
+  return highest - lowest + shape.radius;
+}
+
+class Collide : public testing::TestWithParam<test::Encoding> {
+ protected:
+  double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
+  Eigen::Vector3d vector() { return {unit(), unit(), unit()}; }
+
+  template <class Shape>
+  void check(const Tree& tree, const Shape& shape, double size) {
+    const LongShape exact = test::long_shape(shape);
+    const long double doubt =
+        kDoubt * (size + exact.center.cwiseAbs().maxCoeff() + 2 * (exact.reach + exact.radius));
+    std::vector<Contact> contacts;
+    ASSERT_EQ(test::require(collide(tree, shape,
+                                    [&](const Contact& contact) {
+                                      contacts.push_back(contact);
+                                      return true;
+                                    })),
+              Visit::kComplete);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> touched;
+    for (const Contact& contact : contacts) {
+      SCOPED_TRACE(contact.face.index);
+      EXPECT_TRUE(touched.insert({contact.face.index, contact.triangle}).second);
+      const LongTriangle triangle =
+          test::long_triangle(test::require(tree.triangle(contact.face, contact.triangle)));
+      const long double distance = test::distance(exact, LongVector::Zero(), triangle);
+      ASSERT_LE(distance, exact.radius + doubt);
+      // The point is where they are said to touch.
+      const LongVector point = contact.point.cast<long double>();
+      ASSERT_LE(test::distance_in_extended_precision({point, point, point}, triangle), 4 * doubt);
+      ASSERT_LE(test::distance(exact, LongVector::Zero(), {point, point, point}),
+                exact.radius + 4 * doubt);
+      // Moved by the depth along the normal they do not overlap any more, and did a little before.
+      ASSERT_NEAR(contact.normal.norm(), 1, 1e-12);
+      ASSERT_GE(contact.depth, 0);
+      const LongVector normal = contact.normal.cast<long double>();
+      ASSERT_LE(depth_along(exact, normal, triangle), contact.depth + 8 * doubt);
+      // No other way is shorter.
+      for (int i = 0; i < 100; ++i) {
+        LongVector other = vector().cast<long double>().normalized();
+        if (i % 2 == 0) other = (normal + 0.01L * other).normalized();
+        ASSERT_GE(depth_along(exact, other, triangle), contact.depth - 8 * doubt);
+      }
+      has_deep_ |= contact.depth > static_cast<double>(exact.radius);
+    }
+    for (std::uint32_t f = 0; f < tree.face_count(); ++f) {
+      for (std::uint32_t half = 0; half < 2; ++half) {
+        const Result<Triangle> triangle = tree.triangle({kNoFaceId, f}, half);
+        if (!triangle || touched.contains({f, half})) continue;
+        ASSERT_GT(test::distance(exact, LongVector::Zero(), test::long_triangle(*triangle)),
+                  exact.radius);
+      }
+    }
+    count_ += touched.size();
+    // Faces, each once.
+    std::set<std::uint32_t> faces, overlapped;
+    for (const auto& [face, half] : touched) faces.insert(face);
+    const auto note = [&](const FaceRef& face) {
+      EXPECT_TRUE(overlapped.insert(face.index).second);
+      return true;
+    };
+    if constexpr (std::is_same_v<Shape, Capsule>) {
+      ASSERT_TRUE(overlap_capsule(tree, shape, note));
+      ASSERT_EQ(overlapped, faces);
+    } else if constexpr (std::is_same_v<Shape, OrientedBox>) {
+      ASSERT_TRUE(overlap_oriented_box(tree, shape, note));
+      ASSERT_EQ(overlapped, faces);
+    }
+  }
+
+  template <class Body>
+  void for_each_place(int count, const Body& body) {
+    for (const SourceMesh& mesh : test::all_kinds()) {
+      SCOPED_TRACE(mesh.name);
+      const test::CookedTree cooked = test::cook_tree(mesh, GetParam());
+      const Eigen::AlignedBox3d box = cooked.tree.bounds();
+      const double size = box.diagonal().norm();
+      for (int i = 0; i < count; ++i) {
+        SCOPED_TRACE(i);
+        Eigen::Vector3d at = box.center() + 0.6 * vector().cwiseProduct(box.sizes());
+        if (i % 3 == 1) at = closest_point(cooked.tree, at)->point;  // on the surface
+        body(cooked.tree, at, size, 0.02 * size * std::pow(8.0, unit()));
+        if (HasFatalFailure()) return;
+      }
+    }
+    EXPECT_GT(count_, 100u);
+  }
+
+  std::mt19937_64 random_{7};
+  std::size_t count_ = 0;
+  bool has_deep_ = false;
+};
+
+TEST_P(Collide, ASphereIsThatOfExtendedPrecision) {
+  for_each_place(12, [&](const Tree& tree, const Eigen::Vector3d& at, double size, double radius) {
+    check(tree, Sphere{at, radius}, size);
+  });
+}
+
+TEST_P(Collide, ACapsuleIsThatOfExtendedPrecision) {
+  for_each_place(12, [&](const Tree& tree, const Eigen::Vector3d& at, double size, double radius) {
+    check(tree, Capsule{at, at + 0.1 * size * vector(), radius}, size);
+  });
+  EXPECT_TRUE(has_deep_);
+}
+
+TEST_P(Collide, ABoxIsThatOfExtendedPrecision) {
+  for_each_place(6, [&](const Tree& tree, const Eigen::Vector3d& at, double size, double radius) {
+    OrientedBox box;
+    box.center = at;
+    box.half_extents = radius * (vector() + Eigen::Vector3d::Constant(1.1));
+    if (random_() % 3 != 0) box.rotation.coeffs() << unit(), unit(), unit(), unit();
+    check(tree, box, size);
+  });
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, Collide,
+                         testing::Values(test::Encoding{CodecId::kWide8, GeometryId::kExact},
+                                         test::Encoding{CodecId::kWide4, GeometryId::kGrid},
+                                         test::Encoding{CodecId::kPlainF32, GeometryId::kArrays}),
+                         test::encoding_name);
+
+TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
+  const auto contact = [](double x, const Eigen::Vector3d& normal, double depth) {
+    Contact c;
+    c.point = {x, 0, 0};
+    c.normal = normal;
+    c.depth = depth;
+    return c;
+  };
+  const Eigen::Vector3d up(0, 0, 1), side(1, 0, 0);
+  std::vector<Contact> contacts = {contact(0, up, 1), contact(0.001, up, 2), contact(0, side, 1),
+                                   contact(5, up, 1), contact(0, up, 1.5)};
+  ASSERT_EQ(merge_contacts(contacts, 0.01), 3u);
+  EXPECT_EQ(contacts[0].depth, 2);
+  EXPECT_EQ(contacts[1].normal, side);
+  EXPECT_EQ(contacts[2].point[0], 5);
+  EXPECT_EQ(merge_contacts({}, 1), 0u);
+}
+
+TEST(CollideErrors, NameTheField) {
+  const test::CookedTree cooked = test::cook_tree(test::sphere(8, 8), CodecId::kWide8);
+  const auto none = [](const Contact&) { return true; };
+  EXPECT_EQ(collide(cooked.tree, Sphere{{0, 0, 0}, -1}, none).error().detail, "radius");
+  EXPECT_EQ(collide(cooked.tree, Sphere{{NAN, 0, 0}, 1}, none).error().detail, "center");
+  OrientedBox box;
+  box.half_extents = {1, -1, 1};
+  EXPECT_EQ(collide(cooked.tree, box, none).error().detail, "half_extents");
+  box.half_extents = {1, 1, 1};
+  box.rotation.coeffs().setZero();
+  EXPECT_EQ(collide(cooked.tree, box, none).error().detail, "rotation");
+  EXPECT_EQ(collide(cooked.tree, Capsule{{0, 0, INFINITY}, {0, 0, 0}, 1}, none).error().detail,
+            "start");
+}
+
+}  // namespace
+}  // namespace boxtree
