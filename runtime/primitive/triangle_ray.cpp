@@ -25,4 +25,16 @@ RayEdges exact_ray_edges(const ShearedCorner& a, const ShearedCorner& b,
   return {exact_area(scale, c, b), exact_area(scale, a, c), exact_area(scale, b, a)};
 }
 
+// The axes of the ray are those of space in turn, so that corners that are counterclockwise from
+// where the ray comes from are clockwise in x and y where z ascends along it. The edges' areas are
+// those of corners in the other order.
+bool meets_front(const RayShear& ray, const Triangle& triangle) noexcept {
+  const RayEdges edges =
+      exact_ray_edges(ray.sheared(triangle.corner[0]), ray.sheared(triangle.corner[1]),
+                      ray.sheared(triangle.corner[2]));
+  // All signs agree, or are zero.
+  const bool is_positive = edges.opposite0 > 0 || edges.opposite1 > 0 || edges.opposite2 > 0;
+  return is_positive == (ray.shear_z > 0);
+}
+
 }  // namespace boxtree

@@ -13,6 +13,12 @@
 
 namespace boxtree {
 
+/// A corner in the axes of the ray, which is the line x = y = 0. Depends on the corner and the ray
+/// alone, so triangles that share the corner get the same numbers.
+struct ShearedCorner {
+  double x, y, z;
+};
+
 /// A ray prepared for tests against many triangles: the shear that maps the direction to an axis.
 struct RayShear {
   RayShear() noexcept = default;  // unspecified
@@ -31,6 +37,12 @@ struct RayShear {
       : origin(ray_origin.vector()) {
     set_axes(direction);
     shear_z = inverse[axis_z];
+  }
+
+  [[nodiscard]] ShearedCorner sheared(const Eigen::Vector3d& corner) const noexcept {
+    const double z = corner[axis_z] - origin[axis_z];
+    return {(corner[axis_x] - origin[axis_x]) - shear_x * z,
+            (corner[axis_y] - origin[axis_y]) - shear_y * z, z};
   }
 
   Eigen::Vector3d origin;
@@ -57,12 +69,6 @@ struct RayTriangleHit {
   double t;
   double u;
   double v;
-};
-
-/// A corner in the axes of the ray, which is the line x = y = 0. Depends on the corner and the ray
-/// alone, so triangles that share the corner get the same numbers.
-struct ShearedCorner {
-  double x, y, z;
 };
 
 /// Twice the signed areas that the ray spans with the edges opposite corners 0, 1 and 2.
@@ -101,14 +107,9 @@ struct RayEdges {
 /// triangle that truly is edge-on covers no area; its neighbours cover its line.
 [[nodiscard]] inline std::optional<RayTriangleHit> intersect_ray_triangle(
     const RayShear& ray, const Triangle& triangle) noexcept {
-  const auto shear = [&ray](const Eigen::Vector3d& corner) -> ShearedCorner {
-    const double z = corner[ray.axis_z] - ray.origin[ray.axis_z];
-    return {(corner[ray.axis_x] - ray.origin[ray.axis_x]) - ray.shear_x * z,
-            (corner[ray.axis_y] - ray.origin[ray.axis_y]) - ray.shear_y * z, z};
-  };
-  const ShearedCorner a = shear(triangle.corner[0]);
-  const ShearedCorner b = shear(triangle.corner[1]);
-  const ShearedCorner c = shear(triangle.corner[2]);
+  const ShearedCorner a = ray.sheared(triangle.corner[0]);
+  const ShearedCorner b = ray.sheared(triangle.corner[1]);
+  const ShearedCorner c = ray.sheared(triangle.corner[2]);
   RayEdges edges{c.x * b.y - c.y * b.x, a.x * c.y - a.y * c.x, b.x * a.y - b.y * a.x};
   if (edges.has_mixed_signs()) return std::nullopt;
   if (edges.has_zero()) [[unlikely]] {
@@ -124,5 +125,9 @@ struct RayEdges {
   const double depth = (weight0 * a.z + weight1 * b.z) + weight2 * c.z;
   return RayTriangleHit{depth * ray.shear_z, weight1, weight2};
 }
+
+/// Whether the ray meets the triangle, which it intersects, from the side from which the corners
+/// are counterclockwise. Exact for the sheared corners.
+[[nodiscard]] bool meets_front(const RayShear& ray, const Triangle& triangle) noexcept;
 
 }  // namespace boxtree

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "runtime/primitive/float_state.h"
+#include "runtime/primitive/normal.h"
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/cast_query.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_in_tree.h"
@@ -19,24 +21,15 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   if (interval.enter > interval.leave || interval.leave < 0) return;
   const double from = std::max(interval.enter, 0.0);
   if (from > t_max) return;
+  if (options != nullptr && !admits_side(triangle)) return;
   const std::optional<double> s = moving.first_touch(triangle, from, t_max);
   if (!s) return;
   CastCandidate found{true, *s, {kNoFaceId, face_index}, face_index, half, triangle};
   if (wanted == Wanted::kAll) {
-    const FaceWithCopies faces(tree, face_index);
-    if (faces.count() - 1 > copies_left) {
-      error = Errc::kNodeCorrupt;
-      return;
-    }
-    copies_left -= faces.count() - 1;
-    for (std::uint32_t i = 0; i < faces.count() && !stopped; ++i) {
-      found.face = faces.face(i);
-      const double wanted_to = (*visitor)(found);
-      stopped = !(wanted_to >= 0);
-      t_max = std::min(t_max, wanted_to);
-    }
+    visit_all(found);
     return;
   }
+  if (options != nullptr && options->filter && !name_wanted(found)) return;
   if (best.is_hit && found.s == best.s) {
     name(tree, found.face);
     name(tree, best.face);
@@ -44,6 +37,37 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   }
   best = found;
   t_max = found.s;
+}
+
+bool CastQuery::admits_side(const Triangle& triangle) const noexcept {
+  if (options->back_faces == BackFaces::kHit) return true;
+  const bool is_back = dot(unit_normal(triangle), moving.direction) > 0;
+  return is_back == (options->back_faces == BackFaces::kOnly);
+}
+
+bool CastQuery::name_wanted(CastCandidate& found) const noexcept {
+  const FaceWithCopies faces(tree, found.original);
+  for (std::uint32_t i = 0; i < faces.count(); ++i) {
+    found.face = faces.face(i);
+    if ((*options->filter)(found.face)) return true;
+  }
+  return false;
+}
+
+void CastQuery::visit_all(CastCandidate& found) noexcept {
+  const FaceWithCopies faces(tree, found.original);
+  if (faces.count() - 1 > copies_left) {
+    error = Errc::kNodeCorrupt;
+    return;
+  }
+  copies_left -= faces.count() - 1;
+  for (std::uint32_t i = 0; i < faces.count() && !stopped; ++i) {
+    found.face = faces.face(i);
+    if (options != nullptr && options->filter && !(*options->filter)(found.face)) continue;
+    const double wanted_to = (*visitor)(found);
+    stopped = !(wanted_to >= 0);
+    t_max = std::min(t_max, wanted_to);
+  }
 }
 
 Errc CastQuery::run() {
@@ -59,8 +83,12 @@ namespace {
 class Cast {
  public:
   Cast(const Tree& queried, const ShapeInTree& shape, const Motion& motion,
-       const QueryLimits& limits)
-      : tree_(BoundTree::of(queried)), shape_(shape), motion_(motion), work_(limits) {
+       const FaceOptions& options)
+      : tree_(BoundTree::of(queried)),
+        shape_(shape),
+        motion_(motion),
+        work_(options.limits),
+        options_(options) {
     // A shape that stays where it is goes nowhere along any direction.
     const double length = largest_magnitude(motion.direction);
     is_moving_ = length != 0;
@@ -85,7 +113,8 @@ class Cast {
     CastQuery* query_of_visitor = nullptr;
     const auto all = [&](const CastCandidate& found) { return visit(*query_of_visitor, found); };
     const CastQuery::Visitor visitor(all);
-    CastQuery query(tree_, shape_.shape, line_, exponent, is_moving_, wanted, &visitor, nodes);
+    CastQuery query(tree_, shape_.shape, line_, exponent, is_moving_, wanted, &visitor, nodes,
+                    &options_);
     query_of_visitor = &query;
     const Errc error = query.run();
     if (error == Errc::kOk) answer(query);
@@ -113,15 +142,16 @@ class Cast {
   const ShapeInTree& shape_;
   const Motion& motion_;
   QueryWork work_;
+  const FaceOptions& options_;
   Ray line_;  // of the shape's center
   bool is_moving_;
   const char* invalid_ = nullptr;
 };
 
 CastResult one_touch(const Tree& tree, const ShapeInTree& shape, const Motion& motion,
-                     CastQuery::Wanted wanted, const QueryLimits& limits) {
+                     CastQuery::Wanted wanted, const FaceOptions& options) {
   const DefaultFloatState state;
-  Cast cast(tree, shape, motion, limits);
+  Cast cast(tree, shape, motion, options);
   if (cast.invalid() != nullptr) return {Errc::kInvalidQuery, cast.invalid()};
   CastResult result;
   const Errc error = cast.run(
@@ -133,9 +163,9 @@ CastResult one_touch(const Tree& tree, const ShapeInTree& shape, const Motion& m
 }
 
 Result<Visit> all_touches(const Tree& tree, const ShapeInTree& shape, const Motion& motion,
-                          CastVisitor visitor, const QueryLimits& limits) {
+                          CastVisitor visitor, const FaceOptions& options) {
   const DefaultFloatState state;
-  Cast cast(tree, shape, motion, limits);
+  Cast cast(tree, shape, motion, options);
   if (cast.invalid() != nullptr) return invalid_query(cast.invalid());
   Visit end = Visit::kComplete;
   const Errc error = cast.run(
@@ -151,48 +181,48 @@ Result<Visit> all_touches(const Tree& tree, const ShapeInTree& shape, const Moti
 }  // namespace
 
 CastResult cast_closest(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                        const QueryLimits& limits) {
+                        const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), sphere), motion, CastQuery::Wanted::kClosest,
-                   limits);
+                   options);
 }
 CastResult cast_closest(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                        const QueryLimits& limits) {
+                        const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), capsule), motion, CastQuery::Wanted::kClosest,
-                   limits);
+                   options);
 }
 CastResult cast_closest(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                        const QueryLimits& limits) {
+                        const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), box), motion, CastQuery::Wanted::kClosest,
-                   limits);
+                   options);
 }
 
 CastResult cast_any(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                    const QueryLimits& limits) {
+                    const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), sphere), motion, CastQuery::Wanted::kAny,
-                   limits);
+                   options);
 }
 CastResult cast_any(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                    const QueryLimits& limits) {
+                    const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), capsule), motion, CastQuery::Wanted::kAny,
-                   limits);
+                   options);
 }
 CastResult cast_any(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                    const QueryLimits& limits) {
+                    const FaceOptions& options) {
   return one_touch(tree, in_tree(BoundTree::of(tree), box), motion, CastQuery::Wanted::kAny,
-                   limits);
+                   options);
 }
 
 Result<Visit> cast_all(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                       CastVisitor visitor, const QueryLimits& limits) {
-  return all_touches(tree, in_tree(BoundTree::of(tree), sphere), motion, visitor, limits);
+                       CastVisitor visitor, const FaceOptions& options) {
+  return all_touches(tree, in_tree(BoundTree::of(tree), sphere), motion, visitor, options);
 }
 Result<Visit> cast_all(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                       CastVisitor visitor, const QueryLimits& limits) {
-  return all_touches(tree, in_tree(BoundTree::of(tree), capsule), motion, visitor, limits);
+                       CastVisitor visitor, const FaceOptions& options) {
+  return all_touches(tree, in_tree(BoundTree::of(tree), capsule), motion, visitor, options);
 }
 Result<Visit> cast_all(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                       CastVisitor visitor, const QueryLimits& limits) {
-  return all_touches(tree, in_tree(BoundTree::of(tree), box), motion, visitor, limits);
+                       CastVisitor visitor, const FaceOptions& options) {
+  return all_touches(tree, in_tree(BoundTree::of(tree), box), motion, visitor, options);
 }
 
 }  // namespace boxtree

@@ -31,8 +31,8 @@ struct CastCandidate {
 /// A query of traverse_nearest: the line of the shape's center against boxes that are widened by
 /// the shape.
 struct CastQuery : RayInTree {
-  /// Receives each touch, those of copies after their original's; returns the largest parameter that is still of interest, or a negative
-  /// number to stop.
+  /// Receives each touch, those of copies after their original's; returns the largest parameter
+  /// that is still of interest, or a negative number to stop.
   using Visitor = FunctionRef<double(const CastCandidate&)>;
 
   enum class Wanted : std::uint8_t { kClosest, kAny, kAll };
@@ -41,7 +41,7 @@ struct CastQuery : RayInTree {
   /// `visitor`: of kAll, or null.
   CastQuery(const BoundTree& queried, const ConvexShape& shape, const Ray& line,
             int direction_exponent, bool is_moving, Wanted wanted_touches, const Visitor* all,
-            WalkBound& bound) noexcept
+            WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept
       : RayInTree(queried, line, direction_exponent),
         tree(queried),
         nodes(bound),
@@ -50,7 +50,8 @@ struct CastQuery : RayInTree {
         moving{placed(shape), is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
                MovingShape::doubt_of(near, origin_max_abs)},
         wanted(wanted_touches),
-        visitor(all) {
+        visitor(all),
+        options(face_options) {
     slab = RaySlab(origin, origin_max_abs, direction, near).widened(AxisLanes(extent));
   }
 
@@ -83,7 +84,8 @@ struct CastQuery : RayInTree {
   MovingShape moving;
   Wanted wanted;
   const Visitor* visitor;
-  double enter = 0;  // where it comes upon the root box
+  const FaceOptions* options;  // null: every face may be hit
+  double enter = 0;            // where it comes upon the root box
   CastCandidate best;
   bool stopped = false;
   Errc error = Errc::kOk;
@@ -92,6 +94,13 @@ struct CastQuery : RayInTree {
   TriangleBatch batch;
 
  private:
+  // Whether a triangle may be hit, from the side from which it is met.
+  [[nodiscard]] bool admits_side(const Triangle& triangle) const noexcept;
+  // Names the first of the original and its copies that the filter accepts; false if it accepts
+  // none.
+  [[nodiscard]] bool name_wanted(CastCandidate& found) const noexcept;
+  void visit_all(CastCandidate& found) noexcept;
+
   [[nodiscard]] ConvexShape placed(const ConvexShape& shape) const noexcept {
     ConvexShape out = shape;
     out.center = origin.vector();

@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Ray queries over any codec.
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
+#include "runtime/query/invalid_query.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -12,12 +17,36 @@ const char* refused_field(const Ray& ray) noexcept {
   return field != nullptr ? field : "origin";
 }
 
+bool RayQuery::meet_wishes(RayCandidate& candidate) noexcept {
+  if (wishes->stopped || !wishes->admits_side(shear, candidate.triangle)) return false;
+  const auto& filter = wishes->faces.filter;
+  const FaceWithCopies faces(tree, candidate.face.index);
+  if (wishes->all != nullptr) {
+    if (faces.count() - 1 > wishes->copies_left) {
+      error = Errc::kNodeCorrupt;
+      return false;
+    }
+    wishes->copies_left -= faces.count() - 1;
+  }
+  for (std::uint32_t i = 0; i < faces.count(); ++i) {
+    // Without a filter the original is named only where it has to be.
+    if (filter || wishes->all != nullptr) candidate.face = faces.face(i);
+    if (filter && !(*filter)(candidate.face)) continue;
+    if (wishes->all == nullptr) return true;
+    const double wanted_to = (*wishes->all)(candidate);
+    wishes->stopped = !(wanted_to >= 0);
+    if (wishes->stopped) return false;
+    t_max = std::min(t_max, wanted_to);
+  }
+  return false;
+}
+
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
-              RayCandidate& hit) {
+              RayCandidate& hit, RayWishes* wishes) {
   const double length = largest_magnitude(ray.direction);
   if (invalid_field(ray, length) != nullptr) return Errc::kInvalidQuery;
   WalkBound nodes(tree.node_count(), &work);
-  RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit);
+  RayQuery query(tree, ray, exponent_of(length), nodes, stop_at_first, hit, wishes);
   if (!(query.origin_max_abs <= kMaxCoordinate)) return Errc::kInvalidQuery;  // NaN, too
   if (tree.empty() || !query.enters_root()) return Errc::kOk;
   // Wide codecs: RayWalk::intersect (ray_wide.cpp); others: traverse_nearest (walk/traversal.h),
@@ -34,22 +63,32 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
 
 namespace {
 
-RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first,
-                 const QueryLimits& limits) {
+RayHit described(const BoundTree& tree, const RayCandidate& hit) {
+  return {hit.t,
+          hit.face,
+          hit.half,
+          hit.u,
+          hit.v,
+          tree.frame().to_object(hit.point()),
+          unit_normal(hit.triangle)};
+}
+
+RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first, const QueryLimits& limits,
+                 RayWishes* wishes = nullptr) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   QueryWork work(limits);
   RayCandidate hit;
-  const Errc error = cast_ray(tree, ray, stop_at_first, work, hit);
+  const Errc error = cast_ray(tree, ray, stop_at_first, work, hit, wishes);
   if (error == Errc::kInvalidQuery) return {error, refused_field(ray)};
   if (error != Errc::kOk || !hit.is_hit) return error;
-  return RayHit{hit.t,
-                hit.face,
-                hit.half,
-                hit.u,
-                hit.v,
-                tree.frame().to_object(hit.point()),
-                unit_normal(hit.triangle)};
+  return described(tree, hit);
+}
+
+RayResult wanted_hit(const Tree& tree, const Ray& ray, bool stop_at_first,
+                     const FaceOptions& options) {
+  RayWishes wishes{options};
+  return hit_on(tree, ray, stop_at_first, options.limits, &wishes);
 }
 
 }  // namespace
@@ -60,6 +99,63 @@ RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryLimits& limit
 
 RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits) {
   return hit_on(tree, ray, true, limits);
+}
+
+RayResult closest_hit(const Tree& tree, const Ray& ray, const FaceOptions& options) {
+  return wanted_hit(tree, ray, false, options);
+}
+
+RayResult any_hit(const Tree& tree, const Ray& ray, const FaceOptions& options) {
+  return wanted_hit(tree, ray, true, options);
+}
+
+Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
+                       const FaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
+  QueryWork work(options.limits);
+  const double length = largest_magnitude(ray.direction);
+  const int exponent =
+      invalid_field(ray, length) == nullptr ? exponent_of(length) - tree.scale_exponent() : 0;
+  const auto visit = [&](const RayCandidate& found) {
+    RayCandidate hit = found;
+    hit.t = parameter_of(ray, found.t, exponent);
+    return RayInTree::scaled(visitor(described(tree, hit)), exponent);
+  };
+  const FunctionRef<double(const RayCandidate&)> all(visit);
+  RayWishes wishes{options, &all, 2 * std::uint64_t{tree.duplicate_count()}};
+  RayCandidate none;
+  const Errc error = cast_ray(tree, ray, false, work, none, &wishes);
+  if (error == Errc::kInvalidQuery) return invalid_query(refused_field(ray));
+  if (error != Errc::kOk) return error;
+  return wishes.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
+Result<std::size_t> nearest_hits(const Tree& tree, const Ray& ray, std::span<RayHit> hits,
+                                 const FaceOptions& options) {
+  std::size_t count = 0;
+  const auto comes_first = [&](const RayHit& a, const RayHit& b) {
+    if (a.t != b.t) return a.t < b.t;
+    return comes_before(BoundTree::of(tree), a.face, a.triangle, b.face, b.triangle);
+  };
+  const Result<Visit> visited = all_hits(
+      tree, ray,
+      [&](const RayHit& hit) {
+        std::size_t place = std::min(count, hits.size());
+        while (place > 0 && comes_first(hit, hits[place - 1])) --place;
+        if (place < hits.size()) {
+          count = std::min(count + 1, hits.size());
+          std::move_backward(hits.begin() + static_cast<std::ptrdiff_t>(place),
+                             hits.begin() + static_cast<std::ptrdiff_t>(count) - 1,
+                             hits.begin() + static_cast<std::ptrdiff_t>(count));
+          hits[place] = hit;
+        }
+        if (count < hits.size()) return ray.t_max;
+        return hits.empty() ? -1.0 : hits.back().t;
+      },
+      options);
+  if (!visited) return visited.error();
+  return count;
 }
 
 }  // namespace boxtree

@@ -90,16 +90,34 @@ struct RayInTree {
   }
 };
 
+/// What a caller wants besides the closest or any hit of any face.
+struct RayWishes {
+  const FaceOptions& faces;
+  /// Receives every hit, named; returns the largest parameter that is still of interest, or a
+  /// negative number to stop. Null: one hit is wanted.
+  const FunctionRef<double(const RayCandidate&)>* all = nullptr;
+  // In valid files each copy is visited once for each triangle of its face; see FaceWalk.
+  std::uint64_t copies_left = 0;
+  bool stopped = false;
+
+  /// Whether the ray may hit a triangle that it meets, from the side that it meets.
+  [[nodiscard]] bool admits_side(const RayShear& shear, const Triangle& triangle) const noexcept {
+    return faces.back_faces == BackFaces::kHit ||
+           meets_front(shear, triangle) == (faces.back_faces == BackFaces::kIgnore);
+  }
+};
+
 /// A query of traverse_nearest. `best` receives the answer, without the id of its face; it holds no
 /// hit yet.
 struct RayQuery : RayInTree {
   RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
-           bool stop_at_first, RayCandidate& best) noexcept
+           bool stop_at_first, RayCandidate& best, RayWishes* ray_wishes = nullptr) noexcept
       : RayInTree(queried, ray, direction_exponent),
         tree(queried),
         nodes(bound),
         any(stop_at_first),
-        hit(best) {}
+        hit(best),
+        wishes(ray_wishes) {}
 
   /// Whether the ray intersects the root box. If it does, prepares the tests of what is inside.
   /// Call it before any walk.
@@ -122,7 +140,9 @@ struct RayQuery : RayInTree {
   }
 
   /// Whether no other triangle can matter.
-  [[nodiscard]] bool is_done() const noexcept { return any && hit.is_hit; }
+  [[nodiscard]] bool is_done() const noexcept {
+    return (any && hit.is_hit) || error != Errc::kOk || (wishes != nullptr && wishes->stopped);
+  }
 
   void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept {
     const SlabInterval interval = slab.intersect(bounds_of(triangle));
@@ -133,15 +153,20 @@ struct RayQuery : RayInTree {
     // above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
-    FaceRef face{kNoFaceId, face_index};
+    RayCandidate candidate{true, t, {kNoFaceId, face_index}, half, found->u, found->v, triangle};
+    if (wishes != nullptr && !meet_wishes(candidate)) return;
     if (hit.is_hit && t == hit.t) {
-      name(tree, face);
+      name(tree, candidate.face);
       name(tree, hit.face);
-      if (!comes_before(tree, face, half, hit.face, hit.half)) return;
+      if (!comes_before(tree, candidate.face, half, hit.face, hit.half)) return;
     }
-    hit = RayCandidate{true, t, face, half, found->u, found->v, triangle};
+    hit = candidate;
     t_max = t;
   }
+
+  /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
+  /// it.
+  [[nodiscard, gnu::cold]] bool meet_wishes(RayCandidate& candidate) noexcept;
 
   const BoundTree& tree;
   WalkBound& nodes;
@@ -149,6 +174,7 @@ struct RayQuery : RayInTree {
   RayShear shear;
   bool any;
   RayCandidate& hit;
+  RayWishes* wishes;
   Errc error = Errc::kOk;
   TriangleBatch batch;
 };
@@ -189,6 +215,6 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
 /// closest_hit or any_hit for callers that have set the floating-point state. `hit`: the answer,
 /// with t in the ray's own parameters.
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
-              RayCandidate& hit);
+              RayCandidate& hit, RayWishes* wishes = nullptr);
 
 }  // namespace boxtree

@@ -8,6 +8,7 @@
 
 #include <boxtree/configuration.h>
 #include <boxtree/export.h>
+#include <boxtree/face_options.h>
 #include <boxtree/query.h>
 #include <boxtree/shape.h>
 
@@ -48,8 +49,9 @@ struct CastHit {
 using CastResult = QueryResult<CastHit>;
 
 /// The first touch of the shape on its way; of several at the same t_lower the one with the
-/// smallest face id (index, if the file has no ids), so that all codecs and brute force agree. Both
-/// sides of a face count, and so do faces without area, as the segments or points that they are.
+/// smallest face id (index, if the file has no ids), so that all codecs and brute force agree.
+/// Faces count that `options` let be hit: one is met from behind if its normal points along the
+/// motion, which no face without area does. These count as the segments or points that they are.
 /// Nothing is missed: a shape that touches is found to, and one that passes within
 /// 2^-46 of the largest coordinate involved (of the surface, of the shape on its way, and 2^-49 of
 /// that of its start) may be. t and t_lower are as far apart as the shape moves while it comes
@@ -57,24 +59,24 @@ using CastResult = QueryResult<CastHit>;
 /// or t_max; a rotation of 0; a shape farther than 2^185 mesh extents away, or larger), and the
 /// codes of corrupt bytes and limits as for closest_hit(). Never allocates.
 BOXTREE_API CastResult cast_closest(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                                    const QueryLimits& limits = {});
+                                    const FaceOptions& options = {});
 /// The same.
 BOXTREE_API CastResult cast_closest(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                                    const QueryLimits& limits = {});
+                                    const FaceOptions& options = {});
 /// The same.
 BOXTREE_API CastResult cast_closest(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                                    const QueryLimits& limits = {});
+                                    const FaceOptions& options = {});
 
 /// Some touch, or nothing: cheaper than cast_closest() when only the fact matters. Errors as there.
 /// Never allocates.
 BOXTREE_API CastResult cast_any(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                                const QueryLimits& limits = {});
+                                const FaceOptions& options = {});
 /// The same.
 BOXTREE_API CastResult cast_any(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                                const QueryLimits& limits = {});
+                                const FaceOptions& options = {});
 /// The same.
 BOXTREE_API CastResult cast_any(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                                const QueryLimits& limits = {});
+                                const FaceOptions& options = {});
 
 /// Receives one touch after the other; returns the largest t that is still of interest, or a
 /// negative number to stop. Of `t_max` everything on the way is visited, of each hit's own t what
@@ -85,12 +87,12 @@ using CastVisitor = FunctionRef<double(const CastHit&)>;
 /// be alone, in no promised order; copies of a face, too. Errors as for cast_closest(). Never
 /// allocates.
 BOXTREE_API Result<Visit> cast_all(const Tree& tree, const Sphere& sphere, const Motion& motion,
-                                   CastVisitor visitor, const QueryLimits& limits = {});
+                                   CastVisitor visitor, const FaceOptions& options = {});
 /// The same.
 BOXTREE_API Result<Visit> cast_all(const Tree& tree, const Capsule& capsule, const Motion& motion,
-                                   CastVisitor visitor, const QueryLimits& limits = {});
+                                   CastVisitor visitor, const FaceOptions& options = {});
 /// The same.
 BOXTREE_API Result<Visit> cast_all(const Tree& tree, const OrientedBox& box, const Motion& motion,
-                                   CastVisitor visitor, const QueryLimits& limits = {});
+                                   CastVisitor visitor, const FaceOptions& options = {});
 
 }  // namespace boxtree

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Rays: the closest hit, and whether there is any.
+// Rays: the closest hit, whether there is any, and all of them.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include <boxtree/configuration.h>
 #include <boxtree/export.h>
+#include <boxtree/face_options.h>
 #include <boxtree/query.h>
 
 namespace boxtree {
@@ -56,5 +59,27 @@ BOXTREE_API RayResult closest_hit(const Tree& tree, const Ray& ray, const QueryL
 /// Some hit, or nothing: cheaper than closest_hit() when only the fact matters. Errors as there.
 /// Never allocates.
 BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const QueryLimits& limits = {});
+
+/// The same among the faces that `options` let be hit. Of a face and its copies the first that the
+/// filter accepts. Whether a face is met from behind is decided exactly.
+BOXTREE_API RayResult closest_hit(const Tree& tree, const Ray& ray, const FaceOptions& options);
+/// Some hit of those, or nothing.
+BOXTREE_API RayResult any_hit(const Tree& tree, const Ray& ray, const FaceOptions& options);
+
+/// Receives one hit after the other; returns the largest t that is still of interest, or a negative
+/// number to stop. Of `t_max` every hit is visited, of each hit's own t what comes before it.
+using RayVisitor = FunctionRef<double(const RayHit&)>;
+
+/// Visits every hit, in no promised order: each triangle once, copies of a face, too. A ray through
+/// an edge or a corner hits each triangle there. Errors as for closest_hit(). Never allocates.
+BOXTREE_API Result<Visit> all_hits(const Tree& tree, const Ray& ray, RayVisitor visitor,
+                                   const FaceOptions& options = {});
+
+/// The first hits, as many as `hits` has room for, in ascending order of t, then of face ids.
+/// Returns how many there are. Takes time proportional to the room for each hit that is met.
+/// Errors as for closest_hit(). Never allocates.
+BOXTREE_API Result<std::size_t> nearest_hits(const Tree& tree, const Ray& ray,
+                                             std::span<RayHit> hits,
+                                             const FaceOptions& options = {});
 
 }  // namespace boxtree
