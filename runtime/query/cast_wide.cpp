@@ -143,7 +143,7 @@ class CastLeaves {
   // the last one and the new one. A projection of a vector v is off by the sum of its magnitudes
   // times what coordinates are off by, see CastFilter, and by 8u of the largest coordinate, which
   // is less.
-  HWY_INLINE Separation separation(std::size_t group, std::size_t part, FloatVector s,
+  HWY_NOINLINE Separation separation(std::size_t group, std::size_t part, FloatVector s,
                                    Vector3& offset) const {
     const Floats d;
     const auto all = [&](float x) { return hn::Set(d, x); };

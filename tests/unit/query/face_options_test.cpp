@@ -184,7 +184,8 @@ TEST_P(FacesHit, ACastHitsTheSameSides) {
     for (const BackFaces back : {BackFaces::kHit, BackFaces::kIgnore, BackFaces::kOnly}) {
       FaceOptions options;
       options.back_faces = back;
-      options.filter = [](const FaceRef& face) { return face.id % 5 != 0; };
+      const auto accepts = [](const FaceRef& face) { return face.id % 5 != 0; };
+      options.filter = accepts;
       const RayResult by_ray = closest_hit(tree, ray, options);
       const CastResult by_cast = cast_closest(tree, sphere, Motion{ray.direction}, options);
       ASSERT_EQ(by_cast.has_value(), by_ray.has_value());
