@@ -46,7 +46,7 @@ struct CastQuery : RayInTree {
         tree(queried),
         nodes(bound),
         extent(shape.half_extents()),
-        near(queried.largest_abs() + 2 * largest_magnitude(extent)),
+        near(RaySlab::power_above(queried.largest_abs()) + 2 * largest_magnitude(extent)),
         moving{placed(shape), is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
                MovingShape::doubt_of(near, origin_max_abs)},
         wanted(wanted_touches),
@@ -80,7 +80,8 @@ struct CastQuery : RayInTree {
   const BoundTree& tree;
   WalkBound& nodes;
   Eigen::Vector3d extent;  // half, of the shape's bounds
-  double near;             // the largest coordinate of the tree and of the shape while it is near
+  // The largest coordinate of the tree, in every codec, and of the shape while it is near.
+  double near;
   MovingShape moving;
   Wanted wanted;
   const Visitor* visitor;

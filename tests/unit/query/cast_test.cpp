@@ -155,5 +155,157 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Casts,
                                          test::Encoding{CodecId::kPlainF32, GeometryId::kArrays}),
                          test::encoding_name);
 
+// Closest touches have the same bits in every codec, by vectors and without.
+TEST(CastBits, AreThoseOfEveryCodec) {
+  std::mt19937_64 random(23);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  for (const SourceMesh& mesh : test::all_kinds()) {
+    SCOPED_TRACE(mesh.name);
+    std::vector<test::CookedTree> cooked;
+    for (const test::Encoding& encoding : test::all_encodings()) {
+      if (encoding.geometry != GeometryId::kGrid) cooked.push_back(test::cook_tree(mesh, encoding));
+    }
+    const Eigen::AlignedBox3d box = cooked[0].tree.bounds();
+    const double size = box.diagonal().norm();
+    for (int i = 0; i < 60; ++i) {
+      SCOPED_TRACE(i);
+      const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+      const Eigen::Vector3d from = box.center() + vector().cwiseProduct(box.sizes());
+      const Motion motion{box.center() + 0.3 * vector().cwiseProduct(box.sizes()) - from, 2};
+      const double radius = 0.03 * size * std::pow(8.0, unit());
+      OrientedBox turned;
+      turned.center = from;
+      turned.half_extents = radius * Eigen::Vector3d(1, 0.5, 0.25);
+      turned.rotation.coeffs() << unit(), unit(), unit(), unit();
+      const Capsule capsule{from, from + radius * vector(), radius / 2};
+      const auto cast = [&](const Tree& tree) {
+        return i % 3 == 0   ? cast_closest(tree, Sphere{from, radius}, motion)
+               : i % 3 == 1 ? cast_closest(tree, capsule, motion)
+                            : cast_closest(tree, turned, motion);
+      };
+      const CastResult first = cast(cooked[0].tree);
+      for (const test::CookedTree& other : cooked) {
+        const CastResult hit = cast(other.tree);
+        ASSERT_EQ(hit.has_value(), first.has_value());
+        if (!hit) continue;
+        ASSERT_EQ(hit->t, first->t);
+        ASSERT_EQ(hit->t_lower, first->t_lower);
+        ASSERT_EQ(hit->face.id, first->face.id);
+        ASSERT_EQ(hit->triangle, first->triangle);
+        ASSERT_EQ(hit->point, first->point);
+        ASSERT_EQ(hit->normal, first->normal);
+        ASSERT_EQ(hit->feature, first->feature);
+      }
+    }
+  }
+}
+
+// A floor at z = 0 of two triangles, from -1 to 1, whose seam is the diagonal x = y.
+SourceMesh floor_of_two() {
+  SourceMesh mesh;
+  mesh.name = "floor";
+  mesh.positions.f32 = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{0, 2, 3, cooker::kNoCorner}}};
+  return mesh;
+}
+
+class CastCases : public testing::TestWithParam<test::Encoding> {
+ protected:
+  const test::CookedTree floor_ = test::cook_tree(floor_of_two(), GetParam());
+};
+
+TEST_P(CastCases, OntoASeamOfCoplanarFaces) {
+  const Sphere sphere{{0.25, 0.25, 3}, 0.5};
+  const CastResult hit = cast_closest(floor_.tree, sphere, Motion{{0, 0, -1}});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->t, 2.5, 1e-14);
+  EXPECT_EQ(hit->face.id, 0u);  // of both
+  EXPECT_EQ(hit->normal, Eigen::Vector3d(0, 0, 1));
+  EXPECT_NEAR((hit->point - Eigen::Vector3d(0.25, 0.25, 0)).norm(), 0, 1e-14);
+}
+
+TEST_P(CastCases, GrazingIsATouchAndPassingIsNone) {
+  // Rolls along the floor from beyond its edge: touches as soon as it is above the edge.
+  const Motion along{{1, 0, 0}};
+  const CastResult graze = cast_closest(floor_.tree, Sphere{{-3, 0, 1}, 1}, along);
+  ASSERT_TRUE(graze);
+  EXPECT_LE(graze->t_lower, 2);
+  EXPECT_GE(graze->t, 2);
+  EXPECT_FALSE(cast_closest(floor_.tree, Sphere{{-3, 0, 1 + 1e-12}, 1}, along));
+  const CastResult deeper = cast_closest(floor_.tree, Sphere{{-3, 0, 1 - 1e-12}, 1}, along);
+  ASSERT_TRUE(deeper);
+  EXPECT_LE(deeper->t_lower, 2);
+}
+
+TEST_P(CastCases, ParallelToWhatItLiesOn) {
+  // A capsule and a box flat above the floor come down on it whole.
+  const CastResult capsule =
+      cast_closest(floor_.tree, Capsule{{-0.5, 0, 2}, {0.5, 0.25, 2}, 0.25}, Motion{{0, 0, -2}});
+  ASSERT_TRUE(capsule);
+  EXPECT_NEAR(capsule->t, 0.875, 1e-14);
+  EXPECT_NEAR(capsule->normal.z(), 1, 1e-14);
+  const CastResult box = cast_closest(
+      floor_.tree, OrientedBox{{0, 0, 2}, {3, 3, 0.5}, {1, 0, 0, 0}}, Motion{{0, 0, -1}});
+  ASSERT_TRUE(box);
+  EXPECT_NEAR(box->t, 1.5, 1e-14);
+  EXPECT_NEAR(box->normal.z(), 1, 1e-14);
+  // A box that slides beside the floor misses it.
+  EXPECT_FALSE(cast_closest(floor_.tree, OrientedBox{{-5, 0, 0.6}, {1, 1, 0.5}, {1, 0, 0, 0}},
+                            Motion{{1, 0, 0}}));
+}
+
+TEST_P(CastCases, AShapeThatStaysTouchesWhatItHolds) {
+  const Motion none;
+  EXPECT_FALSE(cast_closest(floor_.tree, Sphere{{0, 0, 1}, 0.5}, none));
+  const CastResult held = cast_closest(floor_.tree, Sphere{{0.5, 0, 0.25}, 0.5}, none);
+  ASSERT_TRUE(held);
+  EXPECT_TRUE(held->initially_touching);
+  EXPECT_EQ(held->t, 0);
+  EXPECT_EQ(held->t_lower, 0);
+}
+
+TEST_P(CastCases, AStartInContactIsTold) {
+  for (const Eigen::Vector3d& away : {Eigen::Vector3d(0, 0, 1), Eigen::Vector3d(0, 0, -1)}) {
+    const CastResult hit = cast_closest(floor_.tree, Sphere{{0, 0, 0.1}, 0.5}, Motion{away});
+    ASSERT_TRUE(hit);
+    EXPECT_TRUE(hit->initially_touching);
+    EXPECT_EQ(hit->t, 0);
+  }
+}
+
+TEST_P(CastCases, FromAMillionDiagonalsAway) {
+  const Eigen::Vector3d from(2e6, 1e6, 2e6);
+  const CastResult hit = cast_closest(floor_.tree, Sphere{from, 0.125}, Motion{-from});
+  ASSERT_TRUE(hit);
+  // Its center is then 1/8 above the floor: at z = 1/8 of 2e6.
+  EXPECT_LE(hit->t_lower, 1 - 0.125 / 2e6);
+  EXPECT_GE(hit->t, 1 - 0.125 / 2e6);
+  EXPECT_LT(hit->t - hit->t_lower, 1e-14);
+}
+
+TEST(CastIntoAVertex, TouchesItFirst) {
+  SourceMesh mesh;
+  mesh.name = "pyramid";
+  mesh.positions.f32 = {0, 0, 1, 1, 0, 0, 0, 1, 0, -1, 0, 0, 0, -1, 0};
+  for (std::uint32_t i = 0; i < 4; ++i) {
+    mesh.faces.push_back({{0, 1 + i, 1 + (i + 1) % 4, cooker::kNoCorner}});
+  }
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    const CastResult hit = cast_closest(cooked.tree, Sphere{{0, 0, 4}, 1}, Motion{{0, 0, -1}});
+    ASSERT_TRUE(hit);
+    EXPECT_LE(hit->t_lower, 2);
+    EXPECT_GE(hit->t, 2);
+    EXPECT_LT(hit->t - hit->t_lower, 1e-13);
+    EXPECT_EQ(hit->face.id, 0u);
+    EXPECT_EQ(hit->feature, Feature::kVertex);
+    EXPECT_NEAR((hit->point - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-13);
+    EXPECT_NEAR((hit->normal - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-13);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Encodings, CastCases, testing::ValuesIn(test::all_encodings()),
+                         test::encoding_name);
+
 }  // namespace
 }  // namespace boxtree
