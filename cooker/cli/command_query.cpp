@@ -14,6 +14,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/cli/batch_line.h"
 #include "cooker/cli/command.h"
 #include "cooker/cli/commands.h"
 #include "cooker/cli/json_output.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Queries as data: from options or from a line of a batch, to an answer in JSON.
+// Queries as data: what each kind is made of, and its answer in JSON.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -278,29 +279,10 @@ class TreeCache {
 /// "X,Y,Z". Nothing if it is not.
 [[nodiscard]] std::optional<Eigen::Vector3d> parse_vector(std::string_view text);
 
-/// "X,Y,Z", or the 12 numbers of a 3x4 matrix row by row. Nothing if it is neither.
+/// X,Y,Z, or a 3x4 matrix row by row. Nothing for another count of numbers.
+[[nodiscard]] std::optional<Pose> pose_of(std::span<const double> numbers);
+/// The same as text, with commas.
 [[nodiscard]] std::optional<Pose> parse_pose(std::string_view text);
-
-/// What a line of a batch may leave to the command line.
-struct RequestDefaults {
-  std::string kind;
-  QueryRequest request;            // what lines of its kind do not say is as it is here ...
-  std::vector<std::string> given;  // ... but of keys that are needed only these
-};
-
-/// A line of a batch.
-struct BatchRequest {
-  QueryRequest request;
-  std::vector<std::string> moves;  // of instances of a scene, for this request: "INSTANCE=POSE"
-};
-
-/// A request from one line of a batch: an object with the names of the options as keys, with - or
-/// _, as in {"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}; those of a second tree are
-/// "file", "tree", a name or a number, "mesh" and "pose", text or an array of 3 or 12 numbers.
-/// "move" is a text as --move takes it, or an array of such. A line with "file" takes nothing of
-/// the second tree of the command line if that names a file, too. Error: kInvalidQuery with kind,
-/// key, what was expected and what was found.
-Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults& defaults);
 
 /// kInvalidPose with what is wrong; `whose`: "the second tree's".
 [[nodiscard]] Error explained_pose(std::string_view whose, const Pose& pose);

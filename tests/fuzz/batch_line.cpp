@@ -2,7 +2,7 @@
 // Any text as a line of a batch, answered by a small tree.
 #include <string_view>
 
-#include "cooker/cli/query_request.h"
+#include "cooker/cli/batch_line.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
