@@ -3,6 +3,8 @@
 #include "cooker/cli/batch_line.h"
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -77,8 +79,28 @@ class KeyFields {
     read_if_given("mesh", tree.mesh);
     read_if_given("pose", tree.pose);
   }
+  // A line with a shape takes none of the command line.
+  void shape(CastShape& shape) {
+    const bool has_box = json_.contains("box");
+    if (json_.contains("sphere") || json_.contains("capsule") || has_box) {
+      const auto turned = has_box ? shape.rotation : std::nullopt;
+      shape = CastShape();
+      shape.rotation = turned;
+    }
+    read_if_given("sphere", shape.sphere);
+    read_if_given("capsule", shape.capsule, "[X,Y,Z,R]");
+    read_if_given("box", shape.box, "[HX,HY,HZ]");
+    read_if_given("rotation", shape.rotation, "[X,Y,Z,W]");
+  }
 
   void moves(std::vector<std::string>& out) { read_if_given("move", out); }
+
+  // Of keys that exclude each other.
+  void check(const std::string& fault) {
+    if (fault.empty() || !error_.empty()) return;
+    error_ = fmt::format("{}: {}", kind_, fault);
+    is_missing_ = true;
+  }
 
   // A misspelt key is the likely cause where another one is missing.
   [[nodiscard]] Status finish() {
@@ -141,6 +163,17 @@ class KeyFields {
     out = pose.value_or(Pose::Identity());
     return pose.has_value();
   }
+  template <std::size_t kCount>
+  static bool convert(const Json& value, std::array<double, kCount>& out) {
+    const auto numbers = numbers_of(value);
+    if (!numbers || numbers->size() != kCount) return false;
+    std::copy(numbers->begin(), numbers->end(), out.begin());
+    return true;
+  }
+  template <class T>
+  static bool convert(const Json& value, std::optional<T>& out) {
+    return convert(value, out.emplace());
+  }
   static bool convert(const Json& value, double& out) {
     if (value.is_number()) out = value.get<double>();
     return value.is_number();
@@ -173,6 +206,7 @@ class KeyFields {
   static const char* form_of(const Eigen::Vector3d&) { return "[X,Y,Z]"; }
   static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
   static const char* form_of(double) { return "a number"; }
+  static const char* form_of(const std::optional<double>&) { return "a number"; }
   static const char* form_of(const std::string&) { return "a name as a text, or a number"; }
   static const char* form_of(const std::vector<std::string>&) {
     return "INSTANCE=POSE as a text (\"Crate=1,2,3\"), or an array of such";
@@ -183,7 +217,9 @@ class KeyFields {
 
   template <class T>
   void read(const char* key, T& out, const char* expected = nullptr) {
-    if (expected == nullptr) expected = form_of(out);
+    if constexpr (requires { form_of(out); }) {
+      if (expected == nullptr) expected = form_of(out);
+    }
     known_.emplace_back(key);
     const auto found = json_.find(key);
     if (found == json_.end()) return fail(key, expected, kNoSuchKey);
@@ -191,9 +227,9 @@ class KeyFields {
   }
   // The same, but the key may be missing.
   template <class T>
-  bool read_if_given(const char* key, T& out) {
+  bool read_if_given(const char* key, T& out, const char* expected = nullptr) {
     if (json_.contains(key)) {
-      read(key, out);
+      read(key, out, expected);
       return true;
     }
     known_.emplace_back(key);
@@ -269,6 +305,7 @@ Result<BatchRequest> request_of(std::string_view kind, const BatchLine& of,
     const Kind* const given = is_default ? std::get_if<Kind>(&defaults.request) : nullptr;
     Kind request = given == nullptr ? Kind() : *given;
     request.describe(fields);
+    if constexpr (requires { request.fault("", false); }) fields.check(request.fault("", false));
     result = request;
   });
   if (!result) {

@@ -2,7 +2,9 @@
 // `boxtree query`: queries one tree of a mapped file, or two trees against each other, one request
 // from options or many from a file of JSON lines.
 #include <algorithm>
+#include <array>
 #include <cerrno>
+#include <cstddef>
 #include <cstdio>
 #include <functional>
 #include <memory>
@@ -325,6 +327,17 @@ class OptionFields {
         ->group(kRareOptions);
   }
 
+  void shape(CastShape& shape) {
+    command_.add_option("--sphere", shape.sphere, "What moves: a ball of this radius,")
+        ->type_name("R");
+    add_numbers("--capsule", "X,Y,Z,R", shape.capsule,
+                "or all within R of the segment from --at to --at + X,Y,Z,");
+    add_numbers("--box", "HX,HY,HZ", shape.box,
+                "or a box that reaches so far from --at along each of its axes");
+    add_numbers("--rotation", "X,Y,Z,W", shape.rotation,
+                "Of the box, a quaternion of any length [0,0,0,1]");
+  }
+
   // The keys that have to be given, and their options.
   [[nodiscard]] const std::vector<std::pair<std::string, const Option*>>& needed() const {
     return needed_;
@@ -335,6 +348,19 @@ class OptionFields {
   static std::string option_name(std::string key) {
     std::replace(key.begin(), key.end(), '_', '-');
     return "--" + key;
+  }
+  template <std::size_t kCount>
+  void add_numbers(const char* name, const std::string& form,
+                   std::optional<std::array<double, kCount>>& out, const char* help) {
+    command_
+        .add_parsed_option(
+            name,
+            [&out, form](const std::string& text) {
+              const bool is_list = parse_numbers(text, out.emplace()) == kCount;
+              return is_list ? std::string() : "expected " + form + ", found \"" + text + "\"";
+            },
+            help)
+        ->type_name(form);
   }
   static void note(Option* option, bool* given) {
     if (given != nullptr) option->each([given] { *given = true; });
@@ -360,6 +386,13 @@ void add_kind(const Around& around, int& status) {
   request->describe(options);
   for (const KindExample& example : Kind::kExamples) command.example(example.what, example.line);
   command.callback([request, needed = options.needed(), arguments = around.arguments, &status] {
+    if constexpr (requires { request->fault("--", false); }) {
+      const std::string fault = request->fault("--", !arguments->batch.empty());
+      if (!fault.empty()) {
+        status = usage(fmt::format("query {}: {}", Kind::kKind, fault));
+        return;
+      }
+    }
     RequestDefaults defaults{Kind::kKind, *request, {}};
     for (const auto& [key, option] : needed) {
       if (option->count() > 0) defaults.given.push_back(key);

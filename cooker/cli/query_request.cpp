@@ -2,10 +2,12 @@
 // Opening, querying, and the JSON of answers.
 #include "cooker/cli/query_request.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <vector>
 
 #include <fmt/format.h>
@@ -26,6 +28,73 @@ namespace {
 Result<Json> answer(const Tree& tree, const RayRequest& request) {
   return answer_ray(tree, request,
                     [](const RayHit& found, Json& json) { json["face"] = face_json(found.face); });
+}
+
+const char* name_of(Feature feature) {
+  switch (feature) {
+    case Feature::kFace:
+      return "face";
+    case Feature::kEdge:
+      return "edge";
+    case Feature::kVertex:
+      return "vertex";
+  }
+  return "";
+}
+
+void add_touch(Json& json, const CastHit& hit) {
+  json["t"] = hit.t;
+  json["t_lower"] = hit.t_lower;
+  json["face"] = face_json(hit.face);
+  json["triangle"] = hit.triangle;
+  json["point"] = to_json(hit.point);
+  json["normal"] = to_json(hit.normal);
+  json["feature"] = name_of(hit.feature);
+  json["initially_touching"] = hit.initially_touching;
+}
+
+template <class Shape>
+Result<Json> answer_all_touches(const Tree& tree, const Shape& shape, const Motion& motion) {
+  std::vector<CastHit> hits;
+  const Result<Visit> visit = cast_all(tree, shape, motion, [&](const CastHit& hit) {
+    hits.push_back(hit);
+    return motion.t_max;
+  });
+  if (!visit) return visit.error();
+  const auto rank = [](const CastHit& hit) {  // without ids all have the same
+    return std::tuple(hit.t_lower, hit.face.id, hit.face.index, hit.triangle);
+  };
+  std::sort(hits.begin(), hits.end(),
+            [&](const CastHit& a, const CastHit& b) { return rank(a) < rank(b); });
+  Json touches = Json::array();
+  for (const CastHit& hit : hits) add_touch(touches.emplace_back(), hit);
+  return Json{{"count", touches.size()}, {"hits", touches}};
+}
+
+template <class Shape>
+Result<Json> answer_cast(const Tree& tree, const Shape& shape, const CastRequest& request) {
+  if (request.all) return answer_all_touches(tree, shape, request.motion);
+  const CastResult hit = request.any ? cast_any(tree, shape, request.motion)
+                                     : cast_closest(tree, shape, request.motion);
+  if (!hit.ok()) return hit.error();
+  Json json = {{"hit", hit.has_value()}};
+  if (hit) add_touch(json, *hit);
+  return json;
+}
+
+Result<Json> answer(const Tree& tree, const CastRequest& request) {
+  const auto& [sphere, capsule, box, rotation] = request.shape;
+  if (sphere) return answer_cast(tree, Sphere{request.at, *sphere}, request);
+  if (capsule) {
+    const auto& [x, y, z, radius] = *capsule;
+    const Eigen::Vector3d end = request.at + Eigen::Vector3d(x, y, z);
+    return answer_cast(tree, Capsule{request.at, end, radius}, request);
+  }
+  OrientedBox moved;
+  moved.center = request.at;
+  moved.half_extents = Eigen::Vector3d(box->data());
+  if (rotation) moved.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
+  return answer_cast(tree, moved, request);
 }
 
 template <class Overlap>
@@ -147,6 +216,9 @@ Result<Json> answer(const Tree& /*tree*/, const ContactsRequest& /*request*/) {
 QueryKinds kind_of(const RayRequest&) {
   return kRayQueries;
 }
+QueryKinds kind_of(const CastRequest&) {
+  return kRayQueries;
+}
 QueryKinds kind_of(const BoxRequest&) {
   return kBoxQueries;
 }
@@ -196,8 +268,22 @@ class FieldTexts {
     fields_.push_back({key, fmt::format("{}", value), false});
   }
   void second(const SecondTree& /*tree*/) {}  // has no numbers but a pose, which has its own error
+  void shape(const CastShape& shape) {
+    if_given("sphere", shape.sphere, [](double radius) { return fmt::format("{}", radius); });
+    const auto list = [](const auto& numbers) {
+      return fmt::format("[{}]", fmt::join(numbers, ","));
+    };
+    if_given("capsule", shape.capsule, list);
+    if_given("box", shape.box, list);
+    if_given("rotation", shape.rotation, list);
+  }
 
  private:
+  template <class T, class ToText>
+  void if_given(const char* key, const std::optional<T>& value, const ToText& to_text) {
+    fields_.push_back({key, value ? to_text(*value) : std::string(), value.has_value()});
+  }
+
   struct Field {
     std::string key;
     std::string text;
@@ -205,21 +291,6 @@ class FieldTexts {
   };
   std::vector<Field> fields_;
 };
-
-// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
-std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
-  std::size_t count = 0;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (count < numbers.size()) {
-    const auto [next, error] = std::from_chars(at, end, numbers[count++]);
-    if (error != std::errc()) return 0;
-    at = next;
-    if (at == end) return count;
-    if (*at++ != ',') return 0;
-  }
-  return 0;
-}
 
 }  // namespace
 
@@ -280,8 +351,39 @@ Result<const Tree*> TreeCache::get(const SecondTree& second) {
   return &place->tree;
 }
 
+std::string CastRequest::fault(std::string_view before, bool may_lack_shape) const {
+  std::vector<std::string> given;
+  if (shape.sphere) given.push_back(fmt::format("{}sphere", before));
+  if (shape.capsule) given.push_back(fmt::format("{}capsule", before));
+  if (shape.box) given.push_back(fmt::format("{}box", before));
+  if (given.size() > 1 || (given.empty() && !may_lack_shape)) {
+    return fmt::format("expected one shape, {0}sphere, {0}capsule or {0}box, found {1}", before,
+                       given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")));
+  }
+  if (shape.rotation && !given.empty() && !shape.box) {
+    return fmt::format("expected {0}rotation with {0}box, found it with {1}", before,
+                       given.front());
+  }
+  if (any && all) return fmt::format("expected {0}any or {0}all, found both", before);
+  return {};
+}
+
 QueryKinds kind_of(const QueryRequest& request) {
   return std::visit([](const auto& q) { return kind_of(q); }, request);
+}
+
+std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
+  std::size_t count = 0;
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  while (count < numbers.size()) {
+    const auto [next, error] = std::from_chars(at, end, numbers[count++]);
+    if (error != std::errc()) return 0;
+    at = next;
+    if (at == end) return count;
+    if (*at++ != ',') return 0;
+  }
+  return 0;
 }
 
 std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {

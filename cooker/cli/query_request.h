@@ -2,6 +2,7 @@
 // Queries as data: what each kind is made of, and its answer in JSON.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -34,6 +35,8 @@ struct KindExample {
 //   required(key, value, help)           a Vector3d or a double
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if there
 //   second(tree)                         a SecondTree
+//   shape(shape)                         a CastShape
+// A kind of which some fields exclude each other has fault(before, may_lack_shape), too.
 
 struct RayRequest {
   static constexpr const char* kKind = "ray";
@@ -56,6 +59,49 @@ struct RayRequest {
     fields.optional("t_max", ray.t_max, "Where it ends, as t [nowhere]");
     fields.optional("any", any, "Any hit, not the closest");
   }
+};
+
+/// What a cast moves. One of the first three is given.
+struct CastShape {
+  std::optional<double> sphere;                   // the radius
+  std::optional<std::array<double, 4>> capsule;   // X,Y,Z from one end to the other, the radius
+  std::optional<std::array<double, 3>> box;       // half its extents
+  std::optional<std::array<double, 4>> rotation;  // of the box: X,Y,Z,W
+};
+
+struct CastRequest {
+  static constexpr const char* kKind = "cast";
+  static constexpr const char* kHelp =
+      "First touch of a sphere, a capsule or a box that moves along a line";
+  static constexpr const char* kExpected =
+      "finite ends or a finite center, at most 2^185 mesh extents away, a finite direction, a "
+      "finite radius or half extents of 0 or more, a rotation that is not 0, and t_max of 0 or "
+      "more";
+  static constexpr KindExample kExamples[] = {
+      {"How far a ball falls",
+       "boxtree query bunny.bxt cast --sphere 0.1 --at 0,0,9 --direction 0,0,-1"},
+      {"All that a turned box touches on its way",
+       "boxtree query bunny.bxt cast --box 0.1,0.2,0.3 --rotation 0,0,1,1 --at 0,0,9 "
+       "--direction 0,0,-9 --t-max 1 --all"}};
+
+  CastShape shape;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  Motion motion;
+  bool any = false;
+  bool all = false;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("at", at, "Where it starts: its center, or of a capsule one end");
+    fields.required("direction", motion.direction, "Where it goes; t counts in its length");
+    fields.shape(shape);
+    fields.optional("t_max", motion.t_max, "Where it ends, as t [nowhere]");
+    fields.optional("any", any, "Any touch, not the first");
+    fields.optional("all", all,
+                    "All triangles that it touches, in the order of t_lower, then of faces");
+  }
+  /// What is wrong with what is given, or nothing. `before`: what stands before names, "--".
+  [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
 };
 
 /// What overlap may leave undecided.
@@ -227,8 +273,8 @@ struct ContactsRequest {
 };
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
-using QueryRequest = std::variant<RayRequest, BoxRequest, SphereRequest, PointRequest, PairRequest,
-                                  DistanceRequest, OverlapRequest, ContactsRequest>;
+using QueryRequest = std::variant<RayRequest, CastRequest, BoxRequest, SphereRequest, PointRequest,
+                                  PairRequest, DistanceRequest, OverlapRequest, ContactsRequest>;
 
 /// Calls visit.template operator()<Kind>() for each kind of request, in order.
 template <class Visit>
@@ -275,6 +321,9 @@ class TreeCache {
  private:
   std::map<std::pair<std::string, std::string>, std::unique_ptr<OpenedTree>> opened_;
 };
+
+/// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
+std::size_t parse_numbers(std::string_view text, std::span<double> numbers);
 
 /// "X,Y,Z". Nothing if it is not.
 [[nodiscard]] std::optional<Eigen::Vector3d> parse_vector(std::string_view text);

@@ -54,6 +54,10 @@ Error not_for_scenes(const std::string& what) {
           what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
 }
 
+Result<Json> answer(const Scene&, const CastRequest&) {
+  return not_for_scenes("a cast");
+}
+
 Result<Json> answer(const Scene& scene, const BoxRequest& request) {
   if (request.with_overlap) return not_for_scenes("whether something is within a distance");
   return answer_faces(

@@ -143,6 +143,46 @@ expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --
 same "$(jq -c '[.hit,.t,.face]' out)" '[true,4,1]'
 expect 0 "$boxtree" query cube.bxt ray --origin 3,0.5,5 --direction 0,0,-1 --json
 same "$(jq -c '.hit' out)" false
+# Casts: a ball of radius 0.5 that falls on the top, a capsule with an end 1 below the other, a box that stands on an edge.
+falls() {
+  expect 0 "$boxtree" query cube.bxt cast --at 0.25,0.5,5 --direction 0,0,-1 --json "$@"
+}
+falls --sphere 0.5
+same "$(jq -c 'keys_unsorted[1:]' out)" \
+  '["hit","t","t_lower","face","triangle","point","normal","feature","initially_touching"]'
+same "$(jq -c '[.hit,.face,.point,.normal,.feature,.initially_touching]' out)" \
+  '[true,1,[0.25,0.5,1],[0,0,1],"face",false]'
+jq -e '.t_lower <= 3.5 and .t >= .t_lower and (.t - 3.5 | fabs) < 1e-12' out >/dev/null
+falls --sphere 0.5 --t-max 3.25
+same "$(jq -c 'del(.schema)' out)" '{"hit":false}'
+falls --capsule 0,0,-1,0.5 --any
+same "$(jq -c .hit out)" true
+falls --capsule 0,0,-1,0.5
+same "$(jq -c '[.hit,(.t * 1e9 | round / 1e9)]' out)" '[true,2.5]'
+falls --box 1,1,1 --rotation 0.5,0,0,1.20710678118654752
+same "$(jq -c '[.hit,(.t * 1e9 | round / 1e9)]' out)" '[true,2.585786438]'
+falls --box 1,1,1
+same "$(jq -c '[.face,(.t * 1e9 | round / 1e9),.feature]' out)" '[1,3,"face"]'
+# On its way through the cube a ball touches both halves of the top, of the side that is near, and of the bottom.
+falls --sphere 0.375 --all
+same "$(jq -c '[.count,(.hits == (.hits | sort_by(.t_lower, .face)))]' out)" '[6,true]'
+same "$(jq -c '[.hits[] | [.face,.triangle]]' out)" '[[1,1],[1,0],[4,0],[4,1],[0,0],[0,1]]'
+falls --sphere 0.375 --all --t-max 1
+same "$(jq -c 'del(.schema)' out)" '{"count":0,"hits":[]}'
+expect 0 "$boxtree" query cube.bxt cast --sphere 0.5 --at 0.5,0.25,1.25 --direction 0,0,0 --json
+same "$(jq -c '[.t,.t_lower,.initially_touching]' out)" '[0,0,true]'
+# Exactly one shape.
+shapeless() {
+  local said=$1
+  shift
+  expect 1 "$boxtree" query cube.bxt cast --at 0,0,9 --direction 0,0,-1 "$@"
+  same "$(cat err)" "boxtree: usage: query cast: expected $said"
+}
+shapeless 'one shape, --sphere, --capsule or --box, found none'
+shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --box' --sphere 1 --box 1,1,1
+shapeless '--rotation with --box, found it with --sphere' --sphere 1 --rotation 0,0,0,1
+shapeless '--any or --all, found both' --sphere 1 --any --all
+shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --capsule' --sphere 1 --capsule 0,0,1,1 --batch -
 expect 0 "$boxtree" query cube.bxt box --min=0.9,0.4,0.4 --max 1.5,0.6,0.6 --json
 same "$(jq -c '.faces' out)" '[5]'
 expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,1.5 --radius 0.5 --json
@@ -228,6 +268,13 @@ rejects 'box: expected ' box --min 0,0,0 --max 1,1,1 --within=-1
 grep -q ', within -1$' err
 rejects 'sphere: expected a finite center, at most 2^185 mesh extents away, and a finite radius of 0 or more, found '\
 'center [0,0,0], radius -1' sphere --center 0,0,0 --radius=-1
+rejects 'cast: expected finite ends or a finite center, at most 2^185 mesh extents away, a finite direction, a finite radius or '\
+'half extents of 0 or more, a rotation that is not 0, and t_max of 0 or more, found at [0,0,9], direction [0,0,-1], sphere -1' \
+  cast --at 0,0,9 --direction 0,0,-1 --sphere=-1
+rejects 'cast: expected ' cast --at 0,0,9 --direction 0,0,-1 --box 1,1,1 --rotation 0,0,0,0 --t-max=-1
+grep -qF 'found at [0,0,9], direction [0,0,-1], box [1,1,1], rotation [0,0,0,0], t_max -1' err
+rejects 'cast: expected ' cast --at 0,0,9 --direction 0,0,-1 --capsule 0,0,inf,0
+grep -q ', capsule \[0,0,inf,0\]$' err
 rejects 'point: expected a finite point, ' point --at nan,0,0
 grep -q ' found at \[nan,0,0\]$' err
 rejects 'point: expected ' point --at 0,0,0 --relative-error=-1
@@ -409,8 +456,10 @@ misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
 misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
-kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
-misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds
+kinds='ray, cast, box, sphere, point, pair, distance, overlap or contacts'
+misspelt "boxtree: usage: query: 'sweep' is no kind of query; expected $kinds
+See 'boxtree query --help'." query cube.bxt sweep --at 0,0,0
+misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds; did you mean 'cast'?
 See 'boxtree query --help'." query cube.bxt shapecast --at 0,0,0
 misspelt "boxtree: usage: query: 'raycast' is no kind of query; expected $kinds; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt raycast --origin 0,0,9
@@ -472,6 +521,9 @@ misvalued "usage: cook: --for: expected memory, speed or balance, found \"sped\"
 misvalued 'usage: query point: --at: expected X,Y,Z, found no value' query cube.bxt point --at
 misvalued 'usage: cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
 misvalued 'usage: query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
+misvalued 'usage: query cast: --capsule: expected X,Y,Z,R, found "0,0,1"' query cube.bxt cast --capsule 0,0,1
+misvalued 'usage: query cast: --box: expected HX,HY,HZ, found "1"' query cube.bxt cast --box 1
+misvalued 'usage: query cast: --rotation: expected X,Y,Z,W, found "0,0,0,1,2"' query cube.bxt cast --rotation 0,0,0,1,2
 misvalued 'usage: query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
 for value in 1.5 -1 x; do
   misvalued "usage: query point: --budget: expected a whole number of 0 or more, found \"$value\"" query cube.bxt point --at 0,0,0 --budget=$value
@@ -671,14 +723,17 @@ cat >queries.jsonl <<'BATCH'
 {"kind":"point","at":[0.5,0.5,3],"absolute_error":0.5,"budget":100}
 {"kind":"overlap","file":"cube.bxt","pose":"1,0.25,0.25","within":0}
 {"kind":"box","min":[2,2,2],"max":[3,3,3],"within":0.5}
+{"kind":"cast","sphere":0.5,"at":[0.25,0.5,5],"direction":[0,0,-1],"t_max":4,"any":true}
+{"kind":"cast","box":[1,1,1],"rotation":[0,0,0,2],"at":[0.25,0.5,5],"direction":[0,0,-1],"all":true}
 BATCH
 expect 0 "$boxtree" query cube.bxt --batch queries.jsonl
-same "$(wc -l <out)" 9
+same "$(wc -l <out)" 11
 same "$(jq -cs '[.[0].t,.[1].faces,.[2].count,.[3].distance,.[4].count]' out)" '[4,[5],1,2,1]'
 same "$(jq -cs '.[5:7] | map(.lower <= 2 and .upper >= 2)' out)" '[true,true]'
-same "$(jq -cs '.[7:] | map(.overlap)' out)" '["overlapping","disjoint"]'
+same "$(jq -cs '.[7:9] | map(.overlap)' out)" '["overlapping","disjoint"]'
+same "$(jq -cs '.[9:] | [.[0].hit, .[0].face, .[1].count]' out)" '[true,1,12]'
 expect 0 "$boxtree" query cube.bxt --batch queries.jsonl --json
-same "$(jq -c '.answers | length' out)" 9
+same "$(jq -c '.answers | length' out)" 11
 expect 0 sh -c "echo '{\"at\":[0.5,0.5,3]}' | '$boxtree' query cube.bxt point --batch -"
 same "$(jq -c '.distance' out)" 2
 for bad in 'nonsense' '[1]' '{"kind":"cone"}' '{"kind":"point"}' '{"kind":"point","at":[1,2]}' \
@@ -703,9 +758,21 @@ names 'distance: "file": expected the second .bxt file, here or on the command l
   '{"kind":"distance"}'
 names 'point: "at": expected [X,Y,Z], found no such key' '{"kind":"point"}'
 names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
+names 'cast: expected one shape, sphere, capsule or box, found none' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1]}'
+names 'cast: expected one shape, sphere, capsule or box, found sphere and box' \
+  '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"box":[1,1,1]}'
+names 'cast: expected rotation with box, found it with sphere' \
+  '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"rotation":[0,0,0,1]}'
+names 'cast: expected any or all, found both' \
+  '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"any":true,"all":true}'
+names 'cast: "capsule": expected [X,Y,Z,R], found [0,0,1]' \
+  '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"capsule":[0,0,1]}'
+names 'cast: "sphere": expected a number, found "1"' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":"1"}'
+names "cast: expected the keys at, direction, sphere, capsule, box, rotation, t_max, any, all, move or kind, found \"spere\"; "\
+"did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
-kinds='ray, box, sphere, point, pair, distance, overlap or contacts'
+kinds='ray, cast, box, sphere, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.
 names "box: expected the keys min, max, within, budget, move or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'
@@ -792,6 +859,12 @@ expect 1 "$boxtree" query cube.bxt ray --direction 0,0,-1 --t-max 3 --batch rays
 same "$(jq -cs 'map([.hit, .t, .error])' out)" \
   '[[false,null,null],[true,4,null],[true,2,null],[null,null,"invalid_query"],[true,5,null],[null,null,null]]'
 same "$(jq -sr '.[3].detail' out)" 'line 4: ray: "origin": expected [X,Y,Z], found no such key'
+# A line with a shape takes none of the command line.
+printf '%s\n' '{}' '{"sphere":1}' '{"box":[1,1,1]}' '{"rotation":[0,0,0,1]}' >casts.jsonl
+expect 0 "$boxtree" query cube.bxt cast --box 1,1,2 --rotation 0.5,0,0,0.5 --at 0.25,0.5,5 --direction 0,0,-1 --batch casts.jsonl
+same "$(jq -cs 'map(.t * 1e9 | round / 1e9)' out)" '[3,3,3,2]'
+expect 1 "$boxtree" query cube.bxt cast --at 0.25,0.5,5 --direction 0,0,-1 --batch casts.jsonl
+same "$(jq -cs 'map(.hit)' out)" '[null,true,true,null]'
 printf '%s\n' '{}' '{"kind":"point","at":[0.5,0.5,3],"relative_error":0}' '{"budget":0}' >points.jsonl
 expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,4 --absolute-error 0 --batch points.jsonl
 same "$(jq -cs 'map([(.upper | if . then . * 1000 | round else . end), .nodes > 0])' out)" \

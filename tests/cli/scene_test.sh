@@ -110,6 +110,11 @@ expect 1 "$boxtree" query level.bxt sphere --center 0,0,0 --radius=-1
 grep -q 'invalid_query: level.bxt: sphere: expected .* found center \[0,0,0\], radius -1$' err
 
 # One of its trees alone, in its own coordinates; a body that is no part of the scene.
+fall='cast --sphere 0.25 --at 0.1,0.2,9 --direction 0,0,-1'
+expect 1 "$boxtree" query level.bxt $fall
+same "$(cat err)" 'boxtree: invalid_query: level.bxt: a cast: trees answer it, scenes do not; name a tree of the file with --tree'
+expect 0 "$boxtree" query level.bxt --tree crate $fall --json
+same "$(jq -c '[.hit, .normal, .feature]' out)" '[true,[0,0,1],"face"]'
 expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
 jq -e '(.distance - 1.6) | fabs < 1e-6' out >/dev/null
 expect 0 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0 --json

@@ -92,6 +92,13 @@ RUNS = {
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
     ],
+    "query FILE cast": [
+        "query crate.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
+        "query arrays.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1 --t-max 1",
+        "query arrays.bxt cast --box 1,1,1 --at 0.2,0.1,9 --direction 0,0,-1 --any",
+        "query crate.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
+        "query arrays.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
+    ],
     "query FILE box, sphere": [
         "query crate.bxt sphere --center 0,0,0 --radius 9",
         f"query arrays.bxt box {ALL}",
