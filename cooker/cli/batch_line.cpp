@@ -93,6 +93,16 @@ class KeyFields {
     read_if_given("rotation", shape.rotation, "[X,Y,Z,W]");
   }
 
+  void back_faces(BackFaces& out) {
+    std::string name = name_of(out);
+    read_if_given("back_faces", name);
+    if (const auto known = back_faces_of(name)) {
+      out = *known;
+    } else {
+      fail("back_faces", "hit, ignore or only", "\"" + name + "\"");
+    }
+  }
+
   void moves(std::vector<std::string>& out) { read_if_given("move", out); }
 
   // Of keys that exclude each other.

@@ -327,8 +327,24 @@ class OptionFields {
         ->group(kRareOptions);
   }
 
+  void back_faces(BackFaces& out) {
+    command_
+        .add_parsed_option(
+            "--back-faces",
+            [&out](const std::string& text) {
+              const std::optional<BackFaces> known = back_faces_of(text);
+              if (!known) return "expected hit, ignore or only, found \"" + text + "\"";
+              out = *known;
+              return std::string();
+            },
+            "Faces that are met from behind, where their corners are clockwise: hit, ignore or "
+            "only "
+            "[hit]")
+        ->type_name("HOW");
+  }
+
   void shape(CastShape& shape) {
-    command_.add_option("--sphere", shape.sphere, "What moves: a ball of this radius,")
+    command_.add_option("--sphere", shape.sphere, "The shape: a ball of this radius,")
         ->type_name("R");
     add_numbers("--capsule", "X,Y,Z,R", shape.capsule,
                 "or all within R of the segment from --at to --at + X,Y,Z,");

@@ -25,9 +25,45 @@
 namespace boxtree::cooker {
 namespace {
 
+void add_face_of(const RayHit& hit, Json& json) {
+  json["face"] = face_json(hit.face);
+}
+
+// A list of hits that a query visits, in order.
+template <class Hit, class Query, class Rank, class Add>
+Result<Json> answer_all(const Query& query, const Rank& rank, const Add& add) {
+  std::vector<Hit> hits;
+  const Result<Visit> visit = query(hits);
+  if (!visit) return visit.error();
+  std::sort(hits.begin(), hits.end(),
+            [&](const Hit& a, const Hit& b) { return rank(a) < rank(b); });
+  Json list = Json::array();
+  for (const Hit& hit : hits) add(list.emplace_back(), hit);
+  return Json{{"count", list.size()}, {"hits", list}};
+}
+
 Result<Json> answer(const Tree& tree, const RayRequest& request) {
-  return answer_ray(tree, request,
-                    [](const RayHit& found, Json& json) { json["face"] = face_json(found.face); });
+  FaceOptions options;
+  options.back_faces = request.back_faces;
+  if (request.all) {
+    return answer_all<RayHit>(
+        [&](std::vector<RayHit>& hits) {
+          return all_hits(
+              tree, request.ray,
+              [&](const RayHit& hit) {
+                hits.push_back(hit);
+                return request.ray.t_max;
+              },
+              options);
+        },
+        [](const RayHit& hit) {  // without ids all have the same
+          return std::tuple(hit.t, hit.face.id, hit.face.index, hit.triangle);
+        },
+        [](Json& json, const RayHit& hit) { add_hit(json, hit, add_face_of); });
+  }
+  return answer_hit(
+      request.any ? any_hit(tree, request.ray, options) : closest_hit(tree, request.ray, options),
+      add_face_of);
 }
 
 const char* name_of(Feature feature) {
@@ -54,47 +90,79 @@ void add_touch(Json& json, const CastHit& hit) {
 }
 
 template <class Shape>
-Result<Json> answer_all_touches(const Tree& tree, const Shape& shape, const Motion& motion) {
-  std::vector<CastHit> hits;
-  const Result<Visit> visit = cast_all(tree, shape, motion, [&](const CastHit& hit) {
-    hits.push_back(hit);
-    return motion.t_max;
-  });
-  if (!visit) return visit.error();
-  const auto rank = [](const CastHit& hit) {  // without ids all have the same
-    return std::tuple(hit.t_lower, hit.face.id, hit.face.index, hit.triangle);
-  };
-  std::sort(hits.begin(), hits.end(),
-            [&](const CastHit& a, const CastHit& b) { return rank(a) < rank(b); });
-  Json touches = Json::array();
-  for (const CastHit& hit : hits) add_touch(touches.emplace_back(), hit);
-  return Json{{"count", touches.size()}, {"hits", touches}};
-}
-
-template <class Shape>
 Result<Json> answer_cast(const Tree& tree, const Shape& shape, const CastRequest& request) {
-  if (request.all) return answer_all_touches(tree, shape, request.motion);
-  const CastResult hit = request.any ? cast_any(tree, shape, request.motion)
-                                     : cast_closest(tree, shape, request.motion);
+  FaceOptions options;
+  options.back_faces = request.back_faces;
+  if (request.all) {
+    return answer_all<CastHit>(
+        [&](std::vector<CastHit>& hits) {
+          return cast_all(
+              tree, shape, request.motion,
+              [&](const CastHit& hit) {
+                hits.push_back(hit);
+                return request.motion.t_max;
+              },
+              options);
+        },
+        [](const CastHit& hit) {
+          return std::tuple(hit.t_lower, hit.face.id, hit.face.index, hit.triangle);
+        },
+        add_touch);
+  }
+  const CastResult hit = request.any ? cast_any(tree, shape, request.motion, options)
+                                     : cast_closest(tree, shape, request.motion, options);
   if (!hit.ok()) return hit.error();
   Json json = {{"hit", hit.has_value()}};
   if (hit) add_touch(json, *hit);
   return json;
 }
 
-Result<Json> answer(const Tree& tree, const CastRequest& request) {
-  const auto& [sphere, capsule, box, rotation] = request.shape;
-  if (sphere) return answer_cast(tree, Sphere{request.at, *sphere}, request);
+// Answers by answer(shape) for the shape that is given, where it is.
+template <class Answer>
+Result<Json> with_shape(const CastShape& shape, const Eigen::Vector3d& at, const Answer& answer) {
+  const auto& [sphere, capsule, box, rotation] = shape;
+  if (sphere) return answer(Sphere{at, *sphere});
   if (capsule) {
     const auto& [x, y, z, radius] = *capsule;
-    const Eigen::Vector3d end = request.at + Eigen::Vector3d(x, y, z);
-    return answer_cast(tree, Capsule{request.at, end, radius}, request);
+    return answer(Capsule{at, at + Eigen::Vector3d(x, y, z), radius});
   }
-  OrientedBox moved;
-  moved.center = request.at;
-  moved.half_extents = Eigen::Vector3d(box->data());
-  if (rotation) moved.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
-  return answer_cast(tree, moved, request);
+  OrientedBox placed;
+  placed.center = at;
+  placed.half_extents = Eigen::Vector3d(box->data());
+  if (rotation) placed.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
+  return answer(placed);
+}
+
+Result<Json> answer(const Tree& tree, const CastRequest& request) {
+  return with_shape(request.shape, request.at,
+                    [&](const auto& shape) { return answer_cast(tree, shape, request); });
+}
+
+Result<Json> answer(const Tree& tree, const CollideRequest& request) {
+  if (request.merges && !(request.merge >= 0)) return Error{Errc::kInvalidQuery, "merge"};
+  return with_shape(request.shape, request.at, [&](const auto& shape) -> Result<Json> {
+    std::vector<Contact> contacts;
+    const Result<Visit> visit = collide(tree, shape, [&](const Contact& contact) {
+      contacts.push_back(contact);
+      return true;
+    });
+    if (!visit) return visit.error();
+    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
+      return std::tuple(a.face.id, a.face.index, a.triangle) <
+             std::tuple(b.face.id, b.face.index, b.triangle);
+    });
+    if (request.merges) contacts.resize(merge_contacts(contacts, request.merge));
+    Json list = Json::array();
+    for (const Contact& contact : contacts) {
+      list.push_back({{"face", face_json(contact.face)},
+                      {"triangle", contact.triangle},
+                      {"point", to_json(contact.point)},
+                      {"normal", to_json(contact.normal)},
+                      {"depth", contact.depth},
+                      {"feature", name_of(contact.feature)}});
+    }
+    return Json{{"count", list.size()}, {"contacts", list}};
+  });
 }
 
 template <class Overlap>
@@ -219,6 +287,9 @@ QueryKinds kind_of(const RayRequest&) {
 QueryKinds kind_of(const CastRequest&) {
   return kRayQueries;
 }
+QueryKinds kind_of(const CollideRequest&) {
+  return kBoxQueries;
+}
 QueryKinds kind_of(const BoxRequest&) {
   return kBoxQueries;
 }
@@ -268,6 +339,7 @@ class FieldTexts {
     fields_.push_back({key, fmt::format("{}", value), false});
   }
   void second(const SecondTree& /*tree*/) {}  // has no numbers but a pose, which has its own error
+  void back_faces(BackFaces value) { fields_.push_back({"back_faces", cooker::name_of(value), false}); }
   void shape(const CastShape& shape) {
     if_given("sphere", shape.sphere, [](double radius) { return fmt::format("{}", radius); });
     const auto list = [](const auto& numbers) {
@@ -351,21 +423,56 @@ Result<const Tree*> TreeCache::get(const SecondTree& second) {
   return &place->tree;
 }
 
+namespace {
+
+std::string any_and_all_fault(bool any, bool all, std::string_view before) {
+  return any && all ? fmt::format("expected {0}any or {0}all, found both", before) : std::string();
+}
+
+}  // namespace
+
+std::string RayRequest::fault(std::string_view before, bool /*may_lack_shape*/) const {
+  return any_and_all_fault(any, all, before);
+}
+
 std::string CastRequest::fault(std::string_view before, bool may_lack_shape) const {
+  const std::string of_shape = shape.fault(before, may_lack_shape);
+  return of_shape.empty() ? any_and_all_fault(any, all, before) : of_shape;
+}
+
+std::string CastShape::fault(std::string_view before, bool may_lack_shape) const {
   std::vector<std::string> given;
-  if (shape.sphere) given.push_back(fmt::format("{}sphere", before));
-  if (shape.capsule) given.push_back(fmt::format("{}capsule", before));
-  if (shape.box) given.push_back(fmt::format("{}box", before));
+  if (sphere) given.push_back(fmt::format("{}sphere", before));
+  if (capsule) given.push_back(fmt::format("{}capsule", before));
+  if (box) given.push_back(fmt::format("{}box", before));
   if (given.size() > 1 || (given.empty() && !may_lack_shape)) {
     return fmt::format("expected one shape, {0}sphere, {0}capsule or {0}box, found {1}", before,
                        given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")));
   }
-  if (shape.rotation && !given.empty() && !shape.box) {
+  if (rotation && !given.empty() && !box) {
     return fmt::format("expected {0}rotation with {0}box, found it with {1}", before,
                        given.front());
   }
-  if (any && all) return fmt::format("expected {0}any or {0}all, found both", before);
   return {};
+}
+
+const char* name_of(BackFaces back_faces) {
+  switch (back_faces) {
+    case BackFaces::kHit:
+      return "hit";
+    case BackFaces::kIgnore:
+      return "ignore";
+    case BackFaces::kOnly:
+      return "only";
+  }
+  return "";
+}
+
+std::optional<BackFaces> back_faces_of(std::string_view name) {
+  for (const BackFaces each : {BackFaces::kHit, BackFaces::kIgnore, BackFaces::kOnly}) {
+    if (name == name_of(each)) return each;
+  }
+  return std::nullopt;
 }
 
 QueryKinds kind_of(const QueryRequest& request) {

@@ -36,21 +36,26 @@ struct KindExample {
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if there
 //   second(tree)                         a SecondTree
 //   shape(shape)                         a CastShape
+//   back_faces(back_faces)               a BackFaces
 // A kind of which some fields exclude each other has fault(before, may_lack_shape), too.
 
 struct RayRequest {
   static constexpr const char* kKind = "ray";
-  static constexpr const char* kHelp = "Closest hit of a ray";
+  static constexpr const char* kHelp = "Closest hit of a ray, or all";
   static constexpr const char* kExpected =
       "a finite origin, at most 2^185 mesh extents away, a finite direction that is not zero, and "
       "t_max "
       "of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"What a ray from above hits first",
-       "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"}};
+       "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"},
+      {"Where a ray enters the mesh, each time",
+       "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0 --all --back-faces ignore"}};
 
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   bool any = false;
+  bool all = false;
+  BackFaces back_faces = BackFaces::kHit;
 
   template <class Fields>
   void describe(Fields& fields) {
@@ -58,15 +63,22 @@ struct RayRequest {
     fields.required("direction", ray.direction, "Where it goes; t counts in its length");
     fields.optional("t_max", ray.t_max, "Where it ends, as t [nowhere]");
     fields.optional("any", any, "Any hit, not the closest");
+    fields.optional("all", all, "All hits, in the order of t, then of faces");
+    fields.back_faces(back_faces);
   }
+  /// What is wrong with what is given, or nothing. `before`: what stands before names, "--".
+  [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
 };
 
-/// What a cast moves. One of the first three is given.
+/// A shape that is cast or touches. One of the first three is given.
 struct CastShape {
   std::optional<double> sphere;                   // the radius
   std::optional<std::array<double, 4>> capsule;   // X,Y,Z from one end to the other, the radius
   std::optional<std::array<double, 3>> box;       // half its extents
   std::optional<std::array<double, 4>> rotation;  // of the box: X,Y,Z,W
+
+  /// What is wrong with what is given, or nothing. `before`: what stands before names, "--".
+  [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
 };
 
 struct CastRequest {
@@ -89,6 +101,7 @@ struct CastRequest {
   Motion motion;
   bool any = false;
   bool all = false;
+  BackFaces back_faces = BackFaces::kHit;
 
   template <class Fields>
   void describe(Fields& fields) {
@@ -99,9 +112,42 @@ struct CastRequest {
     fields.optional("any", any, "Any touch, not the first");
     fields.optional("all", all,
                     "All triangles that it touches, in the order of t_lower, then of faces");
+    fields.back_faces(back_faces);
   }
   /// What is wrong with what is given, or nothing. `before`: what stands before names, "--".
   [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
+};
+
+struct CollideRequest {
+  static constexpr const char* kKind = "collide";
+  static constexpr const char* kHelp =
+      "Triangles that a sphere, a capsule or a box touches, and how it leaves them";
+  static constexpr const char* kExpected =
+      "finite ends or a finite center, at most 2^185 mesh extents away, a finite radius or half "
+      "extents of 0 or more, a rotation that is not 0, and merge of 0 or more";
+  static constexpr KindExample kExamples[] = {
+      {"What a ball touches, and how deep",
+       "boxtree query bunny.bxt collide --sphere 0.5 --at 0,0,1"},
+      {"The same, contacts of neighbours within 0.001 as one",
+       "boxtree query bunny.bxt collide --sphere 0.5 --at 0,0,1 --merge 0.001"}};
+
+  CastShape shape;
+  Eigen::Vector3d at = Eigen::Vector3d::Zero();
+  double merge = 0;
+  bool merges = false;  // merge was given
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("at", at, "Where it is: its center, or of a capsule one end");
+    fields.shape(shape);
+    fields.optional("merge", merge,
+                    "Of contacts within this of each other and of nearly one normal, the deepest",
+                    &merges);
+  }
+  /// See CastShape.
+  [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const {
+    return shape.fault(before, may_lack_shape);
+  }
 };
 
 /// What overlap may leave undecided.
@@ -273,8 +319,9 @@ struct ContactsRequest {
 };
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
-using QueryRequest = std::variant<RayRequest, CastRequest, BoxRequest, SphereRequest, PointRequest,
-                                  PairRequest, DistanceRequest, OverlapRequest, ContactsRequest>;
+using QueryRequest =
+    std::variant<RayRequest, CastRequest, CollideRequest, BoxRequest, SphereRequest, PointRequest,
+                 PairRequest, DistanceRequest, OverlapRequest, ContactsRequest>;
 
 /// Calls visit.template operator()<Kind>() for each kind of request, in order.
 template <class Visit>
@@ -365,21 +412,30 @@ Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, co
   return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
 }
 
-/// The hit of a ray in a tree or a scene; add_face(hit, json) adds what was hit.
-template <class Target, class AddFace>
-Result<Json> answer_ray(const Target& target, const RayRequest& request, const AddFace& add_face) {
-  const auto hit = request.any ? any_hit(target, request.ray) : closest_hit(target, request.ray);
+/// Adds a hit of a ray in a tree or a scene; add_face(hit, json) adds what was hit.
+template <class Hit, class AddFace>
+void add_hit(Json& json, const Hit& hit, const AddFace& add_face) {
+  json["t"] = hit.t;
+  add_face(hit, json);
+  json["triangle"] = hit.triangle;
+  json["point"] = to_json(hit.point);
+  json["normal"] = to_json(hit.normal);
+  json["barycentric"] = {1 - hit.u - hit.v, hit.u, hit.v};
+}
+
+/// The answer of one hit, or none.
+template <class Hit, class AddFace>
+Result<Json> answer_hit(const Hit& hit, const AddFace& add_face) {
   if (!hit.ok()) return hit.error();
   Json json = {{"hit", hit.has_value()}};
-  if (!hit) return json;
-  json["t"] = hit->t;
-  add_face(*hit, json);
-  json["triangle"] = hit->triangle;
-  json["point"] = to_json(hit->point);
-  json["normal"] = to_json(hit->normal);
-  json["barycentric"] = {1 - hit->u - hit->v, hit->u, hit->v};
+  if (hit) add_hit(json, *hit, add_face);
   return json;
 }
+
+/// The name of a kind of faces, as options have it: hit, ignore or only.
+[[nodiscard]] const char* name_of(BackFaces back_faces);
+/// Nothing if it is none.
+[[nodiscard]] std::optional<BackFaces> back_faces_of(std::string_view name);
 
 /// The answer in the form that `boxtree query --json` prints.
 Result<Json> answer(const Tree& tree, const QueryRequest& request, TreeCache& others);

@@ -30,10 +30,18 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
   json["material"] = name.empty() ? Json(material) : Json(name);
 }
 
+Error not_for_scenes(const std::string& what) {
+  return {Errc::kInvalidQuery,
+          what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
+}
+
 Result<Json> answer(const Scene& scene, const RayRequest& request) {
-  return answer_ray(scene, request, [&scene](const SceneRayHit& found, Json& json) {
-    add_face(scene, {found.instance, found.face}, json);
-  });
+  if (request.all) return not_for_scenes("all hits of a ray");
+  if (request.back_faces != BackFaces::kHit) return not_for_scenes("the side of a face");
+  return answer_hit(request.any ? any_hit(scene, request.ray) : closest_hit(scene, request.ray),
+                    [&scene](const SceneRayHit& found, Json& json) {
+                      add_face(scene, {found.instance, found.face}, json);
+                    });
 }
 
 template <class Overlap>
@@ -49,13 +57,12 @@ Result<Json> answer_faces(const Scene& scene, Overlap overlap) {
   return Json{{"count", faces.size()}, {"faces", faces}};
 }
 
-Error not_for_scenes(const std::string& what) {
-  return {Errc::kInvalidQuery,
-          what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
-}
-
 Result<Json> answer(const Scene&, const CastRequest&) {
   return not_for_scenes("a cast");
+}
+
+Result<Json> answer(const Scene&, const CollideRequest&) {
+  return not_for_scenes("what a shape touches");
 }
 
 Result<Json> answer(const Scene& scene, const BoxRequest& request) {

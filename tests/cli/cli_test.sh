@@ -183,6 +183,32 @@ shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --box' --
 shapeless '--rotation with --box, found it with --sphere' --sphere 1 --rotation 0,0,0,1
 shapeless '--any or --all, found both' --sphere 1 --any --all
 shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --capsule' --sphere 1 --capsule 0,0,1,1 --batch -
+# A ray passes the top from outside and the bottom from inside.
+expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --all --json
+same "$(jq -c '[.count,[.hits[] | [.t,.face,.normal[2]]]]' out)" '[2,[[4,1,1],[5,0,-1]]]'
+side() {
+  expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --back-faces "$1" --json
+  same "$(jq -c '[.t,.face]' out)" "$2"
+}
+side hit '[4,1]'
+side ignore '[4,1]'
+side only '[5,0]'
+expect 1 "$boxtree" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --back-faces both
+grep -q 'back-faces: expected hit, ignore or only, found "both"' err
+expect 1 "$boxtree" query cube.bxt ray --origin 0,0,9 --direction 0,0,-1 --any --all
+same "$(cat err)" 'boxtree: usage: query ray: expected --any or --all, found both'
+falls --sphere 0.5 --back-faces only
+same "$(jq -c '[.face,(.t * 1e9 | round / 1e9)]' out)" '[0,4.5]'
+# A ball that is 1/4 deep in the top, whose two triangles meet below its center.
+expect 0 "$boxtree" query cube.bxt collide --sphere 0.5 --at 0.25,0.5,1.25 --json
+same "$(jq -c '[.count,.contacts[0].face,.contacts[0].point,.contacts[0].normal,.contacts[0].depth,.contacts[0].feature]' out)" \
+  '[3,1,[0.25,0.5,1],[0,0,1],0.25,"face"]'
+expect 0 "$boxtree" query cube.bxt collide --sphere 0.5 --at 0.5,0.5,1.25 --merge 0.001 --json
+same "$(jq -c '[.count,(.contacts | map(.depth) | max)]' out)" '[1,0.25]'
+expect 0 "$boxtree" query cube.bxt collide --box 0.5,0.5,0.5 --at 0.5,0.5,1.375 --json
+same "$(jq -c '[.count,(.contacts | map([.normal,.depth]) | unique)]' out)" '[2,[[[0,0,1],0.125]]]'
+expect 1 "$boxtree" query cube.bxt collide --at 0,0,0
+same "$(cat err)" 'boxtree: usage: query collide: expected one shape, --sphere, --capsule or --box, found none'
 expect 0 "$boxtree" query cube.bxt box --min=0.9,0.4,0.4 --max 1.5,0.6,0.6 --json
 same "$(jq -c '.faces' out)" '[5]'
 expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,1.5 --radius 0.5 --json
@@ -456,7 +482,7 @@ misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
 misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
-kinds='ray, cast, box, sphere, point, pair, distance, overlap or contacts'
+kinds='ray, cast, collide, box, sphere, point, pair, distance, overlap or contacts'
 misspelt "boxtree: usage: query: 'sweep' is no kind of query; expected $kinds
 See 'boxtree query --help'." query cube.bxt sweep --at 0,0,0
 misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds; did you mean 'cast'?
@@ -772,7 +798,7 @@ names "cast: expected the keys at, direction, sphere, capsule, box, rotation, t_
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
-kinds='ray, cast, box, sphere, point, pair, distance, overlap or contacts'
+kinds='ray, cast, collide, box, sphere, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.
 names "box: expected the keys min, max, within, budget, move or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'

@@ -92,6 +92,10 @@ RUNS = {
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
     ],
+    "query FILE collide": [
+        "query crate.bxt collide --sphere 0.25 --at 0.2,0.1,0.5",
+        "query arrays.bxt collide --box 0.1,0.2,0.6 --at 0.2,0.1,0.1 --merge 0.1",
+    ],
     "query FILE cast": [
         "query crate.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
         "query arrays.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1 --t-max 1",
