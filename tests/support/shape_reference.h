@@ -38,17 +38,12 @@ inline LongShape long_shape(const Capsule& capsule) {
   return {{{a, b, b}}, capsule.radius, (a + b) / 2, (b - a).norm() / 2, false, {}, {}};
 }
 
-inline LongShape long_shape(const OrientedBox& box) {
+inline LongShape long_box(const LongVector& center, const std::array<LongVector, 3>& axis,
+                          const std::array<long double, 3>& half) {
   LongShape shape;
-  shape.center = box.center.cast<long double>();
-  const auto& q = box.rotation;
-  const Eigen::Quaternion<long double> turn =
-      Eigen::Quaternion<long double>(q.w(), q.x(), q.y(), q.z()).normalized();
-  for (int k = 0; k < 3; ++k) {
-    const auto i = static_cast<std::size_t>(k);
-    shape.axis[i] = turn * LongVector::Unit(k);
-    shape.half[i] = box.half_extents[k];
-  }
+  shape.center = center;
+  shape.axis = axis;
+  shape.half = half;
   const auto corner = [&](int signs) {
     LongVector p = shape.center;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -66,6 +61,19 @@ inline LongShape long_shape(const OrientedBox& box) {
   shape.reach = (corner(7) - shape.center).norm();
   shape.is_solid = true;
   return shape;
+}
+
+inline LongShape long_shape(const OrientedBox& box) {
+  const auto& q = box.rotation;
+  const Eigen::Quaternion<long double> turn =
+      Eigen::Quaternion<long double>(q.w(), q.x(), q.y(), q.z()).normalized();
+  std::array<LongVector, 3> axis;
+  std::array<long double, 3> half{};
+  for (int k = 0; k < 3; ++k) {
+    axis[static_cast<std::size_t>(k)] = turn * LongVector::Unit(k);
+    half[static_cast<std::size_t>(k)] = box.half_extents[k];
+  }
+  return long_box(box.center.cast<long double>(), axis, half);
 }
 
 // Whether anything is left of the triangle when the six sides of a box have cut it.

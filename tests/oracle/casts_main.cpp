@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: MIT
+// boxtree_casts: draws a triangle and a moving shape after the other and compares when they touch,
+// and how they part where they touch at the start, with distances in extended precision. Half of
+// the cases are degenerate: needles, segments, points, motions in the plane, touches at the start,
+// grazes. Exits with 7 when an answer is wrong.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "runtime/primitive/moving_shape.h"
+#include "runtime/primitive/penetration.h"
+#include "runtime/primitive/vector3.h"
+#include "tests/support/shape_reference.h"
+
+namespace boxtree::oracle {
+namespace {
+
+using test::LongShape;
+using test::LongTriangle;
+using test::LongVector;
+
+constexpr int kDifferenceFound = 7;  // as the command line of the cooker has it
+
+struct Case {
+  Triangle triangle;
+  ConvexShape shape;
+  Eigen::Vector3d direction;
+};
+
+class Draw {
+ public:
+  explicit Draw(std::uint64_t seed) : random_(seed) {}
+
+  Case next(std::uint32_t axes) {
+    Case drawn;
+    const double size = std::pow(10.0, 2 * unit());
+    for (Eigen::Vector3d& corner : drawn.triangle.corner) corner = size * coarse(vector());
+    drawn.shape.axes = axes;
+    if (axes == 1) {
+      drawn.shape.axis[0] = size * coarse(vector());
+      drawn.shape.half[0] = 1;
+    }
+    if (axes == 3) {
+      Eigen::Quaterniond turn(unit(), unit(), unit(), unit());
+      turn.normalize();
+      if (random_() % 3 == 0) turn.setIdentity();
+      for (int k = 0; k < 3; ++k) {
+        drawn.shape.axis[static_cast<std::size_t>(k)] = turn.toRotationMatrix().col(k);
+        drawn.shape.half[static_cast<std::size_t>(k)] = length(size);
+      }
+    } else {
+      drawn.shape.radius = length(size);
+    }
+    drawn.shape.center = 3 * size * coarse(vector());
+    const Eigen::Vector3d to = size * vector();
+    drawn.direction = to - drawn.shape.center;
+    if (random_() % 2 == 0) make_degenerate(drawn, size);
+    // Its largest component in [1/2, 1).
+    const double largest = largest_magnitude(drawn.direction);
+    if (largest > 0) drawn.direction = std::ldexp(1.0, -std::ilogb(largest) - 1) * drawn.direction;
+    return drawn;
+  }
+
+  double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
+  Eigen::Vector3d vector() { return {unit(), unit(), unit()}; }
+
+ private:
+  // Some coordinates are whole, so that planes and lines are met exactly.
+  Eigen::Vector3d coarse(const Eigen::Vector3d& v) {
+    if (random_() % 3 != 0) return v;
+    return (8 * v).array().round().matrix() / 8;
+  }
+  double length(double size) { return size * std::pow(10.0, -1.5 + 1.5 * unit()); }
+
+  void make_degenerate(Case& drawn, double size) {
+    auto& [a, b, c] = drawn.triangle.corner;
+    switch (random_() % 9) {
+      case 0:  // a needle
+        c = a + 0.5 * (1 + unit()) * (b - a) + std::pow(10.0, -12 + 5 * unit()) * size * vector();
+        break;
+      case 1:
+        c = b;
+        break;
+      case 2:
+        b = c = a;
+        break;
+      case 3:  // in the plane
+        drawn.direction = unit() * (b - a) + unit() * (c - a);
+        break;
+      case 4:  // along an axis
+        drawn.direction = Eigen::Vector3d::Unit(static_cast<Eigen::Index>(random_() % 3));
+        break;
+      case 5:  // at the start
+        drawn.shape.center = a + 0.5 * (1 + unit()) * (b - a);
+        break;
+      case 6:
+        drawn.direction.setZero();
+        drawn.shape.center = a + drawn.shape.radius * vector();
+        break;
+      case 7: {  // grazes a plane of whole numbers
+        for (Eigen::Vector3d* corner : {&a, &b, &c}) (*corner)[2] = 0;
+        drawn.shape.center[2] = drawn.shape.axes == 3 ? drawn.shape.half[2] : drawn.shape.radius;
+        drawn.direction[2] = 0;
+        break;
+      }
+      default:  // far away
+        drawn.shape.center = 1e6 * size * vector().normalized();
+        drawn.direction = a - drawn.shape.center + size * vector();
+    }
+  }
+
+  std::mt19937_64 random_;
+};
+
+LongShape long_shape_of(const ConvexShape& shape) {
+  const LongVector center = shape.center.cast<long double>();
+  if (shape.axes == 3) {
+    std::array<LongVector, 3> axis;
+    std::array<long double, 3> half{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      axis[k] = shape.axis[k].cast<long double>();
+      half[k] = shape.half[k];
+    }
+    return test::long_box(center, axis, half);
+  }
+  LongShape out;
+  const LongVector arm = shape.half[0] * shape.axis[0].cast<long double>();
+  out.core = {{LongVector(center - arm), LongVector(center + arm), LongVector(center + arm)}};
+  out.radius = shape.radius;
+  out.center = center;
+  out.reach = arm.norm();
+  return out;
+}
+
+// How far a shape has to go along a direction of length 1 until it is beyond the triangle.
+long double depth_along(const LongShape& shape, const LongVector& direction,
+                        const LongTriangle& triangle) {
+  long double highest = -std::numeric_limits<long double>::infinity(), lowest = -highest;
+  for (const LongVector& corner : triangle) highest = std::max(highest, corner.dot(direction));
+  for (const LongTriangle& part : shape.core) {
+    for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
+  }
+  return highest - lowest + shape.radius;
+}
+
+struct Tally {
+  std::uint64_t cases = 0, touches = 0, at_start = 0;
+  std::uint64_t missed = 0;    // touched, and not told
+  std::uint64_t early = 0;     // touched before it was told
+  std::uint64_t invented = 0;  // not touched, and not within what is allowed
+  std::uint64_t parted = 0;    // contacts whose normal or depth is wrong
+  long double farthest = 0;    // from touching, at t, in units of 2^-53 of the largest coordinate
+};
+
+void check(const Case& drawn, Draw& draw, Tally& tally) {
+  double near = 2 * largest_magnitude(drawn.shape.half_extents());
+  for (const Eigen::Vector3d& corner : drawn.triangle.corner) {
+    near = std::max(near,
+                    largest_magnitude(corner) + 2 * largest_magnitude(drawn.shape.half_extents()));
+  }
+  const double far = largest_magnitude(drawn.shape.center);
+  const MovingShape moving{drawn.shape, drawn.direction, MovingShape::doubt_of(near, far)};
+  const double to = 8 * (near + far);
+  const long double size = near + far / 8.0L;
+  const long double allowed = 0x1p-46L * size;
+
+  const LongShape shape = long_shape_of(drawn.shape);
+  const LongVector direction = drawn.direction.cast<long double>();
+  LongTriangle triangle;
+  for (std::size_t c = 0; c < 3; ++c) {
+    triangle[c] = drawn.triangle.corner[c].cast<long double>();
+  }
+  ++tally.cases;
+  const std::optional<double> s = moving.first_touch(drawn.triangle, 0, to);
+  if (!s) {
+    tally.missed += test::least_distance(shape, direction, to, triangle) <= shape.radius;
+    return;
+  }
+  ++tally.touches;
+  const MovingShape::Contact contact = moving.contact_at(drawn.triangle, *s);
+  if (*s > 0) {
+    tally.early +=
+        test::least_distance(shape, direction, *s, triangle) < shape.radius * (1 - 1e-18L);
+  }
+  const long double beyond =
+      test::least_distance(shape, direction, contact.by, triangle) - shape.radius;
+  tally.farthest = std::max(tally.farthest, beyond / size * 0x1p53L);
+  tally.invented += beyond > allowed;
+  if (*s > 0) return;
+  ++tally.at_start;
+  const Corners relative = relative_to(drawn.shape.center, drawn.triangle);
+  const Penetration at = penetration(drawn.shape, relative, moving.doubt);
+  const LongVector normal = at.normal.cast<long double>();
+  bool is_wrong = std::abs(normal.norm() - 1) > 1e-12L || !(at.depth >= 0) ||
+                  depth_along(shape, normal, triangle) > at.depth + 8 * allowed;
+  for (int i = 0; i < 20; ++i) {
+    LongVector other = draw.vector().cast<long double>().normalized();
+    if (i % 2 == 0) other = (normal + 0.01L * other).normalized();
+    is_wrong |= depth_along(shape, other, triangle) < at.depth - 8 * allowed;
+  }
+  tally.parted += is_wrong;
+}
+
+int run(std::uint64_t count, std::uint64_t seed, const std::vector<std::string>& shapes) {
+  bool is_right = true;
+  fmt::print(
+      "shape    cases      touches    at start   missed  early  invented  contacts  farthest, "
+      "2^-53\n");
+  for (const auto& [name, axes] : {std::pair("sphere", 0u), {"capsule", 1u}, {"box", 3u}}) {
+    if (!shapes.empty() && std::find(shapes.begin(), shapes.end(), name) == shapes.end()) continue;
+    Draw draw(seed * 8 + axes);
+    Tally tally;
+    for (std::uint64_t i = 0; i < count; ++i) check(draw.next(axes), draw, tally);
+    fmt::print("{:8} {:<10} {:<10} {:<10} {:<7} {:<6} {:<9} {:<9} {:.1f}\n", name, tally.cases,
+               tally.touches, tally.at_start, tally.missed, tally.early, tally.invented,
+               tally.parted, static_cast<double>(tally.farthest));
+    is_right &= tally.missed + tally.early + tally.invented + tally.parted == 0;
+    // A program that never draws a touch checks nothing.
+    is_right &= count < 1000 || (tally.touches > count / 10 && tally.at_start > count / 100);
+  }
+  return is_right ? 0 : kDifferenceFound;
+}
+
+}  // namespace
+}  // namespace boxtree::oracle
+
+int main(int argc, char** argv) {
+  CLI::App app("Casts and contacts of single triangles against extended precision");
+  std::uint64_t count = 2000, seed = 1;
+  std::vector<std::string> shapes;
+  app.add_option("--cases", count, "Of each shape")->capture_default_str();
+  app.add_option("--seed", seed)->capture_default_str();
+  app.add_option("--shape", shapes, "sphere, capsule or box [all]");
+  CLI11_PARSE(app, argc, argv);
+  return boxtree::oracle::run(count, seed, shapes);
+}
