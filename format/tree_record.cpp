@@ -83,7 +83,7 @@ bool geometry_fits(const TreeRecord& record) {
 }  // namespace
 
 Status check_tree_record(const TreeRecord& record, std::uint32_t tree) {
-  const std::string place = "tree " + std::to_string(tree) + ": ";
+  const std::string place = "tree " + std::to_string(std::uint64_t{tree}) + ": ";
   if (codec_name(record.codec) == "unknown") {
     return error_with(Errc::kCodecUnsupported, place, "codec #",
                       {static_cast<std::uint64_t>(record.codec)});

@@ -76,7 +76,7 @@ Status BoundScene::bind_trees(const File& file, const SceneOptions& options) {
     Result<Tree> tree = Tree::bind(file, i, bind);
     if (!tree) return tree.error();
     if (options.require_face_ids && !tree->has_face_ids() && !tree->empty()) {
-      return left_out(Part::kFaceIds, i, "tree " + std::to_string(i));
+      return left_out(Part::kFaceIds, i, "tree " + std::to_string(std::uint64_t{i}));
     }
     trees_.push_back(std::move(*tree));
   }
@@ -98,9 +98,10 @@ Status BoundScene::check_materials(const File& opened) {
     const std::uint8_t number_bytes = material_number_bytes(material_count());
     if (!faces.empty() && faces.size() != number_bytes * count) {
       return Error{Errc::kSectionSize,
-                   "tree " + std::to_string(i) + ": " + section_text(SectionKind::kFaceMaterials) +
-                       ": " + section_size_error(faces.size(), number_bytes * count).detail +
-                       " for " + std::to_string(material_count()) + " materials"};
+                   "tree " + std::to_string(std::uint64_t{i}) + ": " +
+                       section_text(SectionKind::kFaceMaterials) + ": " +
+                       section_size_error(faces.size(), number_bytes * count).detail + " for " +
+                       std::to_string(std::uint64_t{material_count()}) + " materials"};
     }
     materials_of_tree_[i] = {runs.data(),
                              static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),

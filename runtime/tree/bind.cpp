@@ -64,7 +64,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   if (Status status = check_tree_record(parts.record, index); !status) return status.error();
   tree.keep(parts.record);
   tree.name_ = parts.name;
-  const std::string place = "tree " + std::to_string(index) + ": ";
+  const std::string place = "tree " + std::to_string(std::uint64_t{index}) + ": ";
   if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
   const bool external = tree.geometry_ == GeometryId::kExternal;
   if (Status status = external ? tree.bind_external_geometry(parts, place, options)

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <span>
-#include <string>
 
+#include "format/message.h"
 #include "runtime/file/checksum_stream.h"
 #include "runtime/tree/geometry.h"
 
@@ -47,9 +47,8 @@ Result<std::uint64_t> geometry_hash(const MeshArrays& mesh) {
     sum.add(std::as_bytes(std::span(&count, 1)));
     for (std::size_t i = 0; i < count; ++i) {
       if (corner[i] >= mesh.vertex_count) {
-        return Error{Errc::kVertexOutOfRange, "face " + std::to_string(f) + " names vertex " +
-                                                  std::to_string(corner[i]) + " of " +
-                                                  std::to_string(mesh.vertex_count)};
+        return error_with(Errc::kVertexOutOfRange, {}, "face # names vertex # of #",
+                          {f, corner[i], mesh.vertex_count});
       }
       sum.add({mesh.positions + std::size_t{corner[i]} * mesh.position_stride, position_bytes});
     }
