@@ -17,30 +17,6 @@ const char* refused_field(const Ray& ray) noexcept {
   return field != nullptr ? field : "origin";
 }
 
-bool RayQuery::meet_wishes(RayCandidate& candidate) noexcept {
-  if (wishes->stopped || !wishes->admits_side(shear, candidate.triangle)) return false;
-  const auto& filter = wishes->faces.filter;
-  const FaceWithCopies faces(tree, candidate.face.index);
-  if (wishes->all != nullptr) {
-    if (faces.count() - 1 > wishes->copies_left) {
-      error = Errc::kNodeCorrupt;
-      return false;
-    }
-    wishes->copies_left -= faces.count() - 1;
-  }
-  for (std::uint32_t i = 0; i < faces.count(); ++i) {
-    // Without a filter the original is named only where it has to be.
-    if (filter || wishes->all != nullptr) candidate.face = faces.face(i);
-    if (filter && !(*filter)(candidate.face)) continue;
-    if (wishes->all == nullptr) return true;
-    const double wanted_to = (*wishes->all)(candidate);
-    wishes->stopped = !(wanted_to >= 0);
-    if (wishes->stopped) return false;
-    t_max = std::min(t_max, wanted_to);
-  }
-  return false;
-}
-
 Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWork& work,
               RayCandidate& hit, RayWishes* wishes) {
   const double length = largest_magnitude(ray.direction);
@@ -62,6 +38,39 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
 }
 
 namespace {
+
+// Whether the ray may hit a triangle that it meets, from the side that it meets.
+bool admits_side(const RayQuery& query, const Triangle& triangle) noexcept {
+  const BackFaces back_faces = query.wishes->faces.back_faces;
+  return back_faces == BackFaces::kHit ||
+         meets_front(query.shear, triangle) == (back_faces == BackFaces::kIgnore);
+}
+
+// See RayWishes::Meet.
+bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
+  RayWishes* const wishes = query.wishes;
+  if (wishes->stopped || !admits_side(query, candidate.triangle)) return false;
+  const auto& filter = wishes->faces.filter;
+  const FaceWithCopies faces(query.tree, candidate.face.index);
+  if (wishes->all != nullptr) {
+    if (faces.count() - 1 > wishes->copies_left) {
+      query.error = Errc::kNodeCorrupt;
+      return false;
+    }
+    wishes->copies_left -= faces.count() - 1;
+  }
+  for (std::uint32_t i = 0; i < faces.count(); ++i) {
+    // Without a filter the original is named only where it has to be.
+    if (filter || wishes->all != nullptr) candidate.face = faces.face(i);
+    if (filter && !(*filter)(candidate.face)) continue;
+    if (wishes->all == nullptr) return true;
+    const double wanted_to = (*wishes->all)(candidate);
+    wishes->stopped = !(wanted_to >= 0);
+    if (wishes->stopped) return false;
+    query.t_max = std::min(query.t_max, wanted_to);
+  }
+  return false;
+}
 
 RayHit described(const BoundTree& tree, const RayCandidate& hit) {
   return {hit.t,
@@ -87,7 +96,7 @@ RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first, const 
 
 RayResult wanted_hit(const Tree& tree, const Ray& ray, bool stop_at_first,
                      const FaceOptions& options) {
-  RayWishes wishes{options};
+  RayWishes wishes{options, &meet_wishes};
   return hit_on(tree, ray, stop_at_first, options.limits, &wishes);
 }
 
@@ -123,7 +132,7 @@ Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
     return RayInTree::scaled(visitor(described(tree, hit)), exponent);
   };
   const FunctionRef<double(const RayCandidate&)> all(visit);
-  RayWishes wishes{options, &all, 2 * std::uint64_t{tree.duplicate_count()}};
+  RayWishes wishes{options, &meet_wishes, &all, 2 * std::uint64_t{tree.duplicate_count()}};
   RayCandidate none;
   const Errc error = cast_ray(tree, ray, false, work, none, &wishes);
   if (error == Errc::kInvalidQuery) return invalid_query(refused_field(ray));

@@ -90,21 +90,22 @@ struct RayInTree {
   }
 };
 
+struct RayQuery;
+
 /// What a caller wants besides the closest or any hit of any face.
 struct RayWishes {
+  /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
+  /// it. A pointer, so that programs that have no wishes do not link it.
+  using Meet = bool(RayQuery& query, RayCandidate& candidate) noexcept;
+
   const FaceOptions& faces;
+  Meet* meet;
   /// Receives every hit, named; returns the largest parameter that is still of interest, or a
   /// negative number to stop. Null: one hit is wanted.
   const FunctionRef<double(const RayCandidate&)>* all = nullptr;
   // In valid files each copy is visited once for each triangle of its face; see FaceWalk.
   std::uint64_t copies_left = 0;
   bool stopped = false;
-
-  /// Whether the ray may hit a triangle that it meets, from the side that it meets.
-  [[nodiscard]] bool admits_side(const RayShear& shear, const Triangle& triangle) const noexcept {
-    return faces.back_faces == BackFaces::kHit ||
-           meets_front(shear, triangle) == (faces.back_faces == BackFaces::kIgnore);
-  }
 };
 
 /// A query of traverse_nearest. `best` receives the answer, without the id of its face; it holds no
@@ -154,7 +155,7 @@ struct RayQuery : RayInTree {
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
     RayCandidate candidate{true, t, {kNoFaceId, face_index}, half, found->u, found->v, triangle};
-    if (wishes != nullptr && !meet_wishes(candidate)) return;
+    if (wishes != nullptr && !wishes->meet(*this, candidate)) return;
     if (hit.is_hit && t == hit.t) {
       name(tree, candidate.face);
       name(tree, hit.face);
@@ -163,10 +164,6 @@ struct RayQuery : RayInTree {
     hit = candidate;
     t_max = t;
   }
-
-  /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
-  /// it.
-  [[nodiscard, gnu::cold]] bool meet_wishes(RayCandidate& candidate) noexcept;
 
   const BoundTree& tree;
   WalkBound& nodes;
