@@ -138,22 +138,26 @@ class Axes {
     }
   }
 
-  // Ends early where they do not touch by `to`.
-  void try_all(double to = kInfinity) noexcept {
+  // Ends early where first_touch() is nothing.
+  void try_all(double from = 0, double to = kInfinity) noexcept {
     const Corners edge = edges_of(corner_);
     for (const Eigen::Vector3d& axis : moving_.shape.axis) try_axis(axis);
-    if (enter > std::min(leave, to)) return;
+    if (!first_touch(from, to)) return;
     try_axis(unit_normal({corner_}));
-    if (enter > std::min(leave, to)) return;
+    if (!first_touch(from, to)) return;
     for (const Eigen::Vector3d& of_triangle : edge) {
       for (const Eigen::Vector3d& of_box : moving_.shape.axis) {
         try_axis(unit_normal({{Eigen::Vector3d::Zero(), of_triangle, of_box}}));
-        if (enter > std::min(leave, to)) return;
+        if (!first_touch(from, to)) return;
       }
     }
   }
 
-  [[nodiscard]] bool is_miss() const noexcept { return enter > leave; }
+  // By the axes so far, of a shape that is where it is at `from`.
+  [[nodiscard]] std::optional<double> first_touch(double from, double to) const noexcept {
+    const double s = from + enter * (1 - 8 * kRoundoffF64);
+    return enter <= leave && s <= to ? std::optional(s) : std::nullopt;
+  }
 
   double enter = 0;          // they do not touch before
   double leave = kInfinity;  // nor after
@@ -194,10 +198,8 @@ std::optional<double> first_touch_of_box(const MovingShape& moving, const Triang
                                          double from, double to) noexcept {
   const Corners corner = placed(moving, triangle, from);
   Axes axes(moving, corner);
-  axes.try_all(to - from);
-  if (axes.is_miss()) return std::nullopt;
-  const double s = from + axes.enter * (1 - 8 * kRoundoffF64);
-  return s <= to ? std::optional(s) : std::nullopt;
+  axes.try_all(from, to);
+  return axes.first_touch(from, to);
 }
 
 MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,

@@ -8,6 +8,7 @@
 #include <random>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -82,13 +83,18 @@ void check(const Tree& tree, const Surface& surface, const Shape& shape, const M
   ASSERT_GE(any->t_lower, hit->t_lower);
   // All of them hold the first.
   double first = kInfinity;
+  bool is_named = false;
   ASSERT_EQ(test::require(cast_all(tree, shape, motion,
                                    [&](const CastHit& each) {
                                      first = std::min(first, each.t_lower);
+                                     is_named |= each.t_lower == hit->t_lower &&
+                                                 each.face.index == hit->face.index &&
+                                                 each.triangle == hit->triangle;
                                      return motion.t_max;
                                    })),
             Visit::kComplete);
   ASSERT_EQ(first, hit->t_lower);
+  ASSERT_TRUE(is_named);
 }
 
 class Casts : public testing::TestWithParam<test::Encoding> {
@@ -252,6 +258,41 @@ TEST_P(CastCases, ParallelToWhatItLiesOn) {
   // A box that slides beside the floor misses it.
   EXPECT_FALSE(cast_closest(floor_.tree, OrientedBox{{-5, 0, 0.6}, {1, 1, 0.5}, {1, 0, 0, 0}},
                             Motion{{1, 0, 0}}));
+}
+
+// Down onto one cell of a slope, then on through it into others, of smaller ids, too.
+TEST_P(CastCases, OfFacesInOnePlaneThatTouchedFirstIsNamed) {
+  SourceMesh mesh;
+  mesh.name = "slope";
+  constexpr std::uint32_t kCells = 8;
+  for (std::uint32_t i = 0; i <= kCells; ++i) {
+    for (std::uint32_t j = 0; j <= kCells; ++j) {
+      const std::uint32_t corner = i * (kCells + 1) + j;
+      const auto x = static_cast<float>(i), y = static_cast<float>(j);
+      mesh.positions.f32.insert(mesh.positions.f32.end(), {x, y, 0.25F * x + 0.125F * y});
+      if (i == kCells || j == kCells) continue;
+      mesh.faces.push_back({{corner, corner + kCells + 1, corner + kCells + 2, corner + 1}});
+    }
+  }
+  const test::CookedTree slope = test::cook_tree(mesh, GetParam());
+  std::mt19937_64 random(5);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(0, 1)(random); };
+  for (int i = 0; i < 500; ++i) {
+    OrientedBox box;
+    box.center = Eigen::Vector3d(8 * unit(), 8 * unit(), 6 + unit());
+    for (double& half : box.half_extents) half = 0.1 + 0.5 * unit();
+    box.rotation = {unit(), unit(), unit(), unit()};
+    const Motion motion{{unit() - 0.5, unit() - 0.5, -1}};
+    const CastResult hit = cast_closest(slope.tree, box, motion);
+    if (!hit) continue;
+    std::tuple<double, std::uint32_t, std::uint32_t> first(kInfinity, 0, 0);
+    const auto keep_first = [&](const CastHit& each) {
+      first = std::min(first, std::tuple(each.t_lower, each.face.id, each.triangle));
+      return motion.t_max;
+    };
+    ASSERT_TRUE(cast_all(slope.tree, box, motion, keep_first).ok());
+    EXPECT_EQ(std::tuple(hit->t_lower, hit->face.id, hit->triangle), first) << i;
+  }
 }
 
 TEST_P(CastCases, AShapeThatStaysTouchesWhatItHolds) {
