@@ -177,10 +177,12 @@ class Axes {
       overlap = -first;
       normal = -sign * axis;
     }
+    const double slowest = speed - speed_error;
     if (first > error_) {  // ahead
       enter = std::max(enter, (first - error_) / (speed + speed_error));
-      const double slowest = speed - speed_error;
       enter_by = std::max(enter_by, slowest > 0 ? (first + error_) / slowest : kInfinity);
+    } else if (first > -error_ && slowest > 0) {
+      enter_by = std::max(enter_by, (first + error_) / slowest);
     }
     if (last < -error_) {
       leave = -1;  // behind

@@ -15,7 +15,7 @@ import tempfile
 
 INCLUDES = ("format/include/boxtree", "runtime/include/boxtree")
 # Headers of queries: each function of theirs is on a page, beside its own.
-QUERIES = ("ray", "overlap", "closest", "contact", "distance", "traverse", "scene")
+QUERIES = ("ray", "collide", "overlap", "closest", "contact", "distance", "traverse", "scene")
 
 TYPE = re.compile(r"^(?:struct|(?:enum )?class)\s+(?:\[\[nodiscard\]\]\s+)?(\w+)[^;]*\{", re.MULTILINE)
 ALIAS = re.compile(r"^using (\w+) =", re.MULTILINE)
@@ -66,7 +66,7 @@ class Reference:
         faults = []
         linked = "".join(self.page(name).read_text(encoding="utf-8") for name in self.pages())
         for header in self.headers():
-            page = self.out / f"group__{header.stem}__h.html"
+            page = self.out / f"group__{header.stem.replace('_', '__')}__h.html"  # as Doxygen writes _
             if not page.exists():
                 faults.append(f"{header.name} has no page")
                 continue

@@ -38,6 +38,12 @@ t 9.5, normal (0, 0, 1)
 goal at x 2.5: hidden
 goal at x -2: seen
 END
+# Both halves of the upper plate meet below the ball's center, 0.25 above it.
+prints collide level.bxt <<'END'
+2 triangles, of one point 1
+out by 0.125 along (0.0, 0.0, 1.0)
+the body stands free
+END
 prints box level.bxt <<'END'
 face 0
 face 1

@@ -88,12 +88,14 @@ RUNS = {
         "query crate.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1",
         "query crate.bxt ray --origin 9,9,9 --direction 0,0,-1",
         "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1",
+        "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
+        "query crate.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
         "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
     ],
     "query FILE collide": [
-        "query crate.bxt collide --sphere 0.25 --at 0.2,0.1,0.5",
+        "query crate.bxt collide --sphere 2 --at 0.2,0.1,0.5",
         "query arrays.bxt collide --box 0.1,0.2,0.6 --at 0.2,0.1,0.1 --merge 0.1",
     ],
     "query FILE cast": [

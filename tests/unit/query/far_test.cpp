@@ -42,7 +42,7 @@ TEST_P(Far, AnswersAreThoseNearTheOrigin) {
   const Eigen::Vector3d shift(kFar, 0, kFar);
   std::mt19937_64 random(3);
   std::uniform_int_distribution<int> steps(-3000, 3000);
-  const auto point = [&] {
+  const auto point = [&]() -> Eigen::Vector3d {
     return Eigen::Vector3d(steps(random), steps(random), steps(random)) / double{kSteps};
   };
   int hits = 0;
