@@ -9,6 +9,49 @@
 inline const Eigen::AlignedBox3d kBox{Eigen::Vector3d(-1, -1, -1), Eigen::Vector3d(1, 1, 1)};
 inline const boxtree::Ray kRay{{0, 0, 10}, {0, 0, -1}};
 
+inline bool run_rays(const boxtree::Tree& tree) {
+  boxtree::RayHit hits[2];
+  const boxtree::FaceOptions front{.back_faces = boxtree::BackFaces::kIgnore};
+  const auto all = [](const boxtree::RayHit& hit) { return hit.t; };
+  return boxtree::closest_hit(tree, kRay, front).ok() && boxtree::any_hit(tree, kRay, front).ok() &&
+         boxtree::all_hits(tree, kRay, all).ok() && boxtree::nearest_hits(tree, kRay, hits).ok();
+}
+
+inline bool run_casts(const boxtree::Tree& tree) {
+  const boxtree::Sphere sphere{{0, 0, 10}, 1};
+  const boxtree::Capsule capsule{{0, 0, 10}, {0, 0, 9}, 1};
+  const boxtree::OrientedBox box{{0, 0, 10}, {1, 1, 1}, {1, 0, 0, 0}};
+  const boxtree::Motion down{{0, 0, -1}};
+  const auto shapes = [&](const auto& shape) {
+    const auto all = [](const boxtree::CastHit& hit) { return hit.t; };
+    return boxtree::cast_closest(tree, shape, down).ok() &&
+           boxtree::cast_any(tree, shape, down).ok() &&
+           boxtree::cast_all(tree, shape, down, all).ok();
+  };
+  return shapes(sphere) && shapes(capsule) && shapes(box);
+}
+
+inline bool run_contacts(const boxtree::Tree& tree) {
+  const boxtree::Sphere sphere{{0, 0, 0}, 1};
+  const boxtree::Capsule capsule{{0, 0, 0}, {0, 0, 1}, 1};
+  const boxtree::OrientedBox box{{0, 0, 0}, {1, 1, 1}, {1, 0, 0, 0}};
+  boxtree::Contact last;
+  const auto keep = [&](const boxtree::Contact& contact) { return last = contact, true; };
+  const auto face = [](const boxtree::FaceRef&) { return true; };
+  const bool all = boxtree::collide(tree, sphere, keep).ok() &&
+                   boxtree::collide(tree, capsule, keep).ok() &&
+                   boxtree::collide(tree, box, keep).ok() &&
+                   boxtree::overlap_capsule(tree, capsule, face).ok() &&
+                   boxtree::overlap_oriented_box(tree, box, face).ok();
+  return boxtree::merge_contacts({&last, 1}, 1) == 1 && all;
+}
+
+/// Casts and contacts of shapes, and rays with wishes.
+inline bool run_shapes(const boxtree::Tree& tree) {
+  return run_rays(tree) && run_casts(tree) && run_contacts(tree);
+}
+
+/// All others.
 inline bool run_query(const boxtree::Tree& tree) {
   const boxtree::Pose pose = boxtree::Pose::Identity();
   int faces = 0;
