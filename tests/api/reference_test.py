@@ -15,7 +15,7 @@ import tempfile
 
 INCLUDES = ("format/include/boxtree", "runtime/include/boxtree")
 # Headers of queries: each function of theirs is on a page, beside its own.
-QUERIES = ("ray", "collide", "overlap", "closest", "contact", "distance", "traverse", "scene")
+QUERIES = ("ray", "cast", "collide", "overlap", "closest", "contact", "distance", "traverse", "scene")
 
 TYPE = re.compile(r"^(?:struct|(?:enum )?class)\s+(?:\[\[nodiscard\]\]\s+)?(\w+)[^;]*\{", re.MULTILINE)
 ALIAS = re.compile(r"^using (\w+) =", re.MULTILINE)

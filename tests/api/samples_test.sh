@@ -44,6 +44,13 @@ prints collide level.bxt <<'END'
 out by 0.125 along (0.0, 0.0, 1.0)
 the body stands free
 END
+# The capsule's lower end is 0.4 high and 0.2 beside the plate's edge, at height 0.25, when they are 0.25 apart. The crate meets both halves
+# of each plate, and the half of the floor that is below it.
+prints cast level.bxt <<'END'
+walks 2.800 to face 1, pushed back -0.8 along x and 0.6 up
+the bullet passes
+the crate meets 5 triangles
+END
 prints box level.bxt <<'END'
 face 0
 face 1

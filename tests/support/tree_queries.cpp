@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/tree_queries.h"
 
+#include <array>
+
 namespace boxtree::test {
 namespace {
 
@@ -25,6 +27,9 @@ Outcome outcome_of_visit(const RunQuery& run_query) {
 double distance_of(const RayHit& hit) {
   return hit.t;
 }
+double t_of(const CastHit& hit) {
+  return hit.t;
+}
 double number_of(const FacePair& pair) {
   return double{pair.first.id * 1e6} + pair.second.id;
 }
@@ -36,6 +41,11 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
   PointOptions bounds;
   bounds.relative_error = 1e-3;
   bounds.node_budget = q.node_budget;
+  const Motion motion{q.ray.direction, q.ray.t_max};
+  const Sphere ball{q.ray.origin, q.thickness};
+  const Capsule capsule{q.ray.origin, q.ray.origin + Eigen::Vector3d(0.5, 0.25, 0), q.thickness};
+  const OrientedBox turned{
+      q.ray.origin, {q.thickness, 2 * q.thickness, 3 * q.thickness}, {1, 0.5, 0.25, 0.125}};
   return {
       {"closest_hit", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
@@ -44,6 +54,61 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
       {"any_hit", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
          return outcome(any_hit(tree, q.ray, limits), distance_of);
+       }},
+      {"all_hits", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         std::size_t told = 0;
+         const auto count = [&](const RayHit&) { return ++told, q.ray.t_max; };
+         return outcome(all_hits(tree, q.ray, count, {.limits = limits}),
+                        [&](Visit) { return told; });
+       }},
+      {"nearest_hits", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         std::array<RayHit, 8> hits;
+         return outcome(nearest_hits(tree, q.ray, hits, {.limits = limits}),
+                        [](std::size_t count) { return count; });
+       }},
+      {"cast_closest of a sphere", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(cast_closest(tree, ball, motion, {.limits = limits}), t_of);
+       }},
+      {"cast_closest of a capsule", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(cast_closest(tree, capsule, motion, {.limits = limits}), t_of);
+       }},
+      {"cast_closest of a box", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(cast_closest(tree, turned, motion, {.limits = limits}), t_of);
+       }},
+      {"cast_any", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome(cast_any(tree, turned, motion, {.limits = limits}), t_of);
+       }},
+      {"cast_all", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         std::size_t told = 0;
+         const auto count = [&](const CastHit&) { return ++told, motion.t_max; };
+         return outcome(cast_all(tree, capsule, motion, count, {.limits = limits}),
+                        [&](Visit) { return told; });
+       }},
+      {"collide", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_visit([&](ContactVisitor visitor) {
+           return collide(tree, Sphere{q.point, q.radius}, visitor, limits);
+         });
+       }},
+      {"overlap_capsule", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_visit([&](FaceVisitor visitor) {
+           return overlap_capsule(tree, {q.point, q.point, q.radius}, visitor, limits);
+         });
+       }},
+      {"overlap_oriented_box", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         const OrientedBox around{q.point, Eigen::Vector3d::Constant(q.radius), turned.rotation};
+         return outcome_of_visit([&](FaceVisitor visitor) {
+           return overlap_oriented_box(tree, around, visitor, limits);
+         });
        }},
       {"overlap_box", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {

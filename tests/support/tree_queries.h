@@ -17,6 +17,7 @@ struct QuerySet {
   Eigen::AlignedBox3d box;
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   double radius = 1;             // of the sphere around `point`
+  double thickness = 0.25;       // of the shapes that are cast along the ray
   Pose near = Pose::Identity();  // of the second tree, touching the first
   Pose far = Pose::Identity();   // of the second tree, apart from the first
   /// Limit of nodes expanded by the closest-point query with bounds.

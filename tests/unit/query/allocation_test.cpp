@@ -54,6 +54,7 @@ TEST(Allocation, QueriesNeverAllocate) {
   const bool refused =
       closest_point(*tree, {NAN, 0, 0}).error().detail == "point" &&
       closest_hit(*tree, {{0, 0, 0}, {0, 0, 0}}).error().detail == "direction" &&
+      cast_any(*tree, Sphere{{0, 0, 0}, -1}, Motion()).error().detail == "radius" &&
       closest_point(*tree, {0, 0, 0}, PointOptions{-1}).error().detail == "relative_error" &&
       distance(*tree, Pose::Identity(), *tree, Pose::Identity(), DistanceOptions{0, -1})
               .error()

@@ -23,6 +23,9 @@ double query_everything(const File& file, const Tree& tree) {
     const double x = 0.01 * i - 1;
     const auto hit = closest_hit(tree, {{x, 0.3, 9}, {0.01, 0.02, -1}});
     if (hit.has_value()) sum += hit->t;
+    const auto touch =
+        cast_closest(tree, Capsule{{x, 0.3, 9}, {x, 0.5, 9}, 0.2}, Motion{{0.01, 0.02, -1}});
+    if (touch.has_value()) sum += touch->t;
     sum += closest_point(*own, {x, 2, 1})->distance;
     const auto count = [&sum](const auto&) {
       sum += 1;

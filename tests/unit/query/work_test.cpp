@@ -316,6 +316,12 @@ TEST(HostileLeaves, WithCopiesAreToldOnce) {
   EXPECT_EQ(overlap_sphere(tree, {0, 0, 0}, 1e6, count).code(), Errc::kNodeCorrupt);
   EXPECT_LE(told, 8 * 64 + 299u);
   told = 0;
+  const auto count_touch = [&](const CastHit&) { return static_cast<double>(++told); };
+  EXPECT_EQ(cast_all(tree, Sphere{{0, 0, 0}, 1e6}, Motion(), count_touch).code(),
+            Errc::kNodeCorrupt);
+  EXPECT_GT(told, 299u);
+  EXPECT_LE(told, 8 * 64 + 299u);
+  told = 0;
   const Pose here = Pose::Identity();
   static_cast<void>(overlap_pairs(tree, here, tree, here, count));
   EXPECT_LE(told, std::uint64_t{599} * 599 + std::uint64_t{300} * 300);

@@ -41,6 +41,9 @@ std::vector<double> answers(const Tree& tree) {
     const auto any =
         test::require(any_hit(tree, {at - Eigen::Vector3d(20, 0, 0), {1, 0.03, 0.01}}));
     add(all, any ? any->face.id : kNoFaceId);
+    const auto touch = test::require(
+        cast_closest(tree, Sphere{at + Eigen::Vector3d(0, 0, 20), 0.3}, Motion{{0.01, 0.02, -1}}));
+    if (touch) add(all, touch->t, touch->t_lower, touch->face.id);
     const auto closest = test::require(closest_point(tree, at));
     if (closest) add(all, closest->distance, closest->face.id);
     const auto keep = [&](const FaceRef& face) {

@@ -158,6 +158,13 @@ TEST_P(WithDuplicates, SmallestIdsAnswerAndVisitorsHearOfAll) {
     met.clear();
     run(overlap_sphere(tree, bounds.center(), 2 * bounds.diagonal().norm(), visit));
     ASSERT_EQ(met.size(), mesh.faces.size());
+    met.clear();
+    const Sphere everything{bounds.center(), 2 * bounds.diagonal().norm()};
+    run(cast_all(tree, everything, Motion(), [&](const CastHit& hit) {
+      if (hit.triangle == 0) met.push_back(hit.face.id);
+      return 0.0;
+    }));
+    ASSERT_EQ(met.size(), mesh.faces.size());
     const cooker::Duplicates duplicates = cooker::find_duplicates(mesh);
     std::size_t hits = 0;
     for (int i = 0; i < 50; ++i) {
@@ -166,6 +173,9 @@ TEST_P(WithDuplicates, SmallestIdsAnswerAndVisitorsHearOfAll) {
       if (const auto hit = require(closest_hit(tree, {from, to - from}))) {
         ++hits;
         EXPECT_TRUE(duplicates.is_original(hit->face.id));
+      }
+      if (const auto touch = require(cast_closest(tree, Sphere{from, 0.1}, Motion{to - from}))) {
+        EXPECT_TRUE(duplicates.is_original(touch->face.id));
       }
       EXPECT_TRUE(duplicates.is_original(require(closest_point(tree, from))->face.id));
     }
@@ -247,6 +257,8 @@ class LyingBytes {
     const Eigen::AlignedBox3d box(Eigen::Vector3d(-9, -9, -9), Eigen::Vector3d(9, 9, 9));
     static_cast<void>(overlap_box(tree, box, count));
     static_cast<void>(overlap_sphere(tree, {0, 0, 0}, 9, count));
+    static_cast<void>(cast_all(tree, Sphere{{0, 0, 0}, 9}, Motion(),
+                               [&](const CastHit& hit) { return count(hit) ? 0.0 : -1.0; }));
     static_cast<void>(overlap_pairs(tree, Pose::Identity(), tree, Pose::Identity(), count));
     static_cast<void>(closest_hit(tree, {{0, 0, 9}, {0, 0, -1}}));
     static_cast<void>(closest_point(tree, {0, 0, 9}));

@@ -9,6 +9,8 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +23,11 @@ namespace boxtree {
 namespace {
 
 using cooker::SourceMesh;
+
+struct Cast {
+  std::variant<Sphere, Capsule, OrientedBox> shape;
+  Motion motion;
+};
 
 // Queries about one mesh. A part of each kind is degenerate on purpose: along axes, in planes of
 // the root box, through vertices, from far away, of no size.
@@ -84,6 +91,27 @@ class QuerySet {
     return spheres;
   }
 
+  // Shapes of every size along such rays.
+  std::vector<Cast> casts(int count) {
+    std::vector<Cast> casts;
+    const double size = box_.diagonal().norm();
+    for (const Ray& ray : rays(count)) {
+      const double radius = casts.size() % 7 == 0 ? 0 : 0.5 * size * std::pow(unit(), 4);
+      const Motion motion{ray.direction, ray.t_max};
+      const Eigen::Vector3d arm(unit() - 0.5, unit() - 0.5, unit() - 0.5);
+      if (casts.size() % 3 == 0) {
+        casts.push_back({Sphere{ray.origin, radius}, motion});
+      } else if (casts.size() % 3 == 1) {
+        casts.push_back({Capsule{ray.origin, ray.origin + 3 * radius * arm, radius}, motion});
+      } else {
+        OrientedBox box{ray.origin, 2 * radius * arm.cwiseAbs(), {1, 0, 0, 0}};
+        if (casts.size() % 2 == 0) box.rotation = {unit() - 0.5, arm[0], arm[1], arm[2]};
+        casts.push_back({box, motion});
+      }
+    }
+    return casts;
+  }
+
   Pose pose() {
     Pose pose = Pose::Identity();
     const double size = box_.diagonal().maxCoeff();
@@ -134,6 +162,35 @@ RayAnswer query_ray(const Tree& tree, const Ray& ray) {
   EXPECT_EQ(any.has_value(), hit.has_value());
   if (!hit.has_value()) return {0, kNoFaceId, 0, 0, 0};
   return {hit->t, hit->face.id, hit->triangle, hit->u, hit->v};
+}
+
+// The first touch, then all of them.
+using Touch = std::tuple<double, std::uint32_t, std::uint32_t, double, double>;
+std::vector<Touch> query_cast(const Tree& tree, const Cast& cast) {
+  const auto touch_of = [](const CastHit& hit) {
+    return Touch(hit.t_lower, hit.face.id, hit.triangle, hit.t, hit.point.sum() + hit.normal.sum());
+  };
+  std::vector<Touch> touches;
+  std::visit(
+      [&](const auto& shape) {
+        const auto hit = cast_closest(tree, shape, cast.motion);
+        const auto any = cast_any(tree, shape, cast.motion);
+        EXPECT_TRUE(hit.ok() && any.ok());
+        EXPECT_EQ(any.has_value(), hit.has_value());
+        const auto keep = [&](const CastHit& each) {
+          touches.push_back(touch_of(each));
+          return cast.motion.t_max;
+        };
+        EXPECT_TRUE(cast_all(tree, shape, cast.motion, keep).ok());
+        std::sort(touches.begin(), touches.end());
+        EXPECT_EQ(hit.has_value(), !touches.empty());
+        if (hit) {
+          EXPECT_EQ(touch_of(*hit), touches.front());
+          touches.insert(touches.begin(), touch_of(*hit));
+        }
+      },
+      cast.shape);
+  return touches;
 }
 
 using PointAnswer = std::tuple<double, std::uint32_t, double, double, double>;
@@ -272,6 +329,7 @@ void expect_equal(const SourceMesh& mesh, const cooker::CookOptions& options, st
   // Answers of thousands of faces cost more than the queries do.
   const bool is_large = mesh.faces.size() > 10'000;
   expect_same(queries.rays(is_large ? 1500 : 6000), plain.tree, trees, query_ray);
+  expect_same(queries.casts(is_large ? 25 : 250), plain.tree, trees, query_cast);
   expect_same(queries.boxes(is_large ? 50 : 1500), plain.tree, trees, query_box);
   const auto spheres = queries.spheres(is_large ? 50 : 1500);
   expect_same(spheres, plain.tree, trees, query_sphere);

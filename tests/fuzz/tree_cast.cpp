@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Casts of spheres, capsules and boxes against the tree of any file.
+#include "tests/fuzz/tree_target.h"
+
+namespace boxtree::fuzz {
+namespace {
+
+template <class Shape, class Check>
+void cast(const Tree& tree, const Shape& shape, const QueryInput& query, const Check& check) {
+  Motion motion{query.vector(3)};
+  if (query.option(1) % 2 == 1) motion.t_max = query.number(6);
+  FaceOptions options;
+  options.limits = query.limits();
+  const auto closest = cast_closest(tree, shape, motion, options);
+  const auto any = cast_any(tree, shape, motion, options);
+  check(closest);
+  check(any);
+  const std::uint32_t most = query.option(3) == 0 ? ~0u : query.option(3);
+  std::uint32_t touches = 0;
+  const auto visit = cast_all(
+      tree, shape, motion, [&](const CastHit&) { return ++touches < most ? motion.t_max : -1; },
+      options);
+  check(visit);
+  // Nothing is missed: all know whether there is a touch.
+  if (!closest.ok() || !any.ok() || !visit.ok()) return;
+  if (closest.has_value() != any.has_value() || closest.has_value() != (touches > 0)) {
+    finding("cast_closest, cast_any and cast_all differ");
+  }
+}
+
+}  // namespace
+
+void run(Bytes input) {
+  query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
+    const Eigen::Vector3d at = query.vector(0);
+    const double size = query.number(7);
+    const Eigen::Vector3d extent = query.vector(8);
+    switch (query.option(2) % 3) {
+      case 0:
+        return cast(tree, Sphere{at, size}, query, check);
+      case 1:
+        return cast(tree, Capsule{at, at + extent, size}, query, check);
+      default:
+        OrientedBox box{at, extent, {1, 0, 0, 0}};
+        if (query.option(4) % 2 == 1) box.rotation = {size, extent[0], extent[1], extent[2]};
+        return cast(tree, box, query, check);
+    }
+  });
+}
+
+}  // namespace boxtree::fuzz
