@@ -49,8 +49,7 @@ struct RayRequest {
   static constexpr KindExample kExamples[] = {
       {"What a ray from above hits first",
        "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"},
-      {"Where a ray enters the mesh, each time",
-       "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0 --all --back-faces ignore"}};
+      {"All that it hits", "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0 --all"}};
 
   Ray ray{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};
   bool any = false;

@@ -794,7 +794,7 @@ names 'cast: expected any or all, found both' \
 names 'cast: "capsule": expected [X,Y,Z,R], found [0,0,1]' \
   '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"capsule":[0,0,1]}'
 names 'cast: "sphere": expected a number, found "1"' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":"1"}'
-names "cast: expected the keys at, direction, sphere, capsule, box, rotation, t_max, any, all, move or kind, found \"spere\"; "\
+names "cast: expected the keys at, direction, sphere, capsule, box, rotation, t_max, any, all, back_faces, move or kind, found \"spere\"; "\
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
@@ -812,7 +812,7 @@ names 'point: "max-distance": expected a number, found "x"' '{"kind":"point","at
 names 'expected a JSON object, found no JSON at byte 31' '{"kind":"point","at":[1,0,0]} x'
 names 'expected a JSON object, found [1]' '[1]'
 names 'expected a JSON object of finite numbers, found one beyond what a double holds' '{"kind":"point","at":[1e999,0,0]}'
-names "ray: expected the keys origin, direction, t_max, any, move or kind, found \"--origin\"; did you mean 'origin'?" '{"kind":"ray","--origin":[0,0,9],"direction":[0,0,-1]}'
+names "ray: expected the keys origin, direction, t_max, any, all, back_faces, move or kind, found \"--origin\"; did you mean 'origin'?" '{"kind":"ray","--origin":[0,0,9],"direction":[0,0,-1]}'
 names '"t_max": expected once, found twice: - and _ are the same' \
   '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1],"t-max":1,"t_max":2}'
 names '"origin": expected once, found twice' '{"kind":"ray","origin":[0,0,9],"origin":[0,0,8],"direction":[0,0,-1]}'
