@@ -49,8 +49,8 @@ bool may_touch(const MovingShape& moving, const CoreDistance& at) noexcept {
   return at.lower <= moving.shape.radius + 2 * moving.doubt;
 }
 
-// A lower bound of when a core comes within `reach` of the triangle's plane; infinity for never. It
-// is that of the triangle where its inside is touched. Precondition: as of first_touch.
+// A lower bound of when a core comes that near to the triangle's plane; infinity for never. It is
+// that of the triangle where its inside is touched. Precondition: as of first_touch.
 double plane_touch(const MovingShape& moving, const Triangle& triangle, double from,
                    double reach) noexcept {
   const Corners corner = placed(moving, triangle, from);

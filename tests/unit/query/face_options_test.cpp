@@ -143,7 +143,7 @@ TEST_P(FacesHit, AllHitsAreThoseOfALoop) {
   EXPECT_GT(behind, 20u);
 }
 
-TEST_P(FacesHit, AFilterIsAskedForEachFace) {
+TEST_P(FacesHit, AFilterIsCalledWithEachFace) {
   std::size_t passed = 0;
   for_each_ray(40, [&](const Tree& tree, const Ray& ray) {
     const auto accepts = [](const FaceRef& face) { return face.id % 3 != 0; };
