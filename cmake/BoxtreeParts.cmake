@@ -56,6 +56,16 @@ if(scene IN_LIST BOXTREE_BUILT_QUERIES)
   endforeach()
 endif()
 
+# A cast walks along the line of its shape's center as a ray, and a contact is a cast that stays.
+foreach(needs "cast ray" "collide cast")
+  separate_arguments(needs)
+  list(GET needs 0 query)
+  list(GET needs 1 needed)
+  if(query IN_LIST BOXTREE_BUILT_QUERIES AND NOT needed IN_LIST BOXTREE_BUILT_QUERIES)
+    message(FATAL_ERROR "BOXTREE_QUERIES: ${query} needs ${needed}, too")
+  endif()
+endforeach()
+
 set(BOXTREE_IS_WHOLE OFF)
 if(BOXTREE_BLOB AND BOXTREE_BUILT_CODECS STREQUAL "${BOXTREE_ALL_CODECS}" AND
    BOXTREE_BUILT_QUERIES STREQUAL "${BOXTREE_ALL_QUERIES}")
