@@ -91,9 +91,8 @@ struct CastRequest {
   static constexpr KindExample kExamples[] = {
       {"How far a ball falls",
        "boxtree query bunny.bxt cast --sphere 0.1 --at 0,0,9 --direction 0,0,-1"},
-      {"All that a turned box touches on its way",
-       "boxtree query bunny.bxt cast --box 0.1,0.2,0.3 --rotation 0,0,1,1 --at 0,0,9 "
-       "--direction 0,0,-9 --t-max 1 --all"}};
+      {"All that a box touches on its way",
+       "boxtree query bunny.bxt cast --box 1,1,2 --at 0,0,9 --direction 0,0,-1 --all"}};
 
   CastShape shape;
   Eigen::Vector3d at = Eigen::Vector3d::Zero();

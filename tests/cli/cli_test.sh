@@ -571,7 +571,7 @@ for command in cook info verify query bench report export completion help; do
   help_of $command
   grep -q "^Usage: boxtree $command " help
 done
-for kind in ray point box sphere pair distance overlap contacts; do
+for kind in ray cast collide point box sphere pair distance overlap contacts; do
   expect 0 "$boxtree" help query $kind
   help_of query cube.bxt $kind
   grep -q "^Usage: boxtree query FILE $kind " help
