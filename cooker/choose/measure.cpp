@@ -52,6 +52,13 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
                      if (hit) ++figures.ray_hits;
                      return hit.code();
                    });
+  figures.cast_sphere_ns =
+      1e9 * per_query(workload.rays, runs, status, [&](const Ray& ray) {
+        const auto hit =
+            cast_closest(tree, Sphere{ray.origin, workload.cast_radius}, Motion{ray.direction});
+        if (hit) ++figures.cast_sphere_hits;
+        return hit.code();
+      });
   figures.box_ns =
       1e9 * per_query(workload.boxes, runs, status, [&](const Eigen::AlignedBox3d& box) {
         return overlap_box(tree, box,
@@ -83,6 +90,7 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
                         });
   if (!status) return status.error();
   figures.ray_hits /= rounds;
+  figures.cast_sphere_hits /= rounds;
   figures.box_faces /= rounds;
   figures.point_distance /= static_cast<double>(rounds);
   figures.pair_hits /= rounds;

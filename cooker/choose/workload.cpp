@@ -120,6 +120,7 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
   Workload workload;
   Random random(seed);
   const double diagonal = length_of(bounds.diagonal());
+  workload.cast_radius = 0.01 * diagonal;
   for (std::size_t i = 0; i < size.rays; ++i) {
     const Eigen::Vector3d origin = bounds.center() + diagonal * random.direction();
     const Eigen::Vector3d toward = random.inside(bounds) - origin;

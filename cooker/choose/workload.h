@@ -28,6 +28,8 @@ inline constexpr const char* kPoseMeaning =
 struct Workload {
   /// From a sphere with twice the bounding radius toward random points of the bounds.
   std::vector<Ray> rays;
+  /// Of spheres that are cast along the rays, 1 % of the diagonal.
+  double cast_radius = 0;
   /// kBoxMeaning, with centres in the bounds.
   std::vector<Eigen::AlignedBox3d> boxes;
   /// In the bounds scaled by 1.2.

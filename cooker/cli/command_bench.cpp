@@ -52,6 +52,7 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"codec", codec_name(BoundTree::of(tree).codec())},
               {"triangles", tree.triangle_count()},
               {"ray_ns", figures->ray_ns},
+              {"cast_sphere_ns", figures->cast_sphere_ns},
               {"box_ns", figures->box_ns},
               {"point_ns", figures->point_ns},
               {"pair_first_us", figures->pair_first_us},
@@ -60,6 +61,7 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"open_alone_us", open->open_us},
               {"open_page_faults", open->page_faults},
               {"ray_hits", figures->ray_hits},
+              {"cast_sphere_hits", figures->cast_sphere_hits},
               {"box_faces", figures->box_faces},
               {"point_distance", figures->point_distance},
               {"pair_hits", figures->pair_hits},
@@ -128,10 +130,14 @@ void print_row(const Json& row) {
              row["tree"].get<std::string>(), row["codec"].get<std::string>(),
              row["triangles"].get<std::uint32_t>());
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
-  fmt::print("  measured means; boxes are {};\n  contacts are those with {}\n", kBoxMeaning,
-             kPoseMeaning);
+  fmt::print(
+      "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
+      "  boxes are {};\n  contacts are those with {}\n",
+      kBoxMeaning, kPoseMeaning);
   fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>());
+  fmt::print("  cast  {:9.0f} ns  {} hits of spheres\n", row["cast_sphere_ns"].get<double>(),
+             row["cast_sphere_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
              row["box_faces"].get<std::uint64_t>());
   fmt::print("  point {:9.0f} ns  {:.6g} summed distance\n", row["point_ns"].get<double>(),

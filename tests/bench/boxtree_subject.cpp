@@ -116,6 +116,15 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
+  bool sphere_casts(std::span<const SphereCast> casts, std::span<double> out) override {
+    for (std::size_t i = 0; i < casts.size(); ++i) {
+      const auto& [ray, radius] = casts[i];
+      const auto hit =
+          require(cast_closest(tree_, Sphere{ray.origin, radius}, Motion{ray.direction}));
+      out[i] = hit ? hit->t : std::numeric_limits<double>::infinity();
+    }
+    return true;
+  }
   bool boxes(std::span<const Eigen::AlignedBox3d> boxes, std::span<double> out) override {
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       out[i] = 0;

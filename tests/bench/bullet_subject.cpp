@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Bullet: its quantised triangle mesh tree for rays and boxes, GImpact for pairs.
+// Bullet: its quantised triangle mesh tree for rays, casts and boxes, GImpact for pairs.
+#include <BulletCollision/CollisionDispatch/btCollisionObject.h>
+#include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
 #include <BulletCollision/NarrowPhaseCollision/btRaycastCallback.h>
@@ -73,6 +76,8 @@ class BulletSubject : public Subject {
  public:
   explicit BulletSubject(const TriangleMesh& mesh) : mesh_(mesh), bullet_(mesh) {
     shape_ = std::make_unique<btBvhTriangleMeshShape>(bullet_.arrays.get(), true);
+    shape_->setMargin(0);  // casts would stop short of the surface by it
+    object_.setCollisionShape(shape_.get());
   }
 
   [[nodiscard]] SubjectBytes bytes() const override {
@@ -80,16 +85,27 @@ class BulletSubject : public Subject {
     return {tree, tree + bullet_.bytes()};
   }
   bool rays(std::span<const Ray> rays, std::span<double> out) override {
-    // Bullet uses segments; this length passes the mesh from any origin of the workload.
-    const double length = 4 * mesh_.bounds.diagonal().norm();
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const double t = length / rays[i].direction.norm();
-      const btVector3 from = to_bullet(rays[i].origin);
-      const btVector3 to = to_bullet(Eigen::Vector3d(rays[i].origin + t * rays[i].direction));
+      const auto [from, to, t] = segment_of(rays[i]);
       ClosestRay callback(from, to);
       shape_->performRaycast(&callback, from, to);
       out[i] = callback.hit ? double{callback.m_hitFraction} * t
                             : std::numeric_limits<double>::infinity();
+    }
+    return true;
+  }
+  // The sweep of its collision world against one object, without a broad phase.
+  bool sphere_casts(std::span<const SphereCast> casts, std::span<double> out) override {
+    const btTransform here = btTransform::getIdentity();
+    for (std::size_t i = 0; i < casts.size(); ++i) {
+      const btSphereShape sphere(static_cast<btScalar>(casts[i].radius));
+      const auto [from, to, t] = segment_of(casts[i].ray);
+      btCollisionWorld::ClosestConvexResultCallback callback(from, to);
+      btCollisionWorld::objectQuerySingle(&sphere, btTransform(here.getBasis(), from),
+                                          btTransform(here.getBasis(), to), &object_, shape_.get(),
+                                          here, callback, 0);
+      out[i] = callback.hasHit() ? double{callback.m_closestHitFraction} * t
+                                 : std::numeric_limits<double>::infinity();
     }
     return true;
   }
@@ -104,9 +120,21 @@ class BulletSubject : public Subject {
   }
 
  private:
+  // Bullet uses segments; this length passes the mesh from any origin of the workload. `t`: where
+  // it ends on the ray.
+  struct Segment {
+    btVector3 from, to;
+    double t;
+  };
+  [[nodiscard]] Segment segment_of(const Ray& ray) const {
+    const double t = 4 * mesh_.bounds.diagonal().norm() / ray.direction.norm();
+    return {to_bullet(ray.origin), to_bullet(Eigen::Vector3d(ray.origin + t * ray.direction)), t};
+  }
+
   const TriangleMesh& mesh_;
   BulletMesh bullet_;
   std::unique_ptr<btBvhTriangleMeshShape> shape_;
+  btCollisionObject object_;
 };
 
 // GImpact finds pairs of boxes and decides them by its own, inexact triangle test.

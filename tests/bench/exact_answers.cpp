@@ -32,6 +32,50 @@ double closest_t(const std::vector<Triangle>& triangles, const Ray& ray) {
   return best;
 }
 
+// The least root of a s^2 + 2 b s + c of those that are not negative, where c >= 0; infinity if
+// there is none.
+double least_root(double a, double b, double c) {
+  const double discriminant = b * b - a * c;
+  if (b >= 0 || discriminant < 0) return std::numeric_limits<double>::infinity();
+  return c / (std::sqrt(discriminant) - b);
+}
+
+// When the center meets the faces, edges and corners of a triangle that is thickened by the radius.
+double touching_t(const SphereCast& cast, const Triangle& triangle) {
+  const auto& [ray, radius] = cast;
+  const Eigen::Vector3d& direction = ray.direction;
+  if ((closest_point_on_triangle(ray.origin, triangle) - ray.origin).norm() <= radius) return 0;
+  double best = std::numeric_limits<double>::infinity();
+  const auto& corner = triangle.corner;
+  const Eigen::Vector3d n = (corner[1] - corner[0]).cross(corner[2] - corner[0]).normalized();
+  for (const double side : {-1.0, 1.0}) {
+    const Eigen::Vector3d up = side * radius * n;
+    const Ray lowered{ray.origin - up, direction};
+    const auto hit = intersect_ray_triangle(RayShear(lowered.origin, direction), triangle);
+    if (hit && hit->t >= 0) best = std::min(best, hit->t);
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Eigen::Vector3d from = ray.origin - corner[i];
+    best = std::min(best, least_root(direction.squaredNorm(), direction.dot(from),
+                                     from.squaredNorm() - radius * radius));
+    const Eigen::Vector3d edge = corner[(i + 1) % 3] - corner[i];
+    const double length = edge.norm();
+    if (length == 0) continue;
+    const Eigen::Vector3d across = direction.cross(edge) / length, off = from.cross(edge) / length;
+    const double t = least_root(across.squaredNorm(), across.dot(off),
+                                std::max(0.0, off.squaredNorm() - radius * radius));
+    const double along = (from + t * direction).dot(edge) / (length * length);
+    if (along >= 0 && along <= 1) best = std::min(best, t);
+  }
+  return best;
+}
+
+double first_touch(const std::vector<Triangle>& triangles, const SphereCast& cast) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const Triangle& triangle : triangles) best = std::min(best, touching_t(cast, triangle));
+  return best;
+}
+
 struct BoundedTriangle {
   Eigen::AlignedBox3d bounds;
   Triangle triangle;
@@ -161,6 +205,12 @@ double distance_of_copy(const TriangleMesh& mesh, const std::vector<Triangle>& t
 
 }  // namespace
 
+std::vector<SphereCast> sphere_casts(const cooker::Workload& workload) {
+  std::vector<SphereCast> casts;
+  for (const Ray& ray : workload.rays) casts.push_back({ray, workload.cast_radius});
+  return casts;
+}
+
 ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& workload) {
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3d> bounds;
@@ -173,6 +223,11 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
   ExactAnswers answers;
   for (std::size_t i = 0; i < affordable(workload.rays.size(), size); ++i) {
     answers.rays.push_back(closest_t(triangles, workload.rays[i]));
+  }
+  constexpr double kCastWork = 8;
+  const std::vector<SphereCast> casts = sphere_casts(workload);
+  for (std::size_t i = 0; i < affordable(casts.size(), kCastWork * size); ++i) {
+    answers.sphere_casts.push_back(first_touch(triangles, casts[i]));
   }
   for (std::size_t i = 0; i < affordable(workload.boxes.size(), size); ++i) {
     const Eigen::AlignedBox3d& box = workload.boxes[i];

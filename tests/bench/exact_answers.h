@@ -10,11 +10,14 @@ namespace boxtree::bench {
 /// few seconds: over n triangles (n log n and the overlaps along one axis for pairs).
 struct ExactAnswers {
   std::vector<double> rays;
+  std::vector<double> sphere_casts;
   std::vector<double> boxes;
   std::vector<double> points;
   std::vector<double> pairs;      // numbers of pairs; non-zero means contact
   std::vector<double> distances;  // in the poses apart
 };
+
+[[nodiscard]] std::vector<SphereCast> sphere_casts(const cooker::Workload& workload);
 
 [[nodiscard]] ExactAnswers exact_answers(const TriangleMesh& mesh,
                                          const cooker::Workload& workload);

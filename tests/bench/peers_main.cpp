@@ -178,6 +178,14 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
     rows.add("ray_wrong", count_wrong(*found, exact.rays, slack), "queries");
     rows.add("ray_error", largest_error(*found, exact.rays) / scene, "of the scene");
   }
+  if (const auto found =
+          run_query(subject, &Subject::sphere_casts, sphere_casts(workload),
+                    {"cast_sphere", "ns", "cast_sphere_hits", "hits", count_finite}, runs, rows)) {
+    rows.add("cast_sphere_checked", checked(*found, exact.sphere_casts), "queries");
+    rows.add("cast_sphere_wrong", count_wrong(*found, exact.sphere_casts, slack), "queries");
+    rows.add("cast_sphere_error", largest_error(*found, exact.sphere_casts) / scene,
+             "of the scene");
+  }
   if (const auto found = run_query(subject, &Subject::boxes, workload.boxes,
                                    {"box", "ns", "box_tris", "triangles"}, runs, rows)) {
     rows.add("box_checked", checked(*found, exact.boxes), "queries");
@@ -376,8 +384,9 @@ int main(int argc, char** argv) {
   app.add_option("--runs", arguments.runs, "Runs whose median counts; one more goes before")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option("--queries", arguments.queries,
-                 "single (rays, boxes, points), pairs, distances or tumble; may be repeated [all]")
+  app.add_option(
+         "--queries", arguments.queries,
+         "single (rays, casts, boxes, points), pairs, distances or tumble; may be repeated [all]")
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"single", "pairs", "distances", "tumble"}));
   app.add_option("--tumble", arguments.tumble_steps,

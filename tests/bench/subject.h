@@ -38,6 +38,12 @@ struct PairWork {
   std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
 };
 
+/// A sphere that moves along the ray.
+struct SphereCast {
+  Ray ray;
+  double radius = 0;
+};
+
 /// The mesh and its copy in that pose.
 struct DistanceRequest {
   Pose pose;
@@ -55,6 +61,8 @@ class Subject {
 
   /// Distance along the ray to the closest hit; infinity without one.
   virtual bool rays(std::span<const Ray>, std::span<double>) { return false; }
+  /// How far along the ray the sphere is when it first touches; infinity if it does not.
+  virtual bool sphere_casts(std::span<const SphereCast>, std::span<double>) { return false; }
   /// Number of triangles that touch the box.
   virtual bool boxes(std::span<const Eigen::AlignedBox3d>, std::span<double>) { return false; }
   /// Distance to the closest point.

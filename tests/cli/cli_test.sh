@@ -984,20 +984,21 @@ done
 
 # Benchmarks: times beside the counts of their answers.
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
-same "$(jq -c '[.files[0] | .ray_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
-same "$(jq -c '.files[0] | .ray_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
+same "$(jq -c '[.files[0] | .ray_ns,.cast_sphere_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
+same "$(jq -c '.files[0] | .ray_hits == 20000 and .cast_sphere_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
 # The same figures in words: all but times are those of the document.
-counts=$(jq -c '.files[0] | [.ray_hits, .box_faces, .pair_hits, .pair_pairs]' out)
+counts=$(jq -c '.files[0] | [.ray_hits, .cast_sphere_hits, .box_faces, .pair_hits, .pair_pairs]' out)
 page_faults=$(jq '.files[0].open_page_faults' out)
 bench_says() {
   grep -Eq -- "$1" out || { echo "bench does not say: $1"; cat out; exit 1; }
 }
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1
 bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\)$'
-bench_says 'means; boxes are cubes with an edge of 5 % of the diagonal'
-same "$(awk '$1 ~ /^(ray|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
-same "$(awk '$1 ~ /^(ray|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
-  'ray ns box ns point ns first us all us open us '
+bench_says 'means; spheres with a radius of 1 % of the diagonal are cast along the rays;'
+bench_says 'boxes are cubes with an edge of 5 % of the diagonal'
+same "$(awk '$1 ~ /^(ray|cast|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
+same "$(awk '$1 ~ /^(ray|cast|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
+  'ray ns cast ns box ns point ns first us all us open us '
 bench_says "^  ray +[0-9]+ ns  [0-9]+ hits$"
 bench_says "^  box +[0-9]+ ns  [0-9]+ faces$"
 bench_says "^  point +[0-9]+ ns  [0-9.e+]+ summed distance$"
