@@ -47,23 +47,17 @@ if(BOXTREE_BLOB)
 endif()
 boxtree_choose(BOXTREE_BUILT_QUERIES BOXTREE_QUERIES "${BOXTREE_QUERIES}" ${BOXTREE_ALL_QUERIES})
 
-# A scene answers all of these, each by querying its trees.
-if(scene IN_LIST BOXTREE_BUILT_QUERIES)
-  foreach(query ray box sphere point pair)
-    if(NOT query IN_LIST BOXTREE_BUILT_QUERIES)
-      message(FATAL_ERROR "BOXTREE_QUERIES: scene needs ${query}, too")
+# A scene answers its kinds by querying its trees; a cast walks along the line of its shape's center
+# as a ray does, and a contact is a cast that stays where it is.
+set(needed_by_scene ray box sphere point pair)
+set(needed_by_cast ray)
+set(needed_by_collide cast)
+foreach(query IN LISTS BOXTREE_BUILT_QUERIES)
+  foreach(needed IN LISTS needed_by_${query})
+    if(NOT needed IN_LIST BOXTREE_BUILT_QUERIES)
+      message(FATAL_ERROR "BOXTREE_QUERIES: ${query} needs ${needed}, too")
     endif()
   endforeach()
-endif()
-
-# A cast walks along the line of its shape's center as a ray, and a contact is a cast that stays.
-foreach(needs "cast ray" "collide cast")
-  separate_arguments(needs)
-  list(GET needs 0 query)
-  list(GET needs 1 needed)
-  if(query IN_LIST BOXTREE_BUILT_QUERIES AND NOT needed IN_LIST BOXTREE_BUILT_QUERIES)
-    message(FATAL_ERROR "BOXTREE_QUERIES: ${query} needs ${needed}, too")
-  endif()
 endforeach()
 
 set(BOXTREE_IS_WHOLE OFF)

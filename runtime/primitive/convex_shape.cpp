@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/rounding.h"
@@ -34,8 +35,7 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   if (shape.axes == 0) {
     const std::array<Eigen::Vector3d, 1> core{Eigen::Vector3d::Zero()};
     found.core = core[0];
-    found.on_triangle = closest_point_on_triangle(core[0], {corner});
-    found.between = found.on_triangle;
+    found.between = closest_point_on_triangle(core[0], {corner});
     found.length = std::sqrt(squared_length(found.between));
     const double error = kPointDistanceError * max_abs + kSeparationUnderflow;
     found.lower = std::max(0.0, found.length - error);
@@ -49,7 +49,6 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   found.lower = distance.lower;
   found.upper = distance.upper;
   found.core = distance.first;
-  found.on_triangle = distance.second;
   found.between = distance.second - distance.first;
   found.length = std::sqrt(squared_length(found.between));
   found.along =
@@ -57,16 +56,28 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   return found;
 }
 
+namespace {
+
+// What has so many corners.
+Feature feature_with(std::ptrdiff_t corners) noexcept {
+  if (corners == 1) return Feature::kVertex;
+  return corners == 2 ? Feature::kEdge : Feature::kFace;
+}
+
+}  // namespace
+
 Feature feature_of(const Eigen::Vector3d& point, const Corners& corner,
                    const Eigen::Vector3d& closest) noexcept {
-  switch (closest_corners(point, {corner}, closest)) {
-    case 1:
-      return Feature::kVertex;
-    case 2:
-      return Feature::kEdge;
-    default:
-      return Feature::kFace;
-  }
+  return feature_with(closest_corners(point, {corner}, closest));
+}
+
+Feature farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
+                         double error) noexcept {
+  const double farthest =
+      std::max({dot(direction, corner[0]), dot(direction, corner[1]), dot(direction, corner[2])});
+  return feature_with(std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
+    return dot(direction, c) >= farthest - error;
+  }));
 }
 
 // The mean of the corners of what the box cuts out (Sutherland and Hodgman, "Reentrant Polygon

@@ -4,7 +4,9 @@
 // that what is far from the origin is computed with the digits of its own size.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -13,6 +15,7 @@
 #include <boxtree/shape.h>
 
 #include "runtime/primitive/triangle.h"
+#include "runtime/primitive/vector3.h"
 
 namespace boxtree {
 
@@ -41,15 +44,34 @@ struct ConvexShape {
   return {triangle.corner[0] - point, triangle.corner[1] - point, triangle.corner[2] - point};
 }
 
+/// A triangle and the core of a shape, whose center is the origin, along a vector of any length.
+struct Projection {
+  double low, high;  // of the triangle
+  double half;       // of the core, to either side of 0
+};
+[[nodiscard]] inline Projection project(const Eigen::Vector3d& vector, const ConvexShape& shape,
+                                        const Corners& corner) noexcept {
+  Projection found{dot(vector, corner[0]), 0, 0};
+  found.high = found.low;
+  for (std::size_t c = 1; c < corner.size(); ++c) {
+    const double at = dot(vector, corner[c]);
+    found.low = std::min(found.low, at);
+    found.high = std::max(found.high, at);
+  }
+  for (std::uint32_t k = 0; k < shape.axes; ++k) {
+    found.half += std::abs(dot(vector, shape.axis[k])) * shape.half[k];
+  }
+  return found;
+}
+
 /// What is known of the distance of a core (a point or a segment) from a triangle.
 struct CoreDistance {
-  double lower;                 // of the distance
-  double upper;                 // likewise
-  double along;                 // of the gap along `between`, or 0
-  double length;                // of `between`
-  Eigen::Vector3d core;         // its closest point
-  Eigen::Vector3d on_triangle;  // and that of the triangle
-  Eigen::Vector3d between;      // from one to the other
+  double lower;             // of the distance
+  double upper;             // likewise
+  double along;             // of the gap along `between`, or 0
+  double length;            // of `between`
+  Eigen::Vector3d core;     // its closest point
+  Eigen::Vector3d between;  // from there to the closest point of the triangle
 };
 
 /// Of a sphere or capsule. Its center is the origin.
@@ -58,6 +80,10 @@ struct CoreDistance {
 /// What of the triangle closest_point_on_triangle() has found for `point`.
 [[nodiscard]] Feature feature_of(const Eigen::Vector3d& point, const Corners& corner,
                                  const Eigen::Vector3d& closest) noexcept;
+
+/// The part of the triangle that is farthest along a direction, to within `error`.
+[[nodiscard]] Feature farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
+                                       double error) noexcept;
 
 /// A point of the triangle inside a box that is widened by `widened`: the middle of what the box
 /// holds of it. The point closest to the center if it holds nothing.

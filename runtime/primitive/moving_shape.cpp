@@ -9,14 +9,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 
-#include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
-#include "runtime/primitive/triangle_distance.h"
 #include "runtime/primitive/vector3.h"
 
 namespace boxtree {
@@ -59,14 +56,7 @@ double plane_touch(const MovingShape& moving, const Triangle& triangle, double f
   // Any vector will do, so that only what follows is rounded; of one that is too short to be a
   // direction nothing follows.
   if (!(length >= kShortestDirection)) return from;
-  double low = dot(n, corner[0]), high = low;
-  for (std::size_t c = 1; c < 3; ++c) {
-    const double at = dot(n, corner[c]);
-    low = std::min(low, at);
-    high = std::max(high, at);
-  }
-  double half = 0;
-  if (moving.shape.axes == 1) half = std::abs(dot(n, moving.shape.axis[0])) * moving.shape.half[0];
+  const auto [low, high, half] = project(n, moving.shape, corner);
   // Relative to the length, as in separation_along.
   const double error = kSeparationError * 2 * (max_abs_of(corner) + half / length);
   const double speed = dot(n, moving.direction) / length;
@@ -117,24 +107,15 @@ class Axes {
 
   // Along a vector of length 1, or 0: then it is no direction.
   void try_axis(const Eigen::Vector3d& axis) noexcept {
-    double low = kInfinity, high = -kInfinity, half = 0;
-    for (const Eigen::Vector3d& corner : corner_) {
-      const double at = dot(axis, corner);
-      low = std::min(low, at);
-      high = std::max(high, at);
-    }
-    for (std::size_t k = 0; k < 3; ++k) {
-      half += std::abs(dot(axis, moving_.shape.axis[k])) * moving_.shape.half[k];
-    }
-    if (squared_length(axis) == 0) return;
-    // They overlap while first <= s * speed <= last, and surely while it is between the sure ones.
+    if (axis.isZero(0)) return;
+    const auto [low, high, half] = project(axis, moving_.shape, corner_);
+    // They overlap while first <= s * speed <= last.
     const double first = low - half, last = high + half;
-    double speed = dot(axis, moving_.direction);
-    const double speed_error = 16 * kRoundoffF64;
+    const double speed = dot(axis, moving_.direction);
     if (speed < 0) {
-      try_interval(-last, -first, -speed, speed_error, -1, axis);
+      try_interval(-last, -first, -speed, axis);
     } else {
-      try_interval(first, last, speed, speed_error, 1, axis);
+      try_interval(first, last, speed, -axis);
     }
   }
 
@@ -171,23 +152,26 @@ class Axes {
   [[nodiscard]] double error() const noexcept { return error_; }
 
  private:
-  void try_interval(double first, double last, double speed, double speed_error, double sign,
-                    const Eigen::Vector3d& axis) noexcept {
-    if (speed > speed_error && -first < overlap - 2 * error_) {
+  // How far speeds along a unit vector are off.
+  static constexpr double kSpeedError = 16 * kRoundoffF64;
+
+  // `speed` is not negative; `back`: the axis, against the motion.
+  void try_interval(double first, double last, double speed, const Eigen::Vector3d& back) noexcept {
+    const double slowest = speed - kSpeedError;
+    if (slowest > 0 && -first < overlap - 2 * error_) {
       overlap = -first;
-      normal = -sign * axis;
+      normal = back;
     }
-    const double slowest = speed - speed_error;
     if (first > error_) {  // ahead
-      enter = std::max(enter, (first - error_) / (speed + speed_error));
+      enter = std::max(enter, (first - error_) / (speed + kSpeedError));
       enter_by = std::max(enter_by, slowest > 0 ? (first + error_) / slowest : kInfinity);
     } else if (first > -error_ && slowest > 0) {
       enter_by = std::max(enter_by, (first + error_) / slowest);
     }
     if (last < -error_) {
       leave = -1;  // behind
-    } else if (speed > speed_error) {
-      leave = std::min(leave, (last + error_) / (speed - speed_error));
+    } else if (slowest > 0) {
+      leave = std::min(leave, (last + error_) / slowest);
     }
   }
 
@@ -220,16 +204,7 @@ MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& t
     return contact;
   }
   contact.normal = axes.normal;
-  double nearest = -kInfinity;
-  for (const Eigen::Vector3d& c : corner) {
-    nearest = std::max(nearest, dot(contact.normal, c));
-  }
-  const auto touching = std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
-    return dot(contact.normal, c) >= nearest - 2 * error;
-  });
-  contact.feature = touching == 1   ? Feature::kVertex
-                    : touching == 2 ? Feature::kEdge
-                                    : Feature::kFace;
+  contact.feature = farthest_feature(contact.normal, corner, 2 * error);
   return contact;
 }
 

@@ -29,15 +29,7 @@ class LeastDepth {
   // Along a vector of length 1, either way, or 0: then it is none.
   void try_axis(const Eigen::Vector3d& axis) noexcept {
     if (axis.isZero(0)) return;
-    double low = std::numeric_limits<double>::infinity(), high = -low, half = 0;
-    for (const Eigen::Vector3d& corner : corner_) {
-      const double at = dot(axis, corner);
-      low = std::min(low, at);
-      high = std::max(high, at);
-    }
-    for (std::uint32_t k = 0; k < shape_.axes; ++k) {
-      half += std::abs(dot(axis, shape_.axis[k])) * shape_.half[k];
-    }
+    const auto [low, high, half] = project(axis, shape_, corner_);
     // Beyond the triangle's high side, or its low one.
     if (high + half < depth - error_) {
       depth = high + half;
@@ -72,22 +64,11 @@ class LeastDepth {
   double error_;
 };
 
-// The part of the triangle that is farthest along the normal, where the shape leaves it.
-Feature farthest_feature(const Eigen::Vector3d& normal, const Corners& corner,
-                         double error) noexcept {
-  double farthest = -std::numeric_limits<double>::infinity();
-  for (const Eigen::Vector3d& c : corner) farthest = std::max(farthest, dot(normal, c));
-  const auto count = std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
-    return dot(normal, c) >= farthest - error;
-  });
-  if (count == 1) return Feature::kVertex;
-  return count == 2 ? Feature::kEdge : Feature::kFace;
-}
-
 Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) noexcept {
   LeastDepth least(box, corner, doubt);
   least.try_all();
   return {point_inside_box(box, least.error(), corner), least.normal, std::max(0.0, least.depth),
+          // Where the box leaves it.
           farthest_feature(least.normal, corner, least.error())};
 }
 

@@ -8,7 +8,6 @@
 #include "runtime/query/cast_query.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_in_tree.h"
-#include "runtime/walk/face_copies.h"
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
@@ -21,15 +20,18 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   if (interval.enter > interval.leave || interval.leave < 0) return;
   const double from = std::max(interval.enter, 0.0);
   if (from > t_max) return;
-  if (options != nullptr && !admits_side(triangle)) return;
+  if (!admits_side(triangle)) return;
   const std::optional<double> s = moving.first_touch(triangle, from, t_max);
   if (!s) return;
   CastCandidate found{true, *s, {kNoFaceId, face_index}, face_index, half, triangle};
   if (wanted == Wanted::kAll) {
-    visit_all(found);
+    error = faces.visit_wanted(tree, face_index, t_max, [&](const FaceRef& face) {
+      found.face = face;
+      return (*visitor)(*this, found);
+    });
     return;
   }
-  if (options != nullptr && options->filter && !name_wanted(found)) return;
+  if (faces.has_filter() && !faces.name_wanted(tree, face_index, found.face)) return;
   if (best.is_hit && found.s == best.s) {
     name(tree, found.face);
     name(tree, best.face);
@@ -40,39 +42,13 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
 }
 
 bool CastQuery::admits_side(const Triangle& triangle) const noexcept {
-  if (options->back_faces == BackFaces::kHit) return true;
+  if (faces.options == nullptr || faces.options->back_faces == BackFaces::kHit) return true;
   const bool is_back = dot(unit_normal(triangle), moving.direction) > 0;
-  return is_back == (options->back_faces == BackFaces::kOnly);
-}
-
-bool CastQuery::name_wanted(CastCandidate& found) const noexcept {
-  const FaceWithCopies faces(tree, found.original);
-  for (std::uint32_t i = 0; i < faces.count(); ++i) {
-    found.face = faces.face(i);
-    if ((*options->filter)(found.face)) return true;
-  }
-  return false;
-}
-
-void CastQuery::visit_all(CastCandidate& found) noexcept {
-  const FaceWithCopies faces(tree, found.original);
-  if (faces.count() - 1 > copies_left) {
-    error = Errc::kNodeCorrupt;
-    return;
-  }
-  copies_left -= faces.count() - 1;
-  for (std::uint32_t i = 0; i < faces.count() && !stopped; ++i) {
-    found.face = faces.face(i);
-    if (options != nullptr && options->filter && !(*options->filter)(found.face)) continue;
-    const double wanted_to = (*visitor)(found);
-    stopped = !(wanted_to >= 0);
-    t_max = std::min(t_max, wanted_to);
-  }
+  return is_back == (faces.options->back_faces == BackFaces::kOnly);
 }
 
 Errc CastQuery::run() {
-  enter = key(tree.root_lanes());
-  if (tree.empty() || !(enter <= t_max)) return Errc::kOk;
+  if (tree.empty() || !meets(tree.root_lanes())) return Errc::kOk;
   const Errc walked = walk_nearest(tree, *this);
   return walked != Errc::kOk ? walked : error;
 }
@@ -97,25 +73,17 @@ class Cast {
     if (!(length <= std::numeric_limits<double>::max())) invalid_ = "direction";
     if (!(motion.t_max >= 0)) invalid_ = "t_max";
     if (shape.invalid != nullptr) invalid_ = shape.invalid;
-    if (invalid_ == nullptr && !(largest_magnitude(shape.shape.half_extents()) <= kMaxCoordinate)) {
-      invalid_ = shape.shape.axes == 3 ? "half_extents" : "radius";
-    }
   }
 
   /// The field that is not valid, or null.
   [[nodiscard]] const char* invalid() const { return invalid_; }
 
-  /// `visit`: called with the query and each touch of kAll. Precondition: nothing is invalid.
-  template <class Visit, class Answer>
-  Errc run(CastQuery::Wanted wanted, const Visit& visit, const Answer& answer) {
+  /// `visitor`: of kAll, or null. `answer`: called with the query once it has walked the tree.
+  /// Precondition: nothing is invalid.
+  template <class Answer>
+  Errc run(CastQuery::Wanted wanted, const CastQuery::Visitor* visitor, const Answer& answer) {
     WalkBound nodes(tree_.node_count(), &work_);
-    const int exponent = exponent_of(largest_magnitude(line_.direction));
-    CastQuery* query_of_visitor = nullptr;
-    const auto all = [&](const CastCandidate& found) { return visit(*query_of_visitor, found); };
-    const CastQuery::Visitor visitor(all);
-    CastQuery query(tree_, shape_.shape, line_, exponent, is_moving_, wanted, &visitor, nodes,
-                    &options_);
-    query_of_visitor = &query;
+    CastQuery query(tree_, shape_.shape, line_, is_moving_, wanted, visitor, nodes, &options_);
     const Errc error = query.run();
     if (error == Errc::kOk) answer(query);
     return error;
@@ -154,11 +122,9 @@ CastResult one_touch(const Tree& tree, const ShapeInTree& shape, const Motion& m
   Cast cast(tree, shape, motion, options);
   if (cast.invalid() != nullptr) return {Errc::kInvalidQuery, cast.invalid()};
   CastResult result;
-  const Errc error = cast.run(
-      wanted, [](const CastQuery&, const CastCandidate&) { return -1.0; },
-      [&](const CastQuery& query) {
-        if (query.best.is_hit) result = cast.hit_of(query, query.best);
-      });
+  const Errc error = cast.run(wanted, nullptr, [&](const CastQuery& query) {
+    if (query.best.is_hit) result = cast.hit_of(query, query.best);
+  });
   return error == Errc::kOk ? result : CastResult(error);
 }
 
@@ -168,12 +134,13 @@ Result<Visit> all_touches(const Tree& tree, const ShapeInTree& shape, const Moti
   Cast cast(tree, shape, motion, options);
   if (cast.invalid() != nullptr) return invalid_query(cast.invalid());
   Visit end = Visit::kComplete;
-  const Errc error = cast.run(
-      CastQuery::Wanted::kAll,
-      [&](const CastQuery& query, const CastCandidate& found) {
-        return RayInTree::scaled(visitor(cast.hit_of(query, found)), query.parameter_exponent);
-      },
-      [&](const CastQuery& query) { end = query.stopped ? Visit::kStopped : Visit::kComplete; });
+  const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
+    return RayInTree::scaled(visitor(cast.hit_of(query, found)), query.parameter_exponent);
+  };
+  const CastQuery::Visitor all(touched);
+  const Errc error = cast.run(CastQuery::Wanted::kAll, &all, [&](const CastQuery& query) {
+    end = query.faces.stopped ? Visit::kStopped : Visit::kComplete;
+  });
   if (error != Errc::kOk) return error;
   return end;
 }

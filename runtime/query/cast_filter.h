@@ -32,7 +32,7 @@ struct CastFilter : RayBoxFilter {
 
   /// Precondition: is_near(query), which enters the root box.
   explicit CastFilter(const CastQuery& query) noexcept
-      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, 0.0),
+      : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
                      rounding(query.near) + given_away(query.origin_max_abs, query.near)) {
     // Rounded up twice: the product and the sum.
     constexpr float kUp = static_cast<float>(1 + 8 * kRoundoffF32);

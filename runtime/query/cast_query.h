@@ -33,26 +33,27 @@ struct CastCandidate {
 struct CastQuery : RayInTree {
   /// Receives each touch, those of copies after their original's; returns the largest parameter
   /// that is still of interest, or a negative number to stop.
-  using Visitor = FunctionRef<double(const CastCandidate&)>;
+  using Visitor = FunctionRef<double(const CastQuery& query, const CastCandidate& found)>;
 
   enum class Wanted : std::uint8_t { kClosest, kAny, kAll };
 
-  /// `shape`: in tree space, wherever it is. `line`: of its center; its direction is not zero.
-  /// `visitor`: of kAll, or null.
-  CastQuery(const BoundTree& queried, const ConvexShape& shape, const Ray& line,
-            int direction_exponent, bool is_moving, Wanted wanted_touches, const Visitor* all,
-            WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept
-      : RayInTree(queried, line, direction_exponent),
+  /// `line`: of the shape's center; its direction is not zero. `all`: the visitor of kAll, or null.
+  /// `face_options`: null: every face may be hit.
+  CastQuery(const BoundTree& queried, const ConvexShape& shape, const Ray& line, bool is_moving,
+            Wanted wanted_touches, const Visitor* all, WalkBound& bound,
+            const FaceOptions* face_options = nullptr) noexcept
+      : RayInTree(queried, line, exponent_of(largest_magnitude(line.direction)),
+                  near_of(queried, shape)),
         tree(queried),
         nodes(bound),
         extent(shape.half_extents()),
-        near(RaySlab::power_above(queried.largest_abs()) + 2 * largest_magnitude(extent)),
+        near(near_of(queried, shape)),
         moving{placed(shape), is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
                MovingShape::doubt_of(near, origin_max_abs)},
         wanted(wanted_touches),
         visitor(all),
-        options(face_options) {
-    slab = RaySlab(origin, origin_max_abs, direction, near).widened(AxisLanes(extent));
+        faces(queried, face_options) {
+    slab = slab.widened(AxisLanes(extent));
   }
 
   /// Walks the tree; `best` or the visitor has the answers then. Errors: those of corrupt bytes and
@@ -72,7 +73,7 @@ struct CastQuery : RayInTree {
 
   /// Whether no other triangle can matter.
   [[nodiscard]] bool is_done() const noexcept {
-    return stopped || error != Errc::kOk || (wanted == Wanted::kAny && best.is_hit);
+    return faces.stopped || error != Errc::kOk || (wanted == Wanted::kAny && best.is_hit);
   }
 
   void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept;
@@ -85,23 +86,19 @@ struct CastQuery : RayInTree {
   MovingShape moving;
   Wanted wanted;
   const Visitor* visitor;
-  const FaceOptions* options;  // null: every face may be hit
-  double enter = 0;            // where it comes upon the root box
+  FaceWishes faces;
   CastCandidate best;
-  bool stopped = false;
   Errc error = Errc::kOk;
-  // In valid files each copy is reported once for each triangle of its face; see FaceWalk.
-  std::uint64_t copies_left = 2 * std::uint64_t{tree.duplicate_count()};
   TriangleBatch batch;
 
  private:
   // Whether a triangle may be hit, from the side from which it is met.
   [[nodiscard]] bool admits_side(const Triangle& triangle) const noexcept;
-  // Names the first of the original and its copies that the filter accepts; false if it accepts
-  // none.
-  [[nodiscard]] bool name_wanted(CastCandidate& found) const noexcept;
-  void visit_all(CastCandidate& found) noexcept;
 
+  [[nodiscard]] static double near_of(const BoundTree& tree, const ConvexShape& shape) noexcept {
+    return RaySlab::power_above(tree.largest_abs()) + 2 * largest_magnitude(shape.half_extents());
+  }
+  // The shape, which may be anywhere, at the start of the line.
   [[nodiscard]] ConvexShape placed(const ConvexShape& shape) const noexcept {
     ConvexShape out = shape;
     out.center = origin.vector();

@@ -22,18 +22,15 @@ Result<Visit> visit_touched(const BoundTree& tree, const ShapeInTree& shape,
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);
-  const CastQuery* query_of_visitor = nullptr;
-  const auto touched = [&](const CastCandidate& found) {
-    return visit(*query_of_visitor, found) ? 0.0 : -1.0;
+  const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
+    return visit(query, found) ? 0.0 : -1.0;
   };
   const CastQuery::Visitor visitor(touched);
   // A line of no length along any direction.
   const Ray line{shape.center, Eigen::Vector3d::UnitX(), 0, 0};
-  CastQuery query(tree, shape.shape, line, exponent_of(1), false, CastQuery::Wanted::kAll, &visitor,
-                  nodes);
-  query_of_visitor = &query;
+  CastQuery query(tree, shape.shape, line, false, CastQuery::Wanted::kAll, &visitor, nodes);
   if (const Errc error = query.run(); error != Errc::kOk) return error;
-  return query.stopped ? Visit::kStopped : Visit::kComplete;
+  return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
 template <class Shape>

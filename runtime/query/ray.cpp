@@ -41,34 +41,23 @@ namespace {
 
 // Whether the ray may hit a triangle that it meets, from the side that it meets.
 bool admits_side(const RayQuery& query, const Triangle& triangle) noexcept {
-  const BackFaces back_faces = query.wishes->faces.back_faces;
+  const BackFaces back_faces = query.wishes->faces.options->back_faces;
   return back_faces == BackFaces::kHit ||
          meets_front(query.shear, triangle) == (back_faces == BackFaces::kIgnore);
 }
 
 // See RayWishes::Meet.
 bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
-  RayWishes* const wishes = query.wishes;
-  if (wishes->stopped || !admits_side(query, candidate.triangle)) return false;
-  const auto& filter = wishes->faces.filter;
-  const FaceWithCopies faces(query.tree, candidate.face.index);
-  if (wishes->all != nullptr) {
-    if (faces.count() - 1 > wishes->copies_left) {
-      query.error = Errc::kNodeCorrupt;
-      return false;
-    }
-    wishes->copies_left -= faces.count() - 1;
+  FaceWishes& faces = query.wishes->faces;
+  if (faces.stopped || !admits_side(query, candidate.triangle)) return false;
+  const std::uint32_t index = candidate.face.index;
+  if (query.wishes->all == nullptr) {
+    return !faces.has_filter() || faces.name_wanted(query.tree, index, candidate.face);
   }
-  for (std::uint32_t i = 0; i < faces.count(); ++i) {
-    // Without a filter the original is named only where it has to be.
-    if (filter || wishes->all != nullptr) candidate.face = faces.face(i);
-    if (filter && !(*filter)(candidate.face)) continue;
-    if (wishes->all == nullptr) return true;
-    const double wanted_to = (*wishes->all)(candidate);
-    wishes->stopped = !(wanted_to >= 0);
-    if (wishes->stopped) return false;
-    query.t_max = std::min(query.t_max, wanted_to);
-  }
+  query.error = faces.visit_wanted(query.tree, index, query.t_max, [&](const FaceRef& face) {
+    candidate.face = face;
+    return (*query.wishes->all)(query, candidate);
+  });
   return false;
 }
 
@@ -96,7 +85,7 @@ RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first, const 
 
 RayResult wanted_hit(const Tree& tree, const Ray& ray, bool stop_at_first,
                      const FaceOptions& options) {
-  RayWishes wishes{options, &meet_wishes};
+  RayWishes wishes{{BoundTree::of(tree), &options}, &meet_wishes};
   return hit_on(tree, ray, stop_at_first, options.limits, &wishes);
 }
 
@@ -123,21 +112,18 @@ Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   QueryWork work(options.limits);
-  const double length = largest_magnitude(ray.direction);
-  const int exponent =
-      invalid_field(ray, length) == nullptr ? exponent_of(length) - tree.scale_exponent() : 0;
-  const auto visit = [&](const RayCandidate& found) {
+  const auto visit = [&](const RayQuery& query, const RayCandidate& found) {
     RayCandidate hit = found;
-    hit.t = parameter_of(ray, found.t, exponent);
-    return RayInTree::scaled(visitor(described(tree, hit)), exponent);
+    hit.t = parameter_of(ray, found.t, query.parameter_exponent);
+    return RayInTree::scaled(visitor(described(tree, hit)), query.parameter_exponent);
   };
-  const FunctionRef<double(const RayCandidate&)> all(visit);
-  RayWishes wishes{options, &meet_wishes, &all, 2 * std::uint64_t{tree.duplicate_count()}};
+  const RayWishes::Visitor all(visit);
+  RayWishes wishes{{tree, &options}, &meet_wishes, &all};
   RayCandidate none;
   const Errc error = cast_ray(tree, ray, false, work, none, &wishes);
   if (error == Errc::kInvalidQuery) return invalid_query(refused_field(ray));
   if (error != Errc::kOk) return error;
-  return wishes.stopped ? Visit::kStopped : Visit::kComplete;
+  return wishes.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
 Result<std::size_t> nearest_hits(const Tree& tree, const Ray& ray, std::span<RayHit> hits,

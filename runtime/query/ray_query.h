@@ -13,6 +13,7 @@
 
 #include "runtime/primitive/predicates.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/face_wishes.h"
 #include "runtime/query/ray_slab.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
@@ -44,11 +45,14 @@ struct RayCandidate {
 /// is converted without rounding.
 struct RayInTree {
   RayInTree(const BoundTree& tree, const Ray& ray, int direction_exponent) noexcept
+      : RayInTree(tree, ray, direction_exponent, tree.largest_abs()) {}
+  /// `max_abs`: the largest absolute coordinate of any box.
+  RayInTree(const BoundTree& tree, const Ray& ray, int direction_exponent, double max_abs) noexcept
       : parameter_exponent(direction_exponent - tree.scale_exponent()),
         origin(tree.frame().to_tree_lanes(AxisLanes(ray.origin))),
         direction(scaled(AxisLanes(ray.direction), -direction_exponent)),
         origin_max_abs(largest_magnitude(origin[0], origin[1], origin[2])),
-        slab(origin, origin_max_abs, direction, tree.largest_abs()),
+        slab(origin, origin_max_abs, direction, max_abs),
         t_min(scaled(ray.t_min, parameter_exponent)),
         t_max(scaled(ray.t_max, parameter_exponent)) {}
 
@@ -73,6 +77,12 @@ struct RayInTree {
     return slab.key(box, t_min);
   }
 
+  /// Whether the ray meets the root box, from `enter` on.
+  [[nodiscard]] bool meets(const BoxLanes& root) noexcept {
+    enter = key(root);
+    return enter <= t_max && enter < std::numeric_limits<double>::infinity();
+  }
+
   int parameter_exponent;
   AxisLanes origin;
   AxisLanes direction;
@@ -80,6 +90,7 @@ struct RayInTree {
   RaySlab slab;
   double t_min;
   double t_max;  // shrinks to the best hit
+  double enter;  // where it meets the root box; unspecified before meets()
 
  private:
   static constexpr int kBias = std::numeric_limits<double>::max_exponent - 1;
@@ -97,15 +108,13 @@ struct RayWishes {
   /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
   /// it. A pointer, so that programs that have no wishes do not link it.
   using Meet = bool(RayQuery& query, RayCandidate& candidate) noexcept;
-
-  const FaceOptions& faces;
-  Meet* meet;
   /// Receives every hit, named; returns the largest parameter that is still of interest, or a
-  /// negative number to stop. Null: one hit is wanted.
-  const FunctionRef<double(const RayCandidate&)>* all = nullptr;
-  // In valid files each copy is visited once for each triangle of its face; see FaceWalk.
-  std::uint64_t copies_left = 0;
-  bool stopped = false;
+  /// negative number to stop.
+  using Visitor = FunctionRef<double(const RayQuery& query, const RayCandidate& found)>;
+
+  FaceWishes faces;
+  Meet* meet;
+  const Visitor* all = nullptr;  // null: one hit is wanted
 };
 
 /// A query of traverse_nearest. `best` receives the answer, without the id of its face; it holds no
@@ -123,8 +132,7 @@ struct RayQuery : RayInTree {
   /// Whether the ray intersects the root box. If it does, prepares the tests of what is inside.
   /// Call it before any walk.
   [[nodiscard]] bool enters_root() noexcept {
-    enter = key(tree.root_lanes());
-    if (!(enter <= t_max) || enter == std::numeric_limits<double>::infinity()) return false;
+    if (!meets(tree.root_lanes())) return false;
     shear = RayShear(origin, direction, slab.inverse());
     return true;
   }
@@ -142,7 +150,8 @@ struct RayQuery : RayInTree {
 
   /// Whether no other triangle can matter.
   [[nodiscard]] bool is_done() const noexcept {
-    return (any && hit.is_hit) || error != Errc::kOk || (wishes != nullptr && wishes->stopped);
+    return (any && hit.is_hit) || error != Errc::kOk ||
+           (wishes != nullptr && wishes->faces.stopped);
   }
 
   void test(const Triangle& triangle, std::uint32_t face_index, std::uint32_t half) noexcept {
@@ -167,7 +176,6 @@ struct RayQuery : RayInTree {
 
   const BoundTree& tree;
   WalkBound& nodes;
-  double enter;  // where it intersects the root box
   RayShear shear;
   bool any;
   RayCandidate& hit;

@@ -24,6 +24,7 @@
 namespace boxtree::oracle {
 namespace {
 
+using test::depth_along;
 using test::LongShape;
 using test::LongTriangle;
 using test::LongVector;
@@ -139,17 +140,6 @@ LongShape long_shape_of(const ConvexShape& shape) {
   out.center = center;
   out.reach = arm.norm();
   return out;
-}
-
-// How far a shape has to go along a direction of length 1 until it is beyond the triangle.
-long double depth_along(const LongShape& shape, const LongVector& direction,
-                        const LongTriangle& triangle) {
-  long double highest = -std::numeric_limits<long double>::infinity(), lowest = -highest;
-  for (const LongVector& corner : triangle) highest = std::max(highest, corner.dot(direction));
-  for (const LongTriangle& part : shape.core) {
-    for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
-  }
-  return highest - lowest + shape.radius;
 }
 
 struct Tally {

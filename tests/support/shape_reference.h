@@ -145,23 +145,37 @@ inline long double least_distance(const LongShape& shape, const LongVector& dire
   return least;
 }
 
+/// A triangle of a tree in object space, in a ball that rules most of them out.
+struct BoundedTriangle {
+  LongTriangle corner;
+  LongVector center;
+  long double radius = 0;
+};
+
+inline std::vector<BoundedTriangle> bounded_triangles(const Tree& tree) {
+  const long double scale = std::ldexp(1.0L, BoundTree::of(tree).scale_exponent());
+  std::vector<BoundedTriangle> triangles;
+  for (const Triangle& triangle : all_triangles(tree)) {
+    BoundedTriangle bounded;
+    bounded.center.setZero();
+    for (std::size_t c = 0; c < 3; ++c) {
+      bounded.corner[c] = scale * triangle.corner[c].cast<long double>() +
+                          BoundTree::of(tree).frame().origin.cast<long double>();
+      bounded.center += bounded.corner[c] / 3;
+    }
+    for (const LongVector& c : bounded.corner) {
+      bounded.radius = std::max(bounded.radius, (c - bounded.center).norm());
+    }
+    triangles.push_back(bounded);
+  }
+  return triangles;
+}
+
 class Surface {
  public:
-  explicit Surface(const Tree& tree) {
-    const long double scale = std::ldexp(1.0L, BoundTree::of(tree).scale_exponent());
-    for (const Triangle& triangle : all_triangles(tree)) {
-      Item item;
-      item.center.setZero();
-      for (std::size_t c = 0; c < 3; ++c) {
-        item.corner[c] = scale * triangle.corner[c].cast<long double>() +
-                         BoundTree::of(tree).frame().origin.cast<long double>();
-        item.center += item.corner[c] / 3;
-        size_ = std::max(size_, item.corner[c].cwiseAbs().maxCoeff());
-      }
-      for (const auto& c : item.corner) {
-        item.radius = std::max(item.radius, (c - item.center).norm());
-      }
-      items_.push_back(item);
+  explicit Surface(const Tree& tree) : triangles_(bounded_triangles(tree)) {
+    for (const BoundedTriangle& triangle : triangles_) {
+      for (const LongVector& c : triangle.corner) size_ = std::max(size_, c.cwiseAbs().maxCoeff());
     }
   }
 
@@ -169,7 +183,7 @@ class Surface {
   [[nodiscard]] long double least(const LongShape& shape, const LongVector& direction,
                                   long double to, long double enough) const {
     long double best = std::numeric_limits<long double>::infinity();
-    for (const Item& item : items_) {
+    for (const BoundedTriangle& item : triangles_) {
       const LongVector w = item.center - shape.center;
       const long double dd = direction.squaredNorm();
       const long double s = dd > 0 ? std::clamp(w.dot(direction) / dd, 0.0L, to) : 0;
@@ -181,12 +195,7 @@ class Surface {
   [[nodiscard]] long double size() const { return size_; }
 
  private:
-  struct Item {
-    LongTriangle corner;
-    LongVector center;
-    long double radius = 0;
-  };
-  std::vector<Item> items_;
+  std::vector<BoundedTriangle> triangles_;
   long double size_ = 0;
 };
 
@@ -194,6 +203,17 @@ inline LongTriangle long_triangle(const Triangle& triangle) {
   LongTriangle out;
   for (std::size_t c = 0; c < 3; ++c) out[c] = triangle.corner[c].cast<long double>();
   return out;
+}
+
+// How far the shape has to go along a direction of length 1 until it is beyond the triangle.
+inline long double depth_along(const LongShape& shape, const LongVector& direction,
+                               const LongTriangle& triangle) {
+  long double highest = -std::numeric_limits<long double>::infinity(), lowest = -highest;
+  for (const LongVector& corner : triangle) highest = std::max(highest, corner.dot(direction));
+  for (const LongTriangle& part : shape.core) {
+    for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
+  }
+  return highest - lowest + shape.radius;
 }
 
 }  // namespace boxtree::test

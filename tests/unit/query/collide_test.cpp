@@ -21,23 +21,13 @@ namespace boxtree {
 namespace {
 
 using cooker::SourceMesh;
+using test::depth_along;
 using test::LongShape;
 using test::LongTriangle;
 using test::LongVector;
 
 // What collide.h allows, in units of the largest coordinate.
 constexpr long double kDoubt = 0x1p-46L;
-
-// How far the shape has to go along a direction of length 1 until it is beyond the triangle.
-long double depth_along(const LongShape& shape, const LongVector& direction,
-                        const LongTriangle& triangle) {
-  long double highest = -std::numeric_limits<long double>::infinity(), lowest = -highest;
-  for (const LongVector& corner : triangle) highest = std::max(highest, corner.dot(direction));
-  for (const LongTriangle& part : shape.core) {
-    for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
-  }
-  return highest - lowest + shape.radius;
-}
 
 class Collide : public testing::TestWithParam<test::Encoding> {
  protected:

@@ -12,7 +12,7 @@
 #include "runtime/tree/bound_tree.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
-#include "tests/support/triangle_reference.h"
+#include "tests/support/shape_reference.h"
 
 namespace boxtree {
 namespace {
@@ -22,28 +22,12 @@ using cooker::SourceMesh;
 // Triangles in object space, each in a sphere that rules most of them out.
 class BruteForce {
  public:
-  explicit BruteForce(const Tree& tree) {
-    const long double scale = std::ldexp(1.0L, BoundTree::of(tree).scale_exponent());
-    for (const Triangle& triangle : test::all_triangles(tree)) {
-      Item item;
-      item.center.setZero();
-      for (std::size_t c = 0; c < 3; ++c) {
-        item.corner[c] = scale * triangle.corner[c].cast<long double>() +
-                         BoundTree::of(tree).frame().origin.cast<long double>();
-        item.center += item.corner[c] / 3;
-      }
-      item.radius = 0;
-      for (const auto& c : item.corner) {
-        item.radius = std::max(item.radius, (c - item.center).norm());
-      }
-      items_.push_back(item);
-    }
-  }
+  explicit BruteForce(const Tree& tree) : items_(test::bounded_triangles(tree)) {}
 
   [[nodiscard]] long double distance(const Eigen::Vector3d& point) const {
     const test::LongVector p = point.cast<long double>();
     long double best = std::numeric_limits<long double>::infinity();
-    for (const Item& item : items_) {
+    for (const test::BoundedTriangle& item : items_) {
       if ((item.center - p).norm() - item.radius > best) continue;
       best = std::min(best, test::distance_in_extended_precision({p, p, p}, item.corner));
     }
@@ -51,12 +35,7 @@ class BruteForce {
   }
 
  private:
-  struct Item {
-    test::LongTriangle corner;
-    test::LongVector center;
-    long double radius;
-  };
-  std::vector<Item> items_;
+  std::vector<test::BoundedTriangle> items_;
 };
 
 class ApproximatePoints : public testing::TestWithParam<test::Encoding> {
