@@ -21,9 +21,14 @@ Eigen::Vector3d ConvexShape::half_extents() const noexcept {
 }
 
 double ConvexShape::outer_radius() const noexcept {
-  // Axes of a box are orthogonal but for rounding.
+  // No sum of the axes is longer. The products of different axes of a box are zero but for
+  // rounding; those of its image in another space need not be.
   double squared = 0;
-  for (std::uint32_t i = 0; i < axes; ++i) squared += half[i] * half[i] * squared_length(axis[i]);
+  for (std::uint32_t i = 0; i < axes; ++i) {
+    for (std::uint32_t j = 0; j < axes; ++j) {
+      squared += half[i] * half[j] * std::abs(dot(axis[i], axis[j]));
+    }
+  }
   return (radius + std::sqrt(squared)) * (1 + 16 * kRoundoffF64);
 }
 

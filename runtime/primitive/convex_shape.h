@@ -22,7 +22,8 @@ namespace boxtree {
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 /// All points within `radius` of center + [-1, 1] half[0] axis[0] + ... over `axes` axes: a sphere
-/// (no axis), a capsule (one) or a box (three, then without a radius).
+/// (no axis), a capsule (one) or a box (three, then without a radius). What bounds the image of one
+/// in another space may have both, and axes that are not orthogonal.
 struct ConvexShape {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   // Of length 1 but for rounding; of a capsule, any.

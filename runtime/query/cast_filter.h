@@ -40,11 +40,11 @@ struct CastFilter : RayBoxFilter {
       const auto axis = static_cast<Eigen::Index>(std::min<std::size_t>(k, 2));
       margin[k] = (margin[k] + float_above(query.extent[axis]) * std::abs(inverse[k])) * kUp;
     }
-    const ConvexShape& shape = query.moving.shape;
+    const ConvexShape& shape = query.shape;
     radius = float_above(shape.radius);
     outer_radius = float_above(shape.outer_radius());
     for (std::size_t k = 0; k < 3; ++k) {
-      direction[k] = static_cast<float>(query.moving.direction[static_cast<Eigen::Index>(k)]);
+      direction[k] = query.is_moving ? static_cast<float>(query.direction[k]) : 0.0f;
     }
     core.count = shape.axes;
     for (std::uint32_t i = 0; i < shape.axes; ++i) {

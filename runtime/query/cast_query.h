@@ -6,19 +6,31 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include <boxtree/cast.h>
 
 #include "runtime/primitive/moving_shape.h"
 #include "runtime/query/ray_query.h"
+#include "runtime/query/relative_pose.h"
+#include "runtime/query/shape_in_tree.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
 #include "runtime/walk/work.h"
 
 namespace boxtree {
 
-/// The best touch so far: `s`, a lower bound, in parameters of the query, the triangle in tree
-/// space.
+/// A caller's cast, checked: the line of the shape's center.
+struct CastLine {
+  CastLine(const ShapeInTree& shape, const Motion& motion) noexcept;
+
+  Ray line;             // of a shape that stays where it is: of no length, along some direction
+  bool is_moving;       // whether it has a direction
+  const char* invalid;  // the field that is not valid, or null; then the rest is not, either
+};
+
+/// A touch: `s`, a lower bound, in parameters of MovingShape, and the triangle where it is compared
+/// with the shape.
 struct CastCandidate {
   bool is_hit = false;  // if false, the rest is unspecified
   double s = 0;
@@ -28,28 +40,50 @@ struct CastCandidate {
   Triangle triangle;
 };
 
+/// A cast on a tree that is placed by a pose: triangles are compared where it places them.
+struct PlacedCast {
+  AffineMap to_world;  // from tree space
+  bool is_mirror;      // whether the pose turns the order of corners over
+  MovingShape moving;  // in the world
+  double scale;        // s of `moving` = it * s of the query in tree space; a power of two
+
+  [[nodiscard]] Triangle apply(const Triangle& triangle) const noexcept {
+    Triangle placed = to_world.apply(triangle);
+    if (is_mirror) std::swap(placed.corner[1], placed.corner[2]);
+    return placed;
+  }
+};
+
 /// A query of traverse_nearest: the line of the shape's center against boxes that are widened by
 /// the shape.
 struct CastQuery : RayInTree {
-  /// Receives each touch, those of copies after their original's; returns the largest parameter
-  /// that is still of interest, or a negative number to stop.
+  /// Receives each touch, those of copies after their original's; returns the largest parameter of
+  /// MovingShape that is still of interest, or a negative number to stop.
   using Visitor = FunctionRef<double(const CastQuery& query, const CastCandidate& found)>;
 
   enum class Wanted : std::uint8_t { kClosest, kAny, kAll };
 
-  /// `line`: of the shape's center; its direction is not zero. `all`: the visitor of kAll, or null.
-  /// `face_options`: null: every face may be hit.
-  CastQuery(const BoundTree& queried, const ConvexShape& shape, const Ray& line, bool is_moving,
-            Wanted wanted_touches, const Visitor* all, WalkBound& bound,
-            const FaceOptions* face_options = nullptr) noexcept
-      : RayInTree(queried, line, exponent_of(largest_magnitude(line.direction)),
-                  near_of(queried, shape)),
+  /// What of the shape and its way is in tree space.
+  struct Path {
+    const ConvexShape& shape;            // or one that holds its image there, but for the center
+    const Ray& line;                     // of its center, in object space
+    bool is_moving;                      // as in CastLine
+    const PlacedCast* placed = nullptr;  // null: triangles are compared in tree space
+  };
+
+  /// `all`: the visitor of kAll, or null. `face_options`: null: every face may be hit.
+  CastQuery(const BoundTree& queried, const Path& path, Wanted wanted_touches, const Visitor* all,
+            WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept
+      : RayInTree(queried, path.line, exponent_of(largest_magnitude(path.line.direction)),
+                  near_of(queried, path.shape)),
         tree(queried),
         nodes(bound),
+        shape(path.shape),
         extent(shape.half_extents()),
         near(near_of(queried, shape)),
-        moving{placed(shape), is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
-               MovingShape::doubt_of(near, origin_max_abs)},
+        placed(path.placed),
+        is_moving(path.is_moving),
+        moving(placed != nullptr ? placed->moving : moving_in_tree()),
         wanted(wanted_touches),
         visitor(all),
         faces(queried, face_options) {
@@ -80,9 +114,12 @@ struct CastQuery : RayInTree {
 
   const BoundTree& tree;
   WalkBound& nodes;
-  Eigen::Vector3d extent;  // half, of the shape's bounds
+  const ConvexShape& shape;  // see Path
+  Eigen::Vector3d extent;    // half, of its bounds
   // The largest coordinate of the tree, in every codec, and of the shape while it is near.
   double near;
+  const PlacedCast* placed;
+  bool is_moving;
   MovingShape moving;
   Wanted wanted;
   const Visitor* visitor;
@@ -98,13 +135,18 @@ struct CastQuery : RayInTree {
   [[nodiscard]] static double near_of(const BoundTree& tree, const ConvexShape& shape) noexcept {
     return RaySlab::power_above(tree.largest_abs()) + 2 * largest_magnitude(shape.half_extents());
   }
-  // The shape, which may be anywhere, at the start of the line.
-  [[nodiscard]] ConvexShape placed(const ConvexShape& shape) const noexcept {
-    ConvexShape out = shape;
-    out.center = origin.vector();
+  [[nodiscard]] MovingShape moving_in_tree() const noexcept {
+    MovingShape out{shape, is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
+                    MovingShape::doubt_of(near, origin_max_abs)};
+    out.shape.center = origin.vector();
     return out;
   }
 };
+
+/// What a caller is told of a touch, but for the id of its face. `line`: whose t is told, that of
+/// parameter s * 2^-exponent; `frame`: from the space of `moving` to the caller's.
+[[nodiscard]] CastHit hit_of(const MovingShape& moving, const CastCandidate& found, const Ray& line,
+                             int exponent, const Frame& frame) noexcept;
 
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, CastQuery& query);

@@ -28,7 +28,7 @@ Result<Visit> visit_touched(const BoundTree& tree, const ShapeInTree& shape,
   const CastQuery::Visitor visitor(touched);
   // A line of no length along any direction.
   const Ray line{shape.center, Eigen::Vector3d::UnitX(), 0, 0};
-  CastQuery query(tree, shape.shape, line, false, CastQuery::Wanted::kAll, &visitor, nodes);
+  CastQuery query(tree, {shape.shape, line, false}, CastQuery::Wanted::kAll, &visitor, nodes);
   if (const Errc error = query.run(); error != Errc::kOk) return error;
   return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }
@@ -38,20 +38,21 @@ Result<Visit> visit_contacts(const Tree& queried, const Shape& shape, ContactVis
                              const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  return visit_touched(
-      tree, in_tree(tree, shape), limits, [&](const CastQuery& query, const CastCandidate& found) {
-        const ConvexShape& placed = query.moving.shape;
-        const Penetration at =
-            penetration(placed, relative_to(placed.center, found.triangle), query.moving.doubt);
-        Contact contact;
-        contact.face = found.face;
-        contact.triangle = found.half;
-        contact.point = tree.frame().to_object(placed.center + at.point);
-        contact.normal = at.normal;
-        contact.depth = at.depth * tree.frame().scale;
-        contact.feature = at.feature;
-        return visitor(contact);
-      });
+  return visit_touched(tree, in_tree(tree.frame(), shape), limits,
+                       [&](const CastQuery& query, const CastCandidate& found) {
+                         const ConvexShape& placed = query.moving.shape;
+                         const Penetration at =
+                             penetration(placed, relative_to(placed.center, found.triangle),
+                                         query.moving.doubt);
+                         Contact contact;
+                         contact.face = found.face;
+                         contact.triangle = found.half;
+                         contact.point = tree.frame().to_object(placed.center + at.point);
+                         contact.normal = at.normal;
+                         contact.depth = at.depth * tree.frame().scale;
+                         contact.feature = at.feature;
+                         return visitor(contact);
+                       });
 }
 
 // Tells the second triangle of a quad that was visited already from others, leaf by leaf.
@@ -82,7 +83,7 @@ Result<Visit> visit_faces_of(const Tree& queried, const Shape& shape, FaceVisito
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   VisitedFaces visited;
-  return visit_touched(tree, in_tree(tree, shape), limits,
+  return visit_touched(tree, in_tree(tree.frame(), shape), limits,
                        [&](const CastQuery&, const CastCandidate& found) {
                          return !visited.is_new(found) || visitor(found.face);
                        });

@@ -24,19 +24,19 @@ ShapeInTree checked(ShapeInTree out) noexcept {
 
 }  // namespace
 
-ShapeInTree in_tree(const BoundTree& tree, const Sphere& sphere) noexcept {
+ShapeInTree in_tree(const Frame& frame, const Sphere& sphere) noexcept {
   ShapeInTree out;
   out.center = sphere.center;
-  out.shape.radius = sphere.radius * tree.frame().inverse_scale;
-  if (!is_within_range(tree.frame().to_tree(sphere.center))) out.invalid = "center";
+  out.shape.radius = sphere.radius * frame.inverse_scale;
+  if (!is_within_range(frame.to_tree(sphere.center))) out.invalid = "center";
   if (!is_unsigned(sphere.radius)) out.invalid = "radius";
   return checked(out);
 }
 
-ShapeInTree in_tree(const BoundTree& tree, const Capsule& capsule) noexcept {
+ShapeInTree in_tree(const Frame& frame, const Capsule& capsule) noexcept {
   ShapeInTree out;
-  const Eigen::Vector3d start = tree.frame().to_tree(capsule.start);
-  const Eigen::Vector3d end = tree.frame().to_tree(capsule.end);
+  const Eigen::Vector3d start = frame.to_tree(capsule.start);
+  const Eigen::Vector3d end = frame.to_tree(capsule.end);
   if (!is_within_range(start)) out.invalid = "start";
   if (!is_within_range(end)) out.invalid = "end";
   if (!is_unsigned(capsule.radius)) out.invalid = "radius";
@@ -45,17 +45,17 @@ ShapeInTree in_tree(const BoundTree& tree, const Capsule& capsule) noexcept {
   out.shape.axes = 1;
   out.shape.axis[0] = end / 2 - start / 2;
   out.shape.half[0] = 1;
-  out.shape.radius = capsule.radius * tree.frame().inverse_scale;
+  out.shape.radius = capsule.radius * frame.inverse_scale;
   return checked(out);
 }
 
-ShapeInTree in_tree(const BoundTree& tree, const OrientedBox& box) noexcept {
+ShapeInTree in_tree(const Frame& frame, const OrientedBox& box) noexcept {
   ShapeInTree out;
   out.center = box.center;
   out.shape.axes = 3;
   const auto& q = box.rotation.coeffs();  // x, y, z, w
   const double largest = std::max(largest_magnitude(q[0], q[1], q[2]), std::abs(q[3]));
-  if (!is_within_range(tree.frame().to_tree(box.center))) out.invalid = "center";
+  if (!is_within_range(frame.to_tree(box.center))) out.invalid = "center";
   for (Eigen::Index k = 0; k < 3; ++k) {
     if (!is_unsigned(box.half_extents[k])) out.invalid = "half_extents";
   }
@@ -68,7 +68,7 @@ ShapeInTree in_tree(const BoundTree& tree, const OrientedBox& box) noexcept {
   out.shape.axis[1] = {s * (x * y - w * z), 1 - s * (x * x + z * z), s * (y * z + w * x)};
   out.shape.axis[2] = {s * (x * z + w * y), s * (y * z - w * x), 1 - s * (x * x + y * y)};
   for (std::size_t k = 0; k < 3; ++k) {
-    out.shape.half[k] = box.half_extents[static_cast<Eigen::Index>(k)] * tree.frame().inverse_scale;
+    out.shape.half[k] = box.half_extents[static_cast<Eigen::Index>(k)] * frame.inverse_scale;
   }
   return checked(out);
 }

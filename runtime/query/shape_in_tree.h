@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A caller's shape in tree space, checked.
+// A caller's shape in tree space, or in units of a scene, checked.
 #pragma once
 
 #include <boxtree/shape.h>
 
 #include "runtime/primitive/convex_shape.h"
-#include "runtime/tree/bound_tree.h"
+#include "runtime/tree/frame.h"
 
 namespace boxtree {
 
@@ -16,8 +16,9 @@ struct ShapeInTree {
   const char* invalid = nullptr;  // the name of a field that is not valid; then the rest is not
 };
 
-[[nodiscard]] ShapeInTree in_tree(const BoundTree& tree, const Sphere& sphere) noexcept;
-[[nodiscard]] ShapeInTree in_tree(const BoundTree& tree, const Capsule& capsule) noexcept;
-[[nodiscard]] ShapeInTree in_tree(const BoundTree& tree, const OrientedBox& box) noexcept;
+/// `frame`: of the tree.
+[[nodiscard]] ShapeInTree in_tree(const Frame& frame, const Sphere& sphere) noexcept;
+[[nodiscard]] ShapeInTree in_tree(const Frame& frame, const Capsule& capsule) noexcept;
+[[nodiscard]] ShapeInTree in_tree(const Frame& frame, const OrientedBox& box) noexcept;
 
 }  // namespace boxtree
