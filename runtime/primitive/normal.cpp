@@ -61,19 +61,36 @@ Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept {
   return normalised(normal);
 }
 
+namespace {
+
+// The cofactors of a matrix, and the sign of its determinant, but for a factor.
+struct Cofactors {
+  explicit Cofactors(const Eigen::Matrix3d& linear) noexcept {
+    const double largest = linear.cwiseAbs().maxCoeff();
+    if (!(largest > 0)) return;
+    const Eigen::Matrix3d scaled = power_to_one(largest) * linear;
+    const Eigen::Vector3d x = scaled.col(0), y = scaled.col(1), z = scaled.col(2);
+    matrix << cross(y, z), cross(z, x), cross(x, y);
+    determinant = dot(x, matrix.col(0));
+  }
+
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Zero();
+  double determinant = 0;
+};
+
+}  // namespace
+
+bool is_mirror(const Eigen::Matrix3d& linear) noexcept {
+  return Cofactors(linear).determinant < 0;
+}
+
+// The cross product of two images is the cofactor matrix times that of the originals; a mirror
+// reverses it.
 Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
                               const Eigen::Vector3d& normal) noexcept {
-  const double largest = linear.cwiseAbs().maxCoeff();
-  if (!(largest > 0)) return Eigen::Vector3d::Zero();
-  const Eigen::Matrix3d scaled = power_to_one(largest) * linear;
-  const Eigen::Vector3d x = scaled.col(0), y = scaled.col(1), z = scaled.col(2);
-  // The cross product of two images is the cofactor matrix times that of the originals; a mirror
-  // reverses it.
-  Eigen::Matrix3d cofactors;
-  cofactors << cross(y, z), cross(z, x), cross(x, y);
-  const double determinant = dot(x, cofactors.col(0));
-  const Eigen::Vector3d placed = normalised(product(cofactors, normal));
-  return determinant < 0 ? Eigen::Vector3d(-placed) : placed;
+  const Cofactors cofactors(linear);
+  const Eigen::Vector3d placed = normalised(product(cofactors.matrix, normal));
+  return cofactors.determinant < 0 ? Eigen::Vector3d(-placed) : placed;
 }
 
 }  // namespace boxtree

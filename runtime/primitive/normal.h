@@ -20,4 +20,7 @@ namespace boxtree {
 [[nodiscard]] Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,
                                             const Eigen::Vector3d& normal) noexcept;
 
+/// Whether it turns the order of corners over.
+[[nodiscard]] bool is_mirror(const Eigen::Matrix3d& linear) noexcept;
+
 }  // namespace boxtree

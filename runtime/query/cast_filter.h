@@ -34,12 +34,7 @@ struct CastFilter : RayBoxFilter {
   explicit CastFilter(const CastQuery& query) noexcept
       : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
                      rounding(query.near) + given_away(query.origin_max_abs, query.near)) {
-    // Rounded up twice: the product and the sum.
-    constexpr float kUp = static_cast<float>(1 + 8 * kRoundoffF32);
-    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
-      const auto axis = static_cast<Eigen::Index>(std::min<std::size_t>(k, 2));
-      margin[k] = (margin[k] + float_above(query.extent[axis]) * std::abs(inverse[k])) * kUp;
-    }
+    widen(query.extent);
     const ConvexShape& shape = query.shape;
     radius = float_above(shape.radius);
     outer_radius = float_above(shape.outer_radius());

@@ -144,7 +144,7 @@ class CastLeaves {
   // times what coordinates are off by, see CastFilter, and by 8u of the largest coordinate, which
   // is less.
   HWY_NOINLINE Separation separation(std::size_t group, std::size_t part, FloatVector s,
-                                   Vector3& offset) const {
+                                     Vector3& offset) const {
     const Floats d;
     const auto all = [&](float x) { return hn::Set(d, x); };
     const ConvexAxes& core = filter_.core;

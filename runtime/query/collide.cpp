@@ -8,29 +8,37 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/vector3.h"
-#include "runtime/query/cast_query.h"
+#include "runtime/query/collide_query.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_in_tree.h"
 
 namespace boxtree {
+Contact contact_of(const CastQuery& query, const CastCandidate& found,
+                   const Frame& frame) noexcept {
+  const MovingShape& moving = query.moving;
+  const Eigen::Vector3d& center = moving.shape.center;
+  const Penetration at =
+      penetration(moving.shape, relative_to(center, found.triangle), moving.doubt);
+  Contact contact;
+  contact.face = found.face;
+  contact.triangle = found.half;
+  contact.point = frame.to_object(center + at.point);
+  contact.normal = at.normal;
+  contact.depth = at.depth * frame.scale;
+  contact.feature = at.feature;
+  return contact;
+}
+
 namespace {
 
-// Calls visit(query, candidate) -> bool, whether to go on, with each triangle that is touched.
-template <class Visitor>
-Result<Visit> visit_touched(const BoundTree& tree, const ShapeInTree& shape,
-                            const QueryLimits& limits, const Visitor& visit) {
+// `visit`: of visit_touched.
+template <class Shape, class Visitor>
+Result<Visit> visit_touched_by(const BoundTree& tree, const Shape& of_caller,
+                               const QueryLimits& limits, const Visitor& visit) {
+  const ShapeInTree shape = in_tree(tree.frame(), of_caller);
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
-  WalkBound nodes(tree.node_count(), &work);
-  const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
-    return visit(query, found) ? 0.0 : -1.0;
-  };
-  const CastQuery::Visitor visitor(touched);
-  // A line of no length along any direction.
-  const Ray line{shape.center, Eigen::Vector3d::UnitX(), 0, 0};
-  CastQuery query(tree, {shape.shape, line, false}, CastQuery::Wanted::kAll, &visitor, nodes);
-  if (const Errc error = query.run(); error != Errc::kOk) return error;
-  return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
+  return visit_touched(tree, {shape.shape, line_at(shape.center), false}, work, visit);
 }
 
 template <class Shape>
@@ -38,55 +46,21 @@ Result<Visit> visit_contacts(const Tree& queried, const Shape& shape, ContactVis
                              const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
-  return visit_touched(tree, in_tree(tree.frame(), shape), limits,
-                       [&](const CastQuery& query, const CastCandidate& found) {
-                         const ConvexShape& placed = query.moving.shape;
-                         const Penetration at =
-                             penetration(placed, relative_to(placed.center, found.triangle),
-                                         query.moving.doubt);
-                         Contact contact;
-                         contact.face = found.face;
-                         contact.triangle = found.half;
-                         contact.point = tree.frame().to_object(placed.center + at.point);
-                         contact.normal = at.normal;
-                         contact.depth = at.depth * tree.frame().scale;
-                         contact.feature = at.feature;
-                         return visitor(contact);
-                       });
+  return visit_touched_by(tree, shape, limits,
+                          [&](const CastQuery& query, const CastCandidate& found) {
+                            return visitor(contact_of(query, found, tree.frame()));
+                          });
 }
-
-// Tells the second triangle of a quad that was visited already from others, leaf by leaf.
-class VisitedFaces {
- public:
-  // Whether the face, or the original of this copy, comes for the first time.
-  bool is_new(const CastCandidate& found) {
-    if (found.face.index != found.original) return is_new_;  // copies follow their original
-    if (found.original / kLeafFaces != leaf_) {
-      leaf_ = found.original / kLeafFaces;
-      visited_ = 0;
-    }
-    const std::uint32_t bit = 1u << (found.original % kLeafFaces);
-    is_new_ = (visited_ & bit) == 0;
-    visited_ |= bit;
-    return is_new_;
-  }
-
- private:
-  std::uint32_t leaf_ = ~std::uint32_t{0};
-  std::uint32_t visited_ = 0;  // bit i: face i of the leaf
-  bool is_new_ = true;
-};
 
 template <class Shape>
 Result<Visit> visit_faces_of(const Tree& queried, const Shape& shape, FaceVisitor visitor,
                              const QueryLimits& limits) {
   const DefaultFloatState state;
-  const BoundTree& tree = BoundTree::of(queried);
   VisitedFaces visited;
-  return visit_touched(tree, in_tree(tree.frame(), shape), limits,
-                       [&](const CastQuery&, const CastCandidate& found) {
-                         return !visited.is_new(found) || visitor(found.face);
-                       });
+  return visit_touched_by(BoundTree::of(queried), shape, limits,
+                          [&](const CastQuery&, const CastCandidate& found) {
+                            return !visited.is_new(found) || visitor(found.face);
+                          });
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/query/invalid_query.h"
+#include "runtime/query/nearest_hits.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/walk/walk_tree.h"
 
@@ -46,7 +47,8 @@ bool admits_side(const RayQuery& query, const Triangle& triangle) noexcept {
          meets_front(query.shear, triangle) == (back_faces == BackFaces::kIgnore);
 }
 
-// See RayWishes::Meet.
+}  // namespace
+
 bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
   FaceWishes& faces = query.wishes->faces;
   if (faces.stopped || !admits_side(query, candidate.triangle)) return false;
@@ -60,6 +62,8 @@ bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
   });
   return false;
 }
+
+namespace {
 
 RayHit described(const BoundTree& tree, const RayCandidate& hit) {
   return {hit.t,
@@ -128,29 +132,12 @@ Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
 
 Result<std::size_t> nearest_hits(const Tree& tree, const Ray& ray, std::span<RayHit> hits,
                                  const FaceOptions& options) {
-  std::size_t count = 0;
-  const auto comes_first = [&](const RayHit& a, const RayHit& b) {
-    if (a.t != b.t) return a.t < b.t;
-    return comes_before(BoundTree::of(tree), a.face, a.triangle, b.face, b.triangle);
-  };
-  const Result<Visit> visited = all_hits(
-      tree, ray,
-      [&](const RayHit& hit) {
-        std::size_t place = std::min(count, hits.size());
-        while (place > 0 && comes_first(hit, hits[place - 1])) --place;
-        if (place < hits.size()) {
-          count = std::min(count + 1, hits.size());
-          std::move_backward(hits.begin() + static_cast<std::ptrdiff_t>(place),
-                             hits.begin() + static_cast<std::ptrdiff_t>(count) - 1,
-                             hits.begin() + static_cast<std::ptrdiff_t>(count));
-          hits[place] = hit;
-        }
-        if (count < hits.size()) return ray.t_max;
-        return hits.empty() ? -1.0 : hits.back().t;
-      },
-      options);
-  if (!visited) return visited.error();
-  return count;
+  return first_hits(
+      hits, ray.t_max, [&](const auto& visitor) { return all_hits(tree, ray, visitor, options); },
+      [&](const RayHit& a, const RayHit& b) {
+        if (a.t != b.t) return a.t < b.t;
+        return comes_before(BoundTree::of(tree), a.face, a.triangle, b.face, b.triangle);
+      });
 }
 
 }  // namespace boxtree

@@ -40,6 +40,16 @@ struct RayBoxFilter {
     }
   }
 
+  /// Widens boxes by half the extent of a shape around the ray's point.
+  void widen(const Eigen::Vector3d& extent) noexcept {
+    // Rounded up twice: the product and the sum.
+    constexpr float kUp = static_cast<float>(1 + 8 * kRoundoffF32);
+    for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
+      const double half = extent[static_cast<Eigen::Index>(std::min<std::size_t>(k, 2))];
+      margin[k] = (margin[k] + float_above(half) * std::abs(inverse[k])) * kUp;
+    }
+  }
+
   /// What a re-based ray, and planes at most `max_abs` away, lose in single precision. Let u =
   /// 2^-24 and M = 2 max_abs: no extent and no distance of two points in the root box is larger,
   /// and the ray enters inside that box up to given_away(). 16u M for origin and direction (moved,

@@ -187,6 +187,9 @@ struct RayQuery : RayInTree {
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, RayQuery& query);
 
+/// The RayWishes::Meet of callers that have any.
+[[nodiscard]] bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept;
+
 /// Converts a parameter of the query to one of the ray. Clamped to the ray's own interval, as
 /// conversion may underflow, for example for a subnormal direction.
 [[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {

@@ -61,6 +61,24 @@ Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
   return {};
 }
 
+Status BoundScene::set_enabled(std::uint32_t instance, bool enabled) {
+  if (instance >= instance_count()) {
+    return index_error(Errc::kInstanceIndex, "instance", instance, instance_count());
+  }
+  if (disabled_.empty()) disabled_.resize(instance_count());
+  disabled_[instance] = !enabled;
+  return {};
+}
+
+Status BoundScene::set_user_data(std::uint32_t instance, std::uint64_t data) {
+  if (instance >= instance_count()) {
+    return index_error(Errc::kInstanceIndex, "instance", instance, instance_count());
+  }
+  if (user_data_.empty()) user_data_.resize(instance_count());
+  user_data_[instance] = data;
+  return {};
+}
+
 Result<InstanceInfo> BoundScene::info(std::uint32_t number) const {
   if (number >= instance_count()) {
     return index_error(Errc::kInstanceIndex, "instance", number, instance_count());

@@ -49,6 +49,15 @@ class BoundScene {
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t material_count() const noexcept { return record().material_count; }
+  Status set_enabled(std::uint32_t instance, bool enabled);
+  [[nodiscard]] bool is_enabled(std::uint32_t instance) const noexcept {
+    return disabled_.empty() ? instance < instance_count()
+                             : instance < disabled_.size() && !disabled_[instance];
+  }
+  Status set_user_data(std::uint32_t instance, std::uint64_t data);
+  [[nodiscard]] std::uint64_t user_data(std::uint32_t instance) const noexcept {
+    return instance < user_data_.size() ? user_data_[instance] : 0;
+  }
   Status make_movable(std::uint32_t instance);
   Status update(std::uint32_t instance, const Pose& pose);
   void rebuild();
@@ -92,6 +101,8 @@ class BoundScene {
   [[nodiscard]] double condition() const noexcept {
     return std::max(record().condition, conditions_.of_all());
   }
+  /// From units of the scene to the world.
+  [[nodiscard]] Frame units() const noexcept { return {{0, 0, 0}, record().scale_exponent}; }
   /// World coordinates in units of the scene, and back.
   [[nodiscard]] Eigen::Vector3d to_units(const Eigen::Vector3d& world) const noexcept {
     return world * frame_.inverse_scale;
@@ -148,6 +159,9 @@ class BoundScene {
   MovingTree moving_tree_;
   Largest conditions_;  // of moving instances
   bool has_detached_ = false;
+  // Of each instance, or empty while none was set.
+  std::vector<bool> disabled_;
+  std::vector<std::uint64_t> user_data_;
 };
 
 }  // namespace boxtree

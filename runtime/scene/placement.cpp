@@ -102,6 +102,10 @@ Eigen::Vector3d Placement::to_tree(const Eigen::Vector3d& world) const noexcept 
   return (product(inverse_, world - translation_) - frame_origin_) * frame_inverse_scale_;
 }
 
+Eigen::Vector3d Placement::vector_to_tree(const Eigen::Vector3d& world) const noexcept {
+  return product(inverse_, world) * frame_inverse_scale_;
+}
+
 // The error of the inverse is measured by mapping there and back. Added are the roundings of the
 // measurement, of a triangle's map to the world and of its distance, which are bounded by 26 of the
 // largest coordinate (see triangle_distance.cpp).
@@ -112,6 +116,15 @@ double Placement::distance_error(const Eigen::Vector3d& tree, const Eigen::Vecto
   const double largest = std::max({terms[0], terms[1], terms[2]}) + magnitude(root) +
                          std::max({std::abs(world[0]), std::abs(world[1]), std::abs(world[2])});
   return std::sqrt(squared_length(back)) + 128 * kRoundoffF64 * largest + kLengthUnderflow;
+}
+
+// Measured likewise; each coordinate of the difference is a sum of four terms.
+double Placement::vector_error(const Eigen::Vector3d& tree,
+                               const Eigen::Vector3d& world) const noexcept {
+  const Eigen::Vector3d missing = product(to_world_.linear, tree) - world;
+  const Eigen::Vector3d terms = product(magnitudes(to_world_.linear), tree.cwiseAbs());
+  const double largest = largest_magnitude(terms) + largest_magnitude(world);
+  return std::sqrt(squared_length(missing)) + 16 * kRoundoffF64 * largest + kLengthUnderflow;
 }
 
 // The squares of both are eigenvalues of L^T L, which lie in Gershgorin's circles. Where axes are

@@ -54,6 +54,9 @@ class Placement {
   /// A point of the world in tree space.
   [[nodiscard]] Eigen::Vector3d to_tree(const Eigen::Vector3d& world) const noexcept;
 
+  /// A vector of the world in tree space.
+  [[nodiscard]] Eigen::Vector3d vector_to_tree(const Eigen::Vector3d& world) const noexcept;
+
   /// See PlacementBounds.
   [[nodiscard]] double condition() const noexcept;
   /// For a tree with this root box. Nothing when they are not finite or beyond kMaxCoordinate.
@@ -63,6 +66,11 @@ class Placement {
   /// of the tree is off by more. `root`: the box of the tree.
   [[nodiscard]] double distance_error(const Eigen::Vector3d& tree, const Eigen::Vector3d& world,
                                       const Box<double>& root) const noexcept;
+
+  /// How long, in the world, what is missing of `world` in the image of `tree` may be, for
+  /// `tree` = vector_to_tree(world).
+  [[nodiscard]] double vector_error(const Eigen::Vector3d& tree,
+                                    const Eigen::Vector3d& world) const noexcept;
 
  private:
   Placement() = default;

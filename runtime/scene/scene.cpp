@@ -56,6 +56,19 @@ std::uint32_t Scene::material_count() const noexcept {
   return bound_->material_count();
 }
 
+Status Scene::set_enabled(std::uint32_t instance, bool enabled) {
+  return bound_->set_enabled(instance, enabled);
+}
+bool Scene::is_enabled(std::uint32_t instance) const noexcept {
+  return bound_->is_enabled(instance);
+}
+Status Scene::set_user_data(std::uint32_t instance, std::uint64_t data) {
+  return bound_->set_user_data(instance, data);
+}
+std::uint64_t Scene::user_data(std::uint32_t instance) const noexcept {
+  return bound_->user_data(instance);
+}
+
 Status Scene::make_movable(std::uint32_t instance) {
   return bound_->make_movable(instance);
 }

@@ -85,8 +85,8 @@ BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
           visitor};
 }
 
-bool answers_contacts(const BoundScene& scene, std::uint32_t layer) {
-  return (scene.layer(layer).query_kinds & kPairQueries) != 0;
+bool answers_contacts(const BoundScene& scene, std::uint32_t instance, std::uint32_t layer) {
+  return scene.is_enabled(instance) && (scene.layer(layer).query_kinds & kPairQueries) != 0;
 }
 
 }  // namespace
@@ -97,7 +97,7 @@ Result<Visit> contacts(const Scene& queried, ScenePairVisitor visitor, const Que
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const BoundScene::Moving& moving : scene.moving()) {
-    if (!answers_contacts(scene, moving.placed.layer)) continue;
+    if (!answers_contacts(scene, moving.instance, moving.placed.layer)) continue;
     BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor, work);
     Errc walked = walk_static(scene, body);
     if (walked == Errc::kOk && !body.is_done()) {
@@ -120,7 +120,7 @@ Result<Visit> contacts_of(const Scene& queried, std::uint32_t instance, ScenePai
   if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
   const std::optional<BoundScene::Placed> placed = scene.place_now(instance);
   if (!placed) return Errc::kRecordInvalid;
-  if (!answers_contacts(scene, placed->layer)) return Visit::kComplete;
+  if (!answers_contacts(scene, instance, placed->layer)) return Visit::kComplete;
   const auto bounds = placed->bounds();
   if (!bounds) return Errc::kRecordInvalid;
   BodyInScene body = body_of(scene, instance, *placed, *bounds, visitor, work);

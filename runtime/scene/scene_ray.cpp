@@ -1,50 +1,65 @@
 // SPDX-License-Identifier: MIT
 // Rays through a scene.
+#include <algorithm>
 #include <cmath>
 
 #include <boxtree/scene.h>
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
+#include "runtime/query/invalid_query.h"
+#include "runtime/query/nearest_hits.h"
 #include "runtime/query/ray_query.h"
+#include "runtime/scene/scene_line.h"
 #include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
 namespace {
+
+struct SceneRayQuery;
+
+// What a caller wants besides the closest or any hit of any face.
+struct SceneRayWishes {
+  // Casts the ray, in object space, on an instance. A pointer, so that programs that have no wishes
+  // do not link it.
+  using Cast = Errc(SceneRayQuery& query, std::uint32_t instance, const BoundScene::Placed& placed,
+                    const Ray& ray, RayCandidate& found);
+
+  const SceneFaceOptions& options;
+  Cast* cast;
+  const SceneRayVisitor* all = nullptr;  // null: one hit is wanted
+};
 
 // In units of the scene, with a direction whose largest component is in [1/2, 1): its parameter is
 // t * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(). What
 // remains is the error of the ray's origin on its way to object space and back, which a larger
 // max_abs adds to the slab's margin.
 struct SceneRayQuery {
-  SceneRayQuery(const BoundScene& scene, const Ray& world, bool stop_at_first, LayerMask layers,
-                QueryWork& work, int direction_exponent) noexcept
-      : admission{scene, kRayQueries, layers, work},
-        exponent(direction_exponent),
-        parameter_exponent(exponent - scene.record().scale_exponent),
-        ray{scene.to_units(world.origin),
+  SceneRayQuery(const Admission& admitted, const Ray& in_world, bool stop_at_first,
+                const SceneRayWishes* ray_wishes) noexcept
+      : admission(admitted),
+        world(in_world),
+        exponent(exponent_of(largest_magnitude(world.direction))),
+        parameter_exponent(exponent - scene().record().scale_exponent),
+        ray{scene().to_units(world.origin),
             RayQuery::scaled(AxisLanes(world.direction), -exponent).vector(),
             RayQuery::scaled(world.t_min, parameter_exponent),
             RayQuery::scaled(world.t_max, parameter_exponent)},
         any(stop_at_first),
-        in_frame(make_in_frame(scene)) {}
+        wishes(ray_wishes),
+        in_frame(make_in_frame()) {}
 
-  [[nodiscard]] TopLevelRay make_in_frame(const BoundScene& scene) const noexcept {
-    const Eigen::Vector3d origin = scene.to_frame(ray.origin);
-    const double widened = max_abs(scene);
-    return {origin, ray.direction, widened, RaySlab(origin, ray.direction, widened), ray.t_min};
-  }
+  [[nodiscard]] const BoundScene& scene() const noexcept { return admission.scene; }
 
-  [[nodiscard]] double max_abs(const BoundScene& scene) const noexcept {
-    double largest = max_abs_of(scene.top_level());
-    if (!scene.moving_tree().empty()) {
-      largest = std::max(largest, max_abs_of(scene.moving_tree().root_box()).maxCoeff());
-    }
+  [[nodiscard]] TopLevelRay make_in_frame() const noexcept {
+    const double largest = largest_in_frame(scene());
     const double origin = largest_magnitude(ray.origin);
-    return largest + 16 * scene.condition() * (origin + largest);
+    return line_in_frame(scene(), ray, largest + 16 * scene().condition() * (origin + largest));
   }
 
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || (any && best.is_hit); }
+  [[nodiscard]] bool is_done() const noexcept {
+    return error != Errc::kOk || stopped || (any && best.is_hit);
+  }
   [[nodiscard]] double bound() const noexcept { return ray.t_max; }
   template <class S>
   [[nodiscard]] double key(const Box<S>& box) const noexcept {
@@ -56,8 +71,10 @@ struct SceneRayQuery {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     RayCandidate found;
-    error = cast_ray(*placed.tree, placed.placement.to_object(ray), any, admission.work, found);
-    if (!found.is_hit || error != Errc::kOk) return error == Errc::kOk;
+    const Ray in_object = placed.placement.to_object(ray);
+    error = wishes == nullptr ? cast_ray(*placed.tree, in_object, any, admission.work, found)
+                              : wishes->cast(*this, instance, placed, in_object, found);
+    if (!found.is_hit || error != Errc::kOk) return !is_done();
     if (best.is_hit && found.t == best.t && placed.id >= best_id) return true;
     best = found;
     best_id = placed.id;
@@ -67,51 +84,134 @@ struct SceneRayQuery {
     return !is_done();
   }
 
+  // What a caller is told of a hit on an instance, by the map from its tree space.
+  [[nodiscard]] SceneRayHit described(const RayCandidate& hit, std::uint32_t instance,
+                                      const AffineMap& to_units) const noexcept {
+    return {{parameter_of(world, hit.t, parameter_exponent), hit.face, hit.half, hit.u, hit.v,
+             scene().to_world(to_units.apply(hit.point())),
+             placed_normal(to_units.linear, unit_normal(hit.triangle))},
+            instance};
+  }
+
   Admission admission;
+  const Ray& world;
   int exponent;  // of the direction in the world
   int parameter_exponent;
   Ray ray;  // t_max shrinks to the best hit
   bool any;
+  const SceneRayWishes* wishes;
   TopLevelRay in_frame;
   RayCandidate best;
   std::uint32_t best_id = 0;
   std::uint32_t best_instance = 0;
   AffineMap best_to_units;  // from its tree space
   Errc error = Errc::kOk;
+  bool stopped = false;
 };
 
-SceneRayResult cast(const Scene& queried, const Ray& ray, bool stop_at_first, LayerMask layers,
-                    const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
-  QueryWork work(limits);
+// See SceneRayWishes::Cast.
+Errc cast_with_wishes(SceneRayQuery& query, std::uint32_t instance,
+                      const BoundScene::Placed& placed, const Ray& ray, RayCandidate& found) {
+  const SceneRayWishes& wishes = *query.wishes;
+  const OptionsOfInstance options(wishes.options, instance);
+  RayWishes of_tree{{*placed.tree, &options.of_tree()}, &meet_wishes};
+  const auto visit = [&](const RayQuery& in_tree, const RayCandidate& hit) {
+    RayCandidate in_scene = hit;
+    in_scene.t = parameter_of(ray, hit.t, in_tree.parameter_exponent);
+    const double to = RayInTree::scaled(
+        (*wishes.all)(query.described(in_scene, instance, placed.placement.to_world())),
+        query.parameter_exponent);
+    query.ray.t_max = std::min(query.ray.t_max, to);
+    return RayInTree::scaled(to, in_tree.parameter_exponent);
+  };
+  const RayWishes::Visitor all(visit);
+  if (wishes.all != nullptr) of_tree.all = &all;
+  const Errc error = cast_ray(*placed.tree, ray, query.any, query.admission.work, found, &of_tree);
+  query.stopped = of_tree.faces.stopped;
+  return error;
+}
+
+// The name of what is not valid, or null.
+const char* invalid_part(const BoundScene& scene, const Ray& ray) {
+  const bool is_valid = invalid_field(ray, largest_magnitude(ray.direction)) == nullptr &&
+                        is_within_range(scene.to_units(ray.origin));
+  return is_valid ? nullptr : refused_field(ray);
+}
+
+SceneRayResult one_hit(const BoundScene& scene, const Ray& ray, bool stop_at_first,
+                       const Admission& admission, const SceneRayWishes* wishes) {
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
-  const double length = largest_magnitude(ray.direction);
-  if (invalid_field(ray, length) != nullptr || !is_within_range(scene.to_units(ray.origin))) {
-    return {Errc::kInvalidQuery, refused_field(ray)};
-  }
-  SceneRayQuery query(scene, ray, stop_at_first, layers, work, exponent_of(length));
+  if (const char* invalid = invalid_part(scene, ray)) return {Errc::kInvalidQuery, invalid};
+  SceneRayQuery query(admission, ray, stop_at_first, wishes);
   const Errc walked = visit_nearest_instances(scene, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
   if (!query.best.is_hit) return {};
-  const RayCandidate& best = query.best;
-  return SceneRayHit{{parameter_of(ray, best.t, query.parameter_exponent), best.face, best.half,
-                      best.u, best.v, scene.to_world(query.best_to_units.apply(best.point())),
-                      placed_normal(query.best_to_units.linear, unit_normal(best.triangle))},
-                     query.best_instance};
+  return query.described(query.best, query.best_instance, query.best_to_units);
+}
+
+SceneRayResult plain_hit(const Scene& queried, const Ray& ray, bool stop_at_first, LayerMask layers,
+                         const QueryLimits& limits) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  QueryWork work(limits);
+  return one_hit(scene, ray, stop_at_first, {scene, kRayQueries, layers, work}, nullptr);
+}
+
+SceneRayResult wanted_hit(const Scene& queried, const Ray& ray, bool stop_at_first,
+                          const SceneFaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  QueryWork work(options.limits);
+  const SceneRayWishes wishes{options, &cast_with_wishes};
+  return one_hit(scene, ray, stop_at_first, admitted(scene, options, work), &wishes);
 }
 
 }  // namespace
 
 SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers,
                            const QueryLimits& limits) {
-  return cast(scene, ray, false, layers, limits);
+  return plain_hit(scene, ray, false, layers, limits);
 }
 
 SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
                        const QueryLimits& limits) {
-  return cast(scene, ray, true, layers, limits);
+  return plain_hit(scene, ray, true, layers, limits);
+}
+
+SceneRayResult closest_hit(const Scene& scene, const Ray& ray, const SceneFaceOptions& options) {
+  return wanted_hit(scene, ray, false, options);
+}
+
+SceneRayResult any_hit(const Scene& scene, const Ray& ray, const SceneFaceOptions& options) {
+  return wanted_hit(scene, ray, true, options);
+}
+
+Result<Visit> all_hits(const Scene& queried, const Ray& ray, SceneRayVisitor visitor,
+                       const SceneFaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  QueryWork work(options.limits);
+  if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
+  if (const char* invalid = invalid_part(scene, ray)) return invalid_query(invalid);
+  const SceneRayWishes wishes{options, &cast_with_wishes, &visitor};
+  SceneRayQuery query(admitted(scene, options, work), ray, false, &wishes);
+  return outcome_of(visit_nearest_instances(scene, query), query);
+}
+
+Result<std::size_t> nearest_hits(const Scene& queried, const Ray& ray, std::span<SceneRayHit> hits,
+                                 const SceneFaceOptions& options) {
+  const BoundScene& scene = BoundScene::of(queried);
+  const auto id_of = [&](const SceneRayHit& hit) { return scene.record_of(hit.instance)->id; };
+  return first_hits(
+      hits, ray.t_max,
+      [&](const auto& visitor) { return all_hits(queried, ray, visitor, options); },
+      [&](const SceneRayHit& a, const SceneRayHit& b) {
+        if (a.t != b.t) return a.t < b.t;
+        if (a.instance != b.instance) return id_of(a) < id_of(b);
+        const BoundTree& tree = BoundTree::of(scene.trees()[scene.record_of(a.instance)->tree]);
+        return comes_before(tree, a.face, a.triangle, b.face, b.triangle);
+      });
 }
 
 }  // namespace boxtree

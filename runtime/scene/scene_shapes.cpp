@@ -69,15 +69,6 @@ struct WorldBox {
   }
 };
 
-// The distance of an instance's box, in the scene's frame, bounds that of its contents except for
-// the rounding of the point and of distances: 64 roundings of the point's magnitude. The rounding
-// of the instance is in its box.
-double scene_error(const BoundScene& scene, const Eigen::Vector3d& point) noexcept {
-  const double magnitude =
-      point.cwiseAbs().maxCoeff() + scene.to_units(scene.frame().origin).cwiseAbs().maxCoeff();
-  return 64 * kRoundoffF64 * magnitude + kLengthUnderflow;
-}
-
 // A squared distance in the scene's frame that covers everything within `distance`.
 double frame_bound(double distance, double error) noexcept {
   return (distance + error) * (distance + error) * (1 + 16 * kRoundoffF64);
@@ -204,7 +195,7 @@ Result<Visit> overlap_sphere(const Scene& queried, const Eigen::Vector3d& center
   if (!is_within_range(at)) return invalid_query("center");
   if (!(length >= 0) || !(length <= kMaxCoordinate)) return invalid_query("radius");
   const SphereInUnits shape{at, length, scene.to_frame(at),
-                            frame_bound(length, scene_error(scene, at))};
+                            frame_bound(length, frame_error(scene, largest_magnitude(at)))};
   return query_scene(scene, shape, visitor, layers, limits);
 }
 
@@ -221,7 +212,7 @@ ScenePointResult closest_point(const Scene& queried, const Eigen::Vector3d& poin
   PointInScene query{{scene, kPointQueries, layers, work},
                      at,
                      scene.to_frame(at),
-                     scene_error(scene, at),
+                     frame_error(scene, largest_magnitude(at)),
                      most * most,
                      0,
                      {}};

@@ -2,6 +2,9 @@
 // How every query walks a scene: the top level of the file, then the tree over moving instances.
 #pragma once
 
+#include "runtime/primitive/rounding.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/query/scaled_length.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/scene/top_level_walk.h"
 #include "runtime/walk/traversal.h"
@@ -9,15 +12,25 @@
 
 namespace boxtree {
 
+/// How far a box in the scene's frame may be from what is compared in units of the scene, for what
+/// is at most `magnitude` from the origin on each axis: 64 roundings of magnitudes. The rounding of
+/// the instance is in its box.
+[[nodiscard]] inline double frame_error(const BoundScene& scene, double magnitude) noexcept {
+  return 64 * kRoundoffF64 * (magnitude + largest_magnitude(scene.to_units(scene.frame().origin))) +
+         kLengthUnderflow;
+}
+
 /// Which instances a query admits, and its work limit.
 struct Admission {
   const BoundScene& scene;
   QueryKinds kind;
   LayerMask layers;
   QueryWork& work;
+  const InstanceFilter* filter = nullptr;  // null: every instance
 
-  [[nodiscard]] bool admits(std::uint32_t layer) const noexcept {
-    return ((layers >> layer) & 1u) != 0 && (scene.layer(layer).query_kinds & kind) != 0;
+  [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept {
+    return ((layers >> layer) & 1u) != 0 && (scene.layer(layer).query_kinds & kind) != 0 &&
+           scene.is_enabled(instance) && (filter == nullptr || (*filter)(instance));
   }
 };
 
@@ -57,7 +70,7 @@ struct MovingInstances {
   [[nodiscard]] bool leaf(NodeRef ref) {
     const BoundScene& scene = query.admission.scene;
     const BoundScene::Moving& moving = scene.moving()[scene.moving_tree().moving(ref)];
-    return !query.admission.admits(moving.placed.layer) ||
+    return !query.admission.admits(moving.instance, moving.placed.layer) ||
            visit_instance(query, moving.instance, moving.placed);
   }
 };
@@ -71,7 +84,7 @@ Errc walk_static(const BoundScene& scene, Query& query) {
     if (query.error != Errc::kOk) return false;
     if (scene.is_detached(instance)) return true;
     const std::optional<InstanceRecord> record = scene.record_of(instance);
-    if (record && !query.admission.admits(record->layer)) return true;
+    if (record && !query.admission.admits(instance, record->layer)) return true;
     const auto placed = record ? scene.place(instance, *record) : std::nullopt;
     if (!placed) query.error = Errc::kRecordInvalid;
     return placed && visit_instance(query, instance, *placed);

@@ -25,6 +25,13 @@ struct TopLevelRay {
   double max_abs;  // on every axis, that `slab` was made with
   RaySlab slab;
   double s_min;
+  // Half, of the bounds of a shape around its point, by which the slab widens boxes.
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();
+
+  /// The largest coordinate of the top level, and of the shape while it is near.
+  [[nodiscard]] double near_of(const TopLevel& top) const noexcept {
+    return max_abs_of(top) + 2 * largest_magnitude(extent);
+  }
 };
 
 /// The walks one child at a time; see walk_top_level.

@@ -132,10 +132,11 @@ Errc walk_point(const TopLevel& top, const Eigen::Vector3d& point, const double&
 
 Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const double& bound,
               InstanceVisitor visit) {
-  const RayBoxFilter filter(
-      ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction), std::max(enter, ray.s_min),
-      RayBoxFilter::rounding(max_abs_of(top)) +
-          RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.max_abs));
+  RayBoxFilter filter(ray.slab, AxisLanes(ray.origin), AxisLanes(ray.direction),
+                      std::max(enter, ray.s_min),
+                      RayBoxFilter::rounding(ray.near_of(top)) +
+                          RayBoxFilter::given_away(largest_magnitude(ray.origin), ray.max_abs));
+  filter.widen(ray.extent);
   return walk(top, RayRegion{filter}, bound, visit);
 }
 #endif
@@ -172,10 +173,10 @@ Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, cons
 Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
                          InstanceVisitor visit) {
   const double max_abs = max_abs_of(top);
-  // An ill-conditioned map may widen the query by more than the tree's size; the filter is then
-  // useless.
+  // A shape may be so large beside the tree that its size takes the digits; an ill-conditioned map
+  // may widen the query by more than the tree's size; the filter is then useless.
   const double origin_max_abs = largest_magnitude(ray.origin);
-  const bool is_near = origin_max_abs <= 0x1p30 * max_abs &&
+  const bool is_near = origin_max_abs <= 0x1p30 * max_abs && ray.near_of(top) <= 0x1p10 * max_abs &&
                        RayBoxFilter::given_away(origin_max_abs, ray.max_abs) <= max_abs;
   if (!top.has_float_nodes() || !is_near) return walk_top_level_scalar(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <boxtree/shape.h>
@@ -145,35 +146,37 @@ inline long double least_distance(const LongShape& shape, const LongVector& dire
   return least;
 }
 
-/// A triangle of a tree in object space, in a ball that rules most of them out.
+/// A triangle, in a ball that rules most of them out.
 struct BoundedTriangle {
+  explicit BoundedTriangle(const LongTriangle& triangle) : corner(triangle) {
+    center = (corner[0] + corner[1] + corner[2]) / 3;
+    for (const LongVector& c : corner) radius = std::max(radius, (c - center).norm());
+  }
+
   LongTriangle corner;
   LongVector center;
   long double radius = 0;
 };
 
+/// Those of a tree, in object space.
 inline std::vector<BoundedTriangle> bounded_triangles(const Tree& tree) {
   const long double scale = std::ldexp(1.0L, BoundTree::of(tree).scale_exponent());
   std::vector<BoundedTriangle> triangles;
   for (const Triangle& triangle : all_triangles(tree)) {
-    BoundedTriangle bounded;
-    bounded.center.setZero();
+    LongTriangle in_object;
     for (std::size_t c = 0; c < 3; ++c) {
-      bounded.corner[c] = scale * triangle.corner[c].cast<long double>() +
-                          BoundTree::of(tree).frame().origin.cast<long double>();
-      bounded.center += bounded.corner[c] / 3;
+      in_object[c] = scale * triangle.corner[c].cast<long double>() +
+                     BoundTree::of(tree).frame().origin.cast<long double>();
     }
-    for (const LongVector& c : bounded.corner) {
-      bounded.radius = std::max(bounded.radius, (c - bounded.center).norm());
-    }
-    triangles.push_back(bounded);
+    triangles.emplace_back(in_object);
   }
   return triangles;
 }
 
 class Surface {
  public:
-  explicit Surface(const Tree& tree) : triangles_(bounded_triangles(tree)) {
+  explicit Surface(const Tree& tree) : Surface(bounded_triangles(tree)) {}
+  explicit Surface(std::vector<BoundedTriangle> triangles) : triangles_(std::move(triangles)) {
     for (const BoundedTriangle& triangle : triangles_) {
       for (const LongVector& c : triangle.corner) size_ = std::max(size_, c.cwiseAbs().maxCoeff());
     }

@@ -30,4 +30,10 @@
 #include <boxtree/tree.h>
 #if BOXTREE_HAS_SCENE_QUERIES
 #include <boxtree/scene.h>
+#if BOXTREE_HAS_CAST_QUERIES
+#include <boxtree/scene_cast.h>
+#endif
+#if BOXTREE_HAS_COLLIDE_QUERIES
+#include <boxtree/scene_collide.h>
+#endif
 #endif

@@ -8,9 +8,11 @@
 // allocates; contacts and pairs take up to 352 KB of stack, all others at most 64 KB.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 
@@ -18,6 +20,7 @@
 #include <boxtree/configuration.h>
 #include <boxtree/contact.h>
 #include <boxtree/export.h>
+#include <boxtree/face_options.h>
 #include <boxtree/ray.h>
 
 static_assert(BOXTREE_HAS_SCENE_QUERIES,
@@ -78,9 +81,9 @@ struct SceneFace {
 
 /// One scene. Points into the bytes of its File. Instances are numbered from 0 in the order of the
 /// file. Queries on a scene that is not being updated are safe from many threads at once; update(),
-/// make_movable() and rebuild() need the scene for themselves. The file's bytes are never written:
-/// poses of moving instances, and the tree over them, live in the Scene. Move-only; a scene that
-/// was moved from may only be assigned to or destroyed.
+/// make_movable(), rebuild() and what is set need the scene for themselves. The file's bytes are
+/// never written: poses of moving instances, and the tree over them, live in the Scene. Move-only;
+/// a scene that was moved from may only be assigned to or destroyed.
 class BOXTREE_API Scene {
  public:
   /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows
@@ -119,6 +122,18 @@ class BOXTREE_API Scene {
   /// How many layers have records in the file, numbered from 0.
   [[nodiscard]] std::uint32_t layer_count() const noexcept;
 
+  /// Whether queries see an instance [true]: one that is disabled is in no answer, as if it were
+  /// not there. O(1) after the first call, which allocates a bit for each instance. Error:
+  /// kInstanceIndex.
+  Status set_enabled(std::uint32_t instance, bool enabled);
+  /// As last given to set_enabled(). False for numbers of no instance.
+  [[nodiscard]] bool is_enabled(std::uint32_t instance) const noexcept;
+  /// Keeps a number of the application's for an instance: an entity, a pointer. The first call
+  /// allocates one for each instance. Error: kInstanceIndex.
+  Status set_user_data(std::uint32_t instance, std::uint64_t data);
+  /// As last given to set_user_data(), else 0.
+  [[nodiscard]] std::uint64_t user_data(std::uint32_t instance) const noexcept;
+
   /// A triangle of a face that an answer names, in world coordinates: each corner is brought there
   /// in double precision. `half` and cost as for Tree::triangle(). Errors: as there and for info().
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half = 0) const;
@@ -150,6 +165,22 @@ class BOXTREE_API Scene {
 /// Receives one face after the other; returns whether to go on.
 using SceneFaceVisitor = FunctionRef<bool(const SceneFace&)>;
 
+/// Whether a face of an instance may be hit; see FaceFilter. By material: a lambda that looks at
+/// Scene::material().
+using SceneFaceFilter = FunctionRef<bool(const SceneFace&)>;
+/// Whether an instance may be hit; called once for each that a query comes near.
+using InstanceFilter = FunctionRef<bool(std::uint32_t)>;
+
+/// Which faces a ray or a cast may hit, and what it may cost.
+struct SceneFaceOptions {
+  /// Which side counts as seen from the instance: a pose that mirrors turns nothing over. [kHit]
+  BackFaces back_faces = BackFaces::kHit;
+  std::optional<SceneFaceFilter> filter;          ///< [every face]
+  std::optional<InstanceFilter> instance_filter;  ///< [every instance]
+  LayerMask layers = kAllLayers;                  ///< [every layer]
+  QueryLimits limits;                             ///< [none]
+};
+
 /// A hit of an instance. `t` counts in units of the ray's direction; point and normal are in world
 /// coordinates, the normal carried there by the pose.
 struct SceneRayHit : RayHit {
@@ -169,6 +200,28 @@ BOXTREE_API SceneRayResult closest_hit(const Scene& scene, const Ray& ray,
 /// Some hit, or nothing: cheaper than closest_hit() when only the fact matters.
 BOXTREE_API SceneRayResult any_hit(const Scene& scene, const Ray& ray,
                                    LayerMask layers = kAllLayers, const QueryLimits& limits = {});
+
+/// The same among the faces that `options` let be hit; see closest_hit() of a tree.
+BOXTREE_API SceneRayResult closest_hit(const Scene& scene, const Ray& ray,
+                                       const SceneFaceOptions& options);
+/// Some hit of those, or nothing.
+BOXTREE_API SceneRayResult any_hit(const Scene& scene, const Ray& ray,
+                                   const SceneFaceOptions& options);
+
+/// Receives one hit after the other; what it returns is as for RayVisitor.
+using SceneRayVisitor = FunctionRef<double(const SceneRayHit&)>;
+
+/// Visits every hit, in no promised order: each triangle once, copies of a face, too. Those of one
+/// instance come together.
+BOXTREE_API Result<Visit> all_hits(const Scene& scene, const Ray& ray, SceneRayVisitor visitor,
+                                   const SceneFaceOptions& options = {});
+
+/// The first hits, as many as `hits` has room for, in ascending order of t, then of instance ids
+/// and of face ids. Returns how many there are. Takes time proportional to the room for each hit
+/// that is met.
+BOXTREE_API Result<std::size_t> nearest_hits(const Scene& scene, const Ray& ray,
+                                             std::span<SceneRayHit> hits,
+                                             const SceneFaceOptions& options = {});
 
 /// Visits every face that touches the closed box `box` of the world, each once. Exact for the
 /// triangles that arise when each corner is brought into the world in double precision.

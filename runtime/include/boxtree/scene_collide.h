@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// What a convex shape touches in a scene, in world coordinates.
+#pragma once
+
+#include <cstdint>
+
+#include <boxtree/collide.h>
+#include <boxtree/scene.h>
+
+namespace boxtree {
+
+/// Where a shape and an instance touch. Point, normal and depth are those of the world.
+struct SceneContact : Contact {
+  std::uint32_t instance = kNoInstance;  ///< The instance that is touched.
+};
+
+/// Receives one contact after the other; returns whether to go on.
+using SceneContactVisitor = FunctionRef<bool(const SceneContact&)>;
+
+/// Visits every triangle that the shape touches, as collide() of a tree, for the triangles that
+/// arise when each corner is brought into the world in double precision. Layers count that answer
+/// boxes. Errors: those of collide() on a tree; kPartLeftOut. Never allocates.
+BOXTREE_API Result<Visit> collide(const Scene& scene, const Sphere& sphere,
+                                  SceneContactVisitor visitor, LayerMask layers = kAllLayers,
+                                  const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API Result<Visit> collide(const Scene& scene, const Capsule& capsule,
+                                  SceneContactVisitor visitor, LayerMask layers = kAllLayers,
+                                  const QueryLimits& limits = {});
+/// The same.
+BOXTREE_API Result<Visit> collide(const Scene& scene, const OrientedBox& box,
+                                  SceneContactVisitor visitor, LayerMask layers = kAllLayers,
+                                  const QueryLimits& limits = {});
+
+/// Visits every face that the shape touches, each once, in no promised order: as collide(), without
+/// looking where.
+BOXTREE_API Result<Visit> overlap_capsule(const Scene& scene, const Capsule& capsule,
+                                          SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
+                                          const QueryLimits& limits = {});
+/// The same for a box along axes of its own.
+BOXTREE_API Result<Visit> overlap_oriented_box(const Scene& scene, const OrientedBox& box,
+                                               SceneFaceVisitor visitor,
+                                               LayerMask layers = kAllLayers,
+                                               const QueryLimits& limits = {});
+
+}  // namespace boxtree

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: MIT
+// Contacts of a shape with the triangles of one tree: a cast that stays where it is.
+#pragma once
+
+#include <boxtree/collide.h>
+
+#include "runtime/query/cast_query.h"
+
+namespace boxtree {
+
+/// Calls visit(query, candidate) -> bool, whether to go on, with each triangle that is touched.
+template <class Visitor>
+Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path, QueryWork& work,
+                            const Visitor& visit) {
+  WalkBound nodes(tree.node_count(), &work);
+  const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
+    return visit(query, found) ? 0.0 : -1.0;
+  };
+  const CastQuery::Visitor visitor(touched);
+  CastQuery query(tree, path, CastQuery::Wanted::kAll, &visitor, nodes);
+  if (const Errc error = query.run(); error != Errc::kOk) return error;
+  return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
+}
+
+/// The line of a shape that stays where it is: of no length along any direction.
+[[nodiscard]] inline Ray line_at(const Eigen::Vector3d& center) noexcept {
+  return {center, Eigen::Vector3d::UnitX(), 0, 0};
+}
+
+/// What a caller is told of a touch. `frame`: from the space in which triangles are compared to the
+/// caller's.
+[[nodiscard]] Contact contact_of(const CastQuery& query, const CastCandidate& found,
+                                 const Frame& frame) noexcept;
+
+/// Tells the second triangle of a quad that was visited already from others, leaf by leaf.
+class VisitedFaces {
+ public:
+  /// Whether the face, or the original of this copy, comes for the first time.
+  bool is_new(const CastCandidate& found) noexcept {
+    if (found.face.index != found.original) return is_new_;  // copies follow their original
+    if (found.original / kLeafFaces != leaf_) {
+      leaf_ = found.original / kLeafFaces;
+      visited_ = 0;
+    }
+    const std::uint32_t bit = 1u << (found.original % kLeafFaces);
+    is_new_ = (visited_ & bit) == 0;
+    visited_ |= bit;
+    return is_new_;
+  }
+
+ private:
+  std::uint32_t leaf_ = ~std::uint32_t{0};
+  std::uint32_t visited_ = 0;  // bit i: face i of the leaf
+  bool is_new_ = true;
+};
+
+}  // namespace boxtree

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: MIT
+// Contacts and overlaps of convex shapes in a scene.
+#include <boxtree/scene_collide.h>
+
+#include "runtime/primitive/float_state.h"
+#include "runtime/query/collide_query.h"
+#include "runtime/query/invalid_query.h"
+#include "runtime/scene/placed_cast.h"
+#include "runtime/scene/scene_line.h"
+#include "runtime/scene/scene_walk.h"
+
+namespace boxtree {
+namespace {
+
+// `visit_touch(instance, query, candidate)` -> bool, whether to go on: see visit_touched.
+template <class VisitTouch>
+struct SceneCollideQuery {
+  Admission admission;
+  UnitCast cast;  // of no length
+  Box<double> in_frame;
+  const VisitTouch& visit_touch;
+  Errc error = Errc::kOk;
+  bool stopped = false;
+
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return boxes_overlap(box, in_frame);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, instances, in_frame);
+  }
+  [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
+    const InstanceCast on_instance(cast, *placed.tree, placed.placement);
+    const Result<Visit> visited =
+        visit_touched(*placed.tree, on_instance.path(), admission.work,
+                      [&](const CastQuery& query, const CastCandidate& found) {
+                        return visit_touch(instance, query, found);
+                      });
+    if (!visited) error = visited.code();
+    stopped = visited && *visited == Visit::kStopped;
+    return !is_done();
+  }
+};
+
+// The bounds of a shape in the scene's frame, widened by what it may be off there.
+Box<double> bounds_in_frame(const BoundScene& scene, const UnitCast& cast) noexcept {
+  const Eigen::Vector3d& center = cast.line.origin;
+  const Eigen::Vector3d extent = cast.shape.half_extents();
+  const Eigen::Vector3d widened =
+      extent.array() + frame_error(scene, largest_magnitude(center) + largest_magnitude(extent) +
+                                              largest_in_frame(scene));
+  const Eigen::Vector3d at = scene.to_frame(center);
+  const Eigen::Vector3d low = at - widened, high = at + widened;
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
+
+template <class Shape, class VisitTouch>
+Result<Visit> visit_touched_in(const Scene& queried, const Shape& of_caller, LayerMask layers,
+                               const QueryLimits& limits, const VisitTouch& visit_touch) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
+  const ShapeInTree shape = in_tree(scene.units(), of_caller);
+  if (shape.invalid != nullptr) return invalid_query(shape.invalid);
+  QueryWork work(limits);
+  const UnitCast cast{shape.shape, line_at(scene.to_units(shape.center)), false};
+  SceneCollideQuery<VisitTouch> query{
+      {scene, kBoxQueries, layers, work}, cast, bounds_in_frame(scene, cast), visit_touch};
+  return outcome_of(visit_overlapping_instances(scene, query), query);
+}
+
+template <class Shape>
+Result<Visit> visit_contacts(const Scene& scene, const Shape& shape, SceneContactVisitor visitor,
+                             LayerMask layers, const QueryLimits& limits) {
+  const Frame units = BoundScene::of(scene).units();
+  return visit_touched_in(
+      scene, shape, layers, limits,
+      [&](std::uint32_t instance, const CastQuery& query, const CastCandidate& found) {
+        return visitor({contact_of(query, found, units), instance});
+      });
+}
+
+template <class Shape>
+Result<Visit> visit_faces_of(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
+                             LayerMask layers, const QueryLimits& limits) {
+  VisitedFaces visited;
+  std::uint32_t last = kNoInstance;
+  return visit_touched_in(
+      scene, shape, layers, limits,
+      [&](std::uint32_t instance, const CastQuery&, const CastCandidate& found) {
+        if (instance != last) visited = {};
+        last = instance;
+        return !visited.is_new(found) || visitor({instance, found.face});
+      });
+}
+
+}  // namespace
+
+Result<Visit> collide(const Scene& scene, const Sphere& sphere, SceneContactVisitor visitor,
+                      LayerMask layers, const QueryLimits& limits) {
+  return visit_contacts(scene, sphere, visitor, layers, limits);
+}
+Result<Visit> collide(const Scene& scene, const Capsule& capsule, SceneContactVisitor visitor,
+                      LayerMask layers, const QueryLimits& limits) {
+  return visit_contacts(scene, capsule, visitor, layers, limits);
+}
+Result<Visit> collide(const Scene& scene, const OrientedBox& box, SceneContactVisitor visitor,
+                      LayerMask layers, const QueryLimits& limits) {
+  return visit_contacts(scene, box, visitor, layers, limits);
+}
+
+Result<Visit> overlap_capsule(const Scene& scene, const Capsule& capsule, SceneFaceVisitor visitor,
+                              LayerMask layers, const QueryLimits& limits) {
+  return visit_faces_of(scene, capsule, visitor, layers, limits);
+}
+Result<Visit> overlap_oriented_box(const Scene& scene, const OrientedBox& box,
+                                   SceneFaceVisitor visitor, LayerMask layers,
+                                   const QueryLimits& limits) {
+  return visit_faces_of(scene, box, visitor, layers, limits);
+}
+
+}  // namespace boxtree
