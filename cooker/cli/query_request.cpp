@@ -14,6 +14,7 @@
 
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
+#include "cooker/cli/shape_answers.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/cli/tree_kinds.h"
 #include "cooker/import/import.h"
@@ -25,144 +26,32 @@
 namespace boxtree::cooker {
 namespace {
 
-void add_face_of(const RayHit& hit, Json& json) {
-  json["face"] = face_json(hit.face);
-}
+// See ShapeAnswers.
+struct TreeKinds {
+  using Body = Tree;
+  using OfRay = RayHit;
+  using OfCast = CastHit;
+  using OfShape = Contact;
+  using Options = FaceOptions;
 
-// A list of hits that a query visits, in order.
-template <class Hit, class Query, class Rank, class Add>
-Result<Json> answer_all(const Query& query, const Rank& rank, const Add& add) {
-  std::vector<Hit> hits;
-  const Result<Visit> visit = query(hits);
-  if (!visit) return visit.error();
-  std::sort(hits.begin(), hits.end(),
-            [&](const Hit& a, const Hit& b) { return rank(a) < rank(b); });
-  Json list = Json::array();
-  for (const Hit& hit : hits) add(list.emplace_back(), hit);
-  return Json{{"count", list.size()}, {"hits", list}};
-}
+  template <class Hit>
+  static void add_face(const Tree&, const Hit& hit, Json& json) {
+    json["face"] = face_json(hit.face);
+  }
+  template <class Hit>
+  static auto rank(const Tree&, const Hit& hit) {  // without ids all faces have the same
+    return std::tuple(hit.face.id, hit.face.index, hit.triangle);
+  }
+};
 
 Result<Json> answer(const Tree& tree, const RayRequest& request) {
-  FaceOptions options;
-  options.back_faces = request.back_faces;
-  if (request.all) {
-    return answer_all<RayHit>(
-        [&](std::vector<RayHit>& hits) {
-          return all_hits(
-              tree, request.ray,
-              [&](const RayHit& hit) {
-                hits.push_back(hit);
-                return request.ray.t_max;
-              },
-              options);
-        },
-        [](const RayHit& hit) {  // without ids all have the same
-          return std::tuple(hit.t, hit.face.id, hit.face.index, hit.triangle);
-        },
-        [](Json& json, const RayHit& hit) { add_hit(json, hit, add_face_of); });
-  }
-  return answer_hit(
-      request.any ? any_hit(tree, request.ray, options) : closest_hit(tree, request.ray, options),
-      add_face_of);
+  return ShapeAnswers<TreeKinds>(tree).answer(request);
 }
-
-const char* name_of(Feature feature) {
-  switch (feature) {
-    case Feature::kFace:
-      return "face";
-    case Feature::kEdge:
-      return "edge";
-    case Feature::kVertex:
-      return "vertex";
-  }
-  return "";
-}
-
-void add_touch(Json& json, const CastHit& hit) {
-  json["t"] = hit.t;
-  json["t_lower"] = hit.t_lower;
-  json["face"] = face_json(hit.face);
-  json["triangle"] = hit.triangle;
-  json["point"] = to_json(hit.point);
-  json["normal"] = to_json(hit.normal);
-  json["feature"] = name_of(hit.feature);
-  json["initially_touching"] = hit.initially_touching;
-}
-
-template <class Shape>
-Result<Json> answer_cast(const Tree& tree, const Shape& shape, const CastRequest& request) {
-  FaceOptions options;
-  options.back_faces = request.back_faces;
-  if (request.all) {
-    return answer_all<CastHit>(
-        [&](std::vector<CastHit>& hits) {
-          return cast_all(
-              tree, shape, request.motion,
-              [&](const CastHit& hit) {
-                hits.push_back(hit);
-                return request.motion.t_max;
-              },
-              options);
-        },
-        [](const CastHit& hit) {
-          return std::tuple(hit.t_lower, hit.face.id, hit.face.index, hit.triangle);
-        },
-        add_touch);
-  }
-  const CastResult hit = request.any ? cast_any(tree, shape, request.motion, options)
-                                     : cast_closest(tree, shape, request.motion, options);
-  if (!hit.ok()) return hit.error();
-  Json json = {{"hit", hit.has_value()}};
-  if (hit) add_touch(json, *hit);
-  return json;
-}
-
-// Answers by answer(shape) for the shape that is given, where it is.
-template <class Answer>
-Result<Json> with_shape(const CastShape& shape, const Eigen::Vector3d& at, const Answer& answer) {
-  const auto& [sphere, capsule, box, rotation] = shape;
-  if (sphere) return answer(Sphere{at, *sphere});
-  if (capsule) {
-    const auto& [x, y, z, radius] = *capsule;
-    return answer(Capsule{at, at + Eigen::Vector3d(x, y, z), radius});
-  }
-  OrientedBox placed;
-  placed.center = at;
-  placed.half_extents = Eigen::Vector3d(box->data());
-  if (rotation) placed.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
-  return answer(placed);
-}
-
 Result<Json> answer(const Tree& tree, const CastRequest& request) {
-  return with_shape(request.shape, request.at,
-                    [&](const auto& shape) { return answer_cast(tree, shape, request); });
+  return ShapeAnswers<TreeKinds>(tree).answer(request);
 }
-
 Result<Json> answer(const Tree& tree, const CollideRequest& request) {
-  if (request.merges && !(request.merge >= 0)) return Error{Errc::kInvalidQuery, "merge"};
-  return with_shape(request.shape, request.at, [&](const auto& shape) -> Result<Json> {
-    std::vector<Contact> contacts;
-    const Result<Visit> visit = collide(tree, shape, [&](const Contact& contact) {
-      contacts.push_back(contact);
-      return true;
-    });
-    if (!visit) return visit.error();
-    std::sort(contacts.begin(), contacts.end(), [](const Contact& a, const Contact& b) {
-      return std::tuple(a.face.id, a.face.index, a.triangle) <
-             std::tuple(b.face.id, b.face.index, b.triangle);
-    });
-    if (request.merges) contacts.resize(merge_contacts(contacts, request.merge));
-    Json list = Json::array();
-    for (const Contact& contact : contacts) {
-      list.push_back({{"face", face_json(contact.face)},
-                      {"triangle", contact.triangle},
-                      {"point", to_json(contact.point)},
-                      {"normal", to_json(contact.normal)},
-                      {"depth", contact.depth},
-                      {"feature", name_of(contact.feature)}});
-    }
-    return Json{{"count", list.size()}, {"contacts", list}};
-  });
+  return ShapeAnswers<TreeKinds>(tree).answer(request);
 }
 
 template <class Overlap>
@@ -339,7 +228,9 @@ class FieldTexts {
     fields_.push_back({key, fmt::format("{}", value), false});
   }
   void second(const SecondTree& /*tree*/) {}  // has no numbers but a pose, which has its own error
-  void back_faces(BackFaces value) { fields_.push_back({"back_faces", cooker::name_of(value), false}); }
+  void back_faces(BackFaces value) {
+    fields_.push_back({"back_faces", cooker::name_of(value), false});
+  }
   void shape(const CastShape& shape) {
     if_given("sphere", shape.sphere, [](double radius) { return fmt::format("{}", radius); });
     const auto list = [](const auto& numbers) {

@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <charconv>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "cooker/cli/scene_info.h"
+#include "cooker/cli/shape_answers.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -35,13 +37,32 @@ Error not_for_scenes(const std::string& what) {
           what + ": trees answer it, scenes do not; name a tree of the file with --tree"};
 }
 
+// See ShapeAnswers.
+struct SceneKinds {
+  using Body = Scene;
+  using OfRay = SceneRayHit;
+  using OfCast = SceneCastHit;
+  using OfShape = SceneContact;
+  using Options = SceneFaceOptions;
+
+  template <class Hit>
+  static void add_face(const Scene& scene, const Hit& hit, Json& json) {
+    cooker::add_face(scene, {hit.instance, hit.face}, json);
+  }
+  template <class Hit>
+  static auto rank(const Scene&, const Hit& hit) {
+    return std::tuple(hit.instance, hit.face.id, hit.face.index, hit.triangle);
+  }
+};
+
 Result<Json> answer(const Scene& scene, const RayRequest& request) {
-  if (request.all) return not_for_scenes("all hits of a ray");
-  if (request.back_faces != BackFaces::kHit) return not_for_scenes("the side of a face");
-  return answer_hit(request.any ? any_hit(scene, request.ray) : closest_hit(scene, request.ray),
-                    [&scene](const SceneRayHit& found, Json& json) {
-                      add_face(scene, {found.instance, found.face}, json);
-                    });
+  return ShapeAnswers<SceneKinds>(scene).answer(request);
+}
+Result<Json> answer(const Scene& scene, const CastRequest& request) {
+  return ShapeAnswers<SceneKinds>(scene).answer(request);
+}
+Result<Json> answer(const Scene& scene, const CollideRequest& request) {
+  return ShapeAnswers<SceneKinds>(scene).answer(request);
 }
 
 template <class Overlap>
@@ -55,14 +76,6 @@ Result<Json> answer_faces(const Scene& scene, Overlap overlap) {
   });
   if (!visit) return visit.error();
   return Json{{"count", faces.size()}, {"faces", faces}};
-}
-
-Result<Json> answer(const Scene&, const CastRequest&) {
-  return not_for_scenes("a cast");
-}
-
-Result<Json> answer(const Scene&, const CollideRequest&) {
-  return not_for_scenes("what a shape touches");
 }
 
 Result<Json> answer(const Scene& scene, const BoxRequest& request) {

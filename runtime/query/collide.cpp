@@ -88,21 +88,7 @@ Result<Visit> overlap_oriented_box(const Tree& tree, const OrientedBox& box, Fac
 }
 
 std::size_t merge_contacts(std::span<Contact> contacts, double distance, double cosine) {
-  const auto is_same = [&](const Contact& a, const Contact& b) {
-    const Eigen::Vector3d between = a.point - b.point;
-    return std::sqrt(squared_length(between)) <= distance && dot(a.normal, b.normal) >= cosine;
-  };
-  std::size_t kept = 0;
-  for (std::size_t i = 0; i < contacts.size(); ++i) {
-    std::size_t same = 0;
-    while (same < kept && !is_same(contacts[same], contacts[i])) ++same;
-    if (same == kept) {
-      contacts[kept++] = contacts[i];
-    } else if (contacts[i].depth > contacts[same].depth) {
-      contacts[same] = contacts[i];
-    }
-  }
-  return kept;
+  return merge(contacts, distance, cosine);
 }
 
 }  // namespace boxtree

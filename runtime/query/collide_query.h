@@ -2,8 +2,14 @@
 // Contacts of a shape with the triangles of one tree: a cast that stays where it is.
 #pragma once
 
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
 #include <boxtree/collide.h>
 
+#include "runtime/primitive/vector3.h"
 #include "runtime/query/cast_query.h"
 
 namespace boxtree {
@@ -31,6 +37,26 @@ Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path, 
 /// caller's.
 [[nodiscard]] Contact contact_of(const CastQuery& query, const CastCandidate& found,
                                  const Frame& frame) noexcept;
+
+/// merge_contacts() for contacts of any kind.
+template <class AnyContact>
+[[nodiscard]] std::size_t merge(std::span<AnyContact> contacts, double distance, double cosine) {
+  const auto is_same = [&](const Contact& a, const Contact& b) {
+    const Eigen::Vector3d between = a.point - b.point;
+    return std::sqrt(squared_length(between)) <= distance && dot(a.normal, b.normal) >= cosine;
+  };
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    std::size_t same = 0;
+    while (same < kept && !is_same(contacts[same], contacts[i])) ++same;
+    if (same == kept) {
+      contacts[kept++] = contacts[i];
+    } else if (contacts[i].depth > contacts[same].depth) {
+      contacts[same] = contacts[i];
+    }
+  }
+  return kept;
+}
 
 /// Tells the second triangle of a quad that was visited already from others, leaf by leaf.
 class VisitedFaces {

@@ -120,4 +120,8 @@ Result<Visit> overlap_oriented_box(const Scene& scene, const OrientedBox& box,
   return visit_faces_of(scene, box, visitor, layers, limits);
 }
 
+std::size_t merge_contacts(std::span<SceneContact> contacts, double distance, double cosine) {
+  return merge(contacts, distance, cosine);
+}
+
 }  // namespace boxtree

@@ -93,10 +93,14 @@ RUNS = {
         "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
+        "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0 --all",
+        "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0 --all",
     ],
     "query FILE collide": [
         "query crate.bxt collide --sphere 2 --at 0.2,0.1,0.5",
         "query arrays.bxt collide --box 0.1,0.2,0.6 --at 0.2,0.1,0.1 --merge 0.1",
+        "query level.bxt collide --sphere 0.5 --at 0,0.3,-3.3",
+        "query nameless.bxt collide --sphere 0.5 --at 0,0.3,-3.3",
     ],
     "query FILE cast": [
         "query crate.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
@@ -104,6 +108,10 @@ RUNS = {
         "query arrays.bxt cast --box 1,1,1 --at 0.2,0.1,9 --direction 0,0,-1 --any",
         "query crate.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
         "query arrays.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
+        "query level.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
+        "query level.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
+        "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
+        "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
     ],
     "query FILE box, sphere": [
         "query crate.bxt sphere --center 0,0,0 --radius 9",

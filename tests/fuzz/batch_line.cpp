@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Any text as a line of a batch, answered by a small tree.
+#include "cooker/cli/batch_line.h"
+
 #include <string_view>
 
-#include "cooker/cli/batch_line.h"
 #include "tests/fuzz/target.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"

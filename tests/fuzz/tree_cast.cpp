@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Casts of spheres, capsules and boxes against the tree of any file.
+#include "tests/fuzz/shape_input.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
@@ -32,19 +33,7 @@ void cast(const Tree& tree, const Shape& shape, const QueryInput& query, const C
 
 void run(Bytes input) {
   query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
-    const Eigen::Vector3d at = query.vector(0);
-    const double size = query.number(7);
-    const Eigen::Vector3d extent = query.vector(8);
-    switch (query.option(2) % 3) {
-      case 0:
-        return cast(tree, Sphere{at, size}, query, check);
-      case 1:
-        return cast(tree, Capsule{at, at + extent, size}, query, check);
-      default:
-        OrientedBox box{at, extent, {1, 0, 0, 0}};
-        if (query.option(4) % 2 == 1) box.rotation = {size, extent[0], extent[1], extent[2]};
-        return cast(tree, box, query, check);
-    }
+    with_shape(query, [&](const auto& shape) { cast(tree, shape, query, check); });
   });
 }
 

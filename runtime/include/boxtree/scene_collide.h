@@ -2,7 +2,9 @@
 // What a convex shape touches in a scene, in world coordinates.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <boxtree/collide.h>
 #include <boxtree/scene.h>
@@ -42,5 +44,9 @@ BOXTREE_API Result<Visit> overlap_oriented_box(const Scene& scene, const Oriente
                                                SceneFaceVisitor visitor,
                                                LayerMask layers = kAllLayers,
                                                const QueryLimits& limits = {});
+
+/// merge_contacts() for those of a scene, of several instances, too.
+[[nodiscard]] BOXTREE_API std::size_t merge_contacts(std::span<SceneContact> contacts,
+                                                     double distance, double cosine = 0.999);
 
 }  // namespace boxtree

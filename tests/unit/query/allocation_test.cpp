@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // No query allocates: operator new of this program counts.
+#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <new>
@@ -10,6 +11,8 @@
 
 #include "cooker/cook.h"
 #include "tests/support/meshes.h"
+#include "tests/support/require.h"
+#include "tests/support/scenes.h"
 #include "tests/support/tree_queries.h"
 
 namespace {
@@ -61,6 +64,38 @@ TEST(Allocation, QueriesNeverAllocate) {
               .detail == "absolute_error";
   EXPECT_EQ(allocations, before);
   EXPECT_TRUE(refused);
+}
+
+TEST(Allocation, QueriesOfScenesNeverAllocate) {
+  const test::CookedScene cooked =
+      test::cook_scene({test::torus(12, 8), test::city(4, 1)}, test::random_parts(40, 2, 6, 1, 1));
+  const Scene scene = test::require(Scene::bind(cooked.file));
+  const Ray ray{{-9, 0.3, 0.2}, {1, 0, 0}};
+  const Motion motion{{1, 0, 0}};
+  const Sphere sphere{{-9, 0.3, 0.2}, 1};
+  const Capsule capsule{{-9, 0, 0}, {-9, 1, 0}, 1};
+  OrientedBox box;
+  box.half_extents = {1, 2, 3};
+  SceneFaceOptions options;
+  const auto every_face = [](const SceneFace&) { return true; };
+  const auto every_instance = [](std::uint32_t) { return true; };
+  options.filter = SceneFaceFilter(every_face);
+  options.instance_filter = InstanceFilter(every_instance);
+  std::array<SceneRayHit, 4> hits;
+  const auto all = [](const auto&) { return true; };
+  const auto to_the_end = [](const auto&) { return 1e9; };
+  const std::size_t before = allocations;
+  const bool answered =
+      closest_hit(scene, ray) && any_hit(scene, ray) && closest_hit(scene, ray, options) &&
+      all_hits(scene, ray, to_the_end, options) && nearest_hits(scene, ray, hits, options) &&
+      cast_closest(scene, sphere, motion, options) && cast_any(scene, capsule, motion) &&
+      cast_all(scene, box, motion, to_the_end) && collide(scene, sphere, all) &&
+      collide(scene, box, all) && overlap_capsule(scene, capsule, all) &&
+      overlap_oriented_box(scene, box, all) && overlap_sphere(scene, {0, 0, 0}, 9, all) &&
+      overlap_box(scene, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, all) &&
+      closest_point(scene, {3, 2, 1}) && contacts(scene, all) && contacts_of(scene, 0, all);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(answered);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <limits>
 #include <random>
 #include <set>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -164,7 +165,7 @@ TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   EXPECT_EQ(contacts[0].depth, 2);
   EXPECT_EQ(contacts[1].normal, side);
   EXPECT_EQ(contacts[2].point[0], 5);
-  EXPECT_EQ(merge_contacts({}, 1), 0u);
+  EXPECT_EQ(merge_contacts(std::span<Contact>(), 1), 0u);
 }
 
 TEST(CollideErrors, NameTheField) {

@@ -124,6 +124,12 @@ TEST(StackOfScenes, IsAsDocumented) {
     EXPECT_TRUE(overlap_sphere(scene, {0, 0, 0}, 1e3, all).ok());
   });
   expect(64, "closest_point", [&] { EXPECT_TRUE(closest_point(scene, {3, 2, 1}).ok()); });
+  const Capsule capsule{{-200, 0, 0}, {-200, 1, 0}, 1};
+  expect(64, "cast_closest", [&] { EXPECT_TRUE(cast_closest(scene, capsule, {{1, 0, 0}}).ok()); });
+  expect(64, "cast_all", [&] {
+    EXPECT_TRUE(cast_all(scene, capsule, {{1, 0, 0}}, [](const auto&) { return 1e9; }).ok());
+  });
+  expect(64, "collide", [&] { EXPECT_TRUE(collide(scene, Sphere{{0, 0, 0}, 9}, all).ok()); });
   expect(352, "contacts", [&] { EXPECT_TRUE(contacts(scene, all).ok()); });
 }
 

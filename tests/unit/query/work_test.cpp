@@ -161,6 +161,29 @@ TEST(SceneLimits, CountForAllInstancesTogether) {
              closest_point(scene, {3, 2, 1}, 1e4, kAllLayers, limits),
              [](const SceneClosestPoint& found) { return found.distance; });
        }},
+      {"cast_closest",
+       [&](const QueryLimits& limits) {
+         SceneFaceOptions options;
+         options.limits = limits;
+         return outcome_of_hit<SceneCastHit>(
+             cast_closest(scene, Sphere{ray.origin, 1}, {ray.direction}, options),
+             [](const SceneCastHit& hit) { return hit.t; });
+       }},
+      {"all_hits",
+       [&](const QueryLimits& limits) {
+         SceneFaceOptions options;
+         options.limits = limits;
+         return outcome_of_visit([&](std::size_t& told) {
+           return all_hits(
+               scene, ray, [&](const SceneRayHit&) { return ++told, 1e9; }, options);
+         });
+       }},
+      {"collide",
+       [&](const QueryLimits& limits) {
+         return outcome_of_visit([&](std::size_t& told) {
+           return collide(scene, Sphere{{0, 0, 0}, 9}, counting(told), kAllLayers, limits);
+         });
+       }},
       {"contacts",
        [&](const QueryLimits& limits) {
          return outcome_of_visit(

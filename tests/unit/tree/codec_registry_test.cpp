@@ -38,7 +38,7 @@ std::vector<double> answers(const Tree& tree) {
     const auto hit = closest_hit(tree, {from, point() - from});
     out.insert(out.end(), {hit ? hit->t : -1, hit ? static_cast<double>(hit->face.id) : -1});
     const auto touch = cast_closest(tree, Sphere{from, 0.1}, Motion{point() - from});
-    out.insert(out.end(), {touch ? touch->t : -1, touch ? double{touch->face.id} : -1});
+    out.insert(out.end(), {touch ? touch->t : -1, touch ? static_cast<double>(touch->face.id) : -1});
     const auto near = closest_point(tree, from);
     out.insert(out.end(), {near->distance, static_cast<double>(near->face.id)});
     std::vector<std::uint32_t> box, sphere;
