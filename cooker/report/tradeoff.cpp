@@ -61,7 +61,17 @@ Result<std::array<KindTimes, kTimedKinds>> time_kinds(const Tree& tree, const Wo
                   return overlap_pairs(originals, here, originals, pose, go_on).code();
                 }),
       time_each(queries.poses, runs, status,
-                [&](const Pose& pose) { return first_contact(tree, here, tree, pose).code(); })};
+                [&](const Pose& pose) { return first_contact(tree, here, tree, pose).code(); }),
+      time_each(queries.rays, runs, status,
+                [&](const Ray& ray) {
+                  return cast_closest(tree, Sphere{ray.origin, queries.cast_radius},
+                                      Motion{ray.direction})
+                      .code();
+                }),
+      time_each(queries.boxes, runs, status, [&](const Eigen::AlignedBox3d& box) {
+        const Sphere inside{box.center(), box.sizes().maxCoeff() / 2};
+        return collide(tree, inside, [](const Contact&) { return true; }).code();
+      })};
   if (!status) return status.error();
   return times;
 }

@@ -20,10 +20,10 @@ namespace boxtree::cooker {
 
 /// Kinds of queries that are timed. The first four are also counted (QueryKind; pairs are all
 /// contacts). First contacts are what other libraries are compared by.
-inline constexpr std::size_t kTimedKinds = 5;
+inline constexpr std::size_t kTimedKinds = 7;
 inline constexpr std::size_t kFirstContact = 4;
 inline constexpr std::array<const char*, kTimedKinds> kTimedNames = {
-    "ray", "box", "point", "all_contacts", "first_contact"};
+    "ray", "box", "point", "all_contacts", "first_contact", "cast_sphere", "collide_sphere"};
 
 /// Codecs that are queried with allowed errors and budgets.
 inline constexpr std::array kApproximateCodecs = {CodecId::kWide8, CodecId::kWide4,

@@ -38,6 +38,11 @@ constexpr std::array<KindWords, kTimedKinds> kKinds = {{
     {"Closest points", "closest point of the surface", "point_median_ns", 1},
     {"All contacts", "", "pair_all_median_us", 1e3},
     {"First contacts", "first contact of the mesh and its copy", "pair_first_median_us", 1e3},
+    {"Casts", "first touch of a sphere with a radius of 1 % of the diagonal along the same line",
+     "cast_sphere_median_ns", 1},
+    {"Contacts of a sphere",
+     "contacts, with point, normal and depth, of a sphere with a diameter of 5 % of the diagonal",
+     "", 1},
 }};
 
 // What plots have of a point: the measured median, as of other libraries, or the modelled mean.
@@ -423,7 +428,7 @@ PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh
   }
   section.tables = {table};
   PageTable peers{{"other library", "variant", "bytes / triangle", "ray", "box", "point",
-                   "all contacts", "first contact"},
+                   "all contacts", "first contact", "cast", "contacts of a sphere"},
                   {},
                   2};
   for (const PeerRow& peer : peers_of(report, mesh)) {

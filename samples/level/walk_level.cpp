@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A character walks through the courtyard and up the stairs. A sphere keeps it away from walls; a
-// ray keeps its feet on the ground and finds the material below.
+// A character walks through the courtyard, climbs the stairs and slides along what is in its way:
+// a capsule that is cast up, ahead and down each frame. The material below makes the sound of its
+// steps.
 //   walk_level level.bxt
 #include <algorithm>
 #include <cstdio>
@@ -10,23 +11,73 @@
 
 namespace {
 
+using boxtree::SceneCastHit;
 using Eigen::Vector3d;
 
-constexpr double kStride = 0.05;     // metres per frame
-constexpr double kRadius = 0.35;     // of the character
-constexpr double kStepHeight = 0.3;  // largest step that it climbs without a jump
-constexpr double kWaist = kStepHeight + kRadius;
+constexpr double kStride = 0.05;  // metres per frame
+constexpr double kRadius = 0.35;
+constexpr double kHeight = 1.8;
+constexpr double kStepHeight = 0.3;  // the largest step that it climbs without a jump
+constexpr double kSkin = 0.01;       // how far it stays away from everything
+constexpr double kSteepest = 0.7;    // the least height of a normal on which it stands
 
-// Whether a character with its feet there touches anything higher than a step.
-bool is_blocked(const boxtree::Scene& scene, const Vector3d& feet) {
-  bool blocked = false;
-  const auto visit = boxtree::overlap_sphere(scene, feet + Vector3d(0, kWaist, 0), kRadius,
-                                             [&](const boxtree::SceneFace&) {
-                                               blocked = true;
-                                               return false;  // one is enough
-                                             });
-  return !visit || blocked;
-}
+class Character {
+ public:
+  Character(const boxtree::Scene& scene, const Vector3d& feet) : scene_(scene), feet_(feet) {}
+
+  [[nodiscard]] const Vector3d& feet() const { return feet_; }
+
+  // One frame. Returns what it stands on; nothing above the end of the level.
+  boxtree::SceneCastResult walk(const Vector3d& ahead) {
+    const Vector3d start = feet_;
+    static_cast<void>(move({0, kStepHeight, 0}));
+    const double climbed = feet_[1] - start[1];
+    slide(ahead);
+    boxtree::SceneCastResult ground = move({0, -climbed - kStepHeight, 0});
+    if (ground && is_ground(*ground)) return ground;
+    // Up there is no ground: along the ground then, and down.
+    feet_ = start;
+    slide(ahead);
+    ground = move({0, -10, 0});
+    if (!ground) feet_ = start;
+    return ground;
+  }
+
+ private:
+  // The edge of a step pushes back aslant, and is one to stand on.
+  static bool is_ground(const SceneCastHit& hit) {
+    return hit.feature != boxtree::Feature::kFace || hit.normal[1] >= kSteepest;
+  }
+
+  // Moves along `way` until something is in the way, and returns it. At t_lower the body touches
+  // nothing, whatever has been rounded.
+  boxtree::SceneCastResult move(const Vector3d& way) {
+    const double length = way.norm();
+    if (length == 0) return {};
+    const Vector3d low(0, kSkin + kRadius, 0), high(0, kHeight - kRadius, 0);
+    const boxtree::Capsule body{feet_ + low, feet_ + high, kRadius};
+    boxtree::SceneCastResult hit =
+        boxtree::cast_closest(scene_, body, {.direction = way, .t_max = 1 + kSkin / length});
+    const double part = hit ? std::max(0.0, hit->t_lower - kSkin / length) : 1;
+    feet_ += std::min(part, 1.0) * way;
+    return hit;
+  }
+
+  // Moves ahead and along what is in the way.
+  void slide(Vector3d way) {
+    for (int i = 0; i < 4; ++i) {
+      const Vector3d before = feet_;
+      const boxtree::SceneCastResult hit = move(way);
+      if (!hit) return;
+      way -= feet_ - before;
+      const Vector3d wall = Vector3d(hit->normal[0], 0, hit->normal[2]).normalized();
+      way -= std::min(0.0, way.dot(wall)) * wall;
+    }
+  }
+
+  const boxtree::Scene& scene_;
+  Vector3d feet_;
+};
 
 }  // namespace
 
@@ -41,7 +92,7 @@ int main(int argument_count, char** arguments) {
     return 1;
   }
   boxtree::SceneOptions needs;  // bind() fails with the profile's line if the level lacks these
-  needs.queries = boxtree::kRayQueries | boxtree::kBoxQueries;
+  needs.queries = boxtree::kRayQueries;
   needs.require_materials = needs.require_names = true;
   const auto scene = boxtree::Scene::bind(*file, needs);
   if (!scene) {
@@ -49,35 +100,31 @@ int main(int argument_count, char** arguments) {
     return 1;
   }
 
-  // From the gate to the pillar in the way, around it, and up the stairs.
-  const Vector3d way[] = {{0.5, 0, 11}, {0.5, 0, 2}, {0, 0, -2.4}, {0, 0, -7}, {9, 0, -7}};
-  Vector3d feet = way[0];
+  // From the gate up the stairs, and down again over what is in the way.
+  const Vector3d way[] = {{0.5, 1, 11}, {0.5, 0, 2}, {0, 0, -2.4}, {0, 0, -7}, {9, 0, -7}};
+  Character character(*scene, way[0]);
   std::string ground;
   int blocked = 0;
   for (const Vector3d& goal : way) {
     while (blocked < 40) {
-      const Vector3d ahead(goal[0] - feet[0], 0, goal[2] - feet[2]);
+      const Vector3d before = character.feet();
+      const Vector3d ahead(goal[0] - before[0], 0, goal[2] - before[2]);
       if (ahead.norm() < kStride) break;
-      Vector3d next = feet + kStride * ahead.normalized();
-      const auto hit = boxtree::closest_hit(
-          *scene, {next + Vector3d(0, kStepHeight, 0), Vector3d(0, -1, 0), 0, 10});
-      if (!hit) break;  // the end of the level
-      next[1] += kStepHeight - hit->t;
-      if (is_blocked(*scene, next)) {
-        if (++blocked == 40)
-          std::printf("blocked at (%.2f, %.2f, %.2f)\n", feet[0], feet[1], feet[2]);
-        continue;
+      const auto below = character.walk(kStride * ahead.normalized());
+      if (!below) break;  // the end of the level
+      const Vector3d& feet = character.feet();
+      if ((feet - before).norm() < kStride / 10 && ++blocked == 40) {
+        std::printf("blocked at (%.2f, %.2f, %.2f)\n", feet[0], feet[1], feet[2]);
       }
-      feet = next;
-      const auto material = scene->material({hit->instance, hit->face});
+      const auto material = scene->material({below->instance, below->face});
       const std::string now = std::string(scene->material_name(material)) + " of " +
-                              std::string(scene->info(hit->instance)->name);
+                              std::string(scene->info(below->instance)->name);
       if (now != ground) {
         ground = now;
         std::printf("(%6.2f, %5.2f, %6.2f) on %s\n", feet[0], feet[1], feet[2], ground.c_str());
       }
     }
   }
-  std::printf("ends at height %.2f\n", feet[1]);
+  std::printf("ends at height %.2f\n", character.feet()[1]);
   return 0;
 }

@@ -25,7 +25,7 @@ struct LongShape {
   LongVector center;
   long double reach = 0;  // of the core from its center
   bool is_solid = false;
-  std::array<LongVector, 3> axis;
+  std::array<LongVector, 3> axis = {LongVector::Zero(), LongVector::Zero(), LongVector::Zero()};
   std::array<long double, 3> half{};
 };
 
