@@ -2,7 +2,7 @@
 # generated header tells the sources and every program that includes it, installed or not, so that all
 # of them see one and the same build.
 set(BOXTREE_ALL_CODECS plain-f32 plain-f16 packed-f32 packed-f16 packed-f64 dedup wide8 wide4)
-set(BOXTREE_ALL_QUERIES ray cast collide box sphere point pair distance within scene)
+set(BOXTREE_ALL_QUERIES ray cast collide hull box sphere point pair distance within scene)
 set(BOXTREE_CODECS all CACHE STRING "Codecs that the runtime reads: all, or some of ${BOXTREE_ALL_CODECS}")
 set(BOXTREE_QUERIES all CACHE STRING "Queries that it answers: all, or some of ${BOXTREE_ALL_QUERIES}")
 # AVX-512 gains at most 3 % of the time and takes as much code as AVX2: so it is opt-in.
@@ -48,10 +48,11 @@ endif()
 boxtree_choose(BOXTREE_BUILT_QUERIES BOXTREE_QUERIES "${BOXTREE_QUERIES}" ${BOXTREE_ALL_QUERIES})
 
 # A scene answers its kinds by querying its trees; a cast walks along the line of its shape's center
-# as a ray does, and a contact is a cast that stays where it is.
+# as a ray does, a contact is a cast that stays where it is, and a hull is one more shape that is cast.
 set(needed_by_scene ray box sphere point pair)
 set(needed_by_cast ray)
 set(needed_by_collide cast)
+set(needed_by_hull cast)
 foreach(query IN LISTS BOXTREE_BUILT_QUERIES)
   foreach(needed IN LISTS needed_by_${query})
     if(NOT needed IN_LIST BOXTREE_BUILT_QUERIES)

@@ -33,6 +33,7 @@ double ConvexShape::outer_radius() const noexcept {
 }
 
 CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept {
+  if (shape.hull != nullptr) return shape.hull->distance(shape.hull->point, corner);
   // closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
   constexpr double kPointDistanceError = 16 * kRoundoffF64;
   CoreDistance found;

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -21,9 +22,24 @@ namespace boxtree {
 
 using Corners = std::array<Eigen::Vector3d, 3>;
 
+struct CoreDistance;
+struct Penetration;
+
+/// A hull: its points relative to its center, and what is known of them and a triangle. By
+/// pointers, so that a program without hulls links none of it.
+struct ConvexPoints {
+  std::span<const Eigen::Vector3d> point;
+  /// As core_distance(); 0 where the triangle is inside.
+  CoreDistance (*distance)(std::span<const Eigen::Vector3d> points, const Corners& corner) noexcept;
+  /// As penetration(); `against`: null, or of the normals only those against this direction.
+  Penetration (*penetration)(std::span<const Eigen::Vector3d> points, const Corners& corner,
+                             double doubt, const Eigen::Vector3d* against) noexcept;
+};
+
 /// All points within `radius` of center + [-1, 1] half[0] axis[0] + ... over `axes` axes: a sphere
 /// (no axis), a capsule (one) or a box (three, then without a radius). What bounds the image of one
-/// in another space may have both, and axes that are not orthogonal.
+/// in another space may have both, and axes that are not orthogonal. Or a hull: then
+/// the box holds it.
 struct ConvexShape {
   Eigen::Vector3d center = Eigen::Vector3d::Zero();
   // Of length 1 but for rounding; of a capsule, any.
@@ -32,6 +48,8 @@ struct ConvexShape {
   std::array<double, 3> half{};
   std::uint32_t axes = 0;
   double radius = 0;
+  const ConvexPoints* hull = nullptr;
+  double error = 0;  // by which a center may be off before it is rounded
 
   /// Half the extent of its bounds, on every axis, not rounded down.
   [[nodiscard]] Eigen::Vector3d half_extents() const noexcept;
@@ -75,7 +93,7 @@ struct CoreDistance {
   Eigen::Vector3d between;  // from there to the closest point of the triangle
 };
 
-/// Of a sphere or capsule. Its center is the origin.
+/// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;
 
 /// What of the triangle closest_point_on_triangle() has found for `point`.

@@ -73,7 +73,9 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
                                           double from, double to) noexcept {
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the divisions and sums round up
   const double reach = moving.shape.radius + moving.doubt;
-  double s = std::max(from, plane_touch(moving, triangle, from, reach));
+  // A hull's first step is along a normal, too, where it touches a face.
+  const bool has_center = moving.shape.hull == nullptr;
+  double s = has_center ? std::max(from, plane_touch(moving, triangle, from, reach)) : from;
   if (s > to || s == kInfinity) return std::nullopt;
   for (int step = 0; step < kMostSteps; ++step) {
     const CoreDistance at = core_distance(moving.shape, placed(moving, triangle, s));
@@ -218,25 +220,33 @@ double MovingShape::doubt_of(double near, double far) noexcept {
 
 std::optional<double> MovingShape::first_touch(const Triangle& triangle, double from,
                                                double to) const noexcept {
-  return shape.axes == 3 ? first_touch_of_box(*this, triangle, from, to)
-                         : first_touch_of_core(*this, triangle, from, to);
+  return is_box() ? first_touch_of_box(*this, triangle, from, to)
+                  : first_touch_of_core(*this, triangle, from, to);
 }
 
 MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s) const noexcept {
-  if (shape.axes == 3) return contact_of_box(*this, triangle, s);
+  if (is_box()) return contact_of_box(*this, triangle, s);
   const Corners corner = placed(*this, triangle, s);
-  const Penetration found = penetration(shape, corner, doubt);
+  const Penetration found =
+      shape.hull != nullptr && s > 0
+          ? shape.hull->penetration(shape.hull->point, corner, doubt, &direction)
+          : penetration(shape, corner, doubt);
   Contact contact{center_at(s) + found.point, found.normal, found.feature, s};
   // Until it is certain that they touch, or the distance does not fall any more.
   CoreDistance at = core_distance(shape, corner);
   double step = 0;
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - shape.radius;
-    const double speed = dot(at.between, direction);
+    // Rounding tilts the line between points that are near each other, but no normal of a hull.
+    const bool is_last = shape.hull != nullptr && at.length <= 8 * doubt;
+    const double speed = is_last ? -dot(found.normal, direction) : dot(at.between, direction);
     if (!(missing > 0) || !(speed > 0)) break;
-    step = std::max(2 * step, 2 * missing * at.length / speed);
+    step = is_last ? step + (at.length + 2 * doubt) / speed
+                   : std::max(2 * step, 2 * missing * at.length / speed);
+    at = core_distance(shape, placed(*this, triangle, s + step));
+    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
     contact.by = s + step;
-    at = core_distance(shape, placed(*this, triangle, contact.by));
+    if (is_last) break;
   }
   return contact;
 }

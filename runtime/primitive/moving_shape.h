@@ -32,6 +32,8 @@ struct MovingShape {
     return shape.center + s * direction;
   }
 
+  [[nodiscard]] bool is_box() const noexcept { return shape.axes == 3 && shape.hull == nullptr; }
+
   /// A lower bound of the first s in [from, to] at which the shape touches the triangle; nothing if
   /// it does not, or passes farther away than some `doubt`. Precondition: it does not touch before
   /// `from`, unless `from` is 0.

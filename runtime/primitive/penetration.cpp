@@ -75,6 +75,9 @@ Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) 
 }  // namespace
 
 Penetration penetration(const ConvexShape& shape, const Corners& corner, double doubt) noexcept {
+  if (shape.hull != nullptr) {
+    return shape.hull->penetration(shape.hull->point, corner, doubt, nullptr);
+  }
   if (shape.axes == 3) return of_box(shape, corner, doubt);
   const CoreDistance at = core_distance(shape, corner);
   const Eigen::Vector3d closest = closest_point_on_triangle(at.core, {corner});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -29,18 +30,16 @@ inline constexpr double kShortestDirection = 0x1p-400;
 /// A lower bound of the distance between the convex hulls of two sets of points, by the gap between
 /// them along `direction`, which points from the first to the second; 0 where that shows no gap.
 /// `max_abs` is the largest absolute coordinate.
-template <std::size_t N, std::size_t M>
-[[nodiscard]] double separation_along(const Eigen::Vector3d& direction,
-                                      const std::array<Eigen::Vector3d, N>& first,
-                                      const std::array<Eigen::Vector3d, M>& second,
-                                      double max_abs) noexcept {
+template <class First, class Second>
+[[nodiscard]] double separation_along(const Eigen::Vector3d& direction, const First& first,
+                                      const Second& second, double max_abs) noexcept {
   const auto project = [&direction](const Eigen::Vector3d& x) {
     return (direction[0] * x[0] + direction[1] * x[1]) + direction[2] * x[2];
   };
   double near = project(first[0]);
-  for (std::size_t i = 1; i < N; ++i) near = std::max(near, project(first[i]));
+  for (std::size_t i = 1; i < first.size(); ++i) near = std::max(near, project(first[i]));
   double far = project(second[0]);
-  for (std::size_t i = 1; i < M; ++i) far = std::min(far, project(second[i]));
+  for (std::size_t i = 1; i < second.size(); ++i) far = std::min(far, project(second[i]));
   const double size = (std::abs(direction[0]) + std::abs(direction[1])) + std::abs(direction[2]);
   if (!(size >= kShortestDirection)) return 0;
   const double gap = (far - near) - kSeparationError * size * max_abs;
@@ -65,6 +64,10 @@ template <std::size_t N, std::size_t M>
 }
 
 /// The edges of a set of points: those of a triangle, or none.
+[[nodiscard]] inline std::array<Eigen::Vector3d, 0> edges_of(
+    std::span<const Eigen::Vector3d>) noexcept {
+  return {};
+}
 template <std::size_t N>
 [[nodiscard]] std::array<Eigen::Vector3d, N == 3 ? 3 : 0> edges_of(
     const std::array<Eigen::Vector3d, N>& points) noexcept {
@@ -76,13 +79,13 @@ template <std::size_t N>
 }
 
 /// The best bound of separation_along for directions near `direction` that are orthogonal to a
-/// face, to an edge, or to an edge of each set. They are computed from the edges, which are more
-/// accurate than vectors from an inner point to a corner; needles need this.
-template <std::size_t N, std::size_t M>
+/// face, to an edge, or to an edge of each set (see edges_of). They are computed from the edges,
+/// which are more accurate than vectors from an inner point to a corner; needles need this.
+template <class FirstEdges, class SecondEdges, class First, class Second>
 [[nodiscard]] double separation_on_features(const Eigen::Vector3d& direction,
-                                            const std::array<Eigen::Vector3d, N>& first,
-                                            const std::array<Eigen::Vector3d, M>& second,
-                                            double max_abs) noexcept {
+                                            const FirstEdges& first_edges,
+                                            const SecondEdges& second_edges, const First& first,
+                                            const Second& second, double max_abs) noexcept {
   double lower = 0;
   const auto consider = [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
     lower =
@@ -94,8 +97,6 @@ template <std::size_t N, std::size_t M>
       consider(edges[i], edges[(i + 1) % 3]);
     }
   };
-  const auto first_edges = edges_of(first);
-  const auto second_edges = edges_of(second);
   consider_one(first_edges);
   consider_one(second_edges);
   for (const Eigen::Vector3d& a : first_edges) {
@@ -109,12 +110,10 @@ template <std::size_t N, std::size_t M>
 /// rounding tilts that line, and the projection of a distant corner crosses the gap. The direction
 /// is then made orthogonal to the vector to that corner, and if need be to a second one, and at
 /// last to each edge and face of sets that are triangles. A bound of `enough` is not improved.
-template <std::size_t N, std::size_t M>
+template <class First, class Second>
 [[nodiscard]] double separation_near(const Eigen::Vector3d& on_first,
-                                     const Eigen::Vector3d& on_second,
-                                     const std::array<Eigen::Vector3d, N>& first,
-                                     const std::array<Eigen::Vector3d, M>& second, double max_abs,
-                                     double enough) noexcept {
+                                     const Eigen::Vector3d& on_second, const First& first,
+                                     const Second& second, double max_abs, double enough) noexcept {
   const Eigen::Vector3d between = on_second - on_first;
   Eigen::Vector3d direction = between;
   double lower = separation_along(direction, first, second, max_abs);
@@ -138,7 +137,8 @@ template <std::size_t N, std::size_t M>
     lower = std::max(lower, separation_along(direction, first, second, max_abs));
   }
   if (!(lower < enough)) return lower;
-  return std::max(lower, separation_on_features(between, first, second, max_abs));
+  return std::max(lower, separation_on_features(between, edges_of(first), edges_of(second), first,
+                                                second, max_abs));
 }
 
 /// The largest magnitude of any coordinate of these points.

@@ -7,7 +7,7 @@
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/cast_query.h"
 #include "runtime/query/invalid_query.h"
-#include "runtime/query/shape_in_tree.h"
+#include "runtime/query/shape_casts.h"
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
@@ -102,12 +102,10 @@ CastHit described(const CastQuery& query, const CastLine& cast, const CastCandid
   return hit_of(query.moving, found, cast.line, query.parameter_exponent, query.tree.frame());
 }
 
-template <class Shape>
-CastResult one_touch(const Tree& queried, const Shape& of_caller, const Motion& motion,
-                     CastQuery::Wanted wanted, const FaceOptions& options) {
-  const DefaultFloatState state;
-  const BoundTree& tree = BoundTree::of(queried);
-  const ShapeInTree shape = in_tree(tree.frame(), of_caller);
+}  // namespace
+
+CastResult one_touch_in(const BoundTree& tree, const ShapeInTree& shape, const Motion& motion,
+                        CastQuery::Wanted wanted, const FaceOptions& options) {
   const CastLine cast(shape, motion);
   if (cast.invalid != nullptr) return {Errc::kInvalidQuery, cast.invalid};
   CastResult result;
@@ -121,12 +119,9 @@ CastResult one_touch(const Tree& queried, const Shape& of_caller, const Motion& 
   return error == Errc::kOk ? result : CastResult(error);
 }
 
-template <class Shape>
-Result<Visit> all_touches(const Tree& queried, const Shape& of_caller, const Motion& motion,
-                          CastVisitor visitor, const FaceOptions& options) {
-  const DefaultFloatState state;
-  const BoundTree& tree = BoundTree::of(queried);
-  const ShapeInTree shape = in_tree(tree.frame(), of_caller);
+Result<Visit> all_touches_in(const BoundTree& tree, const ShapeInTree& shape,
+                             const Motion& motion, CastVisitor visitor,
+                             const FaceOptions& options) {
   const CastLine cast(shape, motion);
   if (cast.invalid != nullptr) return invalid_query(cast.invalid);
   const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
@@ -140,6 +135,24 @@ Result<Visit> all_touches(const Tree& queried, const Shape& of_caller, const Mot
                               });
   if (error != Errc::kOk) return error;
   return end;
+}
+
+namespace {
+
+template <class Shape>
+CastResult one_touch(const Tree& queried, const Shape& shape, const Motion& motion,
+                     CastQuery::Wanted wanted, const FaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
+  return one_touch_in(tree, in_tree(tree.frame(), shape), motion, wanted, options);
+}
+
+template <class Shape>
+Result<Visit> all_touches(const Tree& queried, const Shape& shape, const Motion& motion,
+                          CastVisitor visitor, const FaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
+  return all_touches_in(tree, in_tree(tree.frame(), shape), motion, visitor, options);
 }
 
 }  // namespace

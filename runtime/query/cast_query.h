@@ -137,7 +137,7 @@ struct CastQuery : RayInTree {
   }
   [[nodiscard]] MovingShape moving_in_tree() const noexcept {
     MovingShape out{shape, is_moving ? direction.vector() : Eigen::Vector3d::Zero(),
-                    MovingShape::doubt_of(near, origin_max_abs)};
+                    MovingShape::doubt_of(near, origin_max_abs) + shape.error};
     out.shape.center = origin.vector();
     return out;
   }

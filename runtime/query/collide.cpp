@@ -10,7 +10,7 @@
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/collide_query.h"
 #include "runtime/query/invalid_query.h"
-#include "runtime/query/shape_in_tree.h"
+#include "runtime/query/shape_casts.h"
 
 namespace boxtree {
 Contact contact_of(const CastQuery& query, const CastCandidate& found,
@@ -32,35 +32,49 @@ Contact contact_of(const CastQuery& query, const CastCandidate& found,
 namespace {
 
 // `visit`: of visit_touched.
-template <class Shape, class Visitor>
-Result<Visit> visit_touched_by(const BoundTree& tree, const Shape& of_caller,
+template <class Visitor>
+Result<Visit> visit_touched_by(const BoundTree& tree, const ShapeInTree& shape,
                                const QueryLimits& limits, const Visitor& visit) {
-  const ShapeInTree shape = in_tree(tree.frame(), of_caller);
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
   return visit_touched(tree, {shape.shape, line_at(shape.center), false}, work, visit);
 }
 
-template <class Shape>
-Result<Visit> visit_contacts(const Tree& queried, const Shape& shape, ContactVisitor visitor,
-                             const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundTree& tree = BoundTree::of(queried);
+}  // namespace
+
+Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
+                                ContactVisitor visitor, const QueryLimits& limits) {
   return visit_touched_by(tree, shape, limits,
                           [&](const CastQuery& query, const CastCandidate& found) {
                             return visitor(contact_of(query, found, tree.frame()));
                           });
 }
 
+Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,
+                                     FaceVisitor visitor, const QueryLimits& limits) {
+  VisitedFaces visited;
+  return visit_touched_by(tree, shape, limits,
+                          [&](const CastQuery&, const CastCandidate& found) {
+                            return !visited.is_new(found) || visitor(found.face);
+                          });
+}
+
+namespace {
+
+template <class Shape>
+Result<Visit> visit_contacts(const Tree& queried, const Shape& shape, ContactVisitor visitor,
+                             const QueryLimits& limits) {
+  const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
+  return visit_contacts_in(tree, in_tree(tree.frame(), shape), visitor, limits);
+}
+
 template <class Shape>
 Result<Visit> visit_faces_of(const Tree& queried, const Shape& shape, FaceVisitor visitor,
                              const QueryLimits& limits) {
   const DefaultFloatState state;
-  VisitedFaces visited;
-  return visit_touched_by(BoundTree::of(queried), shape, limits,
-                          [&](const CastQuery&, const CastCandidate& found) {
-                            return !visited.is_new(found) || visitor(found.face);
-                          });
+  const BoundTree& tree = BoundTree::of(queried);
+  return visit_touched_faces_in(tree, in_tree(tree.frame(), shape), visitor, limits);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
+#include "runtime/primitive/convex_points.h"
 #include "runtime/primitive/moving_shape.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/vector3.h"
@@ -30,10 +31,12 @@ using test::LongTriangle;
 using test::LongVector;
 
 constexpr int kDifferenceFound = 7;  // as the command line of the cooker has it
+constexpr std::uint32_t kHull = 4;   // beside the numbers of axes of other shapes
 
 struct Case {
   Triangle triangle;
   ConvexShape shape;
+  std::vector<Eigen::Vector3d> points;  // of a hull, relative to its center
   Eigen::Vector3d direction;
 };
 
@@ -45,8 +48,10 @@ class Draw {
     Case drawn;
     const double size = std::pow(10.0, 2 * unit());
     for (Eigen::Vector3d& corner : drawn.triangle.corner) corner = size * coarse(vector());
-    drawn.shape.axes = axes;
-    if (axes == 1) {
+    drawn.shape.axes = std::min(axes, 3u);
+    if (axes == kHull) {
+      draw_hull(drawn, length(size));
+    } else if (axes == 1) {
       drawn.shape.axis[0] = size * coarse(vector());
       drawn.shape.half[0] = 1;
     }
@@ -58,7 +63,7 @@ class Draw {
         drawn.shape.axis[static_cast<std::size_t>(k)] = turn.toRotationMatrix().col(k);
         drawn.shape.half[static_cast<std::size_t>(k)] = length(size);
       }
-    } else {
+    } else if (axes != kHull) {
       drawn.shape.radius = length(size);
     }
     drawn.shape.center = 3 * size * coarse(vector());
@@ -80,6 +85,27 @@ class Draw {
     if (random_() % 3 != 0) return v;
     return (8 * v).array().round().matrix() / 8;
   }
+  // One to seven points; some of them flat, in line, the same, or the corners of a box.
+  void draw_hull(Case& drawn, double size) {
+    const std::size_t count = 1 + random_() % 7;
+    const std::uint64_t kind = random_() % 6;
+    const Eigen::Vector3d along = vector(), across = vector();
+    for (std::size_t i = 0; i < (kind == 4 ? 8 : count); ++i) {
+      Eigen::Vector3d p = coarse(vector());
+      if (kind == 1) p[2] = 0;
+      if (kind == 2) p = p[0] * along;
+      if (kind == 3 && i % 2 == 1) p = drawn.points.back() / size;
+      if (kind == 4) p = Eigen::Vector3d(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 0.5 : -0.5);
+      if (kind == 5) p = p[0] * along + p[1] * across;
+      drawn.points.push_back(size * p);
+    }
+    for (int k = 0; k < 3; ++k) {
+      double& half = drawn.shape.half[static_cast<std::size_t>(k)];
+      drawn.shape.axis[static_cast<std::size_t>(k)] = Eigen::Vector3d::Unit(k);
+      for (const Eigen::Vector3d& p : drawn.points) half = std::max(half, std::abs(p[k]));
+    }
+  }
+
   double length(double size) { return size * std::pow(10.0, -1.5 + 1.5 * unit()); }
 
   void make_degenerate(Case& drawn, double size) {
@@ -122,8 +148,14 @@ class Draw {
   std::mt19937_64 random_;
 };
 
-LongShape long_shape_of(const ConvexShape& shape) {
+LongShape long_shape_of(const Case& drawn) {
+  const ConvexShape& shape = drawn.shape;
   const LongVector center = shape.center.cast<long double>();
+  if (!drawn.points.empty()) {
+    std::vector<LongVector> points;
+    for (const Eigen::Vector3d& p : drawn.points) points.push_back(center + p.cast<long double>());
+    return test::long_hull(points);
+  }
   if (shape.axes == 3) {
     std::array<LongVector, 3> axis;
     std::array<long double, 3> half{};
@@ -158,12 +190,15 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
                     largest_magnitude(corner) + 2 * largest_magnitude(drawn.shape.half_extents()));
   }
   const double far = largest_magnitude(drawn.shape.center);
-  const MovingShape moving{drawn.shape, drawn.direction, MovingShape::doubt_of(near, far)};
+  ConvexShape placed = drawn.shape;
+  const ConvexPoints hull{drawn.points, hull_distance, hull_penetration};
+  if (!drawn.points.empty()) placed.hull = &hull;
+  const MovingShape moving{placed, drawn.direction, MovingShape::doubt_of(near, far)};
   const double to = 8 * (near + far);
   const long double size = near + far / 8.0L;
   const long double allowed = 0x1p-46L * size;
 
-  const LongShape shape = long_shape_of(drawn.shape);
+  const LongShape shape = long_shape_of(drawn);
   const LongVector direction = drawn.direction.cast<long double>();
   LongTriangle triangle;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -188,7 +223,7 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
   if (*s > 0) return;
   ++tally.at_start;
   const Corners relative = relative_to(drawn.shape.center, drawn.triangle);
-  const Penetration at = penetration(drawn.shape, relative, moving.doubt);
+  const Penetration at = penetration(placed, relative, moving.doubt);
   const LongVector normal = at.normal.cast<long double>();
   bool is_wrong = std::abs(normal.norm() - 1) > 1e-12L || !(at.depth >= 0) ||
                   depth_along(shape, normal, triangle) > at.depth + 8 * allowed;
@@ -205,7 +240,8 @@ int run(std::uint64_t count, std::uint64_t seed, const std::vector<std::string>&
   fmt::print(
       "shape    cases      touches    at start   missed  early  invented  contacts  farthest, "
       "2^-53\n");
-  for (const auto& [name, axes] : {std::pair("sphere", 0u), {"capsule", 1u}, {"box", 3u}}) {
+  for (const auto& [name, axes] :
+       {std::pair("sphere", 0u), {"capsule", 1u}, {"box", 3u}, {"hull", kHull}}) {
     if (!shapes.empty() && std::find(shapes.begin(), shapes.end(), name) == shapes.end()) continue;
     Draw draw(seed * 8 + axes);
     Tally tally;
@@ -229,7 +265,7 @@ int main(int argc, char** argv) {
   std::vector<std::string> shapes;
   app.add_option("--cases", count, "Of each shape")->capture_default_str();
   app.add_option("--seed", seed)->capture_default_str();
-  app.add_option("--shape", shapes, "sphere, capsule or box [all]");
+  app.add_option("--shape", shapes, "sphere, capsule, box or hull [all]");
   CLI11_PARSE(app, argc, argv);
   return boxtree::oracle::run(count, seed, shapes);
 }

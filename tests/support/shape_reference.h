@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,25 +19,27 @@
 
 namespace boxtree::test {
 
-// A shape as triangles: a point, a segment, or the sides of a box; and a radius around them.
+// A shape as triangles: a point, a segment, the sides of a box, or the points of a hull; and a
+// radius around them.
 struct LongShape {
   std::vector<LongTriangle> core;
   long double radius = 0;
   LongVector center;
   long double reach = 0;  // of the core from its center
   bool is_solid = false;
-  std::array<LongVector, 3> axis = {LongVector::Zero(), LongVector::Zero(), LongVector::Zero()};
+  bool is_hull = false;
+  std::array<LongVector, 3> axis{LongVector::Zero(), LongVector::Zero(), LongVector::Zero()};
   std::array<long double, 3> half{};
 };
 
 inline LongShape long_shape(const Sphere& sphere) {
   const LongVector c = sphere.center.cast<long double>();
-  return {{{c, c, c}}, sphere.radius, c, 0, false, {}, {}};
+  return {{{c, c, c}}, sphere.radius, c, 0, false, false, {}, {}};
 }
 
 inline LongShape long_shape(const Capsule& capsule) {
   const LongVector a = capsule.start.cast<long double>(), b = capsule.end.cast<long double>();
-  return {{{a, b, b}}, capsule.radius, (a + b) / 2, (b - a).norm() / 2, false, {}, {}};
+  return {{{a, b, b}}, capsule.radius, (a + b) / 2, (b - a).norm() / 2, false, false, {}, {}};
 }
 
 inline LongShape long_box(const LongVector& center, const std::array<LongVector, 3>& axis,
@@ -75,6 +78,88 @@ inline LongShape long_shape(const OrientedBox& box) {
     half[static_cast<std::size_t>(k)] = box.half_extents[k];
   }
   return long_box(box.center.cast<long double>(), axis, half);
+}
+
+inline LongShape long_hull(std::span<const LongVector> points) {
+  LongShape shape;
+  LongVector low = points[0], high = points[0];
+  for (const LongVector& p : points) {
+    shape.core.push_back({p, p, p});
+    low = low.cwiseMin(p);
+    high = high.cwiseMax(p);
+  }
+  shape.center = (low + high) / 2;
+  for (const LongVector& p : points) shape.reach = std::max(shape.reach, (p - shape.center).norm());
+  shape.is_hull = true;
+  return shape;
+}
+
+inline LongShape long_shape(const ConvexHull& hull) {
+  const auto& q = hull.rotation;
+  const Eigen::Quaternion<long double> turn =
+      Eigen::Quaternion<long double>(q.w(), q.x(), q.y(), q.z()).normalized();
+  std::vector<LongVector> points;
+  for (const Eigen::Vector3d& p : hull.points) {
+    points.push_back(hull.position.cast<long double>() + turn * p.cast<long double>());
+  }
+  return long_hull(points);
+}
+
+// Whether points are off the plane through those of them that are farthest from each other, by more
+// than rounding.
+inline bool has_volume(std::span<const LongVector> d, long double size) {
+  const auto farthest = [&](const auto& distance) {
+    return *std::max_element(d.begin(), d.end(), [&](const LongVector& a, const LongVector& b) {
+      return distance(a) < distance(b);
+    });
+  };
+  const LongVector end = farthest([&](const LongVector& p) { return (p - d[0]).squaredNorm(); });
+  const LongVector line = (end - d[0]).stableNormalized();
+  const auto off = [&](const LongVector& p) -> LongVector { return line.cross(p - d[0]); };
+  LongVector n = off(farthest([&](const LongVector& p) { return off(p).squaredNorm(); }));
+  const long double width = n.norm();
+  if (!(width > 1e-15L * size)) return false;
+  n /= width;
+  const auto height = [&](const LongVector& p) { return std::abs(n.dot(p - d[0])); };
+  return height(farthest(height)) > std::max(1e-14L, 1e-17L * size / width) * size;
+}
+
+// Whether the origin is inside the hull of points, as all planes through three of them say that
+// have the others to one side; never in a hull without volume.
+inline bool holds_origin(std::span<const LongVector> d) {
+  long double size = 0;
+  for (const LongVector& p : d) size = std::max(size, p.cwiseAbs().maxCoeff());
+  if (!has_volume(d, size)) return false;
+  for (std::size_t i = 0; i < d.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      for (std::size_t k = 0; k < j; ++k) {
+        LongVector n = (d[j] - d[i]).cross(d[k] - d[i]);
+        const long double length = n.norm();
+        if (!(length > 1e-15L * size * size)) continue;
+        n /= length;
+        long double low = 0, high = 0;
+        for (const LongVector& p : d) {
+          low = std::min(low, n.dot(p - d[i]));
+          high = std::max(high, n.dot(p - d[i]));
+        }
+        const long double error = 1e-16L * size;
+        const long double origin = -n.dot(d[i]);
+        if (low >= -error && origin < low) return false;
+        if (high <= error && origin > high) return false;
+      }
+    }
+  }
+  return true;
+}
+
+// Of the hull of points and a triangle that is relative to them.
+inline long double distance_of_hull(const LongShape& hull, const LongTriangle& triangle) {
+  std::vector<LongVector> differences;
+  for (const LongTriangle& point : hull.core) {
+    for (const LongVector& corner : triangle) differences.push_back(corner - point[0]);
+  }
+  if (holds_origin(differences)) return 0;
+  return std::sqrt(squared_to_hull(differences));
 }
 
 // Whether anything is left of the triangle when the six sides of a box have cut it.
@@ -118,6 +203,7 @@ inline long double distance(const LongShape& shape, const LongVector& moved,
                             const LongTriangle& triangle) {
   LongTriangle relative;
   for (std::size_t c = 0; c < 3; ++c) relative[c] = triangle[c] - moved;
+  if (shape.is_hull) return distance_of_hull(shape, relative);
   if (shape.is_solid && overlaps(shape, relative)) return 0;
   if (!shape.is_solid && crosses(shape.core[0], relative)) return 0;
   long double least = std::numeric_limits<long double>::infinity();

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <span>
 
 #include "runtime/primitive/triangle.h"
 
@@ -18,9 +19,9 @@ using LongTriangle = std::array<LongVector, 3>;
 // Squared distance of the origin from the hull of points. Every vertex, segment and triangle of the
 // points is tried, each by a small linear system. A closest point is in one of them unless the
 // origin is inside; then the result is at least zero.
-inline long double squared_to_hull(const std::array<LongVector, 9>& d) {
+inline long double squared_to_hull(std::span<const LongVector> d) {
   long double best = d[0].squaredNorm();
-  for (std::size_t i = 0; i < 9; ++i) {
+  for (std::size_t i = 0; i < d.size(); ++i) {
     best = std::min(best, d[i].squaredNorm());
     for (std::size_t j = 0; j < i; ++j) {
       const LongVector e = d[j] - d[i];

@@ -56,8 +56,9 @@ using CastResult = QueryResult<CastHit>;
 /// 2^-46 of the largest coordinate involved (of the surface, of the shape on its way, and 2^-49 of
 /// that of its start) may be. t and t_lower are as far apart as the shape moves while it comes
 /// nearer by at most four times that. Errors: kInvalidQuery (not finite; a negative radius, extent
-/// or t_max; a rotation of 0; a shape farther than 2^185 mesh extents away, or larger), and the
-/// codes of corrupt bytes and limits as for closest_hit(). Never allocates.
+/// or t_max; a rotation of 0; no points, or more than kMaxHullPoints; a shape farther than 2^185
+/// mesh extents away, or larger), and the codes of corrupt bytes and limits as for closest_hit().
+/// Never allocates.
 BOXTREE_API CastResult cast_closest(const Tree& tree, const Sphere& sphere, const Motion& motion,
                                     const FaceOptions& options = {});
 /// The same.
@@ -66,6 +67,13 @@ BOXTREE_API CastResult cast_closest(const Tree& tree, const Capsule& capsule, co
 /// The same.
 BOXTREE_API CastResult cast_closest(const Tree& tree, const OrientedBox& box, const Motion& motion,
                                     const FaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same. A hull whose points are farther from their origin than it is large is placed with the
+/// digits of that distance, where it is rotated. Takes time in proportion to the number of points,
+/// and up to 200 KB of stack.
+BOXTREE_API CastResult cast_closest(const Tree& tree, const ConvexHull& hull, const Motion& motion,
+                                    const FaceOptions& options = {});
+#endif
 
 /// Some touch, or nothing: cheaper than cast_closest() when only the fact matters. Errors as there.
 /// Never allocates.
@@ -77,6 +85,11 @@ BOXTREE_API CastResult cast_any(const Tree& tree, const Capsule& capsule, const 
 /// The same.
 BOXTREE_API CastResult cast_any(const Tree& tree, const OrientedBox& box, const Motion& motion,
                                 const FaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same.
+BOXTREE_API CastResult cast_any(const Tree& tree, const ConvexHull& hull, const Motion& motion,
+                                const FaceOptions& options = {});
+#endif
 
 /// Receives one touch after the other; returns the largest t that is still of interest, or a
 /// negative number to stop. Of `t_max` everything on the way is visited, of each hit's own t what
@@ -94,5 +107,10 @@ BOXTREE_API Result<Visit> cast_all(const Tree& tree, const Capsule& capsule, con
 /// The same.
 BOXTREE_API Result<Visit> cast_all(const Tree& tree, const OrientedBox& box, const Motion& motion,
                                    CastVisitor visitor, const FaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same.
+BOXTREE_API Result<Visit> cast_all(const Tree& tree, const ConvexHull& hull, const Motion& motion,
+                                   CastVisitor visitor, const FaceOptions& options = {});
+#endif
 
 }  // namespace boxtree

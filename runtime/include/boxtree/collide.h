@@ -23,7 +23,8 @@ struct Contact {
   /// their own, with the same id, and have 0.
   std::uint32_t triangle = 0;
   /// On the triangle, inside the shape or on its surface, in object space: of a sphere or capsule
-  /// the point closest to its center or segment, of a box the middle of what it holds.
+  /// the point closest to its center or segment, of a box the middle of what it holds, of a hull
+  /// the farthest against the normal, if it holds that, or else some.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();
   /// Unit vector along which the shape leaves the triangle soonest. Where the center of a sphere
   /// lies on the triangle, the front of the face.
@@ -41,8 +42,9 @@ using ContactVisitor = FunctionRef<bool(const Contact&)>;
 /// too. Faces are touched, not solids: a shape wholly inside a mesh touches nothing. Nothing is
 /// missed; what is within 2^-46 of the largest coordinate involved may count as touched, with a
 /// depth of 0, and depths are off by at most that. Errors: kInvalidQuery (not finite; a negative
-/// radius or extent; a rotation of 0; a shape farther than 2^185 mesh extents away, or larger), and
-/// the codes of corrupt bytes and limits as for closest_hit(). Never allocates.
+/// radius or extent; a rotation of 0; no points, or more than kMaxHullPoints; a shape farther than
+/// 2^185 mesh extents away, or larger), and the codes of corrupt bytes and limits as for
+/// closest_hit(). Never allocates.
 BOXTREE_API Result<Visit> collide(const Tree& tree, const Sphere& sphere, ContactVisitor visitor,
                                   const QueryLimits& limits = {});
 /// The same.
@@ -51,6 +53,11 @@ BOXTREE_API Result<Visit> collide(const Tree& tree, const Capsule& capsule, Cont
 /// The same.
 BOXTREE_API Result<Visit> collide(const Tree& tree, const OrientedBox& box, ContactVisitor visitor,
                                   const QueryLimits& limits = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same, with up to 200 KB of stack.
+BOXTREE_API Result<Visit> collide(const Tree& tree, const ConvexHull& hull, ContactVisitor visitor,
+                                  const QueryLimits& limits = {});
+#endif
 
 /// Visits every face that the shape touches, each once, in no promised order: as collide(), without
 /// looking where.
@@ -59,6 +66,11 @@ BOXTREE_API Result<Visit> overlap_capsule(const Tree& tree, const Capsule& capsu
 /// The same for a box along axes of its own.
 BOXTREE_API Result<Visit> overlap_oriented_box(const Tree& tree, const OrientedBox& box,
                                                FaceVisitor visitor, const QueryLimits& limits = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same for the convex hull of points.
+BOXTREE_API Result<Visit> overlap_convex_hull(const Tree& tree, const ConvexHull& hull,
+                                              FaceVisitor visitor, const QueryLimits& limits = {});
+#endif
 
 /// Of contacts of one shape, keeps one of those that neighbouring triangles report of the same
 /// point: within `distance` of each other, with normals whose cosine is at least `cosine`; the

@@ -2,7 +2,9 @@
 // The convex shapes that queries take besides boxes along the axes, and what they touch.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -27,6 +29,20 @@ struct OrientedBox {
   Eigen::Vector3d half_extents = Eigen::Vector3d::Zero();  ///< Along its own axes, 0 or more.
   /// From its axes to those of object space. Need not have a length of 1, but not 0. Unaligned, so
   /// that its layout does not depend on compiler options.
+  Eigen::Quaternion<double, Eigen::DontAlign> rotation =
+      Eigen::Quaternion<double, Eigen::DontAlign>(1, 0, 0, 0);
+};
+
+/// The most points that a ConvexHull may have.
+inline constexpr std::size_t kMaxHullPoints = 256;
+
+/// The smallest convex body that holds some points. Points that are inside it, twice the same, on a
+/// plane or on a line are fine: nobody needs to compute the hull.
+struct ConvexHull {
+  /// 1 to kMaxHullPoints, in space of their own; borrowed for the call.
+  std::span<const Eigen::Vector3d> points;
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< Of their origin, object space.
+  /// From their space to object space, about their origin. As OrientedBox::rotation.
   Eigen::Quaternion<double, Eigen::DontAlign> rotation =
       Eigen::Quaternion<double, Eigen::DontAlign>(1, 0, 0, 0);
 };

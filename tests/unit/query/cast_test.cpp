@@ -155,6 +155,26 @@ TEST_P(Casts, ABoxIsThatOfExtendedPrecision) {
   });
 }
 
+// Of a few points: brute force over their differences takes the fourth power of their number.
+TEST_P(Casts, AHullIsThatOfExtendedPrecision) {
+  for_each_motion(2, [&](const Tree& tree, const Surface& surface, const Eigen::Vector3d& from,
+                         const Motion& motion, double, double radius, double t_max) {
+    std::vector<Eigen::Vector3d> points;
+    const std::size_t kind = random_() % 4;
+    for (std::size_t i = 0; i < 1 + random_() % 6; ++i) {
+      Eigen::Vector3d point = radius * vector();
+      if (kind == 1) point[2] = 0;  // flat
+      if (kind == 2 && i % 2 == 1) point = points.back();
+      points.push_back(point);
+    }
+    ConvexHull hull;
+    hull.points = points;
+    hull.position = from;
+    if (random_() % 3 != 0) hull.rotation.coeffs() << unit(), unit(), unit(), unit();
+    check(tree, surface, hull, motion, t_max);
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, Casts,
                          testing::Values(test::Encoding{CodecId::kWide8, GeometryId::kExact},
                                          test::Encoding{CodecId::kWide4, GeometryId::kGrid},
@@ -184,10 +204,14 @@ TEST(CastBits, AreThoseOfEveryCodec) {
       turned.half_extents = radius * Eigen::Vector3d(1, 0.5, 0.25);
       turned.rotation.coeffs() << unit(), unit(), unit(), unit();
       const Capsule capsule{from, from + radius * vector(), radius / 2};
+      std::vector<Eigen::Vector3d> points;
+      for (int k = 0; k < 20; ++k) points.push_back(radius * vector());
+      const ConvexHull hull{points, from, turned.rotation};
       const auto cast = [&](const Tree& tree) {
-        return i % 3 == 0   ? cast_closest(tree, Sphere{from, radius}, motion)
-               : i % 3 == 1 ? cast_closest(tree, capsule, motion)
-                            : cast_closest(tree, turned, motion);
+        return i % 4 == 0   ? cast_closest(tree, Sphere{from, radius}, motion)
+               : i % 4 == 1 ? cast_closest(tree, capsule, motion)
+               : i % 4 == 2 ? cast_closest(tree, turned, motion)
+                            : cast_closest(tree, hull, motion);
       };
       const CastResult first = cast(cooked[0].tree);
       for (const test::CookedTree& other : cooked) {
@@ -327,6 +351,118 @@ TEST_P(CastCases, FromAMillionDiagonalsAway) {
   const CastResult hit = cast_closest(floor_.tree, Sphere{from, 0.125}, Motion{-from});
   ASSERT_TRUE(hit);
   // Its center is then 1/8 above the floor: at z = 1/8 of 2e6.
+  EXPECT_LE(hit->t_lower, 1 - 0.125 / 2e6);
+  EXPECT_GE(hit->t, 1 - 0.125 / 2e6);
+  EXPECT_LT(hit->t - hit->t_lower, 1e-14);
+}
+
+// The corners of a cube with edges of 2, and what a hull does not need.
+std::vector<Eigen::Vector3d> cube() {
+  std::vector<Eigen::Vector3d> points;
+  for (int k = 0; k < 8; ++k) {
+    points.emplace_back((k & 1) != 0 ? 1 : -1, (k & 2) != 0 ? 1 : -1, (k & 4) != 0 ? 1 : -1);
+  }
+  points.emplace_back(0, 0, 0);
+  points.emplace_back(0, 1, 1);
+  points.push_back(points[3]);
+  return points;
+}
+
+ConvexHull scaled_to(std::vector<Eigen::Vector3d>& points, const Eigen::Vector3d& half,
+                     const Eigen::Vector3d& position) {
+  for (Eigen::Vector3d& point : points) point = point.cwiseProduct(half);
+  ConvexHull hull;
+  hull.points = points;
+  hull.position = position;
+  return hull;
+}
+
+TEST_P(CastCases, AHullOntoASeamAndFlatOnIt) {
+  std::vector<Eigen::Vector3d> points = cube();
+  const ConvexHull hull = scaled_to(points, {0.5, 0.25, 0.5}, {0.25, 0.25, 3});
+  const CastResult hit = cast_closest(floor_.tree, hull, Motion{{0, 0, -1}});
+  ASSERT_TRUE(hit);
+  is_between(*hit, 2.5);
+  EXPECT_NEAR(hit->normal.z(), 1, 1e-14);
+  // Along the seam, and down.
+  const CastResult along = cast_closest(floor_.tree, hull, Motion{{0.25, 0.25, -4}});
+  ASSERT_TRUE(along);
+  is_between(*along, 2.5 / 4);
+  // On its corner.
+  ConvexHull turned = hull;
+  turned.rotation = {0.8, 0.3, 0.4, 0.2};
+  const CastResult corner = cast_closest(floor_.tree, turned, Motion{{0, 0, -1}});
+  const CastResult box =
+      cast_closest(floor_.tree, OrientedBox{{0.25, 0.25, 3}, {0.5, 0.25, 0.5}, turned.rotation},
+                   Motion{{0, 0, -1}});
+  ASSERT_TRUE(corner && box);
+  EXPECT_NEAR(corner->t, box->t, 1e-13);
+  EXPECT_NEAR((corner->point - box->point).norm(), 0, 1e-13);
+  EXPECT_NEAR((corner->normal - box->normal).norm(), 0, 1e-13);
+}
+
+TEST_P(CastCases, AHullThatGrazesOrPasses) {
+  std::vector<Eigen::Vector3d> points = cube();
+  const Motion along{{1, 0, 0}};
+  const CastResult graze =
+      cast_closest(floor_.tree, scaled_to(points, {1, 1, 0.5}, {-5, 0, 0.5}), along);
+  ASSERT_TRUE(graze);
+  EXPECT_LE(graze->t_lower, 3);
+  EXPECT_GE(graze->t, 3);
+  EXPECT_LT(graze->t - graze->t_lower, 1e-12);
+  ConvexHull hull{points, {-5, 0, 0.5 + 1e-12}, {1, 0, 0, 0}};
+  EXPECT_FALSE(cast_closest(floor_.tree, hull, along));
+  hull.position[2] = 0.5 - 1e-12;
+  const CastResult deeper = cast_closest(floor_.tree, hull, along);
+  ASSERT_TRUE(deeper);
+  is_between(*deeper, 3);
+  EXPECT_NEAR(deeper->normal.x(), -1, 1e-12);
+}
+
+TEST_P(CastCases, AHullOfOnePointOrInOnePlane) {
+  const std::vector<Eigen::Vector3d> point = {{3, 3, 3}};
+  ConvexHull hull;
+  hull.points = point;
+  hull.position = {-2.75, -2.5, 0};
+  const CastResult hit = cast_closest(floor_.tree, hull, Motion{{0, 0, -1}});
+  ASSERT_TRUE(hit);
+  is_between(*hit, 3);
+  EXPECT_NEAR(hit->normal.z(), 1, 1e-14);
+  // A plate upright, and one in the plane of the floor that slides into it.
+  const std::vector<Eigen::Vector3d> plate = {{-1, 0, -1}, {1, 0, -1}, {1, 0, 1}, {1, 0, 1}};
+  hull.points = plate;
+  hull.position = {0, 0.5, 2};
+  const CastResult upright = cast_closest(floor_.tree, hull, Motion{{0, 0, -1}});
+  ASSERT_TRUE(upright);
+  is_between(*upright, 1);
+  const std::vector<Eigen::Vector3d> flat = {{-1, -1, 0}, {1, -1, 0}, {1, 1, 0}};
+  hull.points = flat;
+  hull.position = {-4, 0, 0};
+  const CastResult slid = cast_closest(floor_.tree, hull, Motion{{1, 0, 0}});
+  ASSERT_TRUE(slid);
+  is_between(*slid, 2);
+  EXPECT_LE(slid->normal.x(), 1e-6);
+}
+
+TEST_P(CastCases, AHullThatStaysOrStartsInContact) {
+  std::vector<Eigen::Vector3d> points = cube();
+  const ConvexHull hull = scaled_to(points, {0.25, 0.25, 0.25}, {0, 0, 0.125});
+  for (const Eigen::Vector3d& way : {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(0, 0, 1)}) {
+    const CastResult hit = cast_closest(floor_.tree, hull, Motion{way});
+    ASSERT_TRUE(hit);
+    EXPECT_TRUE(hit->initially_touching);
+    EXPECT_EQ(hit->t, 0);
+    EXPECT_NEAR((hit->normal - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-14);
+  }
+  EXPECT_FALSE(cast_closest(floor_.tree, {points, {0, 0, 0.5}, {1, 0, 0, 0}}, Motion{}));
+}
+
+TEST_P(CastCases, AHullFromAMillionDiagonalsAway) {
+  std::vector<Eigen::Vector3d> points = cube();
+  const Eigen::Vector3d from(2e6, 1e6, 2e6);
+  const CastResult hit =
+      cast_closest(floor_.tree, scaled_to(points, {0.125, 0.125, 0.125}, from), Motion{-from});
+  ASSERT_TRUE(hit);
   EXPECT_LE(hit->t_lower, 1 - 0.125 / 2e6);
   EXPECT_GE(hit->t, 1 - 0.125 / 2e6);
   EXPECT_LT(hit->t - hit->t_lower, 1e-14);

@@ -95,6 +95,9 @@ class Collide : public testing::TestWithParam<test::Encoding> {
     } else if constexpr (std::is_same_v<Shape, OrientedBox>) {
       ASSERT_TRUE(overlap_oriented_box(tree, shape, note));
       ASSERT_EQ(overlapped, faces);
+    } else if constexpr (std::is_same_v<Shape, ConvexHull>) {
+      ASSERT_TRUE(overlap_convex_hull(tree, shape, note));
+      ASSERT_EQ(overlapped, faces);
     }
   }
 
@@ -144,6 +147,54 @@ TEST_P(Collide, ABoxIsThatOfExtendedPrecision) {
   });
 }
 
+TEST_P(Collide, AHullIsThatOfExtendedPrecision) {
+  for_each_place(4, [&](const Tree& tree, const Eigen::Vector3d& at, double size, double radius) {
+    std::vector<Eigen::Vector3d> points;
+    const std::size_t kind = random_() % 4;
+    for (std::size_t i = 0; i < 1 + random_() % 7; ++i) {
+      Eigen::Vector3d point = radius * vector();
+      if (kind == 1) point[2] = 0;
+      if (kind == 2 && i % 2 == 1) point = points.back();
+      points.push_back(point);
+    }
+    ConvexHull hull;
+    hull.points = points;
+    hull.position = at;
+    if (random_() % 3 != 0) hull.rotation.coeffs() << unit(), unit(), unit(), unit();
+    check(tree, hull, size);
+  });
+}
+
+// Of as many points as there may be, whose hull is nearly a ball.
+TEST_P(Collide, AHullOfManyPointsIsNearlyABall) {
+  const test::CookedTree cooked = test::cook_tree(test::terrain(8, 3), GetParam());
+  const Eigen::AlignedBox3d bounds = cooked.tree.bounds();
+  const double radius = 0.2 * bounds.diagonal().norm();
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < kMaxHullPoints; ++i) {
+    points.push_back(radius * vector().normalized());
+  }
+  ConvexHull hull;
+  hull.points = points;
+  for (int n = 0; n < 8; ++n) {
+    hull.position = closest_point(cooked.tree, bounds.center() + vector())->point;
+    ASSERT_TRUE(collide(cooked.tree, hull, [&](const Contact& contact) {
+      const Triangle triangle = test::require(cooked.tree.triangle(contact.face, contact.triangle));
+      const LongTriangle exact = test::long_triangle(triangle);
+      const LongShape shape = test::long_shape(hull);
+      const LongVector normal = contact.normal.cast<long double>();
+      EXPECT_NEAR(static_cast<double>(depth_along(shape, normal, exact)), contact.depth,
+                  1e-12 * radius);
+      for (int i = 0; i < 1000; ++i) {
+        LongVector other = vector().cast<long double>().normalized();
+        if (i % 2 == 0) other = (normal + 0.05L * other).normalized();
+        EXPECT_GE(depth_along(shape, other, exact), contact.depth - 1e-12 * radius);
+      }
+      return true;
+    }));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, Collide,
                          testing::Values(test::Encoding{CodecId::kWide8, GeometryId::kExact},
                                          test::Encoding{CodecId::kWide4, GeometryId::kGrid},
@@ -181,6 +232,23 @@ TEST(CollideErrors, NameTheField) {
   EXPECT_EQ(collide(cooked.tree, box, none).error().detail, "rotation");
   EXPECT_EQ(collide(cooked.tree, Capsule{{0, 0, INFINITY}, {0, 0, 0}, 1}, none).error().detail,
             "start");
+  ConvexHull hull;
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "points");
+  std::vector<Eigen::Vector3d> points(kMaxHullPoints + 1, Eigen::Vector3d::Zero());
+  hull.points = points;
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "points");
+  hull.points = hull.points.first(kMaxHullPoints);
+  EXPECT_TRUE(collide(cooked.tree, hull, none).ok());
+  points[7].y() = NAN;
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "points");
+  points[7].y() = 1e308;
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "points");
+  points[7].y() = 0;
+  hull.position.x() = INFINITY;
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "position");
+  hull.position.x() = 0;
+  hull.rotation.coeffs().setZero();
+  EXPECT_EQ(collide(cooked.tree, hull, none).error().detail, "rotation");
 }
 
 }  // namespace
