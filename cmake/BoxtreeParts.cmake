@@ -2,7 +2,7 @@
 # generated header tells the sources and every program that includes it, installed or not, so that all
 # of them see one and the same build.
 set(BOXTREE_ALL_CODECS plain-f32 plain-f16 packed-f32 packed-f16 packed-f64 dedup wide8 wide4)
-set(BOXTREE_ALL_QUERIES ray cast collide hull box sphere point pair distance within scene)
+set(BOXTREE_ALL_QUERIES ray cast collide hull box sphere frustum point pair distance within scene)
 set(BOXTREE_CODECS all CACHE STRING "Codecs that the runtime reads: all, or some of ${BOXTREE_ALL_CODECS}")
 set(BOXTREE_QUERIES all CACHE STRING "Queries that it answers: all, or some of ${BOXTREE_ALL_QUERIES}")
 # AVX-512 gains at most 3 % of the time and takes as much code as AVX2: so it is opt-in.

@@ -81,15 +81,16 @@ class KeyFields {
   }
   // A line with a shape takes none of the command line.
   void shape(CastShape& shape) {
-    const bool has_box = json_.contains("box");
-    if (json_.contains("sphere") || json_.contains("capsule") || has_box) {
-      const auto turned = has_box ? shape.rotation : std::nullopt;
+    const bool has_axes = json_.contains("box") || json_.contains("hull");
+    if (json_.contains("sphere") || json_.contains("capsule") || has_axes) {
+      const auto turned = has_axes ? shape.rotation : std::nullopt;
       shape = CastShape();
       shape.rotation = turned;
     }
     read_if_given("sphere", shape.sphere);
     read_if_given("capsule", shape.capsule, "[X,Y,Z,R]");
     read_if_given("box", shape.box, "[HX,HY,HZ]");
+    read_if_given("hull", shape.hull, "the file of a mesh");
     read_if_given("rotation", shape.rotation, "[X,Y,Z,W]");
   }
 

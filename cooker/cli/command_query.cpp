@@ -349,9 +349,20 @@ class OptionFields {
     add_numbers("--capsule", "X,Y,Z,R", shape.capsule,
                 "or all within R of the segment from --at to --at + X,Y,Z,");
     add_numbers("--box", "HX,HY,HZ", shape.box,
-                "or a box that reaches so far from --at along each of its axes");
+                "or a box that reaches so far from --at along each of its axes,");
+    command_
+        .add_parsed_option(
+            "--hull",
+            [&shape](const std::string& text) {
+              shape.hull = text;
+              return std::string();
+            },
+            fmt::format("or the convex hull of the points of a mesh, at most {} of them",
+                        kMaxHullPoints))
+        ->type_name("MESH")
+        ->takes(Values::kMeshes);
     add_numbers("--rotation", "X,Y,Z,W", shape.rotation,
-                "Of the box, a quaternion of any length [0,0,0,1]");
+                "Of the box or the hull, a quaternion of any length [0,0,0,1]");
   }
 
   // The keys that have to be given, and their options.

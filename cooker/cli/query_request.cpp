@@ -238,6 +238,7 @@ class FieldTexts {
     };
     if_given("capsule", shape.capsule, list);
     if_given("box", shape.box, list);
+    if_given("hull", shape.hull, [](const std::filesystem::path& mesh) { return mesh.string(); });
     if_given("rotation", shape.rotation, list);
   }
 
@@ -256,6 +257,24 @@ class FieldTexts {
 };
 
 }  // namespace
+
+Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& mesh) {
+  ImportOptions options = careful_import();
+  options.precision = Precision::kF64;
+  const Result<Imported> imported = import_mesh(mesh, options);
+  if (!imported) return imported.error();
+  const Positions& positions = imported->mesh.positions;
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < positions.size(); ++i) points.push_back(positions[i]);
+  const auto key = [](const Eigen::Vector3d& p) { return std::tuple(p[0], p[1], p[2]); };
+  std::sort(points.begin(), points.end(),
+            [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return key(a) < key(b); });
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  if (!points.empty() && points.size() <= kMaxHullPoints) return points;
+  return Error{Errc::kInvalidQuery,
+               fmt::format("{}: expected a mesh of 1 to {} points for a hull, found {}",
+                           input_name(mesh), kMaxHullPoints, points.size())};
+}
 
 Result<OpenedTree> open_tree(const TreeWanted& wanted) {
   Result<OpenedFile> opened = open_file(wanted.path);
@@ -336,12 +355,14 @@ std::string CastShape::fault(std::string_view before, bool may_lack_shape) const
   if (sphere) given.push_back(fmt::format("{}sphere", before));
   if (capsule) given.push_back(fmt::format("{}capsule", before));
   if (box) given.push_back(fmt::format("{}box", before));
+  if (hull) given.push_back(fmt::format("{}hull", before));
   if (given.size() > 1 || (given.empty() && !may_lack_shape)) {
-    return fmt::format("expected one shape, {0}sphere, {0}capsule or {0}box, found {1}", before,
+    return fmt::format("expected one shape, {0}sphere, {0}capsule, {0}box or {0}hull, found {1}",
+                       before,
                        given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")));
   }
-  if (rotation && !given.empty() && !box) {
-    return fmt::format("expected {0}rotation with {0}box, found it with {1}", before,
+  if (rotation && !given.empty() && !box && !hull) {
+    return fmt::format("expected {0}rotation with {0}box or {0}hull, found it with {1}", before,
                        given.front());
   }
   return {};

@@ -69,12 +69,13 @@ struct RayRequest {
   [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
 };
 
-/// A shape that is cast or touches. One of the first three is given.
+/// A shape that is cast or touches. One of the first four is given.
 struct CastShape {
   std::optional<double> sphere;                   // the radius
   std::optional<std::array<double, 4>> capsule;   // X,Y,Z from one end to the other, the radius
   std::optional<std::array<double, 3>> box;       // half its extents
-  std::optional<std::array<double, 4>> rotation;  // of the box: X,Y,Z,W
+  std::optional<std::filesystem::path> hull;      // a mesh whose points it is of
+  std::optional<std::array<double, 4>> rotation;  // of the box or the hull: X,Y,Z,W
 
   /// What is wrong with what is given, or nothing. `before`: what stands before names, "--".
   [[nodiscard]] std::string fault(std::string_view before, bool may_lack_shape) const;
@@ -83,7 +84,7 @@ struct CastShape {
 struct CastRequest {
   static constexpr const char* kKind = "cast";
   static constexpr const char* kHelp =
-      "First touch of a sphere, a capsule or a box that moves along a line";
+      "First touch of a sphere, a capsule, a box or a convex hull that moves along a line";
   static constexpr const char* kExpected =
       "finite ends or a finite center, at most 2^185 mesh extents away, a finite direction, a "
       "finite radius or half extents of 0 or more, a rotation that is not 0, and t_max of 0 or "
@@ -103,7 +104,9 @@ struct CastRequest {
 
   template <class Fields>
   void describe(Fields& fields) {
-    fields.required("at", at, "Where it starts: its center, or of a capsule one end");
+    fields.required(
+        "at", at,
+        "Where it starts: its center, of a capsule one end, of a hull the origin of its points");
     fields.required("direction", motion.direction, "Where it goes; t counts in its length");
     fields.shape(shape);
     fields.optional("t_max", motion.t_max, "Where it ends, as t [nowhere]");
@@ -119,7 +122,7 @@ struct CastRequest {
 struct CollideRequest {
   static constexpr const char* kKind = "collide";
   static constexpr const char* kHelp =
-      "Triangles that a sphere, a capsule or a box touches, and how it leaves them";
+      "Triangles that a sphere, a capsule, a box or a convex hull touches, and how it leaves them";
   static constexpr const char* kExpected =
       "finite ends or a finite center, at most 2^185 mesh extents away, a finite radius or half "
       "extents of 0 or more, a rotation that is not 0, and merge of 0 or more";
@@ -136,7 +139,9 @@ struct CollideRequest {
 
   template <class Fields>
   void describe(Fields& fields) {
-    fields.required("at", at, "Where it is: its center, or of a capsule one end");
+    fields.required(
+        "at", at,
+        "Where it is: its center, of a capsule one end, of a hull the origin of its points");
     fields.shape(shape);
     fields.optional("merge", merge,
                     "Of contacts within this of each other and of nearly one normal, the deepest",
@@ -366,6 +371,9 @@ class TreeCache {
  private:
   std::map<std::pair<std::string, std::string>, std::unique_ptr<OpenedTree>> opened_;
 };
+
+/// The points of a mesh, each once, for a ConvexHull; an error where these are too many.
+Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& mesh);
 
 /// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
 std::size_t parse_numbers(std::string_view text, std::span<double> numbers);

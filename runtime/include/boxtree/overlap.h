@@ -4,6 +4,7 @@
 // BOXTREE_QUERIES left out of this build are not declared.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 
@@ -13,8 +14,10 @@
 
 namespace boxtree {
 
-static_assert(BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_WITHIN_QUERIES,
-              "BOXTREE_QUERIES left box, sphere and within queries out of this build of boxtree");
+static_assert(BOXTREE_HAS_BOX_QUERIES || BOXTREE_HAS_SPHERE_QUERIES || BOXTREE_HAS_WITHIN_QUERIES ||
+                  BOXTREE_HAS_FRUSTUM_QUERIES,
+              "BOXTREE_QUERIES left box, sphere, frustum and within queries out of this build of "
+              "boxtree");
 
 #if BOXTREE_HAS_BOX_QUERIES
 /// Visits every face that touches the closed box `box` (object space), each once, in no promised
@@ -31,6 +34,43 @@ BOXTREE_API Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3
 BOXTREE_API Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center,
                                          double radius, FaceVisitor visitor,
                                          const QueryLimits& limits = {});
+#endif
+
+#if BOXTREE_HAS_FRUSTUM_QUERIES
+/// What z / w of clip space is for what is visible.
+enum class ClipDepth : std::uint8_t {
+  kZeroToOne,      ///< Direct3D, Metal, Vulkan and others, also reversed.
+  kMinusOneToOne,  ///< OpenGL.
+};
+
+/// The points x for which a x + b y + c z + d >= 0, for each of six planes (a, b, c, d): what a
+/// camera sees. Planes have any length; one with a = b = c = 0 and d of 0 or more cuts nothing off,
+/// as the far plane of a projection without one.
+struct Frustum {
+  /// Unaligned, so that their layout does not depend on compiler options.
+  using Plane = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+  using ViewProjection = Eigen::Matrix<double, 4, 4, Eigen::DontAlign>;
+
+  std::array<Plane, 6> planes;  ///< Object space; normals point inside.
+
+  /// Of the matrix that takes column vectors (x, y, z, 1) to clip space: projection * view * model,
+  /// where engines with row vectors have the transposed one. The planes are left, right, bottom,
+  /// top, and those of the least and the greatest depth.
+  [[nodiscard]] BOXTREE_API static Frustum of(const ViewProjection& view_projection,
+                                              ClipDepth depth = ClipDepth::kZeroToOne) noexcept;
+  /// Of its corners: four around the near side, and those behind them in the same order. All of
+  /// them are inside.
+  [[nodiscard]] BOXTREE_API static Frustum of(
+      const std::array<Eigen::Vector3d, 8>& corners) noexcept;
+};
+
+/// Visits every face that touches the frustum, each once, in no promised order: not those that are
+/// near it only, as culling by boxes or by one plane after the other has them. Nothing is missed; a
+/// face may be visited that touches it with its planes moved out by 2^-46 of the largest
+/// coordinate, or of their distance from the origin. Errors: kInvalidQuery (planes that are not
+/// finite) and the codes of corrupt bytes and limits as for closest_hit(). Never allocates.
+BOXTREE_API Result<Visit> overlap_frustum(const Tree& tree, const Frustum& frustum,
+                                          FaceVisitor visitor, const QueryLimits& limits = {});
 #endif
 
 #if BOXTREE_HAS_WITHIN_QUERIES

@@ -46,6 +46,18 @@ inline bool run_contacts(const boxtree::Tree& tree) {
   return boxtree::merge_contacts({&last, 1}, 1) == 1 && all;
 }
 
+inline bool run_hulls(const boxtree::Tree& tree) {
+  const Eigen::Vector3d points[] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const boxtree::ConvexHull hull{points, {0, 0, 1}, {1, 0, 0, 0}};
+  const boxtree::Motion down{{0, 0, -1}};
+  const auto all = [](const boxtree::CastHit& hit) { return hit.t; };
+  const auto keep = [](const boxtree::Contact&) { return true; };
+  const auto face = [](const boxtree::FaceRef&) { return true; };
+  return boxtree::cast_closest(tree, hull, down).ok() && boxtree::cast_any(tree, hull, down).ok() &&
+         boxtree::cast_all(tree, hull, down, all).ok() && boxtree::collide(tree, hull, keep).ok() &&
+         boxtree::overlap_convex_hull(tree, hull, face).ok();
+}
+
 /// Casts and contacts of shapes, and rays with wishes.
 inline bool run_shapes(const boxtree::Tree& tree) {
   return run_rays(tree) && run_casts(tree) && run_contacts(tree);
