@@ -119,9 +119,8 @@ CastResult one_touch_in(const BoundTree& tree, const ShapeInTree& shape, const M
   return error == Errc::kOk ? result : CastResult(error);
 }
 
-Result<Visit> all_touches_in(const BoundTree& tree, const ShapeInTree& shape,
-                             const Motion& motion, CastVisitor visitor,
-                             const FaceOptions& options) {
+Result<Visit> all_touches_in(const BoundTree& tree, const ShapeInTree& shape, const Motion& motion,
+                             CastVisitor visitor, const FaceOptions& options) {
   const CastLine cast(shape, motion);
   if (cast.invalid != nullptr) return invalid_query(cast.invalid);
   const auto touched = [&](const CastQuery& query, const CastCandidate& found) {

@@ -54,8 +54,7 @@ class HullInTree {
       }
       size = std::max(size, largest_magnitude(points_[i]));
     }
-    if (!is_finite || !(size <= kMaxCoordinate) ||
-        !is_within_range(frame.to_tree(shape_.center))) {
+    if (!is_finite || !(size <= kMaxCoordinate) || !is_within_range(frame.to_tree(shape_.center))) {
       shape_.invalid = "points";
       return;
     }
@@ -86,14 +85,14 @@ CastResult cast_closest(const Tree& tree, const ConvexHull& hull, const Motion& 
                         const FaceOptions& options) {
   const BoundTree& bound = BoundTree::of(tree);
   return one_touch_in(bound, HullInTree(bound.frame(), hull).shape(), motion,
-                   CastQuery::Wanted::kClosest, options);
+                      CastQuery::Wanted::kClosest, options);
 }
 
 CastResult cast_any(const Tree& tree, const ConvexHull& hull, const Motion& motion,
                     const FaceOptions& options) {
   const BoundTree& bound = BoundTree::of(tree);
   return one_touch_in(bound, HullInTree(bound.frame(), hull).shape(), motion,
-                   CastQuery::Wanted::kAny, options);
+                      CastQuery::Wanted::kAny, options);
 }
 
 Result<Visit> cast_all(const Tree& tree, const ConvexHull& hull, const Motion& motion,

@@ -47,12 +47,8 @@ class TouchingTriangles {
 
  private:
   void share() noexcept {
-    // What rounding leaves of a corner on an edge is found by cutting less off.
-    for (const double slack : {0.0, error_}) {
-      if (count_ != 0) break;
-      cut(first_, second_, slack);
-      cut(second_, first_, slack);
-    }
+    cut(first_, second_);
+    cut(second_, first_);
     if (count_ == 0) {  // too thin to have planes
       const TriangleDistance nearest = triangle_distance({first_}, {second_});
       points_[count_++] = (nearest.first + nearest.second) / 2;
@@ -69,8 +65,9 @@ class TouchingTriangles {
     }
   }
 
-  // Collects where the plane of a triangle cuts what is left of another one above it, widened.
-  void cut(const Corners& base, const Corners& other, double widened) noexcept {
+  // Collects where the plane of a triangle cuts what is left of another one above it, widened by
+  // rounding, so that an edge of both is left whole.
+  void cut(const Corners& base, const Corners& other) noexcept {
     const Eigen::Vector3d n = unit_normal({base});
     if (n.isZero(0)) return;
     constexpr std::size_t kMost = 6;  // each edge of the base adds one
@@ -80,7 +77,7 @@ class TouchingTriangles {
     const Corners edge = edges_of(base);
     for (std::size_t e = 0; e < edge.size(); ++e) {
       const Eigen::Vector3d inward = cross(n, edge[e]);
-      const double slack = widened * std::sqrt(squared_length(inward));
+      const double slack = error_ * std::sqrt(squared_length(inward));
       const auto inside = [&](const Eigen::Vector3d& x) {
         return dot(inward, x - base[e]) + slack;
       };

@@ -23,9 +23,9 @@ namespace boxtree {
 
 #if BOXTREE_HAS_COLLIDE_QUERIES
 [[nodiscard]] Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
-                                           ContactVisitor visitor, const QueryLimits& limits);
+                                              ContactVisitor visitor, const QueryLimits& limits);
 [[nodiscard]] Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,
-                                                FaceVisitor visitor, const QueryLimits& limits);
+                                                   FaceVisitor visitor, const QueryLimits& limits);
 #endif
 
 }  // namespace boxtree
