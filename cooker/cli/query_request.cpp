@@ -130,7 +130,27 @@ Result<Json> answer(const Tree& tree, const PointRequest& request) {
   return json;
 }
 
+Result<Json> answer_pair_contacts(const Tree& first, const Tree& second,
+                                  const PairRequest& request) {
+  Json contacts = Json::array();
+  const Result<Visit> visit = pair_contacts(
+      first, Pose::Identity(), second, request.second.pose, [&](const PairContact& contact) {
+        contacts.push_back(
+            {{"faces", {face_json(contact.faces.first), face_json(contact.faces.second)}},
+             {"triangles", {contact.first_triangle, contact.second_triangle}},
+             {"point", to_json(contact.point)},
+             {"start", to_json(contact.start)},
+             {"end", to_json(contact.end)},
+             {"normal", to_json(contact.normal)},
+             {"depth", contact.depth}});
+        return !request.first_only;
+      });
+  if (!visit) return visit.error();
+  return Json{{"hit", !contacts.empty()}, {"count", contacts.size()}, {"contacts", contacts}};
+}
+
 Result<Json> answer_pair(const Tree& first, const Tree& second, const PairRequest& request) {
+  if (request.contacts) return answer_pair_contacts(first, second, request);
   Json pairs = Json::array();
   const Result<Visit> visit = overlap_pairs(
       first, Pose::Identity(), second, request.second.pose, [&](const FacePair& pair) {

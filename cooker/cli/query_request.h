@@ -259,11 +259,14 @@ struct PairRequest {
 
   SecondTree second;
   bool first_only = false;
+  bool contacts = false;
 
   template <class Fields>
   void describe(Fields& fields) {
     fields.second(second);
     fields.optional("first", first_only, "Stop at the first contact");
+    fields.optional("contacts", contacts,
+                    "Pairs of triangles instead, with where they touch and how they part");
   }
 };
 

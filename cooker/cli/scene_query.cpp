@@ -130,6 +130,7 @@ Result<Json> answer(const Scene& scene, const ContactsRequest& request) {
 }
 
 Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairRequest& request) {
+  if (request.contacts) return not_for_scenes("where triangles touch");
   return answer_pairs(scene, request.first_only, [&](ScenePairVisitor visitor) {
     return overlap_pairs(scene, second, request.second.pose, visitor);
   });

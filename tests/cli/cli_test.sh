@@ -178,11 +178,11 @@ shapeless() {
   expect 1 "$boxtree" query cube.bxt cast --at 0,0,9 --direction 0,0,-1 "$@"
   same "$(cat err)" "boxtree: usage: query cast: expected $said"
 }
-shapeless 'one shape, --sphere, --capsule or --box, found none'
-shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --box' --sphere 1 --box 1,1,1
+shapeless 'one shape, --sphere, --capsule, --box or --hull, found none'
+shapeless 'one shape, --sphere, --capsule, --box or --hull, found --sphere and --box' --sphere 1 --box 1,1,1
 shapeless '--rotation with --box, found it with --sphere' --sphere 1 --rotation 0,0,0,1
 shapeless '--any or --all, found both' --sphere 1 --any --all
-shapeless 'one shape, --sphere, --capsule or --box, found --sphere and --capsule' --sphere 1 --capsule 0,0,1,1 --batch -
+shapeless 'one shape, --sphere, --capsule, --box or --hull, found --sphere and --capsule' --sphere 1 --capsule 0,0,1,1 --batch -
 # A ray passes the top from outside and the bottom from inside.
 expect 0 "$boxtree" query cube.bxt ray --origin 0.25,0.5,5 --direction 0,0,-1 --all --json
 same "$(jq -c '[.count,[.hits[] | [.t,.face,.normal[2]]]]' out)" '[2,[[4,1,1],[5,0,-1]]]'
@@ -207,8 +207,15 @@ expect 0 "$boxtree" query cube.bxt collide --sphere 0.5 --at 0.5,0.5,1.25 --merg
 same "$(jq -c '[.count,(.contacts | map(.depth) | max)]' out)" '[1,0.25]'
 expect 0 "$boxtree" query cube.bxt collide --box 0.25,0.25,0.5 --at 0.5,0.5,1.375 --json
 same "$(jq -c '[.count,(.contacts | map([.normal,.depth]) | unique)]' out)" '[2,[[[0,0,1],0.125]]]'
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >hull.obj
+expect 0 "$boxtree" query cube.bxt cast --hull hull.obj --at 0.25,0.25,3 --direction 0,0,-1 --json
+same "$(jq -c '[.hit,.feature,([.t,.normal[2]] | map(. * 1e9 | round / 1e9))]' out)" '[true,"face",[2,1]]'
+expect 0 "$boxtree" query cube.bxt collide --hull hull.obj --at 0.25,0.25,0.875 --rotation 0,0,0,2 --json
+same "$(jq -c '[.contacts[].depth * 1e9 | round / 1e9] | max' out)" 0.125
+expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 0.5,0.5,1 --contacts --json
+same "$(jq -c '[.hit,([.contacts[].depth] | max),([.contacts[].point[2] * 1e9 | round / 1e9] | max)]' out)" '[true,0,1]'
 expect 1 "$boxtree" query cube.bxt collide --at 0,0,0
-same "$(cat err)" 'boxtree: usage: query collide: expected one shape, --sphere, --capsule or --box, found none'
+same "$(cat err)" 'boxtree: usage: query collide: expected one shape, --sphere, --capsule, --box or --hull, found none'
 expect 0 "$boxtree" query cube.bxt box --min=0.9,0.4,0.4 --max 1.5,0.6,0.6 --json
 same "$(jq -c '.faces' out)" '[5]'
 expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,1.5 --radius 0.5 --json
@@ -784,10 +791,10 @@ names 'distance: "file": expected the second .bxt file, here or on the command l
   '{"kind":"distance"}'
 names 'point: "at": expected [X,Y,Z], found no such key' '{"kind":"point"}'
 names 'point: "at": expected [X,Y,Z], found [1,2]' '{"kind":"point","at":[1,2]}'
-names 'cast: expected one shape, sphere, capsule or box, found none' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1]}'
-names 'cast: expected one shape, sphere, capsule or box, found sphere and box' \
+names 'cast: expected one shape, sphere, capsule, box or hull, found none' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1]}'
+names 'cast: expected one shape, sphere, capsule, box or hull, found sphere and box' \
   '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"box":[1,1,1]}'
-names 'cast: expected rotation with box, found it with sphere' \
+names 'cast: expected rotation with box or hull, found it with sphere' \
   '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"rotation":[0,0,0,1]}'
 names 'cast: expected any or all, found both' \
   '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":1,"any":true,"all":true}'

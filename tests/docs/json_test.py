@@ -131,6 +131,7 @@ RUNS = {
     ],
     "query FILE pair, contacts": [
         "query crate.bxt pair arrays.bxt",
+        "query crate.bxt pair arrays.bxt --contacts",
         "query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0",
         "query parts.bxt contacts --move Crate=0.8,2.1,-6.8",
         "query nameless.bxt pair crate.bxt --pose 0,0.3,0",

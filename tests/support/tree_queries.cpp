@@ -34,6 +34,10 @@ double number_of(const FacePair& pair) {
   return double{pair.first.id * 1e6} + pair.second.id;
 }
 
+std::array<Eigen::Vector3d, 5> hull_points(double size) {
+  return {Eigen::Vector3d(-size, 0, 0), {size, 0, 0}, {0, size, 0}, {0, 0, size}, {0, 0, 0}};
+}
+
 }  // namespace
 
 std::vector<TreeQuery> tree_queries(const QuerySet& q) {
@@ -90,6 +94,30 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
          const auto count = [&](const CastHit&) { return ++told, motion.t_max; };
          return outcome(cast_all(tree, capsule, motion, count, {.limits = limits}),
                         [&](Visit) { return told; });
+       }},
+      {"cast_closest of a hull", 200, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         const std::array<Eigen::Vector3d, 5> points = hull_points(q.thickness);
+         const ConvexHull hull{points, q.ray.origin, turned.rotation};
+         return outcome(cast_closest(tree, hull, motion, {.limits = limits}), t_of);
+       }},
+      {"collide of a hull", 200, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         const std::array<Eigen::Vector3d, 5> points = hull_points(q.radius);
+         const ConvexHull hull{points, q.point, turned.rotation};
+         return outcome_of_visit(
+             [&](ContactVisitor visitor) { return collide(tree, hull, visitor, limits); });
+       }},
+      {"overlap_frustum", 64, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         std::array<Eigen::Vector3d, 8> corners;
+         corners.fill(q.point);
+         for (std::size_t i = 4; i < 8; ++i) {
+           corners[i] += q.radius * Eigen::Vector3d(i == 5 || i == 6 ? 1 : -1, i > 5 ? 1 : -1, 2);
+         }
+         return outcome_of_visit([&](FaceVisitor visitor) {
+           return overlap_frustum(tree, Frustum::of(corners), visitor, limits);
+         });
        }},
       {"collide", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
