@@ -180,7 +180,7 @@ shapeless() {
 }
 shapeless 'one shape, --sphere, --capsule, --box or --hull, found none'
 shapeless 'one shape, --sphere, --capsule, --box or --hull, found --sphere and --box' --sphere 1 --box 1,1,1
-shapeless '--rotation with --box, found it with --sphere' --sphere 1 --rotation 0,0,0,1
+shapeless '--rotation with --box or --hull, found it with --sphere' --sphere 1 --rotation 0,0,0,1
 shapeless '--any or --all, found both' --sphere 1 --any --all
 shapeless 'one shape, --sphere, --capsule, --box or --hull, found --sphere and --capsule' --sphere 1 --capsule 0,0,1,1 --batch -
 # A ray passes the top from outside and the bottom from inside.

@@ -43,7 +43,8 @@ void run(Bytes input) {
     const Eigen::Vector3d extent = query.vector(8);
     const std::array<Eigen::Vector3d, 5> points{extent, Eigen::Vector3d::Zero(),
                                                 Eigen::Vector3d(size, 0, 0), -extent, extent};
-    ConvexHull hull{std::span(points).first(1 + query.option(4) % points.size()), query.vector(0),
+    ConvexHull hull{std::span(points).first(1 + query.option(4) % points.size()),
+                    query.vector(0),
                     {1, 0, 0, 0}};
     if (query.option(4) % 2 == 1) hull.rotation = {size, extent[0], extent[1], extent[2]};
     cast(tree, hull, query, check);
