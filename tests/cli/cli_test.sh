@@ -801,7 +801,7 @@ names 'cast: expected any or all, found both' \
 names 'cast: "capsule": expected [X,Y,Z,R], found [0,0,1]' \
   '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"capsule":[0,0,1]}'
 names 'cast: "sphere": expected a number, found "1"' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":"1"}'
-names "cast: expected the keys at, direction, sphere, capsule, box, rotation, t_max, any, all, back_faces, move or kind, found \"spere\"; "\
+names "cast: expected the keys at, direction, sphere, capsule, box, hull, rotation, t_max, any, all, back_faces, move or kind, found \"spere\"; "\
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
