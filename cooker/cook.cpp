@@ -147,6 +147,7 @@ class Cook {
   [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
     SearchOptions search = static_cast<const SearchOptions&>(options_);
     if (!input_.has_top_level) return search;
+    if (profile_.active_edges) search.active_edges = profile_.active_edges->value;
     const PlannedMesh& planned = plan_.meshes[mesh];
     search.codec = planned.codec;
     search.wishes.goal = planned.goal;

@@ -110,6 +110,9 @@ class Account {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
       line.line = cited(decision->line);
     }
+    if (entry.kind == SectionKind::kActiveEdges && cooked_.profile.active_edges) {
+      line.line = cited(cooked_.profile.active_edges->line);
+    }
     why_.push_back(std::move(line));
   }
 
@@ -134,6 +137,9 @@ class Account {
       case SectionKind::kDuplicates:
         return fmt::format("{} faces are copies of others, which stand in leaves for them",
                            cooked_.trees[entry.owner].geometry.duplicate_count);
+      case SectionKind::kActiveEdges:
+        return fmt::format("boundaries, and edges that bend away by more than {:g} degrees",
+                           cooked_.trees[entry.owner].edge_degrees);
       case SectionKind::kNames:
         return "objects'; those of instances, meshes and materials that keep theirs; reasons of "
                "parts left out";

@@ -107,6 +107,8 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "left_out";
     case SectionKind::kDuplicates:
       return "duplicates";
+    case SectionKind::kActiveEdges:
+      return "active_edges";
   }
   return "unknown";
 }

@@ -59,6 +59,7 @@ enum class SectionKind : std::uint32_t {
   kFaceMaterials = 17,  // owner: a tree; material of each face in tree order
   kLeftOut = 18,        // LeftOutRecord[]
   kDuplicates = 19,     // owner: a tree; the face of which each duplicate is a copy
+  kActiveEdges = 20,    // owner: a tree; which edges are active (format/active_edges.h)
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

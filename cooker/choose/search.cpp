@@ -6,6 +6,7 @@
 #include <array>
 #include <functional>
 #include <memory>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -13,6 +14,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "cooker/build/face_boxes.h"
+#include "cooker/encode/active_edges.h"
 #include "cooker/encode/face_ids.h"
 #include "cooker/import/mesh_arrays.h"
 #include "format/limits.h"
@@ -130,6 +132,7 @@ void encode_geometry(const Source& source, const SearchOptions& options,
   }
   encode_duplicates(originals, tree.geometry);
   add_face_ids(source, options, order, tree);
+  if (options.active_edges) tree.face_order = std::move(order);
 }
 
 // Codecs that share a build tree and its order of faces; only their nodes differ. The build tree is
@@ -152,6 +155,10 @@ Family binary_family(const Source& source, const SearchOptions& options,
   if (hold_source_numbers) {
     family.tree.faces_in_source_order = true;
     family.tree.geometry = encode_external_geometry();
+    if (options.active_edges) {
+      family.tree.face_order.resize(source.mesh.faces.size());
+      std::iota(family.tree.face_order.begin(), family.tree.face_order.end(), 0u);
+    }
   } else {
     encode_geometry(source, options, faces_in_tree_order(build), LeafOrder::kFixed, family.tree);
   }
@@ -449,10 +456,31 @@ class Search {
            "measured";
   }
 
+  // Once for all codecs of a family, whose faces are the same.
+  Status add_active_edges(EncodedTree& tree) {
+    if (!options_.active_edges || tree.face_count == 0 || !tree.geometry.active_edges.empty()) {
+      return {};
+    }
+    if (options_.known_edges == nullptr && !edges_) {
+      edges_ = find_active_edges(mesh_, *options_.active_edges);
+    }
+    BindOptions bind;
+    bind.mesh = arrays_of(mesh_);
+    const Result<Tree> bound = bind_encoded(tree, bind);
+    if (!bound) return bound.error();
+    auto section = encode_active_edges(
+        *bound, tree.face_order, options_.known_edges != nullptr ? *options_.known_edges : *edges_);
+    if (!section) return section.error();
+    tree.geometry.active_edges = std::move(*section);
+    tree.edge_degrees = *options_.active_edges;
+    return {};
+  }
+
   Status try_family(Family family, const Source& source, const std::vector<CodecId>& codecs) {
     EncodedTree& tree = family.tree;
     for (const CodecId codec : codecs) {
       tree.nodes = family.nodes_of(codec);
+      if (Status status = add_active_edges(tree); !status) return status;
       Result<Candidate> candidate = examine(tree, mesh_, queries_, costs_);
       if (!candidate) return candidate.error();
       out_.contest.candidates.push_back(std::move(*candidate));
@@ -478,6 +506,7 @@ class Search {
   const Workload queries_;
   std::optional<Built> unrounded_;
   bool has_baseline_ = false;
+  std::optional<ActiveEdges> edges_;
   TriedTree out_;
 };
 

@@ -7,6 +7,7 @@
 #include <optional>
 #include <vector>
 
+#include "cooker/build/active_edges.h"
 #include "cooker/build/build_tree.h"
 #include "cooker/choose/choose.h"
 #include "cooker/encode/encoded_tree.h"
@@ -32,6 +33,10 @@ struct SearchOptions {
   /// `wishes`.
   bool keep_all = false;
   bool face_ids = true;
+  /// Store active edges: those at which the surface bends away by more than so many degrees [none].
+  std::optional<double> active_edges;
+  /// Those of the mesh, if they are known already, as in a scene [none: found in the mesh alone].
+  const ActiveEdges* known_edges = nullptr;
   std::vector<CodecCost> costs;  // for the user's machine; empty: those compiled in [default]
   /// Binary codecs: the share of a box that must be empty to be cut off [kShrinkShare] [0.01 to 1;
   /// 1: never].

@@ -335,6 +335,13 @@ void add_cook_command(Command& program, int& status) {
           ->above_zero("a factor");
   Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
                                          "Leave the source face numbers out");
+  Option* active_edges = command.add_option(
+      "--active-edges", arguments->job.options.active_edges,
+      "Store which edges are active: boundaries, and those at which the surface bends away by more "
+      "than so many degrees; at others a contact takes the normal of the face [else left out]");
+  active_edges->type_name("DEGREES")->number(
+      "degrees from 0 to 90", [](double degrees) { return degrees >= 0 && degrees <= 90; },
+      "0 to 90");
   command.add_flag("--skip-bad", arguments->job.options.import.skip_bad,
                    "Drop faces with NaN, infinite or missing vertices, and report their numbers");
   command.add_option("-j,--jobs", arguments->jobs, "Threads; the bytes do not depend on it [all]")
@@ -388,7 +395,7 @@ void add_cook_command(Command& program, int& status) {
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
   for (Option* option : {codec, goal, exact, tolerance, grid_bits, grid_step, budget, slowdown,
-                         no_face_ids, external}) {
+                         no_face_ids, active_edges, external}) {
     profile->excludes(option);
   }
   command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");

@@ -21,6 +21,7 @@
 #include "cooker/cli/surface_text.h"
 #include "cooker/export/decoded_faces.h"
 #include "cooker/text/counted.h"
+#include "format/active_edges.h"
 #include "format/container.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -38,6 +39,7 @@ struct TreeBytes {
   std::uint64_t tree = 0;
   std::uint64_t geometry = 0;
   std::uint64_t face_ids = 0;
+  std::uint64_t active_edges = 0;
   std::uint64_t other = 0;
 };
 
@@ -47,7 +49,7 @@ TreeBytes bytes_of(const File& file, std::uint32_t index) {
   };
   return {size(SectionKind::kNodes) + size(SectionKind::kDuplicates),
           size(SectionKind::kVertices) + size(SectionKind::kCorners), size(SectionKind::kFaceIds),
-          sizeof(TreeRecord)};
+          size(SectionKind::kActiveEdges), sizeof(TreeRecord)};
 }
 
 double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
@@ -79,6 +81,13 @@ std::string text_of_surface(const Json& surface) {
   return surface_text(surface_of(surface));
 }
 
+// The degrees by more than which the surface bends at active edges; null without these.
+Json edge_angle_json(const File& file, std::uint32_t index) {
+  const Bytes section = OpenFile::of(file).section(SectionKind::kActiveEdges, index);
+  if (section.size() < sizeof(ActiveEdgesHeader)) return nullptr;
+  return load<ActiveEdgesHeader>(section.data()).degrees;
+}
+
 Json tree_json(const File& file, std::uint32_t index) {
   const TreeRecord record = OpenFile::of(file).tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
@@ -93,15 +102,18 @@ Json tree_json(const File& file, std::uint32_t index) {
   json["bytes"] = {{"tree", bytes.tree},
                    {"geometry", bytes.geometry},
                    {"face_ids", bytes.face_ids},
+                   {"active_edges", bytes.active_edges},
                    {"other", bytes.other}};
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
-                                {"face_ids", per_triangle(bytes.face_ids, record)}};
+                                {"face_ids", per_triangle(bytes.face_ids, record)},
+                                {"active_edges", per_triangle(bytes.active_edges, record)}};
   json["grid_step"] = grid_step_json(record.geometry, record.grid_exponent);
   json["max_vertex_error"] = record.max_vertex_error;
   json["face_ids"] = bytes.face_ids > 0                              ? "stored"
                      : (record.flags & kTreeFacesInSourceOrder) != 0 ? "source order"
                                                                      : "none";
+  json["active_edges"] = edge_angle_json(file, index);
   const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -192,6 +204,12 @@ void print_file(const Json& json) {
                tree["bytes_per_triangle"]["total"].get<double>(),
                tree["bytes_per_triangle"]["face_ids"].get<double>());
     fmt::print("  face ids: {}\n", meaning_of_ids(tree["face_ids"].get<std::string>()));
+    if (const Json& degrees = tree["active_edges"]; !degrees.is_null()) {
+      fmt::print(
+          "  active edges: boundaries, and bends by more than {:g} degrees; {:.2f} bytes per "
+          "triangle\n",
+          degrees.get<double>(), tree["bytes_per_triangle"]["active_edges"].get<double>());
+    }
     fmt::print("{}", text_of_moves(tree));
     fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));

@@ -62,6 +62,7 @@ struct EncodedGeometry {
   std::vector<std::byte> corners;
   std::vector<std::byte> face_ids;
   std::vector<std::byte> duplicates;
+  std::vector<std::byte> active_edges;  // empty if they are left out
   std::uint8_t corner_bytes = 0;
   std::uint8_t corners_per_face = 0;
   std::uint8_t duplicate_bytes = 0;

@@ -36,9 +36,10 @@ TreeRecord record_of(const EncodedTree& tree, std::uint32_t name_offset) {
 
 Result<Tree> bind_encoded(const EncodedTree& tree, const BindOptions& options) {
   const EncodedGeometry& geometry = tree.geometry;
-  return bind_parts({record_of(tree, 0), tree.name, tree.nodes.bytes, geometry.vertices,
-                     geometry.corners, geometry.face_ids, geometry.duplicates},
-                    options);
+  return bind_parts(
+      {record_of(tree, 0), tree.name, tree.nodes.bytes, geometry.vertices, geometry.corners,
+       geometry.face_ids, geometry.duplicates, geometry.active_edges},
+      options);
 }
 
 }  // namespace boxtree::cooker

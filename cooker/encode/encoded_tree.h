@@ -3,7 +3,9 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include <boxtree/tree.h>
 
@@ -28,6 +30,9 @@ struct EncodedTree {
   std::uint64_t geometry_hash = 0;  // of the source mesh; a reader recognises the mesh by it
   bool faces_in_source_order = false;
   bool positions_f64 = false;
+  /// The face of the source that each face is; empty if active edges are left out.
+  std::vector<std::uint32_t> face_order;
+  double edge_degrees = 0;  // of active edges
 };
 
 /// The tree's record, whose claims the proof checks; its name starts at `name_offset` in the names

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <string>
 
+#include "format/active_edges.h"
 #include "format/bits.h"
 #include "format/cluster_leaf.h"
 #include "format/codec_packed.h"
@@ -42,6 +43,11 @@ class Check {
     findings_.push_back({Errc::kFaceOutOfRange, "face " + std::to_string(face) + " has the id " +
                                                     std::to_string(id) + ", limit " +
                                                     std::to_string(kMaxFaces - 1)});
+  }
+
+  void edges(bool holds, const std::string& fault) {
+    if (holds || findings_.size() >= kMaxFindings) return;
+    findings_.push_back({Errc::kRecordInvalid, "active edges: " + fault});
   }
 
   void misplaced_vertex(std::uint32_t leaf, std::uint32_t first, std::uint32_t expected) {
@@ -271,6 +277,36 @@ void check_face_ids(Bytes section, std::uint32_t face_count, Check& check) {
                "group ", groups, "the bits before it, or their number,");
 }
 
+// Precondition: the section has been bound.
+void check_active_edges(Bytes section, std::uint32_t face_count, Check& check) {
+  const auto header = load<ActiveEdgesHeader>(section.data());
+  check.edges(header.degrees >= 0 && header.degrees <= 90,
+              "the angle is " + std::to_string(header.degrees) + " degrees, expected 0 to 90");
+  check.edges(header.is_by_face <= 1,
+              "is_by_face is " + std::to_string(header.is_by_face) + ", expected 0 or 1");
+  constexpr std::uint64_t kCodes = sizeof(ActiveEdgesHeader) * 8;
+  const std::uint32_t leaves = face_count / kLeafFaces + (face_count % kLeafFaces != 0 ? 1 : 0);
+  bool has_mixed = false;
+  for (std::uint32_t leaf = 0; leaf < leaves; ++leaf) {
+    const std::uint64_t at = kCodes + std::uint64_t{leaf} * kLeafEdgesBits;
+    const std::uint32_t code = std::to_integer<std::uint32_t>(section[at / 8]) >> (at % 8) & 3u;
+    check.edges(
+        code <= static_cast<std::uint32_t>(LeafEdges::kMixed),
+        "leaf " + std::to_string(leaf) + " has code " + std::to_string(code) + ", expected 0 to 2");
+    has_mixed |= code == static_cast<std::uint32_t>(LeafEdges::kMixed);
+  }
+  check.edges(has_mixed == (header.start_count != 0),
+              has_mixed ? "leaves have code 2, but edges no bits"
+                        : "edges have bits, but no leaf has code 2");
+  const std::uint64_t bits = (sizeof(ActiveEdgesHeader) + leaf_edges_bytes(face_count)) * 8;
+  const std::uint64_t used = header.start_count == 0 ? 0 : header.start_count + (kEdgeBits - 1ull);
+  const bool are_zeros = are_zero(section, offsetof(ActiveEdgesHeader, zero) * 8, kCodes) &&
+                         are_zero(section, kCodes + std::uint64_t{leaves} * kLeafEdgesBits, bits) &&
+                         are_zero(section, bits + used, std::uint64_t{section.size()} * 8);
+  check.expect(are_zeros, "active edges of faces 0 to ", face_count - 1,
+               "the bits that no leaf and no edge has");
+}
+
 }  // namespace
 
 Findings check_reserved(const File& opened, std::uint32_t index) {
@@ -309,6 +345,8 @@ Findings check_reserved(const File& opened, std::uint32_t index) {
   }
   const Bytes face_ids = file.section(SectionKind::kFaceIds, index);
   if (!face_ids.empty()) check_face_ids(face_ids, record.face_count, check);
+  const Bytes active_edges = file.section(SectionKind::kActiveEdges, index);
+  if (!active_edges.empty()) check_active_edges(active_edges, record.face_count, check);
   return findings;
 }
 

@@ -200,6 +200,9 @@ void ProfileReader::read_contact(Fields& fields, std::optional<ContactRule>& rul
 
 void ProfileReader::read_scene_keys(Fields& fields) {
   if (const auto source = fields.text("source")) profile_.source = beside(*source);
+  if (const auto degrees = fields.number("active_edges", kSharpAngle)) {
+    profile_.active_edges = *degrees;
+  }
   read_needs(fields, profile_.scene);
 }
 

@@ -65,7 +65,8 @@ std::optional<Stated<double>> Fields::number(std::string_view key, const NumberR
   const TomlEntry* entry = find(key);
   if (entry == nullptr) return std::nullopt;
   const std::optional<double> value = number_in(entry->node);
-  if (value && (range.low_included ? *value >= range.low : *value > range.low)) {
+  if (value && (range.low_included ? *value >= range.low : *value > range.low) &&
+      *value <= range.high) {
     return Stated<double>{*value, entry->line};
   }
   complaints_.expected(entry->line, key, range.wording, shown(entry->node));

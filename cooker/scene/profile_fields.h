@@ -39,10 +39,12 @@ struct NumberRange {
   const char* wording;  // "a number above 0"
   double low;
   bool low_included;
+  double high = std::numeric_limits<double>::infinity();  // included
 };
 inline constexpr NumberRange kAnyNumber = {"a finite number", std::numeric_limits<double>::lowest(),
                                            true};
 inline constexpr NumberRange kAboveZero = {"a number above 0", 0, false};
+inline constexpr NumberRange kSharpAngle = {"degrees from 0 to 90", 0, true, 90};
 
 /// The keys of one table. Each reader returns nothing if the key is missing or its value is
 /// invalid; invalid values are reported.

@@ -56,6 +56,7 @@ class Layout {
         add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);
       }
       add(SectionKind::kDuplicates, i, tree.geometry.duplicates);
+      add(SectionKind::kActiveEdges, i, tree.geometry.active_edges);
     }
     place();
   }
@@ -106,7 +107,7 @@ class Layout {
           section.kind == SectionKind::kNames || section.kind == SectionKind::kMaterials ||
           section.kind == SectionKind::kMaterialRuns ||
           section.kind == SectionKind::kFaceMaterials || section.kind == SectionKind::kLeftOut ||
-          section.kind == SectionKind::kCookRecord;
+          section.kind == SectionKind::kCookRecord || section.kind == SectionKind::kActiveEdges;
       entry.is_required = !informative;
       entry.owner = section.owner;
       entry.offset = section_begin(at, section.bytes.size());

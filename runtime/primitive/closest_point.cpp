@@ -137,14 +137,16 @@ Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& point,
 
 // The closest point of an edge is computed alike here and there, to the last bit, but for triangles
 // that are computed by size: those with two corners in one point, up to rounding.
-int closest_corners(const Eigen::Vector3d& point, const Triangle& triangle,
-                    const Eigen::Vector3d& closest) noexcept {
+std::uint32_t closest_corners(const Eigen::Vector3d& point, const Triangle& triangle,
+                              const Eigen::Vector3d& closest) noexcept {
   const auto& [a, b, c] = triangle.corner;
-  if (closest == a || closest == b || closest == c) return 1;
-  const bool is_on_edge = closest == closest_on_segment(point, a, b) ||
-                          closest == closest_on_segment(point, a, c) ||
-                          closest == closest_on_segment(point, b, c);
-  return is_on_edge || squared_length(b - a) < kShortestSquare ? 2 : 3;
+  if (closest == a) return 1;
+  if (closest == b) return 2;
+  if (closest == c) return 4;
+  if (closest == closest_on_segment(point, a, b)) return 3;
+  if (closest == closest_on_segment(point, a, c)) return 5;
+  if (closest == closest_on_segment(point, b, c)) return 6;
+  return squared_length(b - a) < kShortestSquare ? 5 : 7;
 }
 
 }  // namespace boxtree

@@ -2,6 +2,8 @@
 // The closest point of a triangle.
 #pragma once
 
+#include <cstdint>
+
 #include "runtime/primitive/triangle.h"
 
 namespace boxtree {
@@ -13,9 +15,10 @@ namespace boxtree {
 [[nodiscard]] Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& point,
                                                         const Triangle& triangle) noexcept;
 
-/// Of how many corners the point that closest_point_on_triangle() found is a mean: 1 on a corner, 2
-/// on an edge, 3 inside; of a degenerate triangle at most 2. `closest`: what that returned.
-[[nodiscard]] int closest_corners(const Eigen::Vector3d& point, const Triangle& triangle,
-                                  const Eigen::Vector3d& closest) noexcept;
+/// Of which corners the point that closest_point_on_triangle() found is a mean, bit i: corner i.
+/// One on a corner, two on an edge, all inside; of a degenerate triangle at most two. `closest`:
+/// what that returned.
+[[nodiscard]] std::uint32_t closest_corners(const Eigen::Vector3d& point, const Triangle& triangle,
+                                            const Eigen::Vector3d& closest) noexcept;
 
 }  // namespace boxtree

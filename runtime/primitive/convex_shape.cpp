@@ -62,28 +62,32 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   return found;
 }
 
-namespace {
-
-// What has so many corners.
-Feature feature_with(std::ptrdiff_t corners) noexcept {
-  if (corners == 1) return Feature::kVertex;
-  return corners == 2 ? Feature::kEdge : Feature::kFace;
+TrianglePart TrianglePart::with_corners(std::uint32_t corners) noexcept {
+  constexpr std::array<TrianglePart, 8> kParts = {{{Feature::kFace, 0},
+                                                   {Feature::kVertex, 0},
+                                                   {Feature::kVertex, 1},
+                                                   {Feature::kEdge, 0},
+                                                   {Feature::kVertex, 2},
+                                                   {Feature::kEdge, 2},
+                                                   {Feature::kEdge, 1},
+                                                   {Feature::kFace, 0}}};
+  return kParts[corners];
 }
 
-}  // namespace
-
-Feature feature_of(const Eigen::Vector3d& point, const Corners& corner,
-                   const Eigen::Vector3d& closest) noexcept {
-  return feature_with(closest_corners(point, {corner}, closest));
+TrianglePart feature_of(const Eigen::Vector3d& point, const Corners& corner,
+                        const Eigen::Vector3d& closest) noexcept {
+  return TrianglePart::with_corners(closest_corners(point, {corner}, closest));
 }
 
-Feature farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
-                         double error) noexcept {
+TrianglePart farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
+                              double error) noexcept {
   const double farthest =
       std::max({dot(direction, corner[0]), dot(direction, corner[1]), dot(direction, corner[2])});
-  return feature_with(std::count_if(corner.begin(), corner.end(), [&](const Eigen::Vector3d& c) {
-    return dot(direction, c) >= farthest - error;
-  }));
+  std::uint32_t corners = 0;
+  for (std::uint32_t i = 0; i < corner.size(); ++i) {
+    if (dot(direction, corner[i]) >= farthest - error) corners |= 1u << i;
+  }
+  return TrianglePart::with_corners(corners);
 }
 
 // The mean of the corners of what the box cuts out (Sutherland and Hodgman, "Reentrant Polygon

@@ -96,13 +96,22 @@ struct CoreDistance {
 /// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;
 
+/// A part of a triangle.
+struct TrianglePart {
+  Feature feature = Feature::kFace;
+  std::uint8_t index = 0;  // of a vertex, or of an edge, from this corner to the next
+
+  /// What has these corners, bit i: corner i.
+  [[nodiscard]] static TrianglePart with_corners(std::uint32_t corners) noexcept;
+};
+
 /// What of the triangle closest_point_on_triangle() has found for `point`.
-[[nodiscard]] Feature feature_of(const Eigen::Vector3d& point, const Corners& corner,
-                                 const Eigen::Vector3d& closest) noexcept;
+[[nodiscard]] TrianglePart feature_of(const Eigen::Vector3d& point, const Corners& corner,
+                                      const Eigen::Vector3d& closest) noexcept;
 
 /// The part of the triangle that is farthest along a direction, to within `error`.
-[[nodiscard]] Feature farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
-                                       double error) noexcept;
+[[nodiscard]] TrianglePart farthest_feature(const Eigen::Vector3d& direction, const Corners& corner,
+                                            double error) noexcept;
 
 /// A point of the triangle inside a box that is widened by `widened`: the middle of what the box
 /// holds of it. The point closest to the center if it holds nothing.

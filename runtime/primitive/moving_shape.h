@@ -42,7 +42,7 @@ struct MovingShape {
   struct Contact {
     Eigen::Vector3d point;   // on the triangle
     Eigen::Vector3d normal;  // from it to the shape
-    Feature feature;
+    TrianglePart feature;
     double by;  // an s that is not below the first at which they touch
   };
   /// Where they touch at `s`, a result of first_touch().

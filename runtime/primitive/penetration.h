@@ -10,7 +10,7 @@ struct Penetration {
   Eigen::Vector3d point;   // on the triangle, relative to the shape's center
   Eigen::Vector3d normal;  // from the triangle to the shape
   double depth;            // along it
-  Feature feature;
+  TrianglePart feature;
 };
 
 /// Precondition: they touch. `corner`: relative to the shape's center; `doubt`: how far these may

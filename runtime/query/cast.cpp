@@ -8,6 +8,7 @@
 #include "runtime/query/cast_query.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_casts.h"
+#include "runtime/query/touched_feature.h"
 #include "runtime/walk/walk_tree.h"
 
 namespace boxtree {
@@ -78,7 +79,7 @@ CastHit hit_of(const MovingShape& moving, const CastCandidate& found, const Ray&
   hit.triangle = found.half;
   hit.point = frame.to_object(contact.point);
   hit.normal = contact.normal;
-  hit.feature = contact.feature;
+  set_feature(found.triangle, contact.feature, hit);
   return hit;
 }
 
@@ -99,7 +100,10 @@ Errc run_cast(const BoundTree& tree, const ShapeInTree& shape, const CastLine& c
 }
 
 CastHit described(const CastQuery& query, const CastLine& cast, const CastCandidate& found) {
-  return hit_of(query.moving, found, cast.line, query.parameter_exponent, query.tree.frame());
+  CastHit hit =
+      hit_of(query.moving, found, cast.line, query.parameter_exponent, query.tree.frame());
+  hit.is_active = is_active(query.tree, found, {hit.feature, hit.feature_index});
+  return hit;
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 #include "runtime/query/collide_query.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/query/shape_casts.h"
+#include "runtime/query/touched_feature.h"
 
 namespace boxtree {
 Contact contact_of(const CastQuery& query, const CastCandidate& found,
@@ -25,7 +26,7 @@ Contact contact_of(const CastQuery& query, const CastCandidate& found,
   contact.point = frame.to_object(center + at.point);
   contact.normal = at.normal;
   contact.depth = at.depth * frame.scale;
-  contact.feature = at.feature;
+  set_feature(found.triangle, at.feature, contact);
   return contact;
 }
 
@@ -44,10 +45,12 @@ Result<Visit> visit_touched_by(const BoundTree& tree, const ShapeInTree& shape,
 
 Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
                                 ContactVisitor visitor, const QueryLimits& limits) {
-  return visit_touched_by(tree, shape, limits,
-                          [&](const CastQuery& query, const CastCandidate& found) {
-                            return visitor(contact_of(query, found, tree.frame()));
-                          });
+  return visit_touched_by(
+      tree, shape, limits, [&](const CastQuery& query, const CastCandidate& found) {
+        Contact contact = contact_of(query, found, tree.frame());
+        contact.is_active = is_active(tree, found, {contact.feature, contact.feature_index});
+        return visitor(contact);
+      });
 }
 
 Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,
@@ -98,6 +101,11 @@ Result<Visit> overlap_capsule(const Tree& tree, const Capsule& capsule, FaceVisi
 Result<Visit> overlap_oriented_box(const Tree& tree, const OrientedBox& box, FaceVisitor visitor,
                                    const QueryLimits& limits) {
   return visit_faces_of(tree, box, visitor, limits);
+}
+
+Eigen::Vector3d resolved_normal(const Contact& contact, const Eigen::Vector3d& velocity) {
+  const DefaultFloatState state;
+  return resolved(contact.normal, contact.face_normal, contact.is_active, velocity);
 }
 
 std::size_t merge_contacts(std::span<Contact> contacts, double distance, double cosine) {

@@ -36,7 +36,8 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
   return BoundTree::bind(
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
        file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
-       file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index)},
+       file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index),
+       file.section(SectionKind::kActiveEdges, index)},
       index, options);
 }
 
@@ -74,6 +75,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   }
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
+  if (Status status = tree.bind_active_edges(parts, place, options); !status) return status.error();
   tree.leaves_.prepare_floats(tree.largest_abs_);
   return bound;
 }
@@ -198,6 +200,24 @@ Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& pla
                                        number_array_bytes(duplicate_count(), width), 1);
   if (!originals) return originals.error();
   if (width != 0) duplicates_ = {*originals, width};
+  return {};
+}
+
+Status BoundTree::bind_active_edges(const TreeParts& parts, const std::string& place,
+                                    const BindOptions& options) {
+  const Bytes section = parts.active_edges;
+  if (section.empty()) {
+    if (!options.require_active_edges || empty()) return {};
+    return error_with(Errc::kPartLeftOut, place,
+                      "it was cooked without --active-edges, or active_edges of a profile");
+  }
+  std::uint64_t bytes = sizeof(ActiveEdgesHeader);
+  if (section.size() >= bytes) {
+    bytes = active_edges_bytes(face_count_, load<ActiveEdgesHeader>(section.data()).start_count);
+  }
+  const auto edges = sized_section(section, SectionKind::kActiveEdges, place, bytes, 1);
+  if (!edges) return edges.error();
+  active_edges_ = ActiveEdgesView(section, face_count_);
   return {};
 }
 

@@ -13,6 +13,7 @@
 
 #include <boxtree/tree.h>
 
+#include "format/active_edges.h"
 #include "format/children.h"
 #include "format/codec.h"
 #include "format/face_ids.h"
@@ -136,6 +137,9 @@ class BoundTree {
     return tree;
   }
 
+  /// Which edges are active, or nothing.
+  [[nodiscard]] const ActiveEdgesView& active_edges() const noexcept { return active_edges_; }
+
   /// A box of tree space in object space, rounded outward: it holds every position of object space
   /// that Frame::to_tree brings into `box`.
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
@@ -160,6 +164,8 @@ class BoundTree {
   Status bind_face_ids(const TreeParts& parts, const std::string& place,
                        const BindOptions& options);
   Status bind_duplicates(const TreeParts& parts, const std::string& place);
+  Status bind_active_edges(const TreeParts& parts, const std::string& place,
+                           const BindOptions& options);
 
   CodecId codec_{};
   GeometryId geometry_{};
@@ -179,6 +185,7 @@ class BoundTree {
   const CodecFunctions* functions_ = &kNoCodec;
   FaceIdView face_ids_;
   NumberView duplicates_;  // the original of each, ascending
+  ActiveEdgesView active_edges_;
   LeafReader leaves_;
   // What every query needs, computed when the tree is bound.
   Eigen::Vector3d max_abs_ = Eigen::Vector3d::Zero();

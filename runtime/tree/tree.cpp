@@ -43,6 +43,10 @@ bool Tree::has_face_ids() const noexcept {
   return BoundTree::of(*this).has_face_ids();
 }
 
+bool Tree::has_active_edges() const noexcept {
+  return bool{BoundTree::of(*this).active_edges()};
+}
+
 Eigen::AlignedBox3d Tree::bounds() const noexcept {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(*this);

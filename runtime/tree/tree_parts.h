@@ -20,6 +20,7 @@ struct TreeParts {
   Bytes corners;
   Bytes face_ids;
   Bytes duplicates;
+  Bytes active_edges = {};
 };
 
 /// Binds a tree whose parts are not in a file (yet). Errors: as Tree::bind.

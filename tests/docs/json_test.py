@@ -69,6 +69,7 @@ RUNS = {
         "cook crate.obj -o ordered.bxt --write-reordered ordered.obj",
         "cook bad.obj -o bad.bxt --skip-bad",
         "cook crate.obj -o external.bxt --external",
+        "cook crate.obj -o edges.bxt --active-edges 5",
         "cook crate.obj -o blob.bxt --codec blob-zstd",
         "cook crate.obj crate.obj -o small.bxt --tolerance 0.001 --for memory --max-slowdown 9",
         "cook --scene bad.obj -o scene.bxt --skip-bad",
@@ -78,6 +79,7 @@ RUNS = {
     ],
     "info": [
         "info crate.bxt",
+        "info edges.bxt",
         "[3] info arrays.bxt external.bxt blob.bxt level.gltf",
         "info parts.bxt",
         "info level.bxt",

@@ -15,12 +15,14 @@ struct Encoding {
   CodecId codec;
   GeometryId geometry;
   bool duplicates = false;  // some faces twice
+  bool active_edges = false;
 };
 
 std::vector<std::byte> small_file(const Encoding& encoding) {
   cooker::CookOptions options;
   options.geometry = encoding.geometry;
   options.grid.bits = 12;
+  if (encoding.active_edges) options.active_edges = 5;
   cooker::SourceMesh mesh = test::city(2, 1);
   if (encoding.duplicates) mesh.faces.insert(mesh.faces.end(), 2, mesh.faces[1]);
   const Result<cooker::EncodedTree> cooked = cooker::cook_as(mesh, encoding.codec, options);
@@ -89,6 +91,7 @@ std::vector<Encoding> encodings() {
   all.push_back({CodecId::kPlainF16, GeometryId::kGrid});
   all.push_back({CodecId::kWide8, GeometryId::kGrid});
   all.push_back({CodecId::kWide8, GeometryId::kExact, true});
+  all.push_back({CodecId::kWide8, GeometryId::kExact, false, true});
   all.push_back({CodecId::kPlainF32, GeometryId::kGrid, true});
   return all;
 }
@@ -96,7 +99,8 @@ std::vector<Encoding> encodings() {
 std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
   const std::string codec = test::test_name({encoding.param.codec, encoding.index});
   return codec + "_" + std::string(geometry_name(encoding.param.geometry)) +
-         (encoding.param.duplicates ? "_duplicates" : "");
+         (encoding.param.duplicates ? "_duplicates" : "") +
+         (encoding.param.active_edges ? "_edges" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, Mutation, testing::ValuesIn(encodings()), encoding_name);

@@ -4,6 +4,7 @@
 // added to, never regenerated.
 #include <algorithm>
 #include <cctype>
+#include <optional>
 
 #include <gtest/gtest.h>
 
@@ -21,6 +22,7 @@ struct Kind {
   std::string name;
   CodecId codec;
   GeometryId geometry;
+  std::optional<double> active_edges = std::nullopt;
 };
 
 std::vector<Kind> kinds() {
@@ -30,6 +32,7 @@ std::vector<Kind> kinds() {
   }
   kinds.push_back({"plain-f16-grid", CodecId::kPlainF16, GeometryId::kGrid});
   kinds.push_back({"wide8-grid", CodecId::kWide8, GeometryId::kGrid});
+  kinds.push_back({"wide8-edges", CodecId::kWide8, GeometryId::kExact, 20.0});
   return kinds;
 }
 
@@ -64,6 +67,7 @@ TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
   cooker::CookOptions cook;
   cook.geometry = GetParam().geometry;
   cook.grid.bits = 16;
+  cook.active_edges = GetParam().active_edges;
   const std::vector<std::byte> cooked = test::cook_bytes(imported->mesh, GetParam().codec, cook);
   ASSERT_EQ(cooked.size(), golden.size());
   for (std::size_t i = 0; i < golden.size(); ++i) ASSERT_EQ(cooked[i], golden[i]) << "byte " << i;
@@ -79,6 +83,7 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   ASSERT_TRUE(tree.ok()) << tree.error().message();
   EXPECT_EQ(BoundTree::of(*tree).codec(), GetParam().codec);
   EXPECT_EQ(tree->name(), "scene");
+  EXPECT_EQ(tree->has_active_edges(), GetParam().active_edges.has_value());
   const std::uint32_t more = is_wide(GetParam().codec) ? 12 : 0;
   EXPECT_EQ(BoundTree::of(*tree).face_count(), 8 + more);
   EXPECT_EQ(BoundTree::of(*tree).triangle_count(), 9 + more);

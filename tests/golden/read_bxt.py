@@ -9,11 +9,12 @@ every triangle against every box above it, and prints what it found as JSON.
 import json
 import struct
 import sys
+from fractions import Fraction
 
 import xxhash
 
 NO_OWNER = 0xFFFFFFFF
-NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES = 2, 3, 4, 5, 7, 19
+NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES, ACTIVE_EDGES = 2, 3, 4, 5, 7, 19, 20
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
@@ -417,6 +418,7 @@ class Tree:
         self.corners = file.section(CORNERS, index)
         self.ids = file.section(FACE_IDS, index)
         self.duplicates = file.section(DUPLICATES, index)
+        self.edges = file.section(ACTIVE_EDGES, index)
         self.scalar = "d" if self.flags & 2 else "f"
         if self.geometry == EXTERNAL:
             expect(not self.vertices and not self.corners, "no arrays")
@@ -504,6 +506,53 @@ class Tree:
         expect(end + rest == 8 * len(self.ids) and not field(end, rest), "end of section face_ids")
         return ids
 
+    def active_edges(self):
+        """For each face the active edges of its triangles (section 8.3), or None without them."""
+        if not self.edges or self.geometry == EXTERNAL:
+            return None
+        expect(len(self.edges) >= 16, "a header of active edges")
+        degrees, starts, seed, by_face, zero = struct.unpack_from("<fIIB3s", self.edges)
+        leaves = (self.face_count + 7) // 8
+        codes_end = 16 + (2 * leaves + 7) // 8
+        bits_end = codes_end + ((starts + 63 + 7) // 8 if starts else 0)
+        expect(0 <= degrees <= 90 and by_face <= 1 and not any(zero), "header of active edges")
+        expect(len(self.edges) == bits_end + (8 if starts else 0), "size of section active_edges")
+        expect(not any(self.edges[bits_end:]), "zeros after the bits of edges")
+        codes = int.from_bytes(self.edges[16:codes_end], "little")
+        bits = int.from_bytes(self.edges[codes_end:bits_end], "little")
+        expect(codes >> 2 * leaves == 0 and bits >> starts + 63 == 0, "zeros in active edges")
+        expect(starts > 0 or bits == 0, "bits of edges")
+        used = False
+
+        def bit(p, q, r):
+            if not by_face and q < p:
+                p, q = q, p
+            ends = [x + 0.0 for x in (p + q + r if by_face else p + q)]
+            key = xxh3(struct.pack(f"<{1 + len(ends)}d", seed, *ends))
+            start = (key >> 32) * starts >> 32
+            mixed = key * 0x9E3779B97F4A7C15 % 2 ** 64
+            selected = (mixed << 32 | mixed >> 32) % 2 ** 64 | 1
+            return bin(bits >> start & selected).count("1") % 2
+
+        def has_area(a, b, c):
+            u, v = ([Fraction(p[k]) - Fraction(a[k]) for k in range(3)] for p in (b, c))
+            return any(u[i] * v[j] != u[j] * v[i] for i, j in ((0, 1), (1, 2), (2, 0)))
+
+        faces = []
+        for face in range(self.face_count):
+            code = codes >> 2 * (face // 8) & 3
+            expect(code <= 2 and (code < 2 or starts), "the code of a leaf")
+            used |= code == 2
+            found = []
+            for t in self.triangles(face):
+                if code == 1 or not has_area(*t):
+                    found.append(7)
+                else:
+                    found.append(sum(bit(t[i], t[(i + 1) % 3], t[(i + 2) % 3]) << i for i in range(3)) if code else 0)
+            faces.append(found)
+        expect(used == (starts > 0), "bits are there for leaves that have them")
+        return faces
+
     def face_id(self, face):
         if self.flags & 1:
             return face
@@ -576,7 +625,8 @@ class Tree:
         return {"name": self.name, "codec": CODECS[self.codec][0], "faces": self.face_count,
                 "duplicates": self.duplicate_count, "triangles": self.triangle_count,
                 "nodes": self.node_count, "depth": self.depth,
-                "face_ids": [found["faces"][face] for face in sorted(found["faces"])]}
+                "face_ids": [found["faces"][face] for face in sorted(found["faces"])],
+                "active_edges": self.active_edges()}
 
 
 def read(data):

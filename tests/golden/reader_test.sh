@@ -41,6 +41,19 @@ for codec in ${codecs//blob-*/}; do # blobs come last
   done
 done
 
+# Active edges are those of the source in every encoding.
+for mesh in "$sheet" "$work/triangles.obj" "$@"; do
+  : >"$work/first"
+  for encoding in "--codec wide8 --exact --for memory" "--codec plain-f32 --exact" "--codec wide4 --grid-bits 24"; do
+    # shellcheck disable=SC2086 # several words
+    "$boxtree" cook "$mesh" -o "$work/mesh.bxt" --active-edges 5 $encoding -q
+    read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $encoding, active edges"
+    jq -c '[.trees[] | [.face_ids, .active_edges] | transpose] | map(sort)' "$work/theirs" >"$work/edges"
+    [ -s "$work/first" ] || cp "$work/edges" "$work/first"
+    cmp "$work/edges" "$work/first" || fail "$mesh, $encoding: other active edges"
+  done
+done
+
 # Each byte of a golden file matters to the second reader too.
 /usr/bin/python3 - "$golden" <<'PYTHON'
 import glob, struct, sys

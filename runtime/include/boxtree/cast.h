@@ -43,6 +43,15 @@ struct CastHit {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   Feature feature = Feature::kFace;  ///< What part of the triangle the point lies on.
   bool initially_touching = false;   ///< Whether the shape touches the face at its start.
+  /// The corner of a vertex; the corner from which an edge leads to the next one: 0 to 2, of
+  /// Tree::triangle(face, triangle). 0 for a face.
+  std::uint8_t feature_index = 0;
+  /// Whether the feature may keep the normal: not at edges where the surface goes on flat or
+  /// rises, nor at vertices whose edges are all of this kind. See active_edges(). Always in scenes.
+  bool is_active = true;
+  /// Unit vector orthogonal to the face, to the side to which the normal points; along both sides,
+  /// to its front. Zero for a face without an area.
+  Eigen::Vector3d face_normal = Eigen::Vector3d::Zero();
 };
 
 /// A touch, nothing, or an error.
@@ -112,5 +121,24 @@ BOXTREE_API Result<Visit> cast_all(const Tree& tree, const OrientedBox& box, con
 BOXTREE_API Result<Visit> cast_all(const Tree& tree, const ConvexHull& hull, const Motion& motion,
                                    CastVisitor visitor, const FaceOptions& options = {});
 #endif
+
+/// Which edges of a triangle of a face are active: bit i is the edge from corner i of
+/// Tree::triangle(face, half) to the next one. Active are boundaries, edges of more than two faces,
+/// and those at which the surface, seen from the front of the face, bends away by more degrees than
+/// the cook was told (--active-edges). All edges of a tree without active edges are
+/// (Tree::has_active_edges()), and of a triangle without an area; a diagonal of a quad never is.
+/// Bit i is edge i alone; what a vertex has is up to both edges at it. Errors: as Tree::triangle.
+/// Costs what reading one leaf does. Never allocates but for the text of an error.
+[[nodiscard]] BOXTREE_API Result<std::uint32_t> active_edges(const Tree& tree, const FaceRef& face,
+                                                             std::uint32_t half = 0);
+
+/// The normal along which a contact should act: that of the hit, or of the face where the feature
+/// is not active, so that bodies neither trip over edges inside a floor nor are lifted by them. The
+/// face's is on the side of the hit's normal; where this lies in the plane of the face, on the side
+/// against the velocity of the shape, relative to the surface, of any length. (Zero: the front.)
+/// What parts shape and face along the hit's normal is enough along the face's, too, where the
+/// surface goes on flat. Never allocates.
+[[nodiscard]] BOXTREE_API Eigen::Vector3d resolved_normal(const CastHit& hit,
+                                                          const Eigen::Vector3d& velocity);
 
 }  // namespace boxtree

@@ -33,7 +33,19 @@ struct Contact {
   /// space.
   double depth = 0;
   Feature feature = Feature::kFace;  ///< What part of the triangle is touched.
+  /// The corner of a vertex; the corner from which an edge leads to the next one: 0 to 2, of
+  /// Tree::triangle(face, triangle). 0 for a face.
+  std::uint8_t feature_index = 0;
+  /// Whether the feature may keep the normal; see CastHit::is_active.
+  bool is_active = true;
+  /// Unit vector orthogonal to the face, to the side to which the normal points; along both sides,
+  /// to its front. Zero for a face without an area.
+  Eigen::Vector3d face_normal = Eigen::Vector3d::Zero();
 };
+
+/// The normal along which the contact should act; see resolved_normal() of a CastHit.
+[[nodiscard]] BOXTREE_API Eigen::Vector3d resolved_normal(const Contact& contact,
+                                                          const Eigen::Vector3d& velocity);
 
 /// Receives one contact after the other; returns whether to go on.
 using ContactVisitor = FunctionRef<bool(const Contact&)>;

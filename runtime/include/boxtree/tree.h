@@ -74,6 +74,8 @@ struct BindOptions {
   bool verify_mesh = false;
   /// Refuse a tree without face ids [default false] rather than report kNoFaceId later.
   bool require_face_ids = false;
+  /// Refuse a tree without active edges [default false] rather than call every edge active later.
+  bool require_active_edges = false;
 };
 
 /// One tree. Points into the bytes of its File and, with external geometry, into the application's
@@ -114,6 +116,8 @@ class BOXTREE_API Tree {
   [[nodiscard]] bool empty() const noexcept;
   /// Whether FaceRef::id is the number in the source mesh, or always kNoFaceId.
   [[nodiscard]] bool has_face_ids() const noexcept;
+  /// Whether edges are known to be active or not (cook --active-edges); otherwise all are active.
+  [[nodiscard]] bool has_active_edges() const noexcept;
   /// A box around all faces, in object space, rounded outward. Empty for an empty tree.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const noexcept;
 

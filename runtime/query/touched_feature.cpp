@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: MIT
+// Active features, and the normals of others.
+#include "runtime/query/touched_feature.h"
+
+#include <cmath>
+
+#include <boxtree/cast.h>
+
+#include "runtime/primitive/float_state.h"
+#include "runtime/primitive/normal.h"
+#include "runtime/primitive/vector3.h"
+#include "runtime/tree/active_edges.h"
+
+namespace boxtree {
+
+bool is_active(const BoundTree& tree, const CastCandidate& found,
+               const TrianglePart& part) noexcept {
+  if (part.feature == Feature::kFace || !tree.active_edges()) return true;
+  std::uint32_t edges = 1u << part.index;
+  if (part.feature == Feature::kVertex) edges |= 1u << (part.index + 2) % 3;
+  return (active_edges_of(tree.active_edges(), found.original, found.triangle) & edges) != 0;
+}
+
+Eigen::Vector3d face_normal(const Triangle& triangle, const Eigen::Vector3d& normal) noexcept {
+  const Eigen::Vector3d front = unit_normal(triangle);
+  return dot(front, normal) < 0 ? Eigen::Vector3d(-front) : front;
+}
+
+// A normal in the plane of the face is off by what unit vectors are rounded.
+Eigen::Vector3d resolved(const Eigen::Vector3d& normal, const Eigen::Vector3d& of_face,
+                         bool keeps_its_own, const Eigen::Vector3d& velocity) noexcept {
+  if (keeps_its_own || of_face.isZero(0)) return normal;
+  constexpr double kOrthogonal = 0x1p-46;
+  const bool is_along_face = std::abs(dot(normal, of_face)) <= kOrthogonal;
+  return is_along_face && dot(velocity, of_face) > 0 ? Eigen::Vector3d(-of_face) : of_face;
+}
+
+Result<std::uint32_t> active_edges(const Tree& queried, const FaceRef& face, std::uint32_t half) {
+  const DefaultFloatState state;
+  const BoundTree& tree = BoundTree::of(queried);
+  const Result<Triangle> triangle = tree.triangle(face, half);
+  if (!triangle) return triangle.error();
+  return active_edges_of(tree.active_edges(), face.index, *triangle);
+}
+
+Eigen::Vector3d resolved_normal(const CastHit& hit, const Eigen::Vector3d& velocity) {
+  const DefaultFloatState state;
+  return resolved(hit.normal, hit.face_normal, hit.is_active, velocity);
+}
+
+}  // namespace boxtree
