@@ -26,7 +26,14 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   const double scale = placed == nullptr ? 1 : placed->scale;
   const std::optional<double> s = moving.first_touch(compared, from * scale, t_max * scale);
   if (!s) return;
-  CastCandidate found{true, *s, {kNoFaceId, face_index}, face_index, half, compared};
+  CastCandidate found{true,
+                      *s,
+                      {kNoFaceId, face_index},
+                      face_index,
+                      half,
+                      compared,
+                      triangle,
+                      placed != nullptr && placed->is_mirror};
   if (wanted == Wanted::kAll) {
     error = faces.visit_wanted(tree, face_index, t_max, [&](const FaceRef& face) {
       found.face = face;
@@ -68,8 +75,8 @@ CastLine::CastLine(const ShapeInTree& shape, const Motion& motion) noexcept {
   if (!(motion.t_max >= 0)) invalid = "t_max";
 }
 
-CastHit hit_of(const MovingShape& moving, const CastCandidate& found, const Ray& line, int exponent,
-               const Frame& frame) noexcept {
+CastHit hit_of(const BoundTree& tree, const MovingShape& moving, const CastCandidate& found,
+               const Ray& line, int exponent, const Frame& frame) noexcept {
   CastHit hit;
   hit.initially_touching = found.s == 0;
   const MovingShape::Contact contact = moving.contact_at(found.triangle, found.s);
@@ -79,7 +86,7 @@ CastHit hit_of(const MovingShape& moving, const CastCandidate& found, const Ray&
   hit.triangle = found.half;
   hit.point = frame.to_object(contact.point);
   hit.normal = contact.normal;
-  set_feature(found.triangle, contact.feature, hit);
+  set_feature(tree, found, contact.feature, hit);
   return hit;
 }
 
@@ -100,10 +107,8 @@ Errc run_cast(const BoundTree& tree, const ShapeInTree& shape, const CastLine& c
 }
 
 CastHit described(const CastQuery& query, const CastLine& cast, const CastCandidate& found) {
-  CastHit hit =
-      hit_of(query.moving, found, cast.line, query.parameter_exponent, query.tree.frame());
-  hit.is_active = is_active(query.tree, found, {hit.feature, hit.feature_index});
-  return hit;
+  return hit_of(query.tree, query.moving, found, cast.line, query.parameter_exponent,
+                query.tree.frame());
 }
 
 }  // namespace

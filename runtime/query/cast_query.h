@@ -38,6 +38,8 @@ struct CastCandidate {
   std::uint32_t original = 0;  // the face of the tree's order that it is, or is a copy of
   std::uint32_t half = 0;
   Triangle triangle;
+  Triangle in_tree;        // the same in tree space
+  bool is_mirror = false;  // whether its corners 1 and 2 have changed places there
 };
 
 /// A cast on a tree that is placed by a pose: triangles are compared where it places them.
@@ -143,10 +145,11 @@ struct CastQuery : RayInTree {
   }
 };
 
-/// What a caller is told of a touch, but for the id of its face. `line`: whose t is told, that of
-/// parameter s * 2^-exponent; `frame`: from the space of `moving` to the caller's.
-[[nodiscard]] CastHit hit_of(const MovingShape& moving, const CastCandidate& found, const Ray& line,
-                             int exponent, const Frame& frame) noexcept;
+/// What a caller is told of a touch in a tree, but for the id of its face. `line`: whose t is told,
+/// that of parameter s * 2^-exponent; `frame`: from the space of `moving` to the caller's.
+[[nodiscard]] CastHit hit_of(const BoundTree& tree, const MovingShape& moving,
+                             const CastCandidate& found, const Ray& line, int exponent,
+                             const Frame& frame) noexcept;
 
 /// By vectors; see walk_tree.h.
 Errc walk_wide(const BoundTree& tree, CastQuery& query);

@@ -26,7 +26,7 @@ Contact contact_of(const CastQuery& query, const CastCandidate& found,
   contact.point = frame.to_object(center + at.point);
   contact.normal = at.normal;
   contact.depth = at.depth * frame.scale;
-  set_feature(found.triangle, at.feature, contact);
+  set_feature(query.tree, found, at.feature, contact);
   return contact;
 }
 
@@ -45,12 +45,10 @@ Result<Visit> visit_touched_by(const BoundTree& tree, const ShapeInTree& shape,
 
 Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
                                 ContactVisitor visitor, const QueryLimits& limits) {
-  return visit_touched_by(
-      tree, shape, limits, [&](const CastQuery& query, const CastCandidate& found) {
-        Contact contact = contact_of(query, found, tree.frame());
-        contact.is_active = is_active(tree, found, {contact.feature, contact.feature_index});
-        return visitor(contact);
-      });
+  return visit_touched_by(tree, shape, limits,
+                          [&](const CastQuery& query, const CastCandidate& found) {
+                            return visitor(contact_of(query, found, tree.frame()));
+                          });
 }
 
 Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,

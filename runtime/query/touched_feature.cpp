@@ -13,12 +13,21 @@
 
 namespace boxtree {
 
+// Of a triangle a, c, b: vertices 1 and 2 change places, and edges a-c and b-a.
+TrianglePart part_of_face(const CastCandidate& found, TrianglePart part) noexcept {
+  if (!found.is_mirror) return part;
+  if (part.feature == Feature::kVertex)
+    part.index = static_cast<std::uint8_t>((3 - part.index) % 3);
+  if (part.feature == Feature::kEdge) part.index = static_cast<std::uint8_t>(2 - part.index);
+  return part;
+}
+
 bool is_active(const BoundTree& tree, const CastCandidate& found,
                const TrianglePart& part) noexcept {
   if (part.feature == Feature::kFace || !tree.active_edges()) return true;
   std::uint32_t edges = 1u << part.index;
   if (part.feature == Feature::kVertex) edges |= 1u << (part.index + 2) % 3;
-  return (active_edges_of(tree.active_edges(), found.original, found.triangle) & edges) != 0;
+  return (active_edges_of(tree.active_edges(), found.original, found.in_tree) & edges) != 0;
 }
 
 Eigen::Vector3d face_normal(const Triangle& triangle, const Eigen::Vector3d& normal) noexcept {

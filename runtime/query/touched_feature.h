@@ -9,7 +9,9 @@
 
 namespace boxtree {
 
-/// Whether a part of the triangle that was found, which is in tree space, is active.
+/// The part of the face's triangle that is a part of the triangle that was found.
+[[nodiscard]] TrianglePart part_of_face(const CastCandidate& found, TrianglePart part) noexcept;
+/// Whether a part of the face's triangle is active.
 [[nodiscard]] bool is_active(const BoundTree& tree, const CastCandidate& found,
                              const TrianglePart& part) noexcept;
 /// The normal of the face on the side of `normal`.
@@ -19,12 +21,16 @@ namespace boxtree {
                                        const Eigen::Vector3d& of_face, bool keeps_its_own,
                                        const Eigen::Vector3d& velocity) noexcept;
 
-/// Fills feature, feature_index and face_normal of a CastHit or Contact whose normal is known.
+/// Fills in what a CastHit or Contact, whose normal is known, says of the part of the triangle that
+/// is touched.
 template <class Hit>
-void set_feature(const Triangle& triangle, const TrianglePart& part, Hit& hit) noexcept {
-  hit.feature = part.feature;
-  hit.feature_index = part.index;
-  hit.face_normal = face_normal(triangle, hit.normal);
+void set_feature(const BoundTree& tree, const CastCandidate& found, const TrianglePart& part,
+                 Hit& hit) noexcept {
+  const TrianglePart of_face = part_of_face(found, part);
+  hit.feature = of_face.feature;
+  hit.feature_index = of_face.index;
+  hit.is_active = is_active(tree, found, of_face);
+  hit.face_normal = face_normal(found.triangle, hit.normal);
 }
 
 }  // namespace boxtree

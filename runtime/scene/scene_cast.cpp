@@ -63,8 +63,8 @@ struct SceneCastQuery {
     const InstanceCast on_instance(cast, tree, placed.placement);
     const OptionsOfInstance of_instance(options, instance);
     const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
-      const double to =
-          RayInTree::scaled((*all)(described(query.moving, found, instance)), parameter_exponent);
+      const double to = RayInTree::scaled((*all)(described(tree, query.moving, found, instance)),
+                                          parameter_exponent);
       cast.line.t_max = std::min(cast.line.t_max, to);
       return to;
     };
@@ -81,14 +81,16 @@ struct SceneCastQuery {
     name(tree, best.face);
     best_id = placed.id;
     best_instance = instance;
+    best_tree = &tree;
     best_moving = query.moving;
     cast.line.t_max = found.s;
     return !is_done();
   }
 
-  [[nodiscard]] SceneCastHit described(const MovingShape& moving, const CastCandidate& found,
+  [[nodiscard]] SceneCastHit described(const BoundTree& tree, const MovingShape& moving,
+                                       const CastCandidate& found,
                                        std::uint32_t instance) const noexcept {
-    return {hit_of(moving, found, world, parameter_exponent, scene().units()), instance};
+    return {hit_of(tree, moving, found, world, parameter_exponent, scene().units()), instance};
   }
 
   Admission admission;
@@ -103,6 +105,7 @@ struct SceneCastQuery {
   CastCandidate best;
   std::uint32_t best_id = 0;
   std::uint32_t best_instance = 0;
+  const BoundTree* best_tree = nullptr;
   MovingShape best_moving;
   Errc error = Errc::kOk;
   bool stopped = false;
@@ -123,7 +126,7 @@ SceneCastResult one_touch(const Scene& queried, const Shape& of_caller, const Mo
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
   if (!query.best.is_hit) return {};
-  return query.described(query.best_moving, query.best, query.best_instance);
+  return query.described(*query.best_tree, query.best_moving, query.best, query.best_instance);
 }
 
 template <class Shape>

@@ -28,10 +28,8 @@ struct Admission {
   QueryWork& work;
   const InstanceFilter* filter = nullptr;  // null: every instance
 
-  [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept {
-    return ((layers >> layer) & 1u) != 0 && (scene.layer(layer).query_kinds & kind) != 0 &&
-           scene.is_enabled(instance) && (filter == nullptr || (*filter)(instance));
-  }
+  /// Not inlined: each query has several.
+  [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept;
 };
 
 // Members of the queries of a scene, below:

@@ -18,11 +18,11 @@ Eigen::Vector3d placed(const Pose& pose, const Eigen::Vector3d& p) {
 }
 
 CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes, cooker::SceneParts parts,
-                       const std::vector<CodecId>& codecs) {
+                       const std::vector<CodecId>& codecs, const cooker::CookOptions& options) {
   if (parts.layers.empty()) parts.layers.push_back({"all"});
   std::vector<cooker::EncodedTree> trees;
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    trees.push_back(require(cooker::cook_as(meshes[i], codecs[i % codecs.size()])));
+    trees.push_back(require(cooker::cook_as(meshes[i], codecs[i % codecs.size()], options)));
   }
   std::vector<std::byte> bytes = require(cooker::serialize({trees, {}, &parts}));
   File file = require(File::open(bytes));

@@ -8,6 +8,7 @@
 
 #include <boxtree/boxtree.h>
 
+#include "cooker/cook.h"
 #include "cooker/encode/encoded_scene.h"
 #include "cooker/write/file_writer.h"
 
@@ -25,7 +26,8 @@ struct CookedScene {
 /// scene. Precondition: `parts` refers to these meshes; if it has no layers, one is added.
 [[nodiscard]] CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes,
                                      cooker::SceneParts parts,
-                                     const std::vector<CodecId>& codecs = {CodecId::kWide8});
+                                     const std::vector<CodecId>& codecs = {CodecId::kWide8},
+                                     const cooker::CookOptions& options = {});
 
 /// A random affine pose: a rotation, a translation within `spread`, and a scale of 1/2 to 2; with
 /// `unevenly` also a separate scale per axis, a mirror and a shear.

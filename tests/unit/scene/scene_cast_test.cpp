@@ -251,6 +251,60 @@ TEST(SceneCastCases, PlacementsOfEveryKind) {
   }
 }
 
+// What part of the triangle is touched, and whether it is active, by the corners of the face: the
+// pose mirrors half of the instances.
+TEST(SceneCastFeatures, AreThoseOfTheFace) {
+  cooker::CookOptions options;
+  options.active_edges = 5;
+  const CookedScene cooked =
+      test::cook_scene({test::city(4, 1), test::terrain(6, 1)}, test::random_parts(20, 2, 5, 1, 8),
+                       {CodecId::kWide8}, options);
+  const Scene scene = require(Scene::bind(cooked.file));
+  std::mt19937_64 random(3);
+  const auto unit = [&] { return std::uniform_real_distribution<double>(-1, 1)(random); };
+  const auto vector = [&] { return Eigen::Vector3d(unit(), unit(), unit()); };
+  int edges = 0, vertices = 0, inactive = 0;
+  const auto compare = [&](std::uint32_t instance, const FaceRef& face, std::uint32_t half,
+                           Feature feature, std::uint32_t index, const Eigen::Vector3d& point,
+                           bool is_active) {
+    const Triangle triangle = require(scene.triangle({instance, face}, half));
+    const Tree& tree = scene.trees()[require(scene.info(instance)).tree];
+    std::uint32_t bits = require(active_edges(tree, face, half));
+    const Eigen::Vector3d& from = triangle.corner[index];
+    const Eigen::Vector3d along = triangle.corner[(index + 1) % 3] - from;
+    if (feature == Feature::kVertex) {
+      ++vertices;
+      ASSERT_LT((point - from).norm(), 1e-9);
+      ASSERT_EQ(is_active, (bits & (1u << index | 1u << (index + 2) % 3)) != 0);
+    } else if (feature == Feature::kEdge) {
+      ++edges;
+      ASSERT_LT((point - from).cross(along).norm(), 1e-9);
+      ASSERT_EQ(is_active, (bits & 1u << index) != 0);
+    } else {
+      ASSERT_TRUE(is_active);
+    }
+    inactive += is_active ? 0 : 1;
+  };
+  for (int i = 0; i < 300; ++i) {
+    const Eigen::Vector3d from = 5 * vector();
+    const Motion motion{4 * vector() - from};
+    static_cast<void>(require(cast_all(scene, Sphere{from, 0.3}, motion, [&](const auto& hit) {
+      compare(hit.instance, hit.face, hit.triangle, hit.feature, hit.feature_index, hit.point,
+              hit.is_active);
+      return 1e9;
+    })));
+    static_cast<void>(require(collide(scene, Sphere{from, 0.5}, [&](const auto& contact) {
+      compare(contact.instance, contact.face, contact.triangle, contact.feature,
+              contact.feature_index, contact.point, contact.is_active);
+      return true;
+    })));
+    if (HasFatalFailure()) return;
+  }
+  EXPECT_GT(edges, 100);
+  EXPECT_GT(vertices, 100);
+  EXPECT_GT(inactive, 100);
+}
+
 TEST(SceneCastErrors, NameTheField) {
   const CookedScene cooked =
       test::cook_scene({test::sphere(6, 8)}, test::random_parts(4, 1, 0, 1, 1));
