@@ -14,22 +14,14 @@ namespace {
 
 // `visit_touch(instance, query, candidate)` -> bool, whether to go on: see visit_touched.
 template <class VisitTouch>
-struct SceneCollideQuery {
+struct SceneCollideQuery : BoxInFrame {
   Admission admission;
   UnitCast cast;  // of no length
-  Box<double> in_frame;
   const VisitTouch& visit_touch;
   Errc error = Errc::kOk;
   bool stopped = false;
 
   [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return boxes_overlap(box, in_frame);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame);
-  }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const InstanceCast on_instance(cast, *placed.tree, placed.placement);
     const Result<Visit> visited =
@@ -66,7 +58,7 @@ Result<Visit> visit_touched_in(const Scene& queried, const Shape& of_caller, Lay
   QueryWork work(limits);
   const UnitCast cast{shape.shape, line_at(scene.to_units(shape.center)), false};
   SceneCollideQuery<VisitTouch> query{
-      {scene, kBoxQueries, layers, work}, cast, bounds_in_frame(scene, cast), visit_touch};
+      {bounds_in_frame(scene, cast)}, {scene, kBoxQueries, layers, work}, cast, visit_touch};
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 

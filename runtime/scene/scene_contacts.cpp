@@ -13,12 +13,11 @@ namespace {
 // between the world and the space in which two trees are compared (PlacementBounds::error), each by
 // its own tree's share. The first tree of a comparison is the one whose pose magnifies errors less,
 // so both shares suffice.
-struct BodyInScene {
+struct BodyInScene : BoxInFrame {
   Admission admission;
   const BoundTree& tree;
   const Pose& pose;
-  double condition;  // of its placement
-  Box<double> in_frame;
+  double condition;            // of its placement
   std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
   bool is_first;               // in reports
   ScenePairVisitor visitor;
@@ -26,13 +25,6 @@ struct BodyInScene {
   bool stopped = false;
 
   [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return boxes_overlap(box, in_frame);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame);
-  }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     if (instance == own_instance) return true;
@@ -75,11 +67,11 @@ struct LaterMoving {
 BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
                     const BoundScene::Placed& placed, const PlacementBounds& bounds,
                     ScenePairVisitor visitor, QueryWork& work) {
-  return {{scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
+  return {{scene.to_frame(bounds.world)},
+          {scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
           *placed.tree,
           placed.pose,
           bounds.condition,
-          scene.to_frame(bounds.world),
           instance,
           true,
           visitor};
@@ -139,8 +131,14 @@ Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const P
   if (tree.empty()) return Visit::kComplete;
   const auto bounds = placement->bounds(root_box<double>(tree));
   if (!bounds) return Errc::kInvalidPose;
-  BodyInScene body{{scene, kPairQueries, layers, work}, tree,        pose,  bounds->condition,
-                   scene.to_frame(bounds->world),       kNoInstance, false, visitor};
+  BodyInScene body{{scene.to_frame(bounds->world)},
+                   {scene, kPairQueries, layers, work},
+                   tree,
+                   pose,
+                   bounds->condition,
+                   kNoInstance,
+                   false,
+                   visitor};
   return outcome_of(visit_overlapping_instances(scene, body), body);
 }
 

@@ -51,17 +51,9 @@ Result<Visit> query_scene(const BoundScene& scene, const Shape& shape, SceneFace
 
 // Boxes are compared in the world itself: only signs count, and units could lose the last bits of
 // very small numbers.
-struct WorldBox {
+struct WorldBox : BoxInFrame {
   Box<double> world;
-  Box<double> in_frame;
 
-  template <class S>
-  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return boxes_overlap(box, in_frame);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame);
-  }
   [[nodiscard]] Result<Visit> run_query(const BoundScene::Placed& placed,
                                         const FacesOfInstance& faces, QueryWork& work) const {
     const PlacedBoxQuery query{Placement::map_to_world(placed.tree->frame(), placed.pose), world};
@@ -179,8 +171,8 @@ Result<Visit> overlap_box(const Scene& queried, const Eigen::AlignedBox3d& box,
     return Box<double>{{a[0], a[1], a[2]}, {b[0], b[1], b[2]}};
   };
   const WorldBox shape{
-      clamped(box.min(), box.max()),
-      scene.to_frame(clamped(scene.to_units(box.min()), scene.to_units(box.max())))};
+      {scene.to_frame(clamped(scene.to_units(box.min()), scene.to_units(box.max())))},
+      clamped(box.min(), box.max())};
   return query_scene(scene, shape, visitor, layers, limits);
 }
 

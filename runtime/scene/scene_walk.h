@@ -32,6 +32,19 @@ struct Admission {
   [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept;
 };
 
+/// What a query compares with boxes of instances by a box, in the scene's frame.
+struct BoxInFrame {
+  Box<double> in_frame;
+
+  template <class S>
+  [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
+    return boxes_overlap(box, in_frame);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, instances, in_frame);
+  }
+};
+
 // Members of the queries of a scene, below:
 // query.visit(instance, const BoundScene::Placed&) -> bool: whether to go on.
 // query.walk(const TopLevel&, InstanceVisitor) -> Errc: walk_top_level with the query's shape.
