@@ -47,7 +47,7 @@ struct CastHit {
   /// Tree::triangle(face, triangle). 0 for a face.
   std::uint8_t feature_index = 0;
   /// Whether the feature may keep the normal: not at edges where the surface goes on flat or
-  /// rises, nor at vertices whose edges are all of this kind. See active_edges(). Always in scenes.
+  /// rises, nor at vertices whose edges are all of this kind. See active_edges().
   bool is_active = true;
   /// Unit vector orthogonal to the face, to the side to which the normal points; along both sides,
   /// to its front. Zero for a face without an area.

@@ -55,8 +55,7 @@ using PairContactVisitor = FunctionRef<bool(const PairContact&)>;
 /// with where they touch. Points are within 2^-46 of the largest extent of both triangles of each
 /// of them, and of the first one's coordinates; where rounding decides between planes that are
 /// nearly one, start and end may be closer to each other than the true ends. Depths are off by at
-/// most as much. Errors, stack and threads as there; takes about half a microsecond for each
-/// contact more than that.
+/// most as much. Errors, stack and threads as there.
 BOXTREE_API Result<Visit> pair_contacts(const Tree& first, const Pose& first_pose,
                                         const Tree& second, const Pose& second_pose,
                                         PairContactVisitor visitor, const QueryLimits& limits = {});
