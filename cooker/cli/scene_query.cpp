@@ -59,11 +59,9 @@ Result<Json> answer(const Scene& scene, const RayRequest& request) {
   return ShapeAnswers<SceneKinds>(scene).answer(request);
 }
 Result<Json> answer(const Scene& scene, const CastRequest& request) {
-  if (request.shape.hull) return not_for_scenes("a cast of a hull");
   return ShapeAnswers<SceneKinds>(scene).answer(request);
 }
 Result<Json> answer(const Scene& scene, const CollideRequest& request) {
-  if (request.shape.hull) return not_for_scenes("what a hull touches");
   return ShapeAnswers<SceneKinds>(scene).answer(request);
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <tuple>
-#include <type_traits>
 #include <vector>
 
 #include "cooker/cli/query_request.h"
@@ -85,18 +84,14 @@ class ShapeAnswers {
       const auto& [x, y, z, radius] = *capsule;
       return answer(Capsule{at, at + Eigen::Vector3d(x, y, z), radius});
     }
-    if constexpr (std::is_same_v<typename Kinds::Body, Tree>) {  // scenes have no hulls
-      if (hull) {
-        const Result<std::vector<Eigen::Vector3d>> points = hull_points(*hull);
-        if (!points) return points.error();
-        ConvexHull of_mesh;
-        of_mesh.points = *points;
-        of_mesh.position = at;
-        if (rotation) {
-          of_mesh.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
-        }
-        return answer(of_mesh);
-      }
+    if (hull) {
+      const Result<std::vector<Eigen::Vector3d>> points = hull_points(*hull);
+      if (!points) return points.error();
+      ConvexHull of_mesh;
+      of_mesh.points = *points;
+      of_mesh.position = at;
+      if (rotation) of_mesh.rotation.coeffs() = Eigen::Map<const Eigen::Vector4d>(rotation->data());
+      return answer(of_mesh);
     }
     OrientedBox placed;
     placed.center = at;

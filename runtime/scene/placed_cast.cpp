@@ -47,7 +47,7 @@ InstanceCast::InstanceCast(const UnitCast& cast, const BoundTree& tree,
   const double near = RaySlab::power_above(max_abs_of(to_world.hull(root)).maxCoeff()) +
                       2 * largest_magnitude(extent);
   placed_.moving = {cast.shape, is_moving_ ? cast.line.direction : Eigen::Vector3d::Zero(),
-                    MovingShape::doubt_of(near, largest_magnitude(center))};
+                    MovingShape::doubt_of(near, largest_magnitude(center)) + cast.shape.error};
   placed_.moving.shape.center = center;
 
   const Eigen::Vector3d start = tree.frame().to_tree(line_.origin);

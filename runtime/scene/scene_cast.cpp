@@ -10,6 +10,7 @@
 #include "runtime/query/invalid_query.h"
 #include "runtime/scene/placed_cast.h"
 #include "runtime/scene/scene_line.h"
+#include "runtime/scene/scene_shape_casts.h"
 #include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
@@ -111,13 +112,12 @@ struct SceneCastQuery {
   bool stopped = false;
 };
 
-template <class Shape>
-SceneCastResult one_touch(const Scene& queried, const Shape& of_caller, const Motion& motion,
-                          CastQuery::Wanted wanted, const SceneFaceOptions& options) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
+}  // namespace
+
+SceneCastResult one_touch_in(const BoundScene& scene, const ShapeInTree& shape,
+                             const Motion& motion, CastQuery::Wanted wanted,
+                             const SceneFaceOptions& options) {
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
-  const ShapeInTree shape = in_tree(scene.units(), of_caller);
   const CastLine line(shape, motion);
   if (line.invalid != nullptr) return {Errc::kInvalidQuery, line.invalid};
   QueryWork work(options.limits);
@@ -129,19 +129,34 @@ SceneCastResult one_touch(const Scene& queried, const Shape& of_caller, const Mo
   return query.described(*query.best_tree, query.best_moving, query.best, query.best_instance);
 }
 
-template <class Shape>
-Result<Visit> all_touches(const Scene& queried, const Shape& of_caller, const Motion& motion,
-                          SceneCastVisitor visitor, const SceneFaceOptions& options) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
+Result<Visit> all_touches_in(const BoundScene& scene, const ShapeInTree& shape,
+                             const Motion& motion, SceneCastVisitor visitor,
+                             const SceneFaceOptions& options) {
   if ((scene.query_kinds() & kRayQueries) == 0) return Errc::kPartLeftOut;
-  const ShapeInTree shape = in_tree(scene.units(), of_caller);
   const CastLine line(shape, motion);
   if (line.invalid != nullptr) return invalid_query(line.invalid);
   QueryWork work(options.limits);
   SceneCastQuery query(admitted(scene, options, work), shape, line, options,
                        CastQuery::Wanted::kAll, &visitor);
   return outcome_of(visit_nearest_instances(scene, query), query);
+}
+
+namespace {
+
+template <class Shape>
+SceneCastResult one_touch(const Scene& queried, const Shape& shape, const Motion& motion,
+                          CastQuery::Wanted wanted, const SceneFaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  return one_touch_in(scene, in_tree(scene.units(), shape), motion, wanted, options);
+}
+
+template <class Shape>
+Result<Visit> all_touches(const Scene& queried, const Shape& shape, const Motion& motion,
+                          SceneCastVisitor visitor, const SceneFaceOptions& options) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  return all_touches_in(scene, in_tree(scene.units(), shape), motion, visitor, options);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "runtime/query/invalid_query.h"
 #include "runtime/scene/placed_cast.h"
 #include "runtime/scene/scene_line.h"
+#include "runtime/scene/scene_shape_casts.h"
 #include "runtime/scene/scene_walk.h"
 
 namespace boxtree {
@@ -47,13 +48,10 @@ Box<double> bounds_in_frame(const BoundScene& scene, const UnitCast& cast) noexc
   return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
 }
 
-template <class Shape, class VisitTouch>
-Result<Visit> visit_touched_in(const Scene& queried, const Shape& of_caller, LayerMask layers,
+template <class VisitTouch>
+Result<Visit> visit_touched_in(const BoundScene& scene, const ShapeInTree& shape, LayerMask layers,
                                const QueryLimits& limits, const VisitTouch& visit_touch) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  const ShapeInTree shape = in_tree(scene.units(), of_caller);
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
   const UnitCast cast{shape.shape, line_at(scene.to_units(shape.center)), false};
@@ -62,10 +60,12 @@ Result<Visit> visit_touched_in(const Scene& queried, const Shape& of_caller, Lay
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 
-template <class Shape>
-Result<Visit> visit_contacts(const Scene& scene, const Shape& shape, SceneContactVisitor visitor,
-                             LayerMask layers, const QueryLimits& limits) {
-  const Frame units = BoundScene::of(scene).units();
+}  // namespace
+
+Result<Visit> visit_contacts_in(const BoundScene& scene, const ShapeInTree& shape,
+                                SceneContactVisitor visitor, LayerMask layers,
+                                const QueryLimits& limits) {
+  const Frame units = scene.units();
   return visit_touched_in(
       scene, shape, layers, limits,
       [&](std::uint32_t instance, const CastQuery& query, const CastCandidate& found) {
@@ -73,9 +73,9 @@ Result<Visit> visit_contacts(const Scene& scene, const Shape& shape, SceneContac
       });
 }
 
-template <class Shape>
-Result<Visit> visit_faces_of(const Scene& scene, const Shape& shape, SceneFaceVisitor visitor,
-                             LayerMask layers, const QueryLimits& limits) {
+Result<Visit> visit_touched_faces_in(const BoundScene& scene, const ShapeInTree& shape,
+                                     SceneFaceVisitor visitor, LayerMask layers,
+                                     const QueryLimits& limits) {
   VisitedFaces visited;
   std::uint32_t last = kNoInstance;
   return visit_touched_in(
@@ -85,6 +85,24 @@ Result<Visit> visit_faces_of(const Scene& scene, const Shape& shape, SceneFaceVi
         last = instance;
         return !visited.is_new(found) || visitor({instance, found.face});
       });
+}
+
+namespace {
+
+template <class Shape>
+Result<Visit> visit_contacts(const Scene& queried, const Shape& shape, SceneContactVisitor visitor,
+                             LayerMask layers, const QueryLimits& limits) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  return visit_contacts_in(scene, in_tree(scene.units(), shape), visitor, layers, limits);
+}
+
+template <class Shape>
+Result<Visit> visit_faces_of(const Scene& queried, const Shape& shape, SceneFaceVisitor visitor,
+                             LayerMask layers, const QueryLimits& limits) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  return visit_touched_faces_in(scene, in_tree(scene.units(), shape), visitor, layers, limits);
 }
 
 }  // namespace

@@ -124,6 +124,11 @@ jq -e '.count > 0 and .contacts[0].name == "Floor" and .contacts[0].depth == 0.2
 count=$(jq .count out)
 expect 0 "$boxtree" query level.bxt collide --sphere 0.5 --at 0,0.3,-3.3 --merge 0.01 --json
 jq -e --argjson all "$count" '.count > 0 and .count < $all' out >/dev/null
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >hull.obj
+expect 0 "$boxtree" query level.bxt cast --hull hull.obj --at 0,10,-3.3 --direction 0,-1,0 --json
+jq -e '.hit and .t_lower <= .t and (.instance | type) == "number"' out >/dev/null
+expect 0 "$boxtree" query level.bxt collide --hull hull.obj --at 0,-0.25,-3.3 --json
+jq -e '.count > 0 and ([.contacts[] | .depth >= 0 and (.instance | type) == "number"] | all)' out >/dev/null
 expect 0 "$boxtree" query level.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --all --back-faces only --json
 same "$(jq -c '[.hits[] | [.name, .face]]' out)" '[["Step 2",5]]'
 printf '%s\n' '{"kind":"cast","sphere":0.25,"at":[0,10,-3.3],"direction":[0,-1,0]}' >batch

@@ -35,6 +35,12 @@ BOXTREE_API SceneCastResult cast_closest(const Scene& scene, const Capsule& caps
 BOXTREE_API SceneCastResult cast_closest(const Scene& scene, const OrientedBox& box,
                                          const Motion& motion,
                                          const SceneFaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same. Takes time in proportion to the number of points, and up to 200 KB of stack.
+BOXTREE_API SceneCastResult cast_closest(const Scene& scene, const ConvexHull& hull,
+                                         const Motion& motion,
+                                         const SceneFaceOptions& options = {});
+#endif
 
 /// Some touch, or nothing: cheaper than cast_closest() when only the fact matters.
 BOXTREE_API SceneCastResult cast_any(const Scene& scene, const Sphere& sphere, const Motion& motion,
@@ -45,6 +51,11 @@ BOXTREE_API SceneCastResult cast_any(const Scene& scene, const Capsule& capsule,
 /// The same.
 BOXTREE_API SceneCastResult cast_any(const Scene& scene, const OrientedBox& box,
                                      const Motion& motion, const SceneFaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same.
+BOXTREE_API SceneCastResult cast_any(const Scene& scene, const ConvexHull& hull,
+                                     const Motion& motion, const SceneFaceOptions& options = {});
+#endif
 
 /// Receives one touch after the other; what it returns is as for CastVisitor.
 using SceneCastVisitor = FunctionRef<double(const SceneCastHit&)>;
@@ -59,5 +70,10 @@ BOXTREE_API Result<Visit> cast_all(const Scene& scene, const Capsule& capsule, c
 /// The same.
 BOXTREE_API Result<Visit> cast_all(const Scene& scene, const OrientedBox& box, const Motion& motion,
                                    SceneCastVisitor visitor, const SceneFaceOptions& options = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same.
+BOXTREE_API Result<Visit> cast_all(const Scene& scene, const ConvexHull& hull, const Motion& motion,
+                                   SceneCastVisitor visitor, const SceneFaceOptions& options = {});
+#endif
 
 }  // namespace boxtree

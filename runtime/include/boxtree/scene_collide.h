@@ -33,6 +33,12 @@ BOXTREE_API Result<Visit> collide(const Scene& scene, const Capsule& capsule,
 BOXTREE_API Result<Visit> collide(const Scene& scene, const OrientedBox& box,
                                   SceneContactVisitor visitor, LayerMask layers = kAllLayers,
                                   const QueryLimits& limits = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same, with up to 200 KB of stack.
+BOXTREE_API Result<Visit> collide(const Scene& scene, const ConvexHull& hull,
+                                  SceneContactVisitor visitor, LayerMask layers = kAllLayers,
+                                  const QueryLimits& limits = {});
+#endif
 
 /// Visits every face that the shape touches, each once, in no promised order: as collide(), without
 /// looking where.
@@ -44,6 +50,13 @@ BOXTREE_API Result<Visit> overlap_oriented_box(const Scene& scene, const Oriente
                                                SceneFaceVisitor visitor,
                                                LayerMask layers = kAllLayers,
                                                const QueryLimits& limits = {});
+#if BOXTREE_HAS_HULL_QUERIES
+/// The same for the convex hull of points.
+BOXTREE_API Result<Visit> overlap_convex_hull(const Scene& scene, const ConvexHull& hull,
+                                              SceneFaceVisitor visitor,
+                                              LayerMask layers = kAllLayers,
+                                              const QueryLimits& limits = {});
+#endif
 
 /// merge_contacts() for those of a scene, of several instances, too.
 [[nodiscard]] BOXTREE_API std::size_t merge_contacts(std::span<SceneContact> contacts,

@@ -76,6 +76,8 @@ TEST(Allocation, QueriesOfScenesNeverAllocate) {
   const Capsule capsule{{-9, 0, 0}, {-9, 1, 0}, 1};
   OrientedBox box;
   box.half_extents = {1, 2, 3};
+  const std::array<Eigen::Vector3d, 4> points = {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}};
+  const ConvexHull hull{points, {0, 0, 0}, {1, 0, 0, 0}};
   SceneFaceOptions options;
   const auto every_face = [](const SceneFace&) { return true; };
   const auto every_instance = [](std::uint32_t) { return true; };
@@ -91,7 +93,9 @@ TEST(Allocation, QueriesOfScenesNeverAllocate) {
       cast_closest(scene, sphere, motion, options) && cast_any(scene, capsule, motion) &&
       cast_all(scene, box, motion, to_the_end) && collide(scene, sphere, all) &&
       collide(scene, box, all) && overlap_capsule(scene, capsule, all) &&
-      overlap_oriented_box(scene, box, all) && overlap_sphere(scene, {0, 0, 0}, 9, all) &&
+      overlap_oriented_box(scene, box, all) && cast_closest(scene, hull, motion) &&
+      collide(scene, hull, all) && overlap_convex_hull(scene, hull, all) &&
+      overlap_sphere(scene, {0, 0, 0}, 9, all) &&
       overlap_box(scene, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, all) &&
       closest_point(scene, {3, 2, 1}) && contacts(scene, all) && contacts_of(scene, 0, all);
   EXPECT_EQ(allocations, before);

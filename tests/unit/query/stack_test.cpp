@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What each query takes of the stack, by painting one and looking how far down it was used: what
 // the headers state is held for every codec, on deep trees.
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <functional>
@@ -130,6 +131,12 @@ TEST(StackOfScenes, IsAsDocumented) {
     EXPECT_TRUE(cast_all(scene, capsule, {{1, 0, 0}}, [](const auto&) { return 1e9; }).ok());
   });
   expect(64, "collide", [&] { EXPECT_TRUE(collide(scene, Sphere{{0, 0, 0}, 9}, all).ok()); });
+  const std::array<Eigen::Vector3d, 4> points = {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}};
+  const ConvexHull hull{points, {0, 0, 0}, {1, 0.5, 0.25, 0.125}};
+  expect(200, "cast_closest of a hull", [&] {
+    EXPECT_TRUE(cast_closest(scene, hull, {{1, 0, 0}}).ok());
+  });
+  expect(200, "collide of a hull", [&] { EXPECT_TRUE(collide(scene, hull, all).ok()); });
   expect(352, "contacts", [&] { EXPECT_TRUE(contacts(scene, all).ok()); });
 }
 

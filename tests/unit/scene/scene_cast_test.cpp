@@ -159,6 +159,19 @@ TEST_P(SceneCasts, ABoxIsThatOfExtendedPrecision) {
   });
 }
 
+TEST_P(SceneCasts, AHullIsThatOfExtendedPrecision) {
+  for_each_motion(5, [&](const Surface& surface, const Eigen::Vector3d& from, const Motion& motion,
+                         double radius, long double doubt) {
+    std::vector<Eigen::Vector3d> points(4 + random_() % 4);
+    for (Eigen::Vector3d& point : points) point = radius * (Eigen::Vector3d(2, 0, 0) + vector());
+    ConvexHull hull;
+    hull.points = points;
+    hull.position = from;
+    if (random_() % 3 != 0) hull.rotation.coeffs() << unit(), unit(), unit(), unit();
+    check(scene_, surface, hull, motion, doubt);
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, SceneCasts,
                          testing::Values(CodecId::kPlainF32, CodecId::kPackedF16, CodecId::kWide8,
                                          CodecId::kWide4),
@@ -186,10 +199,17 @@ TEST(SceneCastBits, AreThoseOfEveryCodec) {
     box.half_extents = {0.1, 0.2, 0.3};
     box.rotation.coeffs() << unit(), unit(), unit(), unit();
     const Capsule capsule{from, from + 0.5 * vector(), 0.1};
+    const std::vector<Eigen::Vector3d> points = {Eigen::Vector3d::Zero(), 0.5 * vector(),
+                                                 0.5 * vector(), 0.5 * vector(), 0.5 * vector()};
+    ConvexHull hull;
+    hull.points = points;
+    hull.position = from;
+    hull.rotation = box.rotation;
     const auto cast = [&](const Scene& scene) {
-      return i % 3 == 0   ? cast_closest(scene, Sphere{from, 0.2}, motion)
-             : i % 3 == 1 ? cast_closest(scene, capsule, motion)
-                          : cast_closest(scene, box, motion);
+      return i % 4 == 0   ? cast_closest(scene, Sphere{from, 0.2}, motion)
+             : i % 4 == 1 ? cast_closest(scene, capsule, motion)
+             : i % 4 == 2 ? cast_closest(scene, box, motion)
+                          : cast_closest(scene, hull, motion);
     };
     const SceneCastResult first = cast(scenes[0]);
     for (const Scene& other : scenes) {
@@ -245,6 +265,17 @@ TEST(SceneCastCases, PlacementsOfEveryKind) {
           ASSERT_LE(hit->t_lower, 3.0);
           check(*bound, surface_of(triangles), ball, Motion{way, 8}, 0x1p-43L * largest);
           if (testing::Test::HasFatalFailure()) return;
+          std::vector<Eigen::Vector3d> around;  // its center is on the triangle at 3
+          for (std::size_t k = 0; k < 3; ++k) {
+            const Eigen::Vector3d axis = ball.radius * Eigen::Vector3d::Unit(Eigen::Index(k));
+            around.insert(around.end(), {axis, -axis});
+          }
+          ConvexHull hull;
+          hull.points = around;
+          hull.position = ball.center;
+          const SceneCastResult of_hull = cast_closest(*bound, hull, {way});
+          ASSERT_TRUE(of_hull.has_value()) << i;
+          ASSERT_LE(of_hull->t_lower, 3.0);
         }
       }
     }
@@ -319,6 +350,7 @@ TEST(SceneCastErrors, NameTheField) {
                    [](const SceneCastHit&) { return 1.0; }),
           "end");
   refused(cast_closest(scene, Sphere{{0, 0, 0}, 1}, {{1, 0, 0}, -1}), "t_max");
+  refused(cast_any(scene, ConvexHull(), {{1, 0, 0}}), "points");
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <random>
 #include <set>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -79,6 +80,8 @@ class SceneCollide : public testing::TestWithParam<CodecId> {
       ASSERT_EQ(require(overlap_capsule(scene_, shape, visitor)), Visit::kComplete);
     } else if constexpr (std::is_same_v<Shape, OrientedBox>) {
       ASSERT_EQ(require(overlap_oriented_box(scene_, shape, visitor)), Visit::kComplete);
+    } else if constexpr (std::is_same_v<Shape, ConvexHull>) {
+      ASSERT_EQ(require(overlap_convex_hull(scene_, shape, visitor)), Visit::kComplete);
     } else {
       return;
     }
@@ -144,6 +147,18 @@ TEST_P(SceneCollide, ABoxTouchesWhatItTouches) {
   });
 }
 
+TEST_P(SceneCollide, AHullTouchesWhatItTouches) {
+  for_each_place(10, [&](const auto& triangles, const Eigen::Vector3d& at, double radius) {
+    std::vector<Eigen::Vector3d> points(4 + random_() % 5);
+    for (Eigen::Vector3d& point : points) point = 1.5 * radius * vector();
+    ConvexHull hull;
+    hull.points = points;
+    hull.position = at;
+    if (random_() % 3 != 0) hull.rotation.coeffs() << unit(), unit(), unit(), unit();
+    check(triangles, hull);
+  });
+}
+
 INSTANTIATE_TEST_SUITE_P(Codecs, SceneCollide,
                          testing::Values(CodecId::kPlainF32, CodecId::kWide8, CodecId::kWide4),
                          test::test_name);
@@ -186,6 +201,7 @@ TEST(SceneCollideErrors, NameTheField) {
   OrientedBox box;
   box.half_extents = {1, -1, 1};
   refused(collide(scene, box, none), "half_extents");
+  refused(collide(scene, ConvexHull(), none), "points");
   refused(overlap_capsule(scene, Capsule{{0, 0, 0}, {INFINITY, 0, 0}, 1},
                           [](const SceneFace&) { return true; }),
           "end");
