@@ -166,6 +166,12 @@ class KeyFields {
     out = Eigen::Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]);
     return true;
   }
+  static bool convert(const Json& value, Frustum::ViewProjection& out) {
+    const auto numbers = numbers_of(value);
+    const auto matrix = numbers ? matrix_of(*numbers) : std::nullopt;
+    if (matrix) out = *matrix;
+    return matrix.has_value();
+  }
   static bool convert(const Json& value, Pose& out) {
     const auto numbers = numbers_of(value);
     const std::optional<Pose> pose = value.is_string() ? parse_pose(value.get<std::string>())
@@ -215,6 +221,7 @@ class KeyFields {
   }
   // What convert() takes.
   static const char* form_of(const Eigen::Vector3d&) { return "[X,Y,Z]"; }
+  static const char* form_of(const Frustum::ViewProjection&) { return "an array of 16 numbers"; }
   static const char* form_of(const Pose&) { return "X,Y,Z or 12 numbers, as an array or as text"; }
   static const char* form_of(double) { return "a number"; }
   static const char* form_of(const std::optional<double>&) { return "a number"; }

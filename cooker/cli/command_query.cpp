@@ -9,6 +9,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <sys/stat.h>
 #include <system_error>
 #include <utility>
@@ -289,6 +290,16 @@ class OptionFields {
 
   void required(const char* key, Eigen::Vector3d& out, const char* help) {
     need(key, add_vector_option(command_, option_name(key), out, help));
+  }
+  void required(const char* key, Frustum::ViewProjection& out, const char* help) {
+    const auto parse = [&out](const std::string& text) {
+      std::array<double, 16> numbers{};
+      const auto matrix = matrix_of(std::span(numbers).first(parse_numbers(text, numbers)));
+      if (!matrix) return "expected 16 numbers between commas, found \"" + text + "\"";
+      out = *matrix;
+      return std::string();
+    };
+    need(key, command_.add_parsed_option(option_name(key), parse, help)->type_name("MATRIX"));
   }
   void required(const char* key, double& out, const char* help) {
     need(key, command_.add_option(option_name(key), out, help)->type_name("N"));

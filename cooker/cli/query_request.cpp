@@ -97,6 +97,14 @@ Result<Json> answer(const Tree& tree, const SphereRequest& request) {
   });
 }
 
+Result<Json> answer(const Tree& tree, const FrustumRequest& request) {
+  if (request.instances) {
+    return Error{Errc::kNoScene, "instances are those of a scene, and this is one tree"};
+  }
+  return answer_faces(
+      [&](FaceVisitor visitor) { return overlap_frustum(tree, request.frustum(), visitor); });
+}
+
 void add_closest(Json& json, const std::optional<ClosestPoint>& closest) {
   json["found"] = closest.has_value();
   if (!closest) return;
@@ -205,6 +213,9 @@ QueryKinds kind_of(const BoxRequest&) {
 QueryKinds kind_of(const SphereRequest&) {
   return kBoxQueries;
 }
+QueryKinds kind_of(const FrustumRequest&) {
+  return kBoxQueries;
+}
 QueryKinds kind_of(const PointRequest&) {
   return kPointQueries;
 }
@@ -242,6 +253,13 @@ class FieldTexts {
   }
   void required(const char* key, double value, const char* /*help*/) {
     fields_.push_back({key, fmt::format("{}", value), true});
+  }
+  void required(const char* key, const Frustum::ViewProjection& value, const char* /*help*/) {
+    std::string numbers;
+    for (Eigen::Index i = 0; i < value.size(); ++i) {
+      numbers += fmt::format("{}{}", i == 0 ? "" : ",", value(i / 4, i % 4));
+    }
+    fields_.push_back({key, fmt::format("[{}]", numbers), true});
   }
   template <class T>
   void optional(const char* key, const T& value, const char* /*help*/, bool* /*given*/ = nullptr) {
@@ -429,6 +447,12 @@ std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {
   std::array<double, 3> numbers{};
   if (parse_numbers(text, numbers) != numbers.size()) return std::nullopt;
   return Eigen::Vector3d(numbers[0], numbers[1], numbers[2]);
+}
+
+std::optional<Frustum::ViewProjection> matrix_of(std::span<const double> numbers) {
+  if (numbers.size() != 16) return std::nullopt;
+  using ByRows = Eigen::Matrix<double, 4, 4, Eigen::RowMajor | Eigen::DontAlign>;
+  return Frustum::ViewProjection(Eigen::Map<const ByRows>(numbers.data()));
 }
 
 std::optional<Pose> pose_of(std::span<const double> numbers) {

@@ -210,6 +210,34 @@ struct SphereRequest {
   }
 };
 
+struct FrustumRequest {
+  static constexpr const char* kKind = "frustum";
+  static constexpr const char* kHelp = "Faces that touch what a camera sees";
+  static constexpr const char* kExpected = "finite numbers, and finite sums of the rows";
+  static constexpr KindExample kExamples[] = {
+      {"The faces in a box from -1 to 1 along x and y and from 0 to 2 along z",
+       "boxtree query bunny.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1"},
+      {"The instances of a level that may be in it",
+       "boxtree query level.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1 --instances"}};
+
+  Frustum::ViewProjection matrix = Frustum::ViewProjection::Identity();
+  bool open_gl = false;
+  bool instances = false;
+
+  template <class Fields>
+  void describe(Fields& fields) {
+    fields.required("matrix", matrix,
+                    "What takes points, as columns, to clip space: 4x4 numbers, row by row");
+    fields.optional("open_gl", open_gl,
+                    "Visible is what z / w takes to -1 to 1, as in OpenGL [0 to 1]");
+    fields.optional("instances", instances,
+                    "Of a scene, the instances whose bounds may touch it, instead of faces");
+  }
+  [[nodiscard]] Frustum frustum() const {
+    return Frustum::of(matrix, open_gl ? ClipDepth::kMinusOneToOne : ClipDepth::kZeroToOne);
+  }
+};
+
 /// How near to the truth an answer has to be.
 template <class Fields>
 void describe_approximation(Fields& fields, Approximation& options, bool* given = nullptr) {
@@ -326,8 +354,8 @@ struct ContactsRequest {
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
 using QueryRequest =
-    std::variant<RayRequest, CastRequest, CollideRequest, BoxRequest, SphereRequest, PointRequest,
-                 PairRequest, DistanceRequest, OverlapRequest, ContactsRequest>;
+    std::variant<RayRequest, CastRequest, CollideRequest, BoxRequest, SphereRequest, FrustumRequest,
+                 PointRequest, PairRequest, DistanceRequest, OverlapRequest, ContactsRequest>;
 
 /// Calls visit.template operator()<Kind>() for each kind of request, in order.
 template <class Visit>
@@ -380,6 +408,9 @@ Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& me
 
 /// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
 std::size_t parse_numbers(std::string_view text, std::span<double> numbers);
+
+/// Of 16 numbers, row by row. Nothing for another count.
+[[nodiscard]] std::optional<Frustum::ViewProjection> matrix_of(std::span<const double> numbers);
 
 /// "X,Y,Z". Nothing if it is not.
 [[nodiscard]] std::optional<Eigen::Vector3d> parse_vector(std::string_view text);

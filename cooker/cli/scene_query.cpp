@@ -17,14 +17,18 @@
 namespace boxtree::cooker {
 namespace {
 
-// The same keys wherever a face of an instance is named.
-void add_face(const Scene& scene, const SceneFace& face, Json& json) {
-  const Result<InstanceInfo> info = scene.info(face.instance);
-  json["instance"] = face.instance;
+// The same keys wherever an instance, or a face of one, is named.
+void add_instance(const Scene& scene, std::uint32_t instance, Json& json) {
+  const Result<InstanceInfo> info = scene.info(instance);
+  json["instance"] = instance;
   if (info) {
     json["id"] = info->id;
     if (!info->name.empty()) json["name"] = info->name;
   }
+}
+
+void add_face(const Scene& scene, const SceneFace& face, Json& json) {
+  add_instance(scene, face.instance, json);
   json["face"] = face_json(face.face);
   const std::uint32_t material = scene.material(face);
   if (material == kNoMaterial) return;
@@ -88,6 +92,21 @@ Result<Json> answer(const Scene& scene, const SphereRequest& request) {
   return answer_faces(scene, [&](SceneFaceVisitor visitor) {
     return overlap_sphere(scene, request.center, request.radius, visitor);
   });
+}
+
+Result<Json> answer(const Scene& scene, const FrustumRequest& request) {
+  const Frustum frustum = request.frustum();
+  if (!request.instances) {
+    return answer_faces(
+        scene, [&](SceneFaceVisitor visitor) { return overlap_frustum(scene, frustum, visitor); });
+  }
+  Json instances = Json::array();
+  const Result<Visit> visit = instances_in_frustum(scene, frustum, [&](std::uint32_t instance) {
+    add_instance(scene, instance, instances.emplace_back());
+    return true;
+  });
+  if (!visit) return visit.error();
+  return Json{{"count", instances.size()}, {"instances", instances}};
 }
 
 Result<Json> answer(const Scene& scene, const PointRequest& request) {

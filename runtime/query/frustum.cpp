@@ -5,11 +5,9 @@
 #include <cmath>
 #include <cstddef>
 
-#include <boxtree/overlap.h>
-
 #include "runtime/primitive/float_state.h"
-#include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/frustum_sides.h"
 #include "runtime/query/invalid_query.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/erased_codec.h"
@@ -22,86 +20,57 @@ namespace {
 
 constexpr std::size_t kPlanes = 6;
 
-// A half space in tree space, widened: normal . x + offset >= 0. Sums are monotone in each
-// coordinate, rounded or not, so that a box passes if any point of it does.
-struct Side {
-  Eigen::Vector3d normal;
-  double offset;
+}  // namespace
 
-  [[nodiscard]] double at(const Eigen::Vector3d& x) const noexcept {
-    return dot(normal, x) + offset;
-  }
-  // The largest and the smallest value in a box.
-  template <class S>
-  [[nodiscard]] double highest(const Box<S>& box) const noexcept {
-    return at(corner_of(box, true));
-  }
-  template <class S>
-  [[nodiscard]] double lowest(const Box<S>& box) const noexcept {
-    return at(corner_of(box, false));
-  }
-
- private:
-  template <class S>
-  [[nodiscard]] Eigen::Vector3d corner_of(const Box<S>& box, bool highest) const noexcept {
-    Eigen::Vector3d corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto axis = static_cast<Eigen::Index>(k);
-      corner[axis] = (normal[axis] >= 0) == highest ? box.high[k] : box.low[k];
+// Whether anything is left when the planes have cut the triangle (Sutherland and Hodgman,
+// "Reentrant Polygon Clipping", 1974). Each plane is widened by more than what cutting at those
+// before it has moved, so that nothing is lost that touches.
+bool FrustumSides::touches(const Triangle& triangle) const noexcept {
+  constexpr std::size_t kMost = 3 + kPlanes;  // each plane adds one corner
+  const Box<double> bounds = bounds_of(triangle);
+  std::array<Eigen::Vector3d, kMost> polygon;
+  std::copy(triangle.corner.begin(), triangle.corner.end(), polygon.begin());
+  std::size_t count = triangle.corner.size();
+  for (const FrustumSide& plane : side) {
+    if (plane.lowest(bounds) >= 0) continue;
+    std::array<Eigen::Vector3d, kMost> kept;
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Eigen::Vector3d& a = polygon[i];
+      const Eigen::Vector3d& b = polygon[(i + 1) % count];
+      const double of_a = plane.at(a), of_b = plane.at(b);
+      if (of_a >= 0 && left < kept.size()) kept[left++] = a;
+      if ((of_a >= 0) != (of_b >= 0) && left < kept.size()) {
+        kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
+      }
     }
-    return corner;
+    if (left == 0) return false;
+    std::copy_n(kept.begin(), left, polygon.begin());
+    count = left;
   }
-};
+  return true;
+}
+namespace {
 
 struct FrustumQuery {
   using Visitor = FaceVisitor;
 
-  std::array<Side, kPlanes> sides;
+  FrustumSides sides;
 
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
-    return std::none_of(sides.begin(), sides.end(),
-                        [&](const Side& side) { return side.highest(box) < 0; });
+    return sides.overlaps(box);
   }
-
-  // Whether anything is left when the planes have cut the triangle (Sutherland and Hodgman,
-  // "Reentrant Polygon Clipping", 1974). Each plane is widened by more than what cutting at those
-  // before it has moved, so that nothing is lost that touches.
   [[nodiscard]] bool touches(const Triangle& triangle) const noexcept {
-    const Box<double> bounds = bounds_of(triangle);
-    std::array<Eigen::Vector3d, 3 + kPlanes> polygon;  // each plane adds one corner at most
-    std::copy(triangle.corner.begin(), triangle.corner.end(), polygon.begin());
-    std::size_t count = triangle.corner.size();
-    for (const Side& side : sides) {
-      if (side.lowest(bounds) >= 0) continue;
-      std::array<Eigen::Vector3d, 3 + kPlanes> kept;
-      std::size_t left = 0;
-      for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d& a = polygon[i];
-        const Eigen::Vector3d& b = polygon[(i + 1) % count];
-        const double of_a = side.at(a), of_b = side.at(b);
-        if (of_a >= 0 && left < kept.size()) kept[left++] = a;
-        if ((of_a >= 0) != (of_b >= 0) && left < kept.size()) {
-          kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
-        }
-      }
-      if (left == 0) return false;
-      std::copy_n(kept.begin(), left, polygon.begin());
-      count = left;
-    }
-    return true;
+    return sides.touches(triangle);
   }
 };
 
-// A plane of object space. Let u = 2^-53, s the sum of magnitudes of the products of normal and
-// coordinates. A value is off by at most 8 u s, where a cut has rounded the corners by 6 u of the
-// largest coordinate each of six times: 44 u s.
-Side side_of(const BoundTree& tree, const Frustum::Plane& plane) noexcept {
-  constexpr double kError = 64 * kRoundoffF64;
+FrustumSide side_of(const BoundTree& tree, const Frustum::Plane& plane) noexcept {
   const Eigen::Vector3d normal = plane.head<3>();
   const double power = scale_to_one(normal);
   const Frame& frame = tree.frame();
-  Side side;
+  FrustumSide side;
   side.normal = (power * normal) * frame.scale;
   const double offset = power * plane[3];
   side.offset = dot(power * normal, frame.origin) + offset;
@@ -110,7 +79,7 @@ Side side_of(const BoundTree& tree, const Frustum::Plane& plane) noexcept {
     size += std::abs(power * normal[k]) * std::abs(frame.origin[k]);
     size += std::abs(side.normal[k]) * tree.largest_abs();
   }
-  side.offset += kError * size;
+  side.offset += FrustumSides::kError * size;
   return side;
 }
 
@@ -149,12 +118,9 @@ Result<Visit> overlap_frustum(const Tree& queried, const Frustum& frustum, FaceV
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   FrustumQuery query;
+  if (!is_finite(frustum)) return invalid_query("planes");
   for (std::size_t i = 0; i < kPlanes; ++i) {
-    const Frustum::Plane& plane = frustum.planes[i];
-    if (!std::isfinite(largest_magnitude(plane.head<3>())) || !std::isfinite(plane[3])) {
-      return invalid_query("planes");
-    }
-    query.sides[i] = side_of(tree, plane);
+    query.sides.side[i] = side_of(tree, frustum.planes[i]);
   }
   QueryWork work(limits);
   WalkBound nodes(tree.node_count(), &work);

@@ -220,6 +220,22 @@ expect 0 "$boxtree" query cube.bxt box --min=0.9,0.4,0.4 --max 1.5,0.6,0.6 --jso
 same "$(jq -c '.faces' out)" '[5]'
 expect 0 "$boxtree" query cube.bxt sphere --center 0.5,0.5,1.5 --radius 0.5 --json
 same "$(jq -c '.faces' out)" '[1]'
+# What is in x and y from -1 to 1 and z from 0 to 1/2, of OpenGL from -1/2 to 1/2: not the top.
+expect 0 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --json
+bottom=$(jq -c '.faces | sort' out)
+expect 0 "$boxtree" query cube.bxt box --min=-1,-1,0 --max 1,1,0.5 --json
+same "$(jq -c '.faces | sort' out)" "$bottom"
+expect 0 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --open-gl --json
+same "$(jq -c '.faces | sort' out)" "$bottom"
+printf '%s\n' '{"kind":"frustum","matrix":[1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1]}' >frustum.jsonl
+expect 0 "$boxtree" query cube.bxt --batch frustum.jsonl
+same "$(jq -c '.faces | sort' out)" "$bottom"
+expect 1 "$boxtree" query cube.bxt frustum --matrix 1,2,3
+grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
+expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
+grep -q 'invalid_query: cube.bxt: frustum: expected finite numbers, .*found matrix \[inf,0,0,0,' err
+expect 3 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
+grep -q 'no_scene: cube.bxt: instances are those of a scene, and this is one tree' err
 expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --json
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
 expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25 --json
@@ -489,7 +505,7 @@ misspelt "boxtree: usage: a command is required
 See 'boxtree --help'."
 misspelt "boxtree: usage: query: 'rya' is no kind of query; did you mean 'ray'?
 See 'boxtree query --help'." query cube.bxt rya
-kinds='ray, cast, collide, box, sphere, point, pair, distance, overlap or contacts'
+kinds='ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts'
 misspelt "boxtree: usage: query: 'sweep' is no kind of query; expected $kinds
 See 'boxtree query --help'." query cube.bxt sweep --at 0,0,0
 misspelt "boxtree: usage: query: 'shapecast' is no kind of query; expected $kinds; did you mean 'cast'?
@@ -578,7 +594,7 @@ for command in cook info verify query bench report export completion help; do
   help_of $command
   grep -q "^Usage: boxtree $command " help
 done
-for kind in ray cast collide point box sphere pair distance overlap contacts; do
+for kind in ray cast collide point box sphere frustum pair distance overlap contacts; do
   expect 0 "$boxtree" help query $kind
   help_of query cube.bxt $kind
   grep -q "^Usage: boxtree query FILE $kind " help
@@ -803,9 +819,10 @@ names 'cast: "capsule": expected [X,Y,Z,R], found [0,0,1]' \
 names 'cast: "sphere": expected a number, found "1"' '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"sphere":"1"}'
 names "cast: expected the keys at, direction, sphere, capsule, box, hull, rotation, t_max, any, all, back_faces, move or kind, found \"spere\"; "\
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
+names 'frustum: "matrix": expected an array of 16 numbers, found [1]' '{"kind":"frustum","matrix":[1]}'
 names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
-kinds='ray, cast, collide, box, sphere, point, pair, distance, overlap or contacts'
+kinds='ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.
 names "box: expected the keys min, max, within, budget, move or kind, found \"mni\"; did you mean 'min'?" '{"kind":"box","mni":[0,0,0],"max":[1,1,1]}'
 names "\"kind\": expected $kinds, found no such key" '{"at":[1,2,3]}'

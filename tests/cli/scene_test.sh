@@ -131,6 +131,13 @@ expect 0 "$boxtree" query level.bxt collide --hull hull.obj --at 0,-0.25,-3.3 --
 jq -e '.count > 0 and ([.contacts[] | .depth >= 0 and (.instance | type) == "number"] | all)' out >/dev/null
 expect 0 "$boxtree" query level.bxt ray --origin 0,10,-3.3 --direction 0,-1,0 --all --back-faces only --json
 same "$(jq -c '[.hits[] | [.name, .face]]' out)" '[["Step 2",5]]'
+# What a camera sees: the faces in x from -1 to 1, y from 0 to 1, z from -5 to -3, as in a box, and their instances.
+expect 0 "$boxtree" query level.bxt frustum --matrix 1,0,0,0,0,2,0,-1,0,0,0.5,2.5,0,0,0,1 --json
+seen=$(jq -c '[.faces[] | [.instance, .face]] | sort' out)
+expect 0 "$boxtree" query level.bxt box --min=-1,0,-5 --max 1,1,-3 --json
+same "$(jq -c '[.faces[] | [.instance, .face]] | sort' out)" "$seen"
+expect 0 "$boxtree" query level.bxt frustum --matrix 1,0,0,0,0,2,0,-1,0,0,0.5,2.5,0,0,0,1 --instances --json
+jq -e --argjson seen "$seen" '.count == (.instances | length) and ([.instances[].instance] as $all | $seen | all(.[0] as $i | $all | index($i) != null))' out >/dev/null
 printf '%s\n' '{"kind":"cast","sphere":0.25,"at":[0,10,-3.3],"direction":[0,-1,0]}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -c '.name' out)" '"Step 3"'

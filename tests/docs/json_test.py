@@ -62,6 +62,7 @@ f 1 2 3
 
 # Sections of the page, and command lines with all that they print. [STATUS] of those that fail.
 ALL = "--min=-99,-99,-99 --max 99,99,99"
+VIEW = "0.01,0,0,0,0,0.01,0,0,0,0,0.005,0.5,0,0,0,1"
 RUNS = {
     "cook": [
         "cook crate.obj -o crate.bxt",
@@ -115,7 +116,11 @@ RUNS = {
         "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
         "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
     ],
-    "query FILE box, sphere": [
+    "query FILE box, sphere, frustum": [
+        f"query arrays.bxt frustum --matrix {VIEW}",
+        f"query level.bxt frustum --matrix {VIEW}",
+        f"query level.bxt frustum --matrix {VIEW} --instances",
+        f"query nameless.bxt frustum --matrix {VIEW} --instances",
         "query crate.bxt sphere --center 0,0,0 --radius 9",
         f"query arrays.bxt box {ALL}",
         f"query level.bxt box {ALL}",

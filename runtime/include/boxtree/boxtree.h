@@ -37,4 +37,7 @@
 #if BOXTREE_HAS_COLLIDE_QUERIES
 #include <boxtree/scene_collide.h>
 #endif
+#if BOXTREE_HAS_FRUSTUM_QUERIES
+#include <boxtree/scene_frustum.h>
+#endif
 #endif

@@ -78,6 +78,8 @@ TEST(Allocation, QueriesOfScenesNeverAllocate) {
   box.half_extents = {1, 2, 3};
   const std::array<Eigen::Vector3d, 4> points = {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}};
   const ConvexHull hull{points, {0, 0, 0}, {1, 0, 0, 0}};
+  Frustum everything;
+  for (Frustum::Plane& plane : everything.planes) plane << 0, 0, 0, 1;
   SceneFaceOptions options;
   const auto every_face = [](const SceneFace&) { return true; };
   const auto every_instance = [](std::uint32_t) { return true; };
@@ -94,6 +96,7 @@ TEST(Allocation, QueriesOfScenesNeverAllocate) {
       cast_all(scene, box, motion, to_the_end) && collide(scene, sphere, all) &&
       collide(scene, box, all) && overlap_capsule(scene, capsule, all) &&
       overlap_oriented_box(scene, box, all) && cast_closest(scene, hull, motion) &&
+      overlap_frustum(scene, everything, all) && instances_in_frustum(scene, everything, all) &&
       collide(scene, hull, all) && overlap_convex_hull(scene, hull, all) &&
       overlap_sphere(scene, {0, 0, 0}, 9, all) &&
       overlap_box(scene, {Eigen::Vector3d(0, 0, 0), Eigen::Vector3d(1, 1, 1)}, all) &&

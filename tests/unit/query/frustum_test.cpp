@@ -14,38 +14,15 @@
 #include <boxtree/boxtree.h>
 
 #include "tests/support/cooked.h"
+#include "tests/support/frustum_reference.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
-#include "tests/support/shape_reference.h"
 
 namespace boxtree {
 namespace {
 
 using cooker::SourceMesh;
 using test::LongTriangle;
-using test::LongVector;
-
-// Whether anything is left of a triangle, when each plane is moved out by `widened` of the largest
-// value that its sum may have.
-bool touches(const Frustum& frustum, const LongTriangle& triangle, long double size,
-             long double widened) {
-  std::vector<LongVector> left(triangle.begin(), triangle.end());
-  for (const Frustum::Plane& plane : frustum.planes) {
-    const LongVector normal = plane.head<3>().cast<long double>();
-    const long double offset =
-        plane[3] + widened * (normal.lpNorm<1>() * size + std::abs(plane[3]));
-    std::vector<LongVector> kept;
-    for (std::size_t i = 0; i < left.size(); ++i) {
-      const LongVector& a = left[i];
-      const LongVector& b = left[(i + 1) % left.size()];
-      const long double of_a = normal.dot(a) + offset, of_b = normal.dot(b) + offset;
-      if (of_a >= 0) kept.push_back(a);
-      if ((of_a >= 0) != (of_b >= 0)) kept.push_back(a + of_a / (of_a - of_b) * (b - a));
-    }
-    left = kept;
-  }
-  return !left.empty();
-}
 
 std::set<std::uint32_t> visited(const Tree& tree, const Frustum& frustum) {
   std::set<std::uint32_t> faces;
@@ -58,24 +35,6 @@ std::set<std::uint32_t> visited(const Tree& tree, const Frustum& frustum) {
   return faces;
 }
 
-// Of a camera, as engines compute it.
-Frustum::ViewProjection view_projection(const Eigen::Vector3d& eye, const Eigen::Vector3d& target,
-                                        double field_of_view, double near, double far) {
-  const Eigen::Vector3d back = (eye - target).normalized();
-  const Eigen::Vector3d right = Eigen::Vector3d(0.1, 1, 0.2).cross(back).normalized();
-  Frustum::ViewProjection view = Frustum::ViewProjection::Identity();
-  view.block<1, 3>(0, 0) = right.transpose();
-  view.block<1, 3>(1, 0) = back.cross(right).transpose();
-  view.block<1, 3>(2, 0) = back.transpose();
-  view.block<3, 1>(0, 3) = -(view.block<3, 3>(0, 0) * eye);
-  const double zoom = 1 / std::tan(field_of_view / 2);
-  Frustum::ViewProjection projection = Frustum::ViewProjection::Zero();
-  projection.diagonal() << zoom / 1.5, zoom, far / (near - far), 0;
-  projection(2, 3) = near * far / (near - far);
-  projection(3, 2) = -1;
-  return projection * view;
-}
-
 class Frustums : public testing::TestWithParam<test::Encoding> {
  protected:
   double unit() { return std::uniform_real_distribution<double>(-1, 1)(random_); }
@@ -86,8 +45,8 @@ class Frustums : public testing::TestWithParam<test::Encoding> {
     const Eigen::Vector3d eye = box.center() + size * vector();
     const Eigen::Vector3d target = box.center() + 0.3 * size * vector();
     if (i % 3 == 0) {
-      return Frustum::of(view_projection(eye, target, 0.2 + 0.5 * std::abs(unit()), 0.01 * size,
-                                         (1 + unit()) * size + 0.02 * size));
+      return Frustum::of(test::view_projection(eye, target, 0.2 + 0.5 * std::abs(unit()),
+                                               0.01 * size, (1 + unit()) * size + 0.02 * size));
     }
     if (i % 3 == 1) {  // a box whose sides meet corners of the mesh
       const Eigen::Vector3d low = box.center() + 0.4 * vector().cwiseProduct(box.sizes());
@@ -132,10 +91,10 @@ TEST_P(Frustums, HaveTheFacesOfExtendedPrecision) {
           const Result<Triangle> triangle = cooked.tree.triangle({kNoFaceId, f}, half);
           if (!triangle) continue;
           const LongTriangle exact = test::long_triangle(*triangle);
-          if (touches(frustum, exact, size, 0)) {
+          if (test::touches(frustum, exact, size, 0)) {
             ASSERT_TRUE(faces.contains(f)) << f;
           }
-          if (touches(frustum, exact, size, 0x1p-46L)) may.insert(f);
+          if (test::touches(frustum, exact, size, 0x1p-46L)) may.insert(f);
         }
       }
       for (const std::uint32_t f : faces) ASSERT_TRUE(may.contains(f)) << f;
@@ -166,7 +125,7 @@ TEST(Frustum, DepthsOfBothKindsAndReversed) {
   const test::CookedTree cooked = test::cook_tree(test::terrain(8, 1), CodecId::kWide8);
   const Eigen::Vector3d center = cooked.tree.bounds().center();
   const double size = cooked.tree.bounds().diagonal().norm();
-  const Frustum::ViewProjection matrix = view_projection(
+  const Frustum::ViewProjection matrix = test::view_projection(
       center + Eigen::Vector3d(0.2, 0.3, 0.8) * size, center, 0.5, 0.5 * size, 0.9 * size);
   const std::set<std::uint32_t> faces = visited(cooked.tree, Frustum::of(matrix));
   EXPECT_GT(faces.size(), 0u);

@@ -130,6 +130,9 @@ TEST(StackOfScenes, IsAsDocumented) {
   expect(64, "cast_all", [&] {
     EXPECT_TRUE(cast_all(scene, capsule, {{1, 0, 0}}, [](const auto&) { return 1e9; }).ok());
   });
+  Frustum all_space;
+  for (Frustum::Plane& plane : all_space.planes) plane << 0, 0, 0, 1;
+  expect(64, "overlap_frustum", [&] { EXPECT_TRUE(overlap_frustum(scene, all_space, all).ok()); });
   expect(64, "collide", [&] { EXPECT_TRUE(collide(scene, Sphere{{0, 0, 0}, 9}, all).ok()); });
   const std::array<Eigen::Vector3d, 4> points = {{{0, 0, 0}, {9, 0, 0}, {0, 9, 0}, {0, 0, 9}}};
   const ConvexHull hull{points, {0, 0, 0}, {1, 0.5, 0.25, 0.125}};
