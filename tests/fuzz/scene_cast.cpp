@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Casts and contacts of spheres, capsules and boxes in the scene of any file, and all hits of rays.
+// Casts and contacts of spheres, capsules, boxes and hulls in the scene of any file, and all hits
+// of rays.
 #include "tests/fuzz/shape_input.h"
 #include "tests/fuzz/tree_target.h"
 

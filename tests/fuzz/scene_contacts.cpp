@@ -7,7 +7,19 @@ namespace boxtree::fuzz {
 void run(Bytes input) {
   query_scene(input, [](const Scene& scene, const QueryInput& query, const auto& check) {
     const auto all = [](const ScenePair&) { return true; };
-    switch (query.option(2) % 3) {
+    const auto with_points = [](const ScenePairContact&) { return true; };
+    switch (query.option(2) % 6) {
+      case 3:
+        check(pair_contacts(scene, with_points, query.limits()));
+        break;
+      case 4:
+        check(pair_contacts_of(scene, query.option(3), with_points, query.limits()));
+        break;
+      case 5:
+        if (scene.trees().empty()) return;
+        check(pair_contacts(scene, scene.trees()[0], query.pose(), with_points, kAllLayers,
+                            query.limits()));
+        break;
       case 0:
         check(contacts(scene, all, query.limits()));
         break;

@@ -1,8 +1,5 @@
 // SPDX-License-Identifier: MIT
 // Casts of spheres, capsules, boxes and hulls against the tree of any file.
-#include <array>
-#include <span>
-
 #include "tests/fuzz/shape_input.h"
 #include "tests/fuzz/tree_target.h"
 
@@ -36,18 +33,7 @@ void cast(const Tree& tree, const Shape& shape, const QueryInput& query, const C
 
 void run(Bytes input) {
   query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
-    if (query.option(2) % 4 != 3) {
-      return with_shape(query, [&](const auto& shape) { cast(tree, shape, query, check); });
-    }
-    const double size = query.number(7);
-    const Eigen::Vector3d extent = query.vector(8);
-    const std::array<Eigen::Vector3d, 5> points{extent, Eigen::Vector3d::Zero(),
-                                                Eigen::Vector3d(size, 0, 0), -extent, extent};
-    ConvexHull hull{std::span(points).first(1 + query.option(4) % points.size()),
-                    query.vector(0),
-                    {1, 0, 0, 0}};
-    if (query.option(4) % 2 == 1) hull.rotation = {size, extent[0], extent[1], extent[2]};
-    cast(tree, hull, query, check);
+    with_shape(query, [&](const auto& shape) { cast(tree, shape, query, check); });
   });
 }
 
