@@ -143,14 +143,9 @@ Result<Json> answer_pair_contacts(const Tree& first, const Tree& second,
   Json contacts = Json::array();
   const Result<Visit> visit = pair_contacts(
       first, Pose::Identity(), second, request.second.pose, [&](const PairContact& contact) {
-        contacts.push_back(
-            {{"faces", {face_json(contact.faces.first), face_json(contact.faces.second)}},
-             {"triangles", {contact.first_triangle, contact.second_triangle}},
-             {"point", to_json(contact.point)},
-             {"start", to_json(contact.start)},
-             {"end", to_json(contact.end)},
-             {"normal", to_json(contact.normal)},
-             {"depth", contact.depth}});
+        Json& json = contacts.emplace_back();
+        json["faces"] = {face_json(contact.faces.first), face_json(contact.faces.second)};
+        json.update(contact_json(contact));
         return !request.first_only;
       });
   if (!visit) return visit.error();
@@ -295,6 +290,15 @@ class FieldTexts {
 };
 
 }  // namespace
+
+Json contact_json(const PairContact& contact) {
+  return {{"triangles", {contact.first_triangle, contact.second_triangle}},
+          {"point", to_json(contact.point)},
+          {"start", to_json(contact.start)},
+          {"end", to_json(contact.end)},
+          {"normal", to_json(contact.normal)},
+          {"depth", contact.depth}};
+}
 
 Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& mesh) {
   ImportOptions options = careful_import();

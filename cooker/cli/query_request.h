@@ -216,9 +216,7 @@ struct FrustumRequest {
   static constexpr const char* kExpected = "finite numbers, and finite sums of the rows";
   static constexpr KindExample kExamples[] = {
       {"The faces in a box from -1 to 1 along x and y and from 0 to 2 along z",
-       "boxtree query bunny.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1"},
-      {"The instances of a level that may be in it",
-       "boxtree query level.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1 --instances"}};
+       "boxtree query bunny.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1"}};
 
   Frustum::ViewProjection matrix = Frustum::ViewProjection::Identity();
   bool open_gl = false;
@@ -345,12 +343,18 @@ struct ContactsRequest {
        "boxtree query level.bxt contacts --move Crate=0.8,2.1,-6.8"}};
 
   bool first_only = false;
+  bool points = false;
 
   template <class Fields>
   void describe(Fields& fields) {
     fields.optional("first", first_only, "Stop at the first contact");
+    fields.optional("points", points,
+                    "Pairs of triangles instead, with where they touch and how they part");
   }
 };
+
+/// What the JSON of a contact of two triangles has besides their faces.
+[[nodiscard]] Json contact_json(const PairContact& contact);
 
 /// A kind that is here is one of batches and of the command line, without another line of theirs.
 using QueryRequest =

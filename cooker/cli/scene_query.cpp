@@ -124,32 +124,60 @@ Result<Json> answer(const Scene& scene, const PointRequest& request) {
   return json;
 }
 
-// Pairs as two objects each, of which the second is the other body's.
+// Two objects, of which the second is the other body's.
+Json pair_json(const Scene& scene, const ScenePair& pair) {
+  Json first, second;
+  add_face(scene, pair.first, first);
+  if (pair.second.instance == kNoInstance) {
+    second["face"] = face_json(pair.second.face);
+  } else {
+    add_face(scene, pair.second, second);
+  }
+  return {first, second};
+}
+
 template <class AnswerRequest>
 Result<Json> answer_pairs(const Scene& scene, bool first_only, AnswerRequest query_pairs) {
   Json pairs = Json::array();
   const Result<Visit> visit = query_pairs([&](const ScenePair& pair) {
-    Json first, second;
-    add_face(scene, pair.first, first);
-    if (pair.second.instance == kNoInstance) {
-      second["face"] = face_json(pair.second.face);
-    } else {
-      add_face(scene, pair.second, second);
-    }
-    pairs.push_back({first, second});
+    pairs.push_back(pair_json(scene, pair));
     return !first_only;
   });
   if (!visit) return visit.error();
   return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
 }
 
+template <class AnswerRequest>
+Result<Json> answer_pair_contacts(const Scene& scene, bool first_only,
+                                  AnswerRequest query_contacts) {
+  Json contacts = Json::array();
+  const Result<Visit> visit = query_contacts([&](const ScenePairContact& contact) {
+    Json& json = contacts.emplace_back();
+    json["faces"] = pair_json(scene, {{contact.first_instance, contact.faces.first},
+                                      {contact.second_instance, contact.faces.second}});
+    json.update(contact_json(contact));
+    return !first_only;
+  });
+  if (!visit) return visit.error();
+  return Json{{"hit", !contacts.empty()}, {"count", contacts.size()}, {"contacts", contacts}};
+}
+
 Result<Json> answer(const Scene& scene, const ContactsRequest& request) {
+  if (request.points) {
+    return answer_pair_contacts(scene, request.first_only, [&](ScenePairContactVisitor visitor) {
+      return pair_contacts(scene, visitor);
+    });
+  }
   return answer_pairs(scene, request.first_only,
                       [&](ScenePairVisitor visitor) { return contacts(scene, visitor); });
 }
 
 Result<Json> answer_pair(const Scene& scene, const Tree& second, const PairRequest& request) {
-  if (request.contacts) return not_for_scenes("where triangles touch");
+  if (request.contacts) {
+    return answer_pair_contacts(scene, request.first_only, [&](ScenePairContactVisitor visitor) {
+      return pair_contacts(scene, second, request.second.pose, visitor);
+    });
+  }
   return answer_pairs(scene, request.first_only, [&](ScenePairVisitor visitor) {
     return overlap_pairs(scene, second, request.second.pose, visitor);
   });

@@ -243,21 +243,26 @@ class PairContacts {
 
 }  // namespace
 
-Result<Visit> pair_contacts(const Tree& first_tree, const Pose& first_pose, const Tree& second_tree,
-                            const Pose& second_pose, PairContactVisitor visitor,
-                            const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundTree& first = BoundTree::of(first_tree);
-  const BoundTree& second = BoundTree::of(second_tree);
+Result<Visit> visit_pair_contacts(const BoundTree& first, const Pose& first_pose,
+                                  const BoundTree& second, const Pose& second_pose,
+                                  PairContactVisitor visitor, QueryWork& work) {
   const std::optional<RelativePose> pose =
       RelativePose::make(first, first_pose, second, second_pose);
   if (!pose) return Errc::kInvalidPose;
   PairContacts contacts(first, first_pose, second, *pose, visitor);
-  QueryWork work(limits);
   const auto visit_pair = [&](const FacePair& faces) { return contacts.visit(faces); };
   const Result<Visit> visit = visit_pairs(first, first_pose, second, second_pose, visit_pair, work);
   if (contacts.error() != Errc::kOk) return contacts.error();
   return visit;
+}
+
+Result<Visit> pair_contacts(const Tree& first, const Pose& first_pose, const Tree& second,
+                            const Pose& second_pose, PairContactVisitor visitor,
+                            const QueryLimits& limits) {
+  const DefaultFloatState state;
+  QueryWork work(limits);
+  return visit_pair_contacts(BoundTree::of(first), first_pose, BoundTree::of(second), second_pose,
+                             visitor, work);
 }
 
 }  // namespace boxtree

@@ -12,5 +12,9 @@ namespace boxtree {
 /// overlap_pairs as a part of a larger query.
 Result<Visit> visit_pairs(const BoundTree& first, const Pose& first_pose, const BoundTree& second,
                           const Pose& second_pose, PairVisitor visitor, QueryWork& work);
+/// pair_contacts likewise.
+Result<Visit> visit_pair_contacts(const BoundTree& first, const Pose& first_pose,
+                                  const BoundTree& second, const Pose& second_pose,
+                                  PairContactVisitor visitor, QueryWork& work);
 
 }  // namespace boxtree

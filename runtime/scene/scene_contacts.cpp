@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Contacts in a scene: candidates by their boxes in the world, then tree against tree.
-#include <boxtree/scene.h>
-
 #include "runtime/primitive/float_state.h"
 #include "runtime/query/pair_query.h"
-#include "runtime/scene/scene_walk.h"
+#include "runtime/scene/scene_pairs.h"
 
 namespace boxtree {
 namespace {
@@ -20,7 +18,7 @@ struct BodyInScene : BoxInFrame {
   double condition;            // of its placement
   std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
   bool is_first;               // in reports
-  ScenePairVisitor visitor;
+  BodyPairVisitor visitor;
   Errc error = Errc::kOk;
   bool stopped = false;
 
@@ -28,20 +26,10 @@ struct BodyInScene : BoxInFrame {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     if (instance == own_instance) return true;
-    const bool swap = other.placement.condition() < condition;
-    const auto report = [&](const FaceRef& own, const FaceRef& met) {
-      const SceneFace body{own_instance, own}, placed{instance, met};
-      return is_first ? visitor({body, placed}) : visitor({placed, body});
-    };
-    const Result<Visit> visited =
-        swap ? visit_pairs(
-                   *other.tree, other.pose, tree, pose,
-                   [&](const FacePair& pair) { return report(pair.second, pair.first); },
-                   admission.work)
-             : visit_pairs(
-                   tree, pose, *other.tree, other.pose,
-                   [&](const FacePair& pair) { return report(pair.first, pair.second); },
-                   admission.work);
+    const BodyPair::Placed own{own_instance, tree, pose}, met{instance, *other.tree, other.pose};
+    const Result<Visit> visited = other.placement.condition() < condition
+                                      ? visitor({met, own, is_first}, admission.work)
+                                      : visitor({own, met, !is_first}, admission.work);
     if (!visited) error = visited.code();
     stopped = visited && *visited == Visit::kStopped;
     return !is_done();
@@ -66,7 +54,7 @@ struct LaterMoving {
 
 BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
                     const BoundScene::Placed& placed, const PlacementBounds& bounds,
-                    ScenePairVisitor visitor, QueryWork& work) {
+                    BodyPairVisitor visitor, QueryWork& work) {
   return {{scene.to_frame(bounds.world)},
           {scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
           *placed.tree,
@@ -83,9 +71,8 @@ bool answers_contacts(const BoundScene& scene, std::uint32_t instance, std::uint
 
 }  // namespace
 
-Result<Visit> contacts(const Scene& queried, ScenePairVisitor visitor, const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
+Result<Visit> visit_moving_pairs(const BoundScene& scene, BodyPairVisitor visitor,
+                                 const QueryLimits& limits) {
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const BoundScene::Moving& moving : scene.moving()) {
@@ -103,10 +90,8 @@ Result<Visit> contacts(const Scene& queried, ScenePairVisitor visitor, const Que
   return Visit::kComplete;
 }
 
-Result<Visit> contacts_of(const Scene& queried, std::uint32_t instance, ScenePairVisitor visitor,
-                          const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
+Result<Visit> visit_pairs_of(const BoundScene& scene, std::uint32_t instance,
+                             BodyPairVisitor visitor, const QueryLimits& limits) {
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   if (instance >= scene.instance_count()) return Errc::kInstanceIndex;
@@ -119,13 +104,11 @@ Result<Visit> contacts_of(const Scene& queried, std::uint32_t instance, ScenePai
   return outcome_of(visit_overlapping_instances(scene, body), body);
 }
 
-Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const Pose& pose,
-                            ScenePairVisitor visitor, LayerMask layers, const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
+Result<Visit> visit_pairs_with(const BoundScene& scene, const BoundTree& tree, const Pose& pose,
+                               BodyPairVisitor visitor, LayerMask layers,
+                               const QueryLimits& limits) {
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
-  const BoundTree& tree = BoundTree::of(body_tree);
   const std::optional<Placement> placement = scene.place_in_units(tree, pose);
   if (!placement) return Errc::kInvalidPose;
   if (tree.empty()) return Visit::kComplete;
@@ -140,6 +123,43 @@ Result<Visit> overlap_pairs(const Scene& queried, const Tree& body_tree, const P
                    false,
                    visitor};
   return outcome_of(visit_overlapping_instances(scene, body), body);
+}
+
+namespace {
+
+// Passes on the pairs of faces of two bodies.
+struct FacePairs {
+  ScenePairVisitor visitor;
+
+  Result<Visit> operator()(const BodyPair& pair, QueryWork& work) const {
+    const auto report = [&](const FacePair& faces) {
+      const SceneFace a{pair.first.instance, faces.first};
+      const SceneFace b{pair.second.instance, faces.second};
+      return pair.is_reported_swapped ? visitor({b, a}) : visitor({a, b});
+    };
+    return visit_pairs(pair.first.tree, pair.first.pose, pair.second.tree, pair.second.pose, report,
+                       work);
+  }
+};
+
+}  // namespace
+
+Result<Visit> contacts(const Scene& scene, ScenePairVisitor visitor, const QueryLimits& limits) {
+  const DefaultFloatState state;
+  return visit_moving_pairs(BoundScene::of(scene), FacePairs{visitor}, limits);
+}
+
+Result<Visit> contacts_of(const Scene& scene, std::uint32_t instance, ScenePairVisitor visitor,
+                          const QueryLimits& limits) {
+  const DefaultFloatState state;
+  return visit_pairs_of(BoundScene::of(scene), instance, FacePairs{visitor}, limits);
+}
+
+Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, const Pose& pose,
+                            ScenePairVisitor visitor, LayerMask layers, const QueryLimits& limits) {
+  const DefaultFloatState state;
+  return visit_pairs_with(BoundScene::of(scene), BoundTree::of(tree), pose, FacePairs{visitor},
+                          layers, limits);
 }
 
 }  // namespace boxtree

@@ -234,7 +234,7 @@ expect 1 "$boxtree" query cube.bxt frustum --matrix 1,2,3
 grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
 grep -q 'invalid_query: cube.bxt: frustum: expected finite numbers, .*found matrix \[inf,0,0,0,' err
-expect 3 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
+expect 1 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
 grep -q 'no_scene: cube.bxt: instances are those of a scene, and this is one tree' err
 expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --json
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
@@ -820,7 +820,7 @@ names 'cast: "sphere": expected a number, found "1"' '{"kind":"cast","at":[0,0,9
 names "cast: expected the keys at, direction, sphere, capsule, box, hull, rotation, t_max, any, all, back_faces, move or kind, found \"spere\"; "\
 "did you mean 'sphere'?" '{"kind":"cast","at":[0,0,9],"direction":[0,0,-1],"spere":1}'
 names 'frustum: "matrix": expected an array of 16 numbers, found [1]' '{"kind":"frustum","matrix":[1]}'
-names 'contacts: expected the keys first, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
+names 'contacts: expected the keys first, points, move or kind, found "hat"' '{"kind":"contacts","hat":1}'
 names '"kind": expected a text, found 3' '{"kind":3}'
 kinds='ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts'
 # A misspelt key, not the one that is missing because of it.

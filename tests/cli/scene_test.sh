@@ -138,6 +138,14 @@ expect 0 "$boxtree" query level.bxt box --min=-1,0,-5 --max 1,1,-3 --json
 same "$(jq -c '[.faces[] | [.instance, .face]] | sort' out)" "$seen"
 expect 0 "$boxtree" query level.bxt frustum --matrix 1,0,0,0,0,2,0,-1,0,0,0.5,2.5,0,0,0,1 --instances --json
 jq -e --argjson seen "$seen" '.count == (.instances | length) and ([.instances[].instance] as $all | $seen | all(.[0] as $i | $all | index($i) != null))' out >/dev/null
+# Where what moves touches: as many pairs of faces as without points.
+expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --json
+pairs=$(jq -c '[.pairs[] | [.[0].face, .[1].instance, .[1].face]] | sort' out)
+expect 0 "$boxtree" query level.bxt contacts --move 'Crate=0.8,2.1,-6.8' --points --json
+same "$(jq -c '[.contacts[].faces | [.[0].face, .[1].instance, .[1].face]] | unique' out)" "$pairs"
+jq -e '[.contacts[] | .faces[0].name == "Crate" and .depth >= 0 and (.point | length) == 3] | all' out >/dev/null
+expect 0 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose 0.8,2.1,-6.8 --contacts --json
+jq -e '.hit and ([.contacts[] | .faces[0].instance != null and .faces[1].instance == null] | all)' out >/dev/null
 printf '%s\n' '{"kind":"cast","sphere":0.25,"at":[0,10,-3.3],"direction":[0,-1,0]}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -c '.name' out)" '"Step 3"'

@@ -141,6 +141,8 @@ RUNS = {
         "query crate.bxt pair arrays.bxt --contacts",
         "query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0",
         "query parts.bxt contacts --move Crate=0.8,2.1,-6.8",
+        "query parts.bxt contacts --move Crate=0.8,2.1,-6.8 --points",
+        "query nameless.bxt pair crate.bxt --pose 0,0.3,0 --contacts",
         "query nameless.bxt pair crate.bxt --pose 0,0.3,0",
     ],
     "query FILE distance": [

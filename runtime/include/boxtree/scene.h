@@ -277,4 +277,29 @@ BOXTREE_API Result<Visit> overlap_pairs(const Scene& scene, const Tree& tree, co
                                         ScenePairVisitor visitor, LayerMask layers = kAllLayers,
                                         const QueryLimits& limits = {});
 
+/// Where two triangles touch, one of an instance and one of another instance or body: faces are of
+/// the trees of these. The normal is that along which the second triangle leaves the first soonest.
+struct ScenePairContact : PairContact {
+  std::uint32_t first_instance = kNoInstance;   ///< The instance of the first triangle.
+  std::uint32_t second_instance = kNoInstance;  ///< Of the second one; kNoInstance for a body.
+};
+
+/// Receives one contact after the other; returns whether to go on.
+using ScenePairContactVisitor = FunctionRef<bool(const ScenePairContact&)>;
+
+/// The same pairs as contacts(), triangle by triangle, with where they touch, as pair_contacts() of
+/// two trees. The first triangle is that of the moving instance.
+BOXTREE_API Result<Visit> pair_contacts(const Scene& scene, ScenePairContactVisitor visitor,
+                                        const QueryLimits& limits = {});
+/// Those of contacts_of(). The first triangle is that of the instance.
+BOXTREE_API Result<Visit> pair_contacts_of(const Scene& scene, std::uint32_t instance,
+                                           ScenePairContactVisitor visitor,
+                                           const QueryLimits& limits = {});
+/// Those of overlap_pairs(). The first triangle is that of the scene, so that the normal is the one
+/// along which the body leaves it.
+BOXTREE_API Result<Visit> pair_contacts(const Scene& scene, const Tree& tree, const Pose& pose,
+                                        ScenePairContactVisitor visitor,
+                                        LayerMask layers = kAllLayers,
+                                        const QueryLimits& limits = {});
+
 }  // namespace boxtree

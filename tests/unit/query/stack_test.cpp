@@ -140,6 +140,7 @@ TEST(StackOfScenes, IsAsDocumented) {
     EXPECT_TRUE(cast_closest(scene, hull, {{1, 0, 0}}).ok());
   });
   expect(200, "collide of a hull", [&] { EXPECT_TRUE(collide(scene, hull, all).ok()); });
+  expect(352, "pair_contacts", [&] { EXPECT_TRUE(pair_contacts(scene, all).ok()); });
   expect(352, "contacts", [&] { EXPECT_TRUE(contacts(scene, all).ok()); });
 }
 
