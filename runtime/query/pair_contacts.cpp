@@ -181,18 +181,17 @@ class PairContacts {
 
   // Returns whether to go on.
   [[nodiscard]] bool visit(const FacePair& faces) {
-    for (std::uint32_t i = 0; i < 2; ++i) {
-      const Result<Triangle> of_first = first_.triangle(faces.first, i);
-      if (!of_first) return i > 0 || failed(of_first.code());
-      for (std::uint32_t j = 0; j < 2; ++j) {
-        const Result<Triangle> of_second = second_.triangle(faces.second, j);
-        if (!of_second) {
-          if (j == 0) return failed(of_second.code());
-          break;
-        }
-        const Triangle moved = pose_.to_first().apply(*of_second);
-        if (!triangles_intersect(*of_first, moved)) continue;
-        PairContact contact = contact_of(*of_first, moved);
+    // Not by triangle(), whose error for the second half of a triangle has a text.
+    TriangleBatch of_first, of_second;
+    if (!read(first_, faces.first, of_first) || !read(second_, faces.second, of_second)) {
+      return false;
+    }
+    for (std::uint32_t i = 0; i < of_first.count; ++i) {
+      const Triangle fixed = of_first.triangle(i);
+      for (std::uint32_t j = 0; j < of_second.count; ++j) {
+        const Triangle moved = pose_.to_first().apply(of_second.triangle(j));
+        if (!triangles_intersect(fixed, moved)) continue;
+        PairContact contact = contact_of(fixed, moved);
         contact.faces = faces;
         contact.first_triangle = i;
         contact.second_triangle = j;
@@ -203,9 +202,9 @@ class PairContacts {
   }
 
  private:
-  [[nodiscard]] bool failed(Errc error) noexcept {
-    error_ = error;
-    return false;
+  [[nodiscard]] bool read(const BoundTree& tree, const FaceRef& face, TriangleBatch& out) noexcept {
+    error_ = tree.leaves().read(tree.original_of(face.index), 1, out);
+    return error_ == Errc::kOk;
   }
 
   // Both in the first tree's space.

@@ -176,6 +176,12 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
            return overlap_pairs(first, here, second, q.near, visitor, limits);
          });
        }},
+      {"pair_contacts", 320, true, true,
+       [=](const Tree& first, const Tree& second, const QueryLimits& limits) {
+         return outcome_of_visit([&](PairContactVisitor visitor) {
+           return pair_contacts(first, here, second, q.near, visitor, limits);
+         });
+       }},
       {"first_contact", 320, true, true,
        [=](const Tree& first, const Tree& second, const QueryLimits& limits) {
          return outcome(first_contact(first, here, second, q.near, limits), number_of);
