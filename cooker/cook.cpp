@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <numeric>
 #include <utility>
 
 #include <fmt/format.h>
@@ -73,6 +74,7 @@ class Cook {
     if (Status status = choose_encodings(); !status) return status.error();
     assemble();
     if (options_.number_by_tree) number_by_tree(file_.trees.front());
+    if (!input_.has_top_level) keep_materials();
     if (Status status = keep_to_bytes(); !status) return status.error();
     if (Status status = summarise(); !status) return status.error();
     return std::move(file_);
@@ -116,6 +118,9 @@ class Cook {
     if (!imported) return imported.error();
     if (Status status = check_digits(imported->report); !status) return status;
     input_.scene.meshes[mesh].mesh = std::move(imported->mesh);
+    std::vector<MaterialRun>& runs = input_.scene.meshes[mesh].materials;
+    runs = std::move(imported->materials.runs);
+    renumber(runs, MaterialJoin(input_.scene.materials).add(imported->materials.names));
     input_.imports.push_back(std::move(imported->report));
     return {};
   }
@@ -146,7 +151,10 @@ class Cook {
 
   [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
     SearchOptions search = static_cast<const SearchOptions&>(options_);
-    if (!input_.has_top_level) return search;
+    if (!input_.has_top_level) {
+      search.face_order = options_.materials;
+      return search;
+    }
     if (profile_.active_edges) search.active_edges = profile_.active_edges->value;
     const PlannedMesh& planned = plan_.meshes[mesh];
     search.codec = planned.codec;
@@ -192,6 +200,7 @@ class Cook {
         return Error{Errc::kProfileInvalid,
                      mesh.name + ": hidden_faces leave nothing of it; leave_out drops an object"};
       }
+      take_materials(m);
       SearchOptions search = search_options(m, (*grids)[m].has_value());
       if (options_.number_by_tree) {
         // Ids of the faces of the mesh instead of polygons: in the tree they give its order.
@@ -215,6 +224,19 @@ class Cook {
       tried_.push_back(std::move(*tried));
     }
     return {};
+  }
+
+  // Runs that no face has any more, since faces were dropped, are left out where they are too many
+  // to be stored.
+  void take_materials(std::size_t m) {
+    const SourceMesh& mesh = input_.scene.meshes[m].mesh;
+    std::vector<MaterialRun>& runs = input_.scene.meshes[m].materials;
+    if (runs.empty() || (input_.has_top_level && runs.size() <= mesh.faces.size())) return;
+    std::vector<std::uint32_t> ids;
+    for (std::size_t face = 0; face < mesh.faces.size(); ++face) ids.push_back(mesh.face_id(face));
+    std::vector<std::uint32_t> of_faces = materials_of_faces(mesh, runs);
+    runs = runs_of(ids, of_faces);
+    if (!input_.has_top_level) materials_of_faces_[m] = std::move(of_faces);
   }
 
   // Trees that share their geometry store are chosen together.
@@ -310,7 +332,7 @@ class Cook {
   void place_trees() {
     SceneParts& parts = file_.scene.emplace();
     parts.queries = plan_.queries;
-    number_materials(parts);
+    number_materials(parts.materials);
     std::vector<std::uint32_t> tree_of_mesh(plan_.meshes.size(), 0);
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       tree_of_mesh[mesh_of_tree_[t]] = static_cast<std::uint32_t>(t);
@@ -333,8 +355,44 @@ class Cook {
     add_left_out(tree_of_mesh, parts);
   }
 
+  // Of trees without a top level: the smaller of both forms.
+  void keep_materials() {
+    if (!options_.materials) return;
+    number_materials(file_.materials.names);
+    const std::uint64_t width =
+        material_number_bytes(static_cast<std::uint32_t>(file_.materials.names.size()));
+    for (std::size_t t = 0; t < file_.trees.size(); ++t) {
+      const EncodedTree& tree = file_.trees[t];
+      TreeMaterials& materials = file_.materials.of_trees.emplace_back();
+      const auto known = materials_of_faces_.find(mesh_of_tree_[t]);
+      if (known == materials_of_faces_.end()) continue;
+      std::vector<std::uint32_t>& faces = materials.faces;
+      for (const std::uint32_t face : tree.face_order) {
+        faces.push_back(material_number_[known->second[face]]);
+      }
+      std::vector<MaterialRun>& runs = materials.runs;
+      if (options_.number_by_tree) {
+        std::vector<std::uint32_t> ids(faces.size());
+        std::iota(ids.begin(), ids.end(), 0u);
+        runs = runs_of(ids, faces);
+      } else {
+        for (const MaterialRun& run : input_.scene.meshes[mesh_of_tree_[t]].materials) {
+          runs.push_back({run.first_face, material_number_[run.material]});
+        }
+      }
+      // One run covers all faces, whatever their ids.
+      const bool has_ids = tree.faces_in_source_order || !tree.geometry.face_ids.empty();
+      const bool are_found = runs.size() == 1 || has_ids;
+      if (are_found && runs.size() * sizeof(MaterialRun) <= faces.size() * width) {
+        faces.clear();
+      } else {
+        runs.clear();
+      }
+    }
+  }
+
   // Numbers the materials of meshes that keep theirs, in the order of the source.
-  void number_materials(SceneParts& parts) {
+  void number_materials(std::vector<std::string>& names) {
     std::vector<bool> used(input_.scene.materials.size(), false);
     for (const std::size_t m : mesh_of_tree_) {
       if (!plan_.meshes[m].materials) continue;
@@ -343,8 +401,8 @@ class Cook {
     material_number_.assign(used.size(), kNoMaterial);
     for (std::size_t i = 0; i < used.size(); ++i) {
       if (!used[i]) continue;
-      material_number_[i] = static_cast<std::uint32_t>(parts.materials.size());
-      parts.materials.push_back(plan_.material_names ? input_.scene.materials[i] : std::string());
+      material_number_[i] = static_cast<std::uint32_t>(names.size());
+      names.push_back(plan_.material_names ? input_.scene.materials[i] : std::string());
     }
   }
 
@@ -517,6 +575,7 @@ class Cook {
   SourceMesh numbered_;                  // as imported, then in the order of the tree
   std::vector<std::uint32_t> polygons_;  // source numbers of its faces; empty: the same
 
+  std::map<std::size_t, std::vector<std::uint32_t>> materials_of_faces_;  // of meshes that have any
   std::vector<std::uint32_t> material_number_;
   CookedFile file_;
 };

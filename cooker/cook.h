@@ -28,6 +28,9 @@ struct CookOptions : SearchOptions {
   /// FaceRef::index are the same. For one tree without a top level, imported with
   /// keep_polygon_corners.
   bool number_by_tree = false;
+  /// [false] Keep materials of trees without a top level; import has to fill them in
+  /// (ImportOptions::materials). Scenes keep theirs unless a profile leaves them out.
+  bool materials = false;
   ImportOptions import;
 };
 
@@ -90,8 +93,11 @@ struct CookedFile {
   std::string record;
   Summary summary;  // its trees have names and the candidates they were chosen from
   std::vector<SourceCorners> tree_order;  // with number_by_tree: of each face of the tree
+  Materials materials;                    // without a top level
 
-  [[nodiscard]] FileParts parts() const { return {trees, record, scene ? &*scene : nullptr}; }
+  [[nodiscard]] FileParts parts() const {
+    return {trees, record, scene ? &*scene : nullptr, &materials};
+  }
 };
 
 /// Cooks a scene: plan -> build -> encode -> choose -> account. With a top level, `profile` decides

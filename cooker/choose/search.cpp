@@ -132,7 +132,7 @@ void encode_geometry(const Source& source, const SearchOptions& options,
   }
   encode_duplicates(originals, tree.geometry);
   add_face_ids(source, options, order, tree);
-  if (options.active_edges) tree.face_order = std::move(order);
+  if (options.active_edges || options.face_order) tree.face_order = std::move(order);
 }
 
 // Codecs that share a build tree and its order of faces; only their nodes differ. The build tree is
@@ -155,7 +155,7 @@ Family binary_family(const Source& source, const SearchOptions& options,
   if (hold_source_numbers) {
     family.tree.faces_in_source_order = true;
     family.tree.geometry = encode_external_geometry();
-    if (options.active_edges) {
+    if (options.active_edges || options.face_order) {
       family.tree.face_order.resize(source.mesh.faces.size());
       std::iota(family.tree.face_order.begin(), family.tree.face_order.end(), 0u);
     }

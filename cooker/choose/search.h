@@ -33,6 +33,8 @@ struct SearchOptions {
   /// `wishes`.
   bool keep_all = false;
   bool face_ids = true;
+  /// Keep EncodedTree::face_order. [false]
+  bool face_order = false;
   /// Store active edges: those at which the surface bends away by more than so many degrees [none].
   std::optional<double> active_edges;
   /// Those of the mesh, if they are known already, as in a scene [none: found in the mesh alone].

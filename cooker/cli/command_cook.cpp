@@ -335,6 +335,10 @@ void add_cook_command(Command& program, int& status) {
           ->above_zero("a factor");
   Option* no_face_ids = command.add_flag("--no-face-ids", arguments->no_face_ids,
                                          "Leave the source face numbers out");
+  Option* materials =
+      command.add_flag("--materials", arguments->job.options.materials,
+                       "Keep the materials of faces of trees: usemtl of OBJ files, materials of "
+                       "glTF, FBX and others [else left out; scenes have theirs]");
   Option* active_edges = command.add_option(
       "--active-edges", arguments->job.options.active_edges,
       "Store which edges are active: boundaries, and those at which the surface bends away by more "
@@ -395,7 +399,7 @@ void add_cook_command(Command& program, int& status) {
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
   for (Option* option : {codec, goal, exact, tolerance, grid_bits, grid_step, budget, slowdown,
-                         no_face_ids, active_edges, external}) {
+                         no_face_ids, materials, active_edges, external}) {
     profile->excludes(option);
   }
   command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");

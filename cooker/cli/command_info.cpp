@@ -26,6 +26,7 @@
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/frame.h"
+#include "runtime/tree/materials.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -40,6 +41,7 @@ struct TreeBytes {
   std::uint64_t geometry = 0;
   std::uint64_t face_ids = 0;
   std::uint64_t active_edges = 0;
+  std::uint64_t materials = 0;
   std::uint64_t other = 0;
 };
 
@@ -48,8 +50,11 @@ TreeBytes bytes_of(const File& file, std::uint32_t index) {
     return OpenFile::of(file).section(kind, index).size();
   };
   return {size(SectionKind::kNodes) + size(SectionKind::kDuplicates),
-          size(SectionKind::kVertices) + size(SectionKind::kCorners), size(SectionKind::kFaceIds),
-          size(SectionKind::kActiveEdges), sizeof(TreeRecord)};
+          size(SectionKind::kVertices) + size(SectionKind::kCorners),
+          size(SectionKind::kFaceIds),
+          size(SectionKind::kActiveEdges),
+          size(SectionKind::kMaterialRuns) + size(SectionKind::kFaceMaterials),
+          sizeof(TreeRecord)};
 }
 
 double per_triangle(std::uint64_t bytes, const TreeRecord& record) {
@@ -88,6 +93,23 @@ Json edge_angle_json(const File& file, std::uint32_t index) {
   return load<ActiveEdgesHeader>(section.data()).degrees;
 }
 
+// How the materials of faces are stored; null without any.
+Json form_of_materials(const File& file, std::uint32_t index) {
+  const OpenFile& opened = OpenFile::of(file);
+  if (!opened.section(SectionKind::kMaterialRuns, index).empty()) return "runs";
+  if (!opened.section(SectionKind::kFaceMaterials, index).empty()) return "faces";
+  return nullptr;
+}
+
+// Of a file without a scene.
+Json material_names(const File& file) {
+  const MaterialNames materials(OpenFile::of(file).section(SectionKind::kMaterials),
+                                OpenFile::of(file).section(SectionKind::kNames));
+  Json names = Json::array();
+  for (std::uint32_t i = 0; i < materials.count(); ++i) names.push_back(materials[i]);
+  return names;
+}
+
 Json tree_json(const File& file, std::uint32_t index) {
   const TreeRecord record = OpenFile::of(file).tree_record(index);
   const TreeBytes bytes = bytes_of(file, index);
@@ -99,21 +121,21 @@ Json tree_json(const File& file, std::uint32_t index) {
                {"duplicates", record.duplicate_count},
                {"nodes", record.node_count},
                {"depth", record.depth}};
-  json["bytes"] = {{"tree", bytes.tree},
-                   {"geometry", bytes.geometry},
-                   {"face_ids", bytes.face_ids},
-                   {"active_edges", bytes.active_edges},
-                   {"other", bytes.other}};
+  json["bytes"] = {{"tree", bytes.tree},           {"geometry", bytes.geometry},
+                   {"face_ids", bytes.face_ids},   {"active_edges", bytes.active_edges},
+                   {"materials", bytes.materials}, {"other", bytes.other}};
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)},
-                                {"active_edges", per_triangle(bytes.active_edges, record)}};
+                                {"active_edges", per_triangle(bytes.active_edges, record)},
+                                {"materials", per_triangle(bytes.materials, record)}};
   json["grid_step"] = grid_step_json(record.geometry, record.grid_exponent);
   json["max_vertex_error"] = record.max_vertex_error;
   json["face_ids"] = bytes.face_ids > 0                              ? "stored"
                      : (record.flags & kTreeFacesInSourceOrder) != 0 ? "source order"
                                                                      : "none";
   json["active_edges"] = edge_angle_json(file, index);
+  json["materials"] = form_of_materials(file, index);
   const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -210,12 +232,18 @@ void print_file(const Json& json) {
           "triangle\n",
           degrees.get<double>(), tree["bytes_per_triangle"]["active_edges"].get<double>());
     }
+    if (const Json& form = tree["materials"]; !form.is_null()) {
+      fmt::print("  materials: {}, {:.2f} bytes per triangle\n",
+                 form == "runs" ? "by runs of the source's faces" : "of each face",
+                 tree["bytes_per_triangle"]["materials"].get<double>());
+    }
     fmt::print("{}", text_of_moves(tree));
     fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
                line_of(tree["bounds"]["max"]));
   }
+  if (json.contains("materials")) fmt::print("materials {}\n", line_of(json["materials"]));
   if (json.contains("scene")) print_scene(json["scene"]);
   fmt::print("bytes: {}\n", text_of_bytes(json));
 }
@@ -232,7 +260,11 @@ Result<Json> info_on(const std::filesystem::path& path) {
   Json json = file_json(*file);
   Result<Json> scene = scene_json(*file);
   if (!scene) return scene.error();
-  if (!scene->is_null()) json["scene"] = std::move(*scene);
+  if (!scene->is_null()) {
+    json["scene"] = std::move(*scene);
+  } else if (Json names = material_names(*file); !names.empty()) {
+    json["materials"] = std::move(names);
+  }
   if (opened->blob_bytes != 0) {
     json["blob"] = {{"file_bytes", opened->blob_bytes}, {"resident_bytes", file->bytes().size()}};
   }

@@ -22,9 +22,30 @@
 #include "cooker/text/pose_fault.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
+#include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
 namespace {
+
+// The same keys wherever an object names a face.
+void add_face(const Tree& tree, const FaceRef& face, Json& json) {
+  json["face"] = face_json(face);
+  const std::uint32_t material = tree.material(face);
+  add_material(json, material, tree.material_name(material));
+}
+
+// A face in a list: an object if the tree has materials, else its number.
+Json listed_face(const Tree& tree, const FaceRef& face) {
+  if (!BoundTree::of(tree).has_materials()) return face_json(face);
+  Json json;
+  add_face(tree, face, json);
+  return json;
+}
+
+// A face of each tree.
+Json listed_faces(const Tree& first, const Tree& second, const FacePair& faces) {
+  return {listed_face(first, faces.first), listed_face(second, faces.second)};
+}
 
 // See ShapeAnswers.
 struct TreeKinds {
@@ -35,8 +56,8 @@ struct TreeKinds {
   using Options = FaceOptions;
 
   template <class Hit>
-  static void add_face(const Tree&, const Hit& hit, Json& json) {
-    json["face"] = face_json(hit.face);
+  static void add_face(const Tree& tree, const Hit& hit, Json& json) {
+    cooker::add_face(tree, hit.face, json);
   }
   template <class Hit>
   static auto rank(const Tree&, const Hit& hit) {  // without ids all faces have the same
@@ -55,10 +76,10 @@ Result<Json> answer(const Tree& tree, const CollideRequest& request) {
 }
 
 template <class Overlap>
-Result<Json> answer_faces(Overlap overlap) {
+Result<Json> answer_faces(const Tree& tree, Overlap overlap) {
   Json faces = Json::array();
   const Result<Visit> visit = overlap([&](const FaceRef& face) {
-    faces.push_back(face_json(face));
+    faces.push_back(listed_face(tree, face));
     return true;
   });
   if (!visit) return visit.error();
@@ -85,14 +106,15 @@ Result<Json> answer(const Tree& tree, const BoxRequest& request) {
         overlap_box_within(tree, request.box, request.overlap.within, request.overlap.node_budget);
     if (!found) return found.error();
     Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
-    if (found->face) json["face"] = face_json(*found->face);
+    if (found->face) add_face(tree, *found->face, json);
     return json;
   }
-  return answer_faces([&](FaceVisitor visitor) { return overlap_box(tree, request.box, visitor); });
+  return answer_faces(tree,
+                      [&](FaceVisitor visitor) { return overlap_box(tree, request.box, visitor); });
 }
 
 Result<Json> answer(const Tree& tree, const SphereRequest& request) {
-  return answer_faces([&](FaceVisitor visitor) {
+  return answer_faces(tree, [&](FaceVisitor visitor) {
     return overlap_sphere(tree, request.center, request.radius, visitor);
   });
 }
@@ -102,15 +124,15 @@ Result<Json> answer(const Tree& tree, const FrustumRequest& request) {
     return Error{Errc::kNoScene, "instances are those of a scene, and this is one tree"};
   }
   return answer_faces(
-      [&](FaceVisitor visitor) { return overlap_frustum(tree, request.frustum(), visitor); });
+      tree, [&](FaceVisitor visitor) { return overlap_frustum(tree, request.frustum(), visitor); });
 }
 
-void add_closest(Json& json, const std::optional<ClosestPoint>& closest) {
+void add_closest(const Tree& tree, Json& json, const std::optional<ClosestPoint>& closest) {
   json["found"] = closest.has_value();
   if (!closest) return;
   json["distance"] = closest->distance;
   json["point"] = to_json(closest->point);
-  json["face"] = face_json(closest->face);
+  add_face(tree, closest->face, json);
   json["triangle"] = closest->triangle;
 }
 
@@ -128,13 +150,13 @@ Result<Json> answer(const Tree& tree, const PointRequest& request) {
     const auto found = closest_point(tree, request.at, request.options);
     if (!found) return found.error();
     Json json = bounds_json(*found);
-    add_closest(json, found->witness);
+    add_closest(tree, json, found->witness);
     return json;
   }
   const auto closest = closest_point(tree, request.at, request.options.max_distance);
   if (!closest.ok()) return closest.error();
   Json json;
-  add_closest(json, closest.as_optional());
+  add_closest(tree, json, closest.as_optional());
   return json;
 }
 
@@ -144,7 +166,7 @@ Result<Json> answer_pair_contacts(const Tree& first, const Tree& second,
   const Result<Visit> visit = pair_contacts(
       first, Pose::Identity(), second, request.second.pose, [&](const PairContact& contact) {
         Json& json = contacts.emplace_back();
-        json["faces"] = {face_json(contact.faces.first), face_json(contact.faces.second)};
+        json["faces"] = listed_faces(first, second, contact.faces);
         json.update(contact_json(contact));
         return !request.first_only;
       });
@@ -155,11 +177,11 @@ Result<Json> answer_pair_contacts(const Tree& first, const Tree& second,
 Result<Json> answer_pair(const Tree& first, const Tree& second, const PairRequest& request) {
   if (request.contacts) return answer_pair_contacts(first, second, request);
   Json pairs = Json::array();
-  const Result<Visit> visit = overlap_pairs(
-      first, Pose::Identity(), second, request.second.pose, [&](const FacePair& pair) {
-        pairs.push_back({face_json(pair.first), face_json(pair.second)});
-        return !request.first_only;
-      });
+  const Result<Visit> visit = overlap_pairs(first, Pose::Identity(), second, request.second.pose,
+                                            [&](const FacePair& pair) {
+                                              pairs.push_back(listed_faces(first, second, pair));
+                                              return !request.first_only;
+                                            });
   if (!visit) return visit.error();
   return Json{{"hit", !pairs.empty()}, {"count", pairs.size()}, {"pairs", pairs}};
 }
@@ -172,7 +194,7 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const DistanceRe
   json["found"] = found->witness.has_value();
   if (found->witness) {
     const DistanceWitness& witness = *found->witness;
-    json["faces"] = {face_json(witness.faces.first), face_json(witness.faces.second)};
+    json["faces"] = listed_faces(first, second, witness.faces);
     json["points"] = {to_json(witness.first), to_json(witness.second)};
   }
   return json;
@@ -184,7 +206,7 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapReq
   if (!found) return found.error();
   Json json = {{"overlap", name_of(found->overlap)}, {"nodes", found->nodes_expanded}};
   if (found->contact) {
-    json["faces"] = {face_json(found->contact->first), face_json(found->contact->second)};
+    json["faces"] = listed_faces(first, second, *found->contact);
   }
   return json;
 }

@@ -456,6 +456,11 @@ Result<Json> query_one_or_two(const QueryRequest& request, TreeCache& others, co
   return face.id == kNoFaceId ? Json(nullptr) : Json(face.id);
 }
 
+/// Adds the name of a material, or its number if it has none; nothing for kNoMaterial.
+inline void add_material(Json& json, std::uint32_t material, std::string_view name) {
+  if (material != kNoMaterial) json["material"] = name.empty() ? Json(material) : Json(name);
+}
+
 /// Adds a hit of a ray in a tree or a scene; add_face(hit, json) adds what was hit.
 template <class Hit, class AddFace>
 void add_hit(Json& json, const Hit& hit, const AddFace& add_face) {

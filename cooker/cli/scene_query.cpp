@@ -31,9 +31,7 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
   add_instance(scene, face.instance, json);
   json["face"] = face_json(face.face);
   const std::uint32_t material = scene.material(face);
-  if (material == kNoMaterial) return;
-  const std::string_view name = scene.material_name(material);
-  json["material"] = name.empty() ? Json(material) : Json(name);
+  add_material(json, material, scene.material_name(material));
 }
 
 Error not_for_scenes(const std::string& what) {

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
-#include <unordered_map>
 
 #include <fmt/format.h>
 
 #include "cooker/text/pose_fault.h"
-#include "cooker/text/utf8.h"
 #include "format/container.h"
 #include "runtime/primitive/float_state.h"
 #include "runtime/scene/placement.h"
@@ -40,7 +38,7 @@ class SceneEncoder {
     write_materials();
     write_left_out();
     write_record();
-    if (names_.size() > std::numeric_limits<std::uint32_t>::max()) {
+    if (!names_.fits()) {
       return Error{Errc::kMeshTooLarge, "names take more than 4 GiB"};
     }
     return std::move(out_);
@@ -82,23 +80,6 @@ class SceneEncoder {
     return {};
   }
 
-  struct Name {
-    std::uint32_t offset;
-    std::uint32_t bytes;
-  };
-
-  // Equal names share their bytes, as in rows of props and lines of a profile. Names longer than
-  // `most` bytes are cut: names are only for display.
-  Name add_name(const std::string& given,
-                std::size_t most = std::numeric_limits<std::uint32_t>::max()) {
-    const std::string name = to_utf8(given, most);
-    if (name.empty()) return {0, 0};
-    const auto [known, is_new] =
-        offsets_.try_emplace(name, static_cast<std::uint32_t>(names_.size()));
-    if (is_new) names_ += name;
-    return {known->second, static_cast<std::uint32_t>(name.size())};
-  }
-
   void write_instances() {
     const auto fits_f32 = [](const PlacedTree& instance) {
       const auto numbers = instance.pose.matrix().topRows<3>();
@@ -107,7 +88,8 @@ class SceneEncoder {
     has_f32_poses_ = std::all_of(parts_.instances.begin(), parts_.instances.end(), fits_f32);
     for (const std::uint32_t i : order_) {
       const PlacedTree& instance = parts_.instances[i];
-      const Name name = add_name(instance.name, std::numeric_limits<std::uint16_t>::max());
+      const NameTable::Name name =
+          names_.add(instance.name, std::numeric_limits<std::uint16_t>::max());
       append(out_.instances, InstanceRecord{instance.tree, instance.id, name.offset,
                                             static_cast<std::uint16_t>(name.bytes),
                                             static_cast<std::uint8_t>(instance.layer),
@@ -127,7 +109,7 @@ class SceneEncoder {
 
   void write_layers() {
     for (const SceneLayer& layer : parts_.layers) {
-      const Name name = add_name(layer.name);
+      const NameTable::Name name = names_.add(layer.name);
       append(out_.layers, LayerRecord{layer.collides_with,
                                       static_cast<QueryKinds>(layer.queries & parts_.queries),
                                       name.offset, name.bytes});
@@ -135,32 +117,12 @@ class SceneEncoder {
   }
 
   void write_materials() {
-    for (const std::string& material : parts_.materials) {
-      const Name name = add_name(material);
-      append(out_.materials, MaterialRecord{name.offset, name.bytes});
-    }
-    const std::uint8_t number_bytes =
-        material_number_bytes(static_cast<std::uint32_t>(parts_.materials.size()));
-    for (const TreeMaterials& materials : parts_.tree_materials) {
-      std::vector<std::byte> runs, faces;
-      for (const MaterialRun& run : materials.runs) append(runs, run);
-      for (const std::uint32_t material : materials.faces) {
-        if (number_bytes == 1) {
-          append(faces, static_cast<std::uint8_t>(material));
-        } else if (number_bytes == 2) {
-          append(faces, static_cast<std::uint16_t>(material));
-        } else {
-          append(faces, material);
-        }
-      }
-      out_.material_runs.push_back(std::move(runs));
-      out_.face_materials.push_back(std::move(faces));
-    }
+    out_.materials = encode_materials(parts_.materials, parts_.tree_materials, names_);
   }
 
   void write_left_out() {
     for (const LeftOutPart& part : parts_.left_out) {
-      const Name text = add_name(part.text);
+      const NameTable::Name text = names_.add(part.text);
       append(out_.left_out,
              LeftOutRecord{part.part, 0, part.owner, part.line, text.offset, text.bytes, 0});
     }
@@ -188,8 +150,7 @@ class SceneEncoder {
 
   std::span<const EncodedTree> trees_;
   const SceneParts& parts_;
-  std::string& names_;
-  std::unordered_map<std::string, std::uint32_t> offsets_;
+  NameTable names_;
   EncodedTopLevel top_;
   std::vector<std::uint32_t> order_;
   double condition_ = 0;

@@ -11,6 +11,7 @@
 #include <boxtree/query.h>
 
 #include "cooker/encode/encoded_tree.h"
+#include "cooker/encode/materials.h"
 #include "cooker/encode/top_level.h"
 #include "format/scene_record.h"
 
@@ -30,12 +31,6 @@ struct SceneLayer {
   std::string name;
   std::uint32_t collides_with = ~0u;  // layers; symmetric
   QueryKinds queries = kAllQueries;
-};
-
-/// Materials of one tree's faces: by runs of source faces, or per face in tree order, or neither.
-struct TreeMaterials {
-  std::vector<MaterialRun> runs;
-  std::vector<std::uint32_t> faces;
 };
 
 struct LeftOutPart {
@@ -61,10 +56,8 @@ struct EncodedScene {
   std::vector<std::byte> instances;
   std::vector<std::byte> poses;
   std::vector<std::byte> layers;
-  std::vector<std::byte> materials;
   std::vector<std::byte> left_out;
-  std::vector<std::vector<std::byte>> material_runs;   // of each tree
-  std::vector<std::vector<std::byte>> face_materials;  // of each tree
+  EncodedMaterials materials;
 };
 
 /// Builds the top level and lays out the sections; appends names to `names`. Instances are ordered

@@ -30,7 +30,7 @@ struct EncodedTree {
   std::uint64_t geometry_hash = 0;  // of the source mesh; a reader recognises the mesh by it
   bool faces_in_source_order = false;
   bool positions_f64 = false;
-  /// The face of the source that each face is; empty if active edges are left out.
+  /// The face of the source that each face is; empty if nothing needs it.
   std::vector<std::uint32_t> face_order;
   double edge_degrees = 0;  // of active edges
 };

@@ -123,17 +123,21 @@ Status take_over(const SourceFile& source, ImportWanted wanted, aiScene& scene,
   const Placements placements = find_placements(scene);
   const bool is_scene = wanted == ImportWanted::kScene ||
                         (wanted == ImportWanted::kFitting && places_several(scene, placements));
+  std::vector<MeshMaterials> materials;
+  if ((is_scene || context.options.materials) && has_extension(source.path(), "fbx")) {
+    materials = read_fbx_materials(source, scene);
+  }
+  context.materials = materials;
   if (!is_scene) {
     Imported& mesh = out.emplace<Imported>();
     mesh.report = std::move(report);
-    std::vector<MaterialRun> unwanted;
-    return flatten_scene(scene, placements, context, mesh, unwanted);
+    std::vector<MaterialRun> runs;
+    Status status = flatten_scene(scene, placements, context, mesh, runs);
+    if (status.ok() && context.options.materials) mesh.materials = take_materials(scene, runs);
+    return status;
   }
   SourceScene& whole = out.emplace<SourceScene>();
   whole.report = std::move(report);
-  std::vector<MeshMaterials> materials;
-  if (has_extension(source.path(), "fbx")) materials = read_fbx_materials(source, scene);
-  context.materials = materials;
   return take_scene(scene, placements, context, whole);
 }
 

@@ -247,11 +247,12 @@ Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses
     aiMesh*& mesh = scene.mMeshes[instance.mesh];
     const std::uint32_t first_face = flattener.next_face_id();
     if (Status status = flattener.add(*mesh, instance.transform); !status.ok()) return status;
-    if (!context.materials.empty()) {
+    const bool has_faces = flattener.next_face_id() > first_face;
+    if (has_faces && !context.materials.empty()) {
       for (const MaterialRun& run : context.materials[instance.mesh]) {
         materials.push_back({first_face + run.first_face, run.material});
       }
-    } else if (flattener.next_face_id() > first_face) {
+    } else if (has_faces) {
       materials.push_back({first_face, mesh->mMaterialIndex});
     }
     if (--uses[instance.mesh] > 0) continue;

@@ -93,6 +93,7 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
   if (request.wanted == ImportWanted::kScene) {
     out = scene_of(std::move(mesh), std::move(materials), request.source.path().stem().string());
   } else {
+    if (request.options.materials) mesh.materials = std::move(materials);
     out = std::move(mesh);
   }
   return {};

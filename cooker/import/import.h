@@ -13,6 +13,7 @@
 
 #include <boxtree/error.h>
 
+#include "cooker/import/face_materials.h"
 #include "cooker/import/source_file.h"
 #include "cooker/import/source_mesh.h"
 
@@ -35,6 +36,9 @@ struct ImportOptions {
   bool try_first = false;
   /// [false] Fill in SourceMesh::polygon_corners.
   bool keep_polygon_corners = false;
+  /// [false] Fill in Imported::materials; scenes have theirs whatever this is. Costs a second
+  /// reading of FBX files.
+  bool materials = false;
   /// [none] An input that is not a file. It can refer to no other.
   std::optional<SourceBytes> bytes;
 };
@@ -86,6 +90,7 @@ struct ImportReport {
 struct Imported {
   SourceMesh mesh;
   ImportReport report;
+  FaceMaterials materials;  // with ImportOptions::materials
 };
 
 /// Reads `path` and flattens all its mesh instances into one mesh: instances in node order (depth

@@ -184,6 +184,13 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
 
 }  // namespace
 
+FaceMaterials take_materials(const aiScene& scene, std::span<const MaterialRun> runs) {
+  FaceMaterials taken;
+  MaterialIntake intake(scene, taken.names);
+  taken.runs = intake.take(runs);
+  return intake.are_known() ? taken : FaceMaterials();
+}
+
 Status take_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
                   SourceScene& out) {
   free_attributes(scene);

@@ -65,6 +65,39 @@ std::string unnamed_material(std::uint32_t number) {
   return "material " + std::to_string(number);
 }
 
+MaterialJoin::MaterialJoin(std::vector<std::string>& materials) : all_(materials) {
+  for (std::uint32_t i = 0; i < all_.size(); ++i) {
+    if (all_[i] != unnamed_material(i)) by_name_.emplace(all_[i], i);
+  }
+}
+
+std::vector<std::uint32_t> MaterialJoin::add(const std::vector<std::string>& materials) {
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t i = 0; i < materials.size(); ++i) {
+    const bool has_name = materials[i] != unnamed_material(i);
+    numbers.push_back(has_name ? add_named(materials[i]) : add_unnamed());
+  }
+  return numbers;
+}
+
+std::uint32_t MaterialJoin::add_named(const std::string& name) {
+  const auto number = static_cast<std::uint32_t>(all_.size());
+  const auto [known, is_new] = by_name_.emplace(name, number);
+  if (is_new) all_.push_back(name);
+  return known->second;
+}
+
+// Materials without a name are never merged, because they may differ.
+std::uint32_t MaterialJoin::add_unnamed() {
+  const auto number = static_cast<std::uint32_t>(all_.size());
+  all_.push_back(unnamed_material(number));
+  return number;
+}
+
+void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers) {
+  for (MaterialRun& run : runs) run.material = numbers[run.material];
+}
+
 std::uint64_t hash_of_shape(const SceneMesh& mesh) {
   std::uint64_t hash = mesh.source_faces;
   for (const std::span<const std::byte> bytes : shape_of(mesh)) {

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <unordered_map>
 #include <variant>
@@ -49,6 +50,26 @@ class MeshMerger {
 
 /// The name of a material without a name.
 [[nodiscard]] std::string unnamed_material(std::uint32_t number);
+
+/// Joins the materials of several files into one list: those of one name are one.
+class MaterialJoin {
+ public:
+  /// `materials` must outlive this object and must not be changed by others.
+  explicit MaterialJoin(std::vector<std::string>& materials);
+
+  /// The numbers in the list of the materials of another file.
+  std::vector<std::uint32_t> add(const std::vector<std::string>& materials);
+
+ private:
+  std::uint32_t add_named(const std::string& name);
+  std::uint32_t add_unnamed();
+
+  std::vector<std::string>& all_;
+  std::map<std::string, std::uint32_t> by_name_;
+};
+
+/// Gives each run `numbers[material]`.
+void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers);
 
 /// A placed mesh.
 struct SceneInstance {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "cooker/import/mesh_arrays.h"
+#include "cooker/proof/material_proof.h"
 #include "cooker/proof/names.h"
-#include "format/numbers.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/walk/traversal.h"
@@ -36,7 +36,7 @@ class SceneWalk {
     compare("depth", depth_, record.depth);
     for (std::uint32_t i = 0; i < record.instance_count; ++i) check_instance(i);
     check_layers();
-    check_materials();
+    check_materials(file_, [this](const std::string& fault) { add(Errc::kRecordInvalid, fault); });
     check_left_out();
     return std::move(findings_);
   }
@@ -141,37 +141,6 @@ class SceneWalk {
           continue;
         add(Errc::kRecordInvalid,
             what + "collides with layer " + std::to_string(j) + " one way only");
-      }
-    }
-  }
-
-  void check_materials() {
-    const std::uint32_t count = scene_.material_count();
-    for (std::uint32_t i = 0; i < count; ++i) {
-      const auto record =
-          load<MaterialRecord>(OpenFile::of(file_).section(SectionKind::kMaterials).data(), i);
-      check_text("material " + std::to_string(i) + ": its name", record.name_offset,
-                 record.name_bytes);
-    }
-    for (std::uint32_t tree = 0; tree < file_.tree_count(); ++tree) {
-      const std::string what = "materials of tree " + std::to_string(tree) + ": ";
-      const Bytes runs = OpenFile::of(file_).section(SectionKind::kMaterialRuns, tree);
-      for (std::size_t i = 0; i < runs.size() / sizeof(MaterialRun); ++i) {
-        const auto run = load<MaterialRun>(runs.data(), i);
-        const bool is_ordered =
-            i == 0 ? run.first_face == 0
-                   : run.first_face > load<MaterialRun>(runs.data(), i - 1).first_face;
-        if (!is_ordered || run.material >= count) {
-          add(Errc::kRecordInvalid, what + "run " + std::to_string(i));
-        }
-      }
-      const Bytes faces = OpenFile::of(file_).section(SectionKind::kFaceMaterials, tree);
-      const std::uint8_t bytes = material_number_bytes(count);
-      const NumberView numbers(faces.data(), bytes);
-      for (std::size_t face = 0; face < faces.size() / bytes; ++face) {
-        if (numbers[face] >= count) {
-          add(Errc::kRecordInvalid, what + "face " + std::to_string(face));
-        }
       }
     }
   }

@@ -3,7 +3,6 @@
 #include "cooker/scene/cook_input.h"
 
 #include <cerrno>
-#include <map>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -20,48 +19,6 @@ namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Joins the materials of several scenes into those of one.
-class MaterialJoin {
- public:
-  explicit MaterialJoin(std::vector<std::string>& materials) : all_(materials) {
-    for (std::uint32_t i = 0; i < all_.size(); ++i) {
-      if (all_[i] != unnamed_material(i)) by_name_.emplace(all_[i], i);
-    }
-  }
-
-  // The numbers here of the materials of another scene.
-  std::vector<std::uint32_t> add(const std::vector<std::string>& materials) {
-    std::vector<std::uint32_t> numbers;
-    for (std::uint32_t i = 0; i < materials.size(); ++i) {
-      const bool has_name = materials[i] != unnamed_material(i);
-      numbers.push_back(has_name ? add_named(materials[i]) : add_unnamed());
-    }
-    return numbers;
-  }
-
- private:
-  std::uint32_t add_named(const std::string& name) {
-    const auto number = static_cast<std::uint32_t>(all_.size());
-    const auto [known, is_new] = by_name_.emplace(name, number);
-    if (is_new) all_.push_back(name);
-    return known->second;
-  }
-
-  // Materials without a name are never merged, because they may differ.
-  std::uint32_t add_unnamed() {
-    const auto number = static_cast<std::uint32_t>(all_.size());
-    all_.push_back(unnamed_material(number));
-    return number;
-  }
-
-  std::vector<std::string>& all_;
-  std::map<std::string, std::uint32_t> by_name_;
-};
-
-void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers) {
-  for (MaterialRun& run : runs) run.material = numbers[run.material];
-}
 
 // Joins several scenes into one; equal meshes are stored once, as in the scene of one file.
 class SceneJoin {
@@ -197,7 +154,8 @@ Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
   if (auto* mesh = std::get_if<Imported>(&*file)) {
     input.has_top_level = false;
     note_import(input, std::move(mesh->report), mesh->mesh.name);
-    input.scene.meshes.push_back({std::move(mesh->mesh), {}});
+    input.scene.meshes.push_back({std::move(mesh->mesh), {}, std::move(mesh->materials.runs)});
+    input.scene.materials = std::move(mesh->materials.names);
   } else {
     input.scene = std::move(std::get<SourceScene>(*file));
     note_import(input, std::move(input.scene.report), source.path().filename().string());

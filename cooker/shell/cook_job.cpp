@@ -27,6 +27,7 @@ class Job {
  public:
   Job(const CookJob& job, const Progress& progress)
       : job_(job), options_(job.options), progress_(progress) {
+    options_.import.materials = options_.materials;
     if (job.reordered.empty()) return;
     options_.number_by_tree = true;
     options_.import.keep_polygon_corners = true;

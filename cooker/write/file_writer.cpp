@@ -32,8 +32,10 @@ Bytes bytes_of(const auto& container) {
 // encoders' buffers.
 class Layout {
  public:
-  // Precondition: `scene` is encoded from these trees, or null, and its names are `names`.
-  Layout(const FileParts& parts, const EncodedScene* scene, std::string names)
+  // Precondition: `scene` is encoded from these trees, or null, and `names` are its names and those
+  // of `materials`.
+  Layout(const FileParts& parts, const EncodedScene* scene, const EncodedMaterials& materials,
+         std::string names)
       : names_(std::move(names)), cook_record_(parts.cook_record) {
     std::uint32_t name_offset = 0;
     for (const EncodedTree& tree : parts.trees) {
@@ -45,15 +47,17 @@ class Layout {
     add(SectionKind::kNames, kNoOwner, bytes_of(names_));
     add(SectionKind::kCookRecord, kNoOwner, bytes_of(cook_record_));
     if (scene != nullptr) add_scene(*scene);
+    add(SectionKind::kMaterials, kNoOwner, materials.names);
+    if (scene != nullptr) add(SectionKind::kLeftOut, kNoOwner, scene->left_out);
     for (std::uint32_t i = 0; i < parts.trees.size(); ++i) {
       const EncodedTree& tree = parts.trees[i];
       add(SectionKind::kNodes, i, tree.nodes.bytes);
       add(SectionKind::kVertices, i, tree.geometry.vertices);
       add(SectionKind::kCorners, i, tree.geometry.corners);
       add(SectionKind::kFaceIds, i, tree.geometry.face_ids);
-      if (scene != nullptr && i < scene->material_runs.size()) {
-        add(SectionKind::kMaterialRuns, i, scene->material_runs[i]);
-        add(SectionKind::kFaceMaterials, i, scene->face_materials[i]);
+      if (i < materials.runs.size()) {
+        add(SectionKind::kMaterialRuns, i, materials.runs[i]);
+        add(SectionKind::kFaceMaterials, i, materials.faces[i]);
       }
       add(SectionKind::kDuplicates, i, tree.geometry.duplicates);
       add(SectionKind::kActiveEdges, i, tree.geometry.active_edges);
@@ -94,8 +98,6 @@ class Layout {
     add(SectionKind::kInstances, kNoOwner, scene.instances);
     add(SectionKind::kPoses, kNoOwner, scene.poses);
     add(SectionKind::kLayers, kNoOwner, scene.layers);
-    add(SectionKind::kMaterials, kNoOwner, scene.materials);
-    add(SectionKind::kLeftOut, kNoOwner, scene.left_out);
   }
 
   void place() {
@@ -151,10 +153,18 @@ std::string tree_names(std::span<const EncodedTree> trees) {
 template <class Use>
 Status with_layout(const FileParts& parts, Use use) {
   std::string names = tree_names(parts.trees);
-  if (parts.scene == nullptr) return use(Layout(parts, nullptr, std::move(names)));
+  if (parts.scene == nullptr) {
+    EncodedMaterials materials;
+    if (parts.materials != nullptr) {
+      NameTable table(names);
+      materials = encode_materials(parts.materials->names, parts.materials->of_trees, table);
+      if (!table.fits()) return Error{Errc::kMeshTooLarge, "names take more than 4 GiB"};
+    }
+    return use(Layout(parts, nullptr, materials, std::move(names)));
+  }
   const Result<EncodedScene> scene = encode_scene(parts.trees, *parts.scene, names);
   if (!scene) return scene.error();
-  return use(Layout(parts, &*scene, std::move(names)));
+  return use(Layout(parts, &*scene, scene->materials, std::move(names)));
 }
 
 Status check_tree_count(std::size_t count) {
@@ -187,7 +197,7 @@ Result<FileLayout> layout_of(const FileParts& parts) {
 
 std::vector<std::byte> serialize(std::span<const EncodedTree> trees,
                                  const std::string& cook_record) {
-  return bytes_of_file(Layout({trees, cook_record, nullptr}, nullptr, tree_names(trees)));
+  return bytes_of_file(Layout({trees, cook_record}, nullptr, {}, tree_names(trees)));
 }
 
 Result<std::uint64_t> write_file(const OutputTarget& to, const FileParts& parts) {

@@ -8,16 +8,19 @@
 
 #include "cooker/encode/encoded_scene.h"
 #include "cooker/encode/encoded_tree.h"
+#include "cooker/encode/materials.h"
 #include "cooker/write/atomic_file.h"
 #include "format/container.h"
 
 namespace boxtree::cooker {
 
-/// The contents of a file. An empty `cook_record` and a missing scene are omitted.
+/// The contents of a file. An empty `cook_record`, a missing scene and missing materials
+/// are omitted.
 struct FileParts {
   std::span<const EncodedTree> trees;
   std::string cook_record;
   const SceneParts* scene = nullptr;
+  const Materials* materials = nullptr;  // of trees without a scene
 };
 
 /// The whole file in memory: what write_file writes. Errors: those of encode_scene.

@@ -112,27 +112,8 @@ std::string_view BoundScene::layer_name(std::uint32_t number) const noexcept {
 
 std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
   if (of.instance >= instance_count()) return kNoMaterial;
-  const FaceRef& face = of.face;
   const std::uint32_t tree = instance(of.instance).tree;
-  if (tree >= trees_.size()) return kNoMaterial;
-  const TreeMaterials& materials = materials_of_tree_[tree];
-  if (materials.faces) {
-    if (face.index >= trees_[tree].face_count()) return kNoMaterial;
-    return materials.faces[face.index];
-  }
-  // A single run covers all faces, whatever their ids; else finds the last one that starts at or
-  // before it.
-  std::uint32_t first = 0;
-  std::uint32_t count = materials.run_count;
-  if (count == 0) return kNoMaterial;
-  if (count > 1 && face.id == kNoFaceId) return kNoMaterial;
-  while (count > 1) {
-    const std::uint32_t half = count / 2;
-    const bool is_right = load<MaterialRun>(materials.runs, first + half).first_face <= face.id;
-    first += is_right ? half : 0;
-    count = is_right ? count - half : half;
-  }
-  return load<MaterialRun>(materials.runs, first).material;
+  return tree < trees_.size() ? trees_[tree].material(of.face) : kNoMaterial;
 }
 
 Result<Triangle> BoundScene::triangle(const SceneFace& face, std::uint32_t half) const {
@@ -145,12 +126,6 @@ Result<Triangle> BoundScene::triangle(const SceneFace& face, std::uint32_t half)
   const Moving* moving = find_moving(face.instance);
   const Pose pose = moving != nullptr ? moving->placed.pose : stored_pose(face.instance);
   return Placement::map_to_world(tree.frame(), pose).apply(*triangle);
-}
-
-std::string_view BoundScene::material_name(std::uint32_t number) const noexcept {
-  if (number >= material_count()) return {};
-  const auto record = load<MaterialRecord>(materials_, number);
-  return text(record.name_offset, record.name_bytes);
 }
 
 std::optional<PlacementBounds> BoundScene::Placed::bounds() const noexcept {

@@ -13,7 +13,6 @@
 
 #include <boxtree/scene.h>
 
-#include "format/numbers.h"
 #include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/largest.h"
@@ -21,6 +20,7 @@
 #include "runtime/scene/placement.h"
 #include "runtime/scene/top_level.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/tree/materials.h"
 
 namespace boxtree {
 
@@ -47,8 +47,10 @@ class BoundScene {
   [[nodiscard]] std::uint32_t layer_count() const noexcept { return record().layer_count; }
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half) const;
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
-  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
-  [[nodiscard]] std::uint32_t material_count() const noexcept { return record().material_count; }
+  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept {
+    return materials_[number];
+  }
+  [[nodiscard]] std::uint32_t material_count() const noexcept { return materials_.count(); }
   Status set_enabled(std::uint32_t instance, bool enabled);
   [[nodiscard]] bool is_enabled(std::uint32_t instance) const noexcept {
     return disabled_.empty() ? instance < instance_count()
@@ -130,7 +132,6 @@ class BoundScene {
   Status bind_sections(const File& file);
   Status bind_trees(const File& file, const SceneOptions& options);
   Status check_parts(const SceneOptions& options) const;
-  Status check_materials(const File& file);
   Status bind_moving(std::vector<std::uint32_t> numbers);
   [[nodiscard]] bool has_names() const noexcept;
   [[nodiscard]] Error left_out(Part part, std::uint32_t owner, const std::string& what) const;
@@ -139,22 +140,15 @@ class BoundScene {
   [[nodiscard]] Pose stored_pose(std::uint32_t number) const noexcept;
   [[nodiscard]] const Moving* find_moving(std::uint32_t number) const noexcept;
 
-  struct TreeMaterials {
-    const std::byte* runs = nullptr;  // MaterialRun[], or
-    std::uint32_t run_count = 0;
-    NumberView faces;  // a number per face, or none
-  };
-
   TopLevel top_;
   Frame frame_;
   std::vector<Tree> trees_;
-  std::vector<TreeMaterials> materials_of_tree_;
   Bytes names_;
   Bytes left_out_;
   const std::byte* instances_ = nullptr;
   const std::byte* poses_ = nullptr;
   const std::byte* layers_ = nullptr;
-  const std::byte* materials_ = nullptr;
+  MaterialNames materials_;
   std::vector<Moving> moving_;  // by instance
   MovingTree moving_tree_;
   Largest conditions_;  // of moving instances

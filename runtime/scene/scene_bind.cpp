@@ -16,7 +16,6 @@ Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
   BoundScene scene;
   if (Status status = scene.bind_sections(file); !status) return status.error();
   if (Status status = scene.bind_trees(file, options); !status) return status.error();
-  if (Status status = scene.check_materials(file); !status) return status.error();
   if (Status status = scene.check_parts(options); !status) return status.error();
   std::vector<std::uint32_t> moving(options.moving.begin(), options.moving.end());
   for (std::uint32_t i = scene.record().static_count; i < scene.instance_count(); ++i) {
@@ -56,8 +55,8 @@ Status BoundScene::bind_sections(const File& opened) {
   instances_ = *instances;
   poses_ = *poses;
   layers_ = *layers;
-  materials_ = *materials;
   names_ = file.section(SectionKind::kNames);
+  materials_ = MaterialNames(file.section(SectionKind::kMaterials), names_);
   left_out_ = file.section(SectionKind::kLeftOut);
   if (left_out_.size() % sizeof(LeftOutRecord) != 0) {
     return error_with(Errc::kSectionSize, section_text(SectionKind::kLeftOut), ": # bytes",
@@ -83,33 +82,6 @@ Status BoundScene::bind_trees(const File& file, const SceneOptions& options) {
   return {};
 }
 
-Status BoundScene::check_materials(const File& opened) {
-  const OpenFile& file = OpenFile::of(opened);
-  materials_of_tree_.resize(trees_.size());
-  for (std::uint32_t i = 0; i < trees_.size(); ++i) {
-    const Bytes runs = file.section(SectionKind::kMaterialRuns, i);
-    const Bytes faces = file.section(SectionKind::kFaceMaterials, i);
-    const std::uint64_t count = trees_[i].face_count();
-    if (runs.size() % sizeof(MaterialRun) != 0 || runs.size() / sizeof(MaterialRun) > count) {
-      return error_with(Errc::kSectionSize, "tree ",
-                        "#: " + section_text(SectionKind::kMaterialRuns) + ": # bytes",
-                        {i, runs.size()});
-    }
-    const std::uint8_t number_bytes = material_number_bytes(material_count());
-    if (!faces.empty() && faces.size() != number_bytes * count) {
-      return Error{Errc::kSectionSize,
-                   "tree " + std::to_string(std::uint64_t{i}) + ": " +
-                       section_text(SectionKind::kFaceMaterials) + ": " +
-                       section_size_error(faces.size(), number_bytes * count).detail + " for " +
-                       std::to_string(std::uint64_t{material_count()}) + " materials"};
-    }
-    materials_of_tree_[i] = {runs.data(),
-                             static_cast<std::uint32_t>(runs.size() / sizeof(MaterialRun)),
-                             faces.empty() ? NumberView() : NumberView(faces.data(), number_bytes)};
-  }
-  return {};
-}
-
 Status BoundScene::check_parts(const SceneOptions& options) const {
   const auto is_needed = [&](QueryKinds kind) {
     return (options.queries & kind) != 0 && (record().query_kinds & kind) == 0;
@@ -119,7 +91,7 @@ Status BoundScene::check_parts(const SceneOptions& options) const {
   if (is_needed(kBoxQueries)) return left_out(Part::kBoxes, kNoOwner, scene);
   if (is_needed(kPointQueries)) return left_out(Part::kPoints, kNoOwner, scene);
   if (is_needed(kPairQueries)) return left_out(Part::kPairs, kNoOwner, scene);
-  if (options.require_materials && record().material_count == 0) {
+  if (options.require_materials && material_count() == 0) {
     return left_out(Part::kMaterials, kNoOwner, scene);
   }
   if (options.require_names && !has_names()) return left_out(Part::kNames, kNoOwner, scene);

@@ -37,7 +37,9 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
       {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
        file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
        file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index),
-       file.section(SectionKind::kActiveEdges, index)},
+       file.section(SectionKind::kActiveEdges, index), file.section(SectionKind::kMaterials),
+       file.section(SectionKind::kNames), file.section(SectionKind::kMaterialRuns, index),
+       file.section(SectionKind::kFaceMaterials, index)},
       index, options);
 }
 
@@ -76,6 +78,7 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
   if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
   if (Status status = tree.bind_active_edges(parts, place, options); !status) return status.error();
+  if (Status status = tree.bind_materials(parts, place, options); !status) return status.error();
   tree.leaves_.prepare_floats(tree.largest_abs_);
   return bound;
 }
@@ -219,6 +222,19 @@ Status BoundTree::bind_active_edges(const TreeParts& parts, const std::string& p
   if (!edges) return edges.error();
   active_edges_ = ActiveEdgesView(section, face_count_);
   return {};
+}
+
+Status BoundTree::bind_materials(const TreeParts& parts, const std::string& place,
+                                 const BindOptions& options) {
+  material_names_ = MaterialNames(parts.materials, parts.names);
+  const auto bound = MaterialView::bind(parts.material_runs, parts.face_materials, face_count_,
+                                        material_names_.count(), place);
+  if (!bound) return bound.error();
+  materials_ = *bound;
+  if (!options.require_materials || materials_ || empty()) return {};
+  return error_with(Errc::kPartLeftOut, place,
+                    "it was cooked without --materials, or materials = false left them out of its "
+                    "profile, or its source has none");
 }
 
 }  // namespace boxtree

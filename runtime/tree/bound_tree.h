@@ -20,6 +20,7 @@
 #include "format/numbers.h"
 #include "runtime/tree/bound_codec.h"
 #include "runtime/tree/geometry.h"
+#include "runtime/tree/materials.h"
 
 namespace boxtree {
 
@@ -140,6 +141,13 @@ class BoundTree {
   /// Which edges are active, or nothing.
   [[nodiscard]] const ActiveEdgesView& active_edges() const noexcept { return active_edges_; }
 
+  /// The materials of its faces, or nothing, and their names.
+  [[nodiscard]] bool has_materials() const noexcept { return bool{materials_}; }
+  [[nodiscard]] std::uint32_t material(const FaceRef& face) const noexcept {
+    return materials_.of(face, face_count_);
+  }
+  [[nodiscard]] const MaterialNames& material_names() const noexcept { return material_names_; }
+
   /// A box of tree space in object space, rounded outward: it holds every position of object space
   /// that Frame::to_tree brings into `box`.
   [[nodiscard]] Eigen::AlignedBox3d to_object(const Box<double>& box) const noexcept;
@@ -166,6 +174,8 @@ class BoundTree {
   Status bind_duplicates(const TreeParts& parts, const std::string& place);
   Status bind_active_edges(const TreeParts& parts, const std::string& place,
                            const BindOptions& options);
+  Status bind_materials(const TreeParts& parts, const std::string& place,
+                        const BindOptions& options);
 
   CodecId codec_{};
   GeometryId geometry_{};
@@ -193,6 +203,9 @@ class BoundTree {
   Box<float> root_f32_{};
   BoxLanes root_lanes_ = BoxLanes(Box<float>{});  // of root_f32_
   bool has_float_nodes_ = false;
+  // What no query reads.
+  MaterialView materials_;
+  MaterialNames material_names_;
 };
 
 }  // namespace boxtree

@@ -47,6 +47,16 @@ bool Tree::has_active_edges() const noexcept {
   return bool{BoundTree::of(*this).active_edges()};
 }
 
+std::uint32_t Tree::material(const FaceRef& face) const noexcept {
+  return BoundTree::of(*this).material(face);
+}
+std::string_view Tree::material_name(std::uint32_t number) const noexcept {
+  return BoundTree::of(*this).material_names()[number];
+}
+std::uint32_t Tree::material_count() const noexcept {
+  return BoundTree::of(*this).material_names().count();
+}
+
 Eigen::AlignedBox3d Tree::bounds() const noexcept {
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(*this);

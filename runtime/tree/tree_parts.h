@@ -21,6 +21,11 @@ struct TreeParts {
   Bytes face_ids;
   Bytes duplicates;
   Bytes active_edges = {};
+  // Of its file: what its materials are called.
+  Bytes materials = {};
+  Bytes names = {};
+  Bytes material_runs = {};
+  Bytes face_materials = {};
 };
 
 /// Binds a tree whose parts are not in a file (yet). Errors: as Tree::bind.

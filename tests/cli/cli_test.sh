@@ -1361,6 +1361,21 @@ printf 'ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty floa
 expect 3 "$boxtree" cook negative.ply -o negative.bxt
 grep -q 'corner 2 names vertex -2, but there are 3 vertices' err
 
+# Materials of single trees are kept on request; answers name them.
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nusemtl grass\nf 1 2 3\nusemtl stone\nf 1 3 4\n' >field.obj
+expect 0 "$boxtree" cook field.obj -o field.bxt
+expect 0 "$boxtree" query field.bxt ray --origin 0.2,0.8,5 --direction 0,0,-1 --json
+same "$(jq -c '[.face, has("material")]' out)" '[1,false]'
+expect 0 "$boxtree" cook field.obj -o field.bxt --materials
+expect 0 "$boxtree" verify field.bxt
+expect 0 "$boxtree" query field.bxt ray --origin 0.2,0.8,5 --direction 0,0,-1 --json
+same "$(jq -c '[.face, .material]' out)" '[1,"stone"]'
+expect 0 "$boxtree" query field.bxt sphere --center 0.8,0.2,0 --radius 0.1 --json
+same "$(jq -c '.faces' out)" '[{"face":0,"material":"grass"}]'
+expect 0 "$boxtree" info field.bxt
+grep -qx 'materials \["grass", *"stone"\]' out
+grep -q '  materials: of each face, 1.00 bytes per triangle' out
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out

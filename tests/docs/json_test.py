@@ -60,6 +60,16 @@ v 0 1 0
 f 1 2 3
 """
 
+FIELD = """v 0 0 0
+v 1 0 0
+v 1 1 0
+v 0 1 0
+usemtl grass
+f 1 2 3
+usemtl stone
+f 1 3 4
+"""
+
 # Sections of the page, and command lines with all that they print. [STATUS] of those that fail.
 ALL = "--min=-99,-99,-99 --max 99,99,99"
 VIEW = "0.01,0,0,0,0,0.01,0,0,0,0,0.005,0.5,0,0,0,1"
@@ -71,6 +81,8 @@ RUNS = {
         "cook bad.obj -o bad.bxt --skip-bad",
         "cook crate.obj -o external.bxt --external",
         "cook crate.obj -o edges.bxt --active-edges 5",
+        "cook field.obj -o field.bxt --materials",
+        "cook field.obj -o no_ids.bxt --materials --no-face-ids",
         "cook crate.obj -o blob.bxt --codec blob-zstd",
         "cook crate.obj crate.obj -o small.bxt --tolerance 0.001 --for memory --max-slowdown 9",
         "cook --scene bad.obj -o scene.bxt --skip-bad",
@@ -81,6 +93,7 @@ RUNS = {
     "info": [
         "info crate.bxt",
         "info edges.bxt",
+        "info field.bxt",
         "[3] info arrays.bxt external.bxt blob.bxt level.gltf",
         "info parts.bxt",
         "info level.bxt",
@@ -93,6 +106,7 @@ RUNS = {
         "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1",
         "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
         "query crate.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
+        "query field.bxt ray --origin 0.2,0.8,9 --direction 0,0,-1",
         "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
@@ -123,6 +137,7 @@ RUNS = {
         f"query nameless.bxt frustum --matrix {VIEW} --instances",
         "query crate.bxt sphere --center 0,0,0 --radius 9",
         f"query arrays.bxt box {ALL}",
+        f"query field.bxt box {ALL}",
         f"query level.bxt box {ALL}",
         f"query parts.bxt box {ALL}",
         f"query nameless.bxt box {ALL}",
@@ -133,12 +148,16 @@ RUNS = {
         "query crate.bxt point --at 9,9,9 --max-distance 1",
         "query crate.bxt point --at 9,9,9 --max-distance 1 --budget 9",
         "query crate.bxt point --at 9,9,9 --relative-error 0.5",
+        "query field.bxt point --at 3,2,1",
         "query level.bxt point --at 3,2,1",
         "query nameless.bxt point --at 3,2,1",
     ],
     "query FILE pair, contacts": [
         "query crate.bxt pair arrays.bxt",
         "query crate.bxt pair arrays.bxt --contacts",
+        "query field.bxt pair no_ids.bxt --pose 0.1,0,0",
+        "query field.bxt pair no_ids.bxt --pose 0.1,0,0 --contacts",
+        "query nameless.bxt --tree 0 pair nameless.bxt --tree2 0 --contacts",
         "query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0",
         "query parts.bxt contacts --move Crate=0.8,2.1,-6.8",
         "query parts.bxt contacts --move Crate=0.8,2.1,-6.8 --points",
@@ -148,11 +167,17 @@ RUNS = {
     "query FILE distance": [
         "query crate.bxt distance arrays.bxt --pose 9,0,0",
         "query crate.bxt distance crate.bxt --pose 9,0,0 --max-distance 1",
+        "query field.bxt distance no_ids.bxt --pose 9,0,0",
+        "query nameless.bxt --tree 0 distance field.bxt --pose 99,0,0",
     ],
     "query FILE overlap": [
         "query crate.bxt overlap arrays.bxt",
         "query crate.bxt overlap crate.bxt --pose 9,0,0",
+        "query field.bxt overlap no_ids.bxt",
+        "query nameless.bxt --tree 0 overlap nameless.bxt --tree2 0",
         f"query crate.bxt box {ALL} --within 0",
+        f"query field.bxt box {ALL} --within 0",
+        f"query nameless.bxt --tree 0 box {ALL} --within 0",
         f"query arrays.bxt box {ALL} --within 0",
     ],
     "query FILE --batch": ["[1] query crate.bxt --batch batch"],
@@ -250,7 +275,8 @@ class Runs:
             shutil.copy(path, work)
         shutil.copy(source / "samples/level/level.gltf", work)
         for name, text in (("parts.toml", PARTS), ("nameless.toml", NAMELESS), ("batch", BATCH),
-                           ("results.json", RESULTS), ("bad.obj", BAD), ("flat.obj", FLAT), ("peers", PEERS)):
+                           ("results.json", RESULTS), ("bad.obj", BAD), ("flat.obj", FLAT), ("field.obj", FIELD),
+                           ("peers", PEERS)):
             (work / name).write_text(text)
         (work / "peers").chmod(0o755)
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Hostile bytes: every truncation and every flipped bit of a small file is refused with a code or
 // answered, with checksums repaired too, so that the checks behind them are reached.
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "cooker/proof/proof.h"
@@ -16,6 +18,7 @@ struct Encoding {
   GeometryId geometry;
   bool duplicates = false;  // some faces twice
   bool active_edges = false;
+  std::uint32_t materials = 0;  // runs; many are stored by face
 };
 
 std::vector<std::byte> small_file(const Encoding& encoding) {
@@ -25,6 +28,15 @@ std::vector<std::byte> small_file(const Encoding& encoding) {
   if (encoding.active_edges) options.active_edges = 5;
   cooker::SourceMesh mesh = test::city(2, 1);
   if (encoding.duplicates) mesh.faces.insert(mesh.faces.end(), 2, mesh.faces[1]);
+  if (encoding.materials > 0) {
+    const auto faces = static_cast<std::uint32_t>(mesh.faces.size());
+    cooker::FaceMaterials materials;
+    for (std::uint32_t i = 0; i < encoding.materials; ++i) {
+      materials.names.push_back("m" + std::to_string(i));
+      materials.runs.push_back({i * faces / encoding.materials, i});
+    }
+    return test::cook_bytes(mesh, materials, encoding.codec, options);
+  }
   const Result<cooker::EncodedTree> cooked = cooker::cook_as(mesh, encoding.codec, options);
   return cooker::serialize(std::span(&*cooked, 1), "{}\n");
 }
@@ -46,6 +58,9 @@ void exercise(Bytes bytes) {
     set.node_budget = 100;
     return test::tree_queries(set);
   }();
+  for (std::uint32_t face = 0; face <= std::min(tree->face_count(), 99u); ++face) {
+    static_cast<void>(tree->material_name(tree->material({face, face})));
+  }
   for (const test::TreeQuery& query : queries) static_cast<void>(query.run_query(*tree, *tree, {}));
 }
 
@@ -93,6 +108,8 @@ std::vector<Encoding> encodings() {
   all.push_back({CodecId::kWide8, GeometryId::kExact, true});
   all.push_back({CodecId::kWide8, GeometryId::kExact, false, true});
   all.push_back({CodecId::kPlainF32, GeometryId::kGrid, true});
+  all.push_back({CodecId::kWide8, GeometryId::kExact, false, false, 2});
+  all.push_back({CodecId::kWide4, GeometryId::kExact, false, false, 9});
   return all;
 }
 
@@ -100,7 +117,9 @@ std::string encoding_name(const testing::TestParamInfo<Encoding>& encoding) {
   const std::string codec = test::test_name({encoding.param.codec, encoding.index});
   return codec + "_" + std::string(geometry_name(encoding.param.geometry)) +
          (encoding.param.duplicates ? "_duplicates" : "") +
-         (encoding.param.active_edges ? "_edges" : "");
+         (encoding.param.active_edges ? "_edges" : "") +
+         (encoding.param.materials > 0 ? "_materials" + std::to_string(encoding.param.materials)
+                                       : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(Encodings, Mutation, testing::ValuesIn(encodings()), encoding_name);

@@ -83,6 +83,21 @@ bool write_trees(const fs::path& folder) {
   return good;
 }
 
+bool write_materials(const fs::path& folder) {
+  const cooker::SourceMesh mesh = test::city(1, 1);
+  const cooker::FaceMaterials few{{"wood", "stone"}, {{0, 1}, {3, 0}}};
+  cooker::FaceMaterials many = few;
+  for (std::uint32_t face = 4; face < mesh.faces.size(); ++face)
+    many.runs.push_back({face, face % 2});
+  bool good = true;
+  for (const cooker::FaceMaterials& each : {few, many}) {
+    good = write(folder / "tree", "materials-" + std::to_string(each.runs.size()),
+                 test::cook_bytes(mesh, each, CodecId::kWide8), 1) &&
+           good;
+  }
+  return good;
+}
+
 bool write_scenes(const fs::path& folder) {
   bool good = true;
   unsigned seed = 0;
@@ -112,5 +127,8 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "seeds FOLDER\n");
     return 1;
   }
-  return boxtree::write_trees(argv[1]) && boxtree::write_scenes(argv[1]) ? 0 : 1;
+  return boxtree::write_trees(argv[1]) && boxtree::write_materials(argv[1]) &&
+                 boxtree::write_scenes(argv[1])
+             ? 0
+             : 1;
 }

@@ -13,6 +13,9 @@ void run(Bytes input) {
     const auto any = any_hit(tree, ray, query.limits());
     check(closest);
     check(any);
+    if (closest.ok() && closest.has_value()) {
+      static_cast<void>(tree.material_name(tree.material(closest->face)));
+    }
     // Nothing is missed: both know whether there is a hit.
     if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {
       finding("closest_hit and any_hit differ");

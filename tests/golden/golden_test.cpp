@@ -23,6 +23,7 @@ struct Kind {
   CodecId codec;
   GeometryId geometry;
   std::optional<double> active_edges = std::nullopt;
+  bool materials = false;
 };
 
 std::vector<Kind> kinds() {
@@ -33,6 +34,7 @@ std::vector<Kind> kinds() {
   kinds.push_back({"plain-f16-grid", CodecId::kPlainF16, GeometryId::kGrid});
   kinds.push_back({"wide8-grid", CodecId::kWide8, GeometryId::kGrid});
   kinds.push_back({"wide8-edges", CodecId::kWide8, GeometryId::kExact, 20.0});
+  kinds.push_back({"wide8-materials", CodecId::kWide8, GeometryId::kExact, std::nullopt, true});
   return kinds;
 }
 
@@ -52,8 +54,9 @@ std::vector<std::byte> golden_bytes(const Kind& kind) {
 }
 
 // The wide codecs get a scene of more than one leaf: the same one, with more faces beside it.
-std::string scene_of(CodecId codec) {
-  return is_wide(codec) ? "scene-wide.obj" : "scene.obj";
+std::string scene_of(const Kind& kind) {
+  if (kind.materials) return "scene-materials.obj";
+  return is_wide(kind.codec) ? "scene-wide.obj" : "scene.obj";
 }
 
 class Golden : public testing::TestWithParam<Kind> {};
@@ -61,14 +64,19 @@ class Golden : public testing::TestWithParam<Kind> {};
 TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
   const std::vector<std::byte> golden = golden_bytes(GetParam());
   ASSERT_FALSE(golden.empty()) << "no golden file";
-  Result<cooker::Imported> imported = cooker::import_mesh(kFolder / scene_of(GetParam().codec));
+  cooker::ImportOptions import;
+  import.materials = GetParam().materials;
+  Result<cooker::Imported> imported = cooker::import_mesh(kFolder / scene_of(GetParam()), import);
   ASSERT_TRUE(imported.ok()) << imported.error().message();
   imported->mesh.name = "scene";
   cooker::CookOptions cook;
   cook.geometry = GetParam().geometry;
   cook.grid.bits = 16;
   cook.active_edges = GetParam().active_edges;
-  const std::vector<std::byte> cooked = test::cook_bytes(imported->mesh, GetParam().codec, cook);
+  const std::vector<std::byte> cooked =
+      GetParam().materials
+          ? test::cook_bytes(imported->mesh, imported->materials, GetParam().codec, cook)
+          : test::cook_bytes(imported->mesh, GetParam().codec, cook);
   ASSERT_EQ(cooked.size(), golden.size());
   for (std::size_t i = 0; i < golden.size(); ++i) ASSERT_EQ(cooked[i], golden[i]) << "byte " << i;
 }
@@ -84,6 +92,7 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   EXPECT_EQ(BoundTree::of(*tree).codec(), GetParam().codec);
   EXPECT_EQ(tree->name(), "scene");
   EXPECT_EQ(tree->has_active_edges(), GetParam().active_edges.has_value());
+  EXPECT_EQ(tree->material_count(), GetParam().materials ? 2u : 0u);
   const std::uint32_t more = is_wide(GetParam().codec) ? 12 : 0;
   EXPECT_EQ(BoundTree::of(*tree).face_count(), 8 + more);
   EXPECT_EQ(BoundTree::of(*tree).triangle_count(), 9 + more);
@@ -92,6 +101,7 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   ASSERT_TRUE(down.ok() && down.has_value());
   EXPECT_EQ(down->face.id, 0u);
   EXPECT_EQ(down->t, 3);
+  EXPECT_EQ(tree->material_name(tree->material(down->face)), GetParam().materials ? "stone" : "");
   // The quad and a piece of the pentagon share the plane: the smaller face id answers.
   const auto shared = closest_hit(*tree, {{4.5, 0.5, 3}, {0, 0, -1}});
   ASSERT_TRUE(shared.ok() && shared.has_value());

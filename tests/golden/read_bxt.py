@@ -15,6 +15,7 @@ import xxhash
 
 NO_OWNER = 0xFFFFFFFF
 NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES, ACTIVE_EDGES = 2, 3, 4, 5, 7, 19, 20
+MATERIALS, MATERIAL_RUNS, FACE_MATERIALS = 15, 16, 17
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
@@ -383,6 +384,17 @@ CODECS = {1: ("plain-f32", Plain), 2: ("plain-f16", Plain), 3: ("packed-f32", Pa
           7: ("wide8", Wide), 8: ("wide4", Wide)}
 
 
+def material_names(file):
+    """The names of a file's materials (section 11.1)."""
+    records, names = file.section(MATERIALS), file.section(NAMES)
+    expect(len(records) % 8 == 0, "size of section materials")
+    found = []
+    for offset, size in struct.iter_unpack("<II", records):
+        expect(offset + size <= len(names), "the name of a material in section names")
+        found.append(names[offset:offset + size].decode())
+    return found
+
+
 class Tree:
     """A TreeRecord and its sections (sections 3 and 8)."""
 
@@ -419,6 +431,9 @@ class Tree:
         self.ids = file.section(FACE_IDS, index)
         self.duplicates = file.section(DUPLICATES, index)
         self.edges = file.section(ACTIVE_EDGES, index)
+        self.material_runs = file.section(MATERIAL_RUNS, index)
+        self.face_materials = file.section(FACE_MATERIALS, index)
+        self.material_names = material_names(file)
         self.scalar = "d" if self.flags & 2 else "f"
         if self.geometry == EXTERNAL:
             expect(not self.vertices and not self.corners, "no arrays")
@@ -553,6 +568,34 @@ class Tree:
         expect(used == (starts > 0), "bits are there for leaves that have them")
         return faces
 
+    def materials(self):
+        """The name of the material of each face (section 11.1)."""
+        names = self.material_names
+        expect(not self.material_runs or not self.face_materials, "runs or faces have materials")
+        if self.face_materials:
+            width = 1 if len(names) <= 256 else 2 if len(names) <= 65536 else 4
+            expect(len(self.face_materials) == width * self.face_count, "size of face_materials")
+            numbers = [int.from_bytes(self.face_materials[i:i + width], "little")
+                       for i in range(0, len(self.face_materials), width)]
+            expect(all(number < len(names) for number in numbers), "the material of a face")
+            return [names[number] for number in numbers]
+        expect(len(self.material_runs) % 8 == 0, "size of material_runs")
+        runs = list(struct.iter_unpack("<II", self.material_runs))
+        expect(len(runs) <= self.face_count, "a face for each run")
+        for i, (first, number) in enumerate(runs):
+            expect(first > runs[i - 1][0] if i else first == 0, "runs ascend from face 0")
+            expect(number < len(names), "the material of a run")
+        found = []
+        for face in range(self.face_count):
+            known = self.face_id(face)
+            if len(runs) == 1:
+                found.append(names[runs[0][1]])
+            elif not runs or known is None:
+                found.append(None)
+            else:
+                found.append(names[[number for first, number in runs if first <= known][-1]])
+        return found
+
     def face_id(self, face):
         if self.flags & 1:
             return face
@@ -626,7 +669,7 @@ class Tree:
                 "duplicates": self.duplicate_count, "triangles": self.triangle_count,
                 "nodes": self.node_count, "depth": self.depth,
                 "face_ids": [found["faces"][face] for face in sorted(found["faces"])],
-                "active_edges": self.active_edges()}
+                "active_edges": self.active_edges(), "materials": self.materials()}
 
 
 def read(data):

@@ -54,6 +54,25 @@ for mesh in "$sheet" "$work/triangles.obj" "$@"; do
   done
 done
 
+# Materials of faces are those of the source, by runs or by face.
+awk '/^f/ { if (++faces % 100 == 1) print "usemtl m" faces % 7 } { print }' "$work/triangles.obj" >"$work/runs.obj"
+awk '/^f/ { print "usemtl m" ++faces % 3 } { print }' "$work/triangles.obj" >"$work/turns.obj"
+for mesh in runs turns; do
+  for options in "--codec wide8 --exact" "--codec plain-f32" "--codec wide4 --no-face-ids" "--codec dedup --no-face-ids"; do
+    # shellcheck disable=SC2086 # several words
+    "$boxtree" cook "$work/$mesh.obj" -o "$work/mesh.bxt" --materials $options -q
+    read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$mesh, $options, materials"
+    jq -r '.trees[].materials[]' "$work/theirs" | sort | uniq -c >"$work/found"
+    awk '/^usemtl/ { now = $2 } /^f/ { print now }' "$work/$mesh.obj" | sort | uniq -c >"$work/wanted"
+    cmp "$work/found" "$work/wanted" || fail "$mesh, $options: other materials"
+    if [ "${options##*--}" != no-face-ids ]; then
+      jq -r '.trees[] | [.face_ids, .materials] | transpose | sort[] | .[1]' "$work/theirs" >"$work/found"
+      awk '/^usemtl/ { now = $2 } /^f/ { print now }' "$work/$mesh.obj" >"$work/wanted"
+      cmp "$work/found" "$work/wanted" || fail "$mesh, $options: materials of other faces"
+    fi
+  done
+done
+
 # Each byte of a golden file matters to the second reader too.
 /usr/bin/python3 - "$golden" <<'PYTHON'
 import glob, struct, sys

@@ -20,6 +20,21 @@ std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
   return cooker::serialize(std::span(&cooked, 1));
 }
 
+std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
+                                  const cooker::FaceMaterials& materials, CodecId codec,
+                                  cooker::CookOptions options) {
+  cooker::CookInput input;
+  input.has_top_level = false;
+  input.imports.emplace_back();
+  input.scene.meshes.push_back({mesh, {}, materials.runs});
+  input.scene.materials = materials.names;
+  options.codec = codec;
+  options.cook_record = false;
+  options.materials = true;
+  const cooker::CookedFile cooked = require(cooker::cook(std::move(input), {}, options));
+  return require(cooker::serialize(cooked.parts()));
+}
+
 CookedTree cook_tree(const cooker::SourceMesh& mesh, CodecId codec,
                      const cooker::CookOptions& options, const BindOptions& bind) {
   std::vector<std::byte> bytes = cook_bytes(mesh, codec, options);

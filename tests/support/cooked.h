@@ -21,6 +21,11 @@ namespace boxtree::test {
 [[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
                                                 const cooker::CookOptions& options = {});
 
+/// The bytes of a file with one tree and the materials of its faces.
+[[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
+                                                const cooker::FaceMaterials& materials,
+                                                CodecId codec, cooker::CookOptions options = {});
+
 /// A tree together with the bytes it points into.
 struct CookedTree {
   std::vector<std::byte> bytes;

@@ -76,6 +76,9 @@ struct BindOptions {
   bool require_face_ids = false;
   /// Refuse a tree without active edges [default false] rather than call every edge active later.
   bool require_active_edges = false;
+  /// Refuse a tree none of whose faces has a material [default false] rather than answer
+  /// kNoMaterial later.
+  bool require_materials = false;
 };
 
 /// One tree. Points into the bytes of its File and, with external geometry, into the application's
@@ -118,6 +121,12 @@ class BOXTREE_API Tree {
   [[nodiscard]] bool has_face_ids() const noexcept;
   /// Whether edges are known to be active or not (cook --active-edges); otherwise all are active.
   [[nodiscard]] bool has_active_edges() const noexcept;
+  /// The material of a face that an answer names (cook --materials); kNoMaterial without any.
+  [[nodiscard]] std::uint32_t material(const FaceRef& face) const noexcept;
+  /// Name of a material; empty when it has none.
+  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
+  /// How many materials its file has, numbered from 0: those of all its trees.
+  [[nodiscard]] std::uint32_t material_count() const noexcept;
   /// A box around all faces, in object space, rounded outward. Empty for an empty tree.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const noexcept;
 

@@ -97,6 +97,21 @@ Connections:  {{
 
 class FbxMaterials : public ImportTest {
  protected:
+  // Of all instances, one after the other.
+  static Runs flat_runs(const SourceScene& scene) {
+    Runs runs;
+    std::uint32_t first = 0;
+    for (const SceneInstance& instance : scene.instances) {
+      const SceneMesh& mesh = scene.meshes[instance.mesh];
+      for (const MaterialRun& run : mesh.materials) {
+        const bool differs = runs.empty() || runs.back()[1] != run.material;
+        if (differs) runs.push_back({first + run.first_face, run.material});
+      }
+      first += mesh.source_faces;
+    }
+    return runs;
+  }
+
   SourceScene scene(const std::string& text) const {
     const std::filesystem::path path = write("ladder.fbx", text);
     Result<SourceScene> result = import_scene(path);
@@ -106,6 +121,15 @@ class FbxMaterials : public ImportTest {
     EXPECT_TRUE(flat.ok()) << flat.error().message();
     if (flat.ok()) {
       EXPECT_EQ(placed_triangles(*result), placed_triangles(flat->mesh));
+      EXPECT_TRUE(flat->materials.names.empty()) << "none were wanted";
+    }
+    ImportOptions with_materials;
+    with_materials.materials = true;
+    const Result<Imported> flat_with = import_mesh(path, with_materials);
+    EXPECT_TRUE(flat_with.ok()) << flat_with.error().message();
+    if (flat_with.ok()) {
+      EXPECT_EQ(flat_with->materials.names, result->materials);
+      EXPECT_EQ(runs_of(flat_with->materials.runs), flat_runs(*result));
     }
     return std::move(result).value();
   }

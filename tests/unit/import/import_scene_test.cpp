@@ -38,11 +38,33 @@ class ImportSceneTest : public ImportTest {
     EXPECT_TRUE(has(result.error().detail, path.string()));
     return result.error();
   }
-  // Every triangle of the scene is where import_mesh puts it.
+  // Every triangle of the scene is where import_mesh puts it, and has the material that it has
+  // there.
   void expect_places_like_mesh(const std::string& name, const SourceScene& scene) const {
-    const Result<Imported> flat = import_mesh(folder_ / name);
+    ImportOptions options;
+    options.materials = true;
+    const Result<Imported> flat = import_mesh(folder_ / name, options);
     ASSERT_TRUE(flat.ok()) << flat.error().message();
     EXPECT_EQ(placed_triangles(scene), placed_triangles(flat->mesh));
+    std::vector<std::string> materials;
+    for (const SceneInstance& instance : scene.instances) {
+      const SceneMesh& mesh = scene.meshes[instance.mesh];
+      add_materials(mesh.materials, mesh.source_faces, scene.materials, materials);
+    }
+    const auto faces = static_cast<std::uint32_t>(flat->report.source_faces);
+    std::vector<std::string> of_mesh;
+    add_materials(flat->materials.runs, faces, flat->materials.names, of_mesh);
+    EXPECT_EQ(of_mesh, materials);
+  }
+
+  // The name of each face's material.
+  static void add_materials(const std::vector<MaterialRun>& runs, std::uint32_t faces,
+                            const std::vector<std::string>& names, std::vector<std::string>& out) {
+    std::size_t run = 0;
+    for (std::uint32_t face = 0; face < faces; ++face) {
+      if (run + 1 < runs.size() && runs[run + 1].first_face == face) ++run;
+      out.push_back(runs.empty() ? "" : names[runs[run].material]);
+    }
   }
 };
 
