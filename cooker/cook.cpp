@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "cooker/cook_record.h"
+#include "cooker/encode/instance_edges.h"
 #include "cooker/import/f32_digits.h"
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/scene/hidden_faces.h"
@@ -72,7 +73,7 @@ class Cook {
     if (Status status = plan(); !status) return status.error();
     if (Status status = try_meshes(); !status) return status.error();
     if (Status status = choose_encodings(); !status) return status.error();
-    assemble();
+    if (Status status = assemble(); !status) return status.error();
     if (options_.number_by_tree) number_by_tree(file_.trees.front());
     if (!input_.has_top_level) keep_materials();
     if (Status status = keep_to_bytes(); !status) return status.error();
@@ -214,9 +215,12 @@ class Cook {
         numbered_ = std::exchange(mesh, {});
         mesh.name = numbered_.name;
       }
-      mesh.positions = {};
-      mesh.faces = {};
-      mesh.face_ids = {};
+      // Where trees of external geometry meet others is found once all are encoded.
+      if (!plan_.meshes[m].external || !edge_degrees()) {
+        mesh.positions = {};
+        mesh.faces = {};
+        mesh.face_ids = {};
+      }
       mesh_of_tree_.push_back(m);
       wishes_.push_back(search.wishes);
       may_use_grid_.push_back(search.may_use_grid);
@@ -301,11 +305,32 @@ class Cook {
     return tree;
   }
 
-  void assemble() {
+  Status assemble() {
     file_.trees.clear();
     for (std::size_t t = 0; t < tried_.size(); ++t) file_.trees.push_back(tree_of(t));
-    if (input_.has_top_level) place_trees();
+    if (input_.has_top_level) {
+      place_trees();
+      if (Status status = find_edges_between(); !status) return status;
+    }
     if (options_.cook_record) file_.record = make_cook_record(options_, input_, profile_);
+    return {};
+  }
+
+  // By how much surfaces of a scene bend at active edges; empty: they are left out.
+  [[nodiscard]] std::optional<double> edge_degrees() const {
+    if (!input_.has_top_level) return {};
+    return profile_.active_edges ? profile_.active_edges->value : options_.active_edges;
+  }
+
+  Status find_edges_between() {
+    const std::optional<double> degrees = edge_degrees();
+    if (!degrees) return {};
+    std::vector<MeshArrays> arrays;
+    for (const std::size_t m : mesh_of_tree_) {
+      arrays.push_back(plan_.meshes[m].external ? arrays_of(input_.scene.meshes[m].mesh)
+                                                : MeshArrays());
+    }
+    return find_instance_edges(file_.trees, arrays, *degrees, *file_.scene);
   }
 
   // From here on the source of the tree is the mesh with its faces in the order of the tree.
@@ -483,7 +508,7 @@ class Cook {
                                  "possible has {}; a larger 'tolerance' allows fewer",
                                  profile_.cite(profile_.budget.bytes->line), limit, layout->bytes)};
       }
-      assemble();
+      if (Status status = assemble(); !status) return status;
     }
   }
 

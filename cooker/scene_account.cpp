@@ -110,7 +110,9 @@ class Account {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
       line.line = cited(decision->line);
     }
-    if (entry.kind == SectionKind::kActiveEdges && cooked_.profile.active_edges) {
+    const bool are_edges =
+        entry.kind == SectionKind::kActiveEdges || entry.kind == SectionKind::kInstanceEdges;
+    if (are_edges && cooked_.profile.active_edges) {
       line.line = cited(cooked_.profile.active_edges->line);
     }
     why_.push_back(std::move(line));
@@ -140,6 +142,8 @@ class Account {
       case SectionKind::kActiveEdges:
         return fmt::format("boundaries, and edges that bend away by more than {:g} degrees",
                            cooked_.trees[entry.owner].edge_degrees);
+      case SectionKind::kInstanceEdges:
+        return "boundaries of trees at which the surface goes on in another instance";
       case SectionKind::kNames:
         return "objects'; those of instances, meshes and materials that keep theirs; reasons of "
                "parts left out";

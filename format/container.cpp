@@ -109,6 +109,8 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "duplicates";
     case SectionKind::kActiveEdges:
       return "active_edges";
+    case SectionKind::kInstanceEdges:
+      return "instance_edges";
   }
   return "unknown";
 }

@@ -60,6 +60,7 @@ enum class SectionKind : std::uint32_t {
   kLeftOut = 18,        // LeftOutRecord[]
   kDuplicates = 19,     // owner: a tree; the face of which each duplicate is a copy
   kActiveEdges = 20,    // owner: a tree; which edges are active (format/active_edges.h)
+  kInstanceEdges = 21,  // edges where instances meet (format/instance_edges.h)
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

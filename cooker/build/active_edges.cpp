@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
-#include <span>
 
 #include "cooker/import/weld.h"
 #include "runtime/primitive/normal.h"
@@ -44,8 +43,10 @@ struct Side {
 
 class Finder {
  public:
-  Finder(const MeshView& mesh, double degrees)
+  // `edges`: of each face, those to look at; empty: all.
+  Finder(const MeshView& mesh, double degrees, std::span<const std::uint8_t> edges)
       : mesh_(mesh),
+        edges_(edges),
         angle_(EdgeAngle::of_degrees(degrees)),
         numbers_(welded_numbers(mesh.positions)) {
     found_.degrees = degrees;
@@ -96,6 +97,7 @@ class Finder {
       const Face& face = mesh_.faces[f];
       const std::size_t count = corner_count(face);
       for (std::size_t i = 0; i < count; ++i) {
+        if (!edges_.empty() && (edges_[f] >> i & 1u) == 0) continue;
         const std::uint32_t a = numbers_[face.corner[i]];
         const std::uint32_t b = numbers_[face.corner[(i + 1) % count]];
         if (a == b) continue;  // of a quad
@@ -159,6 +161,7 @@ class Finder {
   }
 
   const MeshView& mesh_;
+  std::span<const std::uint8_t> edges_;
   EdgeAngle angle_;
   std::vector<std::uint32_t> numbers_;
   std::vector<bool> has_area_;
@@ -213,7 +216,12 @@ bool bends_away(const EdgeSide& face, const EdgeSide& next, bool is_turned,
 }
 
 ActiveEdges find_active_edges(const MeshView& mesh, double degrees) {
-  return Finder(mesh, degrees).run();
+  return Finder(mesh, degrees, {}).run();
+}
+
+ActiveEdges find_active_edges(const MeshView& mesh, double degrees,
+                              std::span<const std::uint8_t> edges) {
+  return Finder(mesh, degrees, edges).run();
 }
 
 }  // namespace boxtree::cooker

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -63,5 +64,9 @@ struct ActiveEdges {
 /// floor are smooth. Faces without area have active edges alone and are no neighbours. O(faces).
 /// Precondition: 0 <= degrees <= 90.
 [[nodiscard]] ActiveEdges find_active_edges(const MeshView& mesh, double degrees);
+/// The same where faces have no edges but some of theirs, bit i: the edge from corner i to the next
+/// one. All others are active. Precondition: `edges` has an entry for each face.
+[[nodiscard]] ActiveEdges find_active_edges(const MeshView& mesh, double degrees,
+                                            std::span<const std::uint8_t> edges);
 
 }  // namespace boxtree::cooker

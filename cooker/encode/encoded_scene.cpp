@@ -10,6 +10,7 @@
 
 #include "cooker/text/pose_fault.h"
 #include "format/container.h"
+#include "format/instance_edges.h"
 #include "runtime/primitive/float_state.h"
 #include "runtime/scene/placement.h"
 
@@ -37,6 +38,7 @@ class SceneEncoder {
     write_layers();
     write_materials();
     write_left_out();
+    if (Status status = write_instance_edges(); !status) return status.error();
     write_record();
     if (!names_.fits()) {
       return Error{Errc::kMeshTooLarge, "names take more than 4 GiB"};
@@ -126,6 +128,30 @@ class SceneEncoder {
       append(out_.left_out,
              LeftOutRecord{part.part, 0, part.owner, part.line, text.offset, text.bytes, 0});
     }
+  }
+
+  Status write_instance_edges() {
+    if (parts_.edge_lists.empty()) return {};
+    std::vector<EdgeListRow> lists;
+    std::uint64_t entries = 0;
+    for (const std::vector<std::uint32_t>& list : parts_.edge_lists) {
+      lists.push_back(
+          {static_cast<std::uint32_t>(entries), static_cast<std::uint32_t>(list.size())});
+      entries += list.size();
+    }
+    constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
+    if (entries > kMost) {
+      return Error{Errc::kMeshTooLarge,
+                   fmt::format("edges where instances meet: {} faces, limit {}", entries, kMost)};
+    }
+    for (const std::uint32_t leaf : std::span(order_).first(top_.order.size())) {
+      const auto& list = parts_.instances[leaf].edge_list;
+      append(out_.instance_edges, list ? lists[*list] : EdgeListRow{});
+    }
+    for (const std::vector<std::uint32_t>& list : parts_.edge_lists) {
+      for (const std::uint32_t entry : list) append(out_.instance_edges, entry);
+    }
+    return {};
   }
 
   void write_record() {

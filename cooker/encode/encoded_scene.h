@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -25,6 +26,7 @@ struct PlacedTree {
   bool moves = false;
   std::string name;  // empty when names are left out
   Pose pose = Pose::Identity();
+  std::optional<std::uint32_t> edge_list;  // of SceneParts, of one at rest
 };
 
 struct SceneLayer {
@@ -47,6 +49,8 @@ struct SceneParts {
   std::vector<std::string> materials;
   std::vector<TreeMaterials> tree_materials;  // one per tree, or empty
   std::vector<LeftOutPart> left_out;
+  /// Edges that are not active where an instance is placed: entries of ListedEdges, ascending.
+  std::vector<std::vector<std::uint32_t>> edge_lists;
 };
 
 /// The sections of a scene. Names are in the section that all names of a file share.
@@ -58,13 +62,14 @@ struct EncodedScene {
   std::vector<std::byte> layers;
   std::vector<std::byte> left_out;
   EncodedMaterials materials;
+  std::vector<std::byte> instance_edges;  // empty if no instance has a list
 };
 
 /// Builds the top level and lays out the sections; appends names to `names`. Instances are ordered
 /// as leaves of the top level, then the moving ones by id. Poses are stored as f32 if that changes
 /// no number. Deterministic. Errors: kInvalidPose with the instance; kMeshTooLarge for names of
-/// more than 4 GiB or more than kMaxInstances. Precondition: trees have faces; trees, layers and
-/// materials that are referred to exist.
+/// more than 4 GiB, more than kMaxInstances or lists of 2^32 faces with edges. Precondition: trees
+/// have faces; trees, layers and materials that are referred to exist.
 Result<EncodedScene> encode_scene(std::span<const EncodedTree> trees, const SceneParts& parts,
                                   std::string& names);
 

@@ -2,12 +2,15 @@
 // Proves by walking the written top level.
 #include "cooker/proof/scene_proof.h"
 
+#include <set>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/material_proof.h"
 #include "cooker/proof/names.h"
+#include "format/instance_edges.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/walk/traversal.h"
@@ -38,6 +41,7 @@ class SceneWalk {
     check_layers();
     check_materials(file_, [this](const std::string& fault) { add(Errc::kRecordInvalid, fault); });
     check_left_out();
+    check_edges();
     return std::move(findings_);
   }
 
@@ -155,6 +159,43 @@ class SceneWalk {
           (record.owner != kNoOwner && record.owner >= file_.tree_count())) {
         add(Errc::kRecordInvalid, what + "its record");
       }
+    }
+  }
+
+  // Lists may be shared: each is looked at once for each tree.
+  void check_edges() {
+    const BoundScene& scene = BoundScene::of(scene_);
+    if (OpenFile::of(file_).section(SectionKind::kInstanceEdges).empty()) return;
+    std::set<std::tuple<std::uint32_t, std::uint32_t, std::uint32_t>> checked;
+    for (std::uint32_t i = 0; i < scene.record().static_count; ++i) {
+      const EdgeListRow row = scene.edges().row(i);
+      const std::string what = name(i) + "edges: ";
+      if (!in_range(row.first, row.count, scene.edges().entry_count())) {
+        add(Errc::kRecordInvalid, what + std::to_string(row.count) + " entries from " +
+                                      std::to_string(row.first) + ", the section has " +
+                                      std::to_string(scene.edges().entry_count()));
+        continue;
+      }
+      const std::optional<InstanceRecord> record = scene.record_of(i);
+      if (!record || !checked.insert({record->tree, row.first, row.count}).second) continue;
+      check_edges_of(what, BoundTree::of(scene.trees()[record->tree]),
+                     scene.edges().of_instance(i));
+    }
+  }
+
+  void check_edges_of(const std::string& what, const BoundTree& tree, const InactiveEdges& edges) {
+    for (std::uint32_t i = 0; i < edges.size(); ++i) {
+      const ListedEdges listed = edges[i];
+      const std::string entry = what + "entry " + std::to_string(i) + ": ";
+      if (i > 0 && edges[i - 1].face >= listed.face) {
+        add(Errc::kRecordInvalid,
+            entry + "face " + std::to_string(listed.face) + " does not come after the one before");
+      }
+      if (listed.face >= tree.counts().faces_in_leaves) {
+        add(Errc::kFaceOutOfRange, entry + "face " + std::to_string(listed.face) + ", limit " +
+                                       std::to_string(tree.counts().faces_in_leaves));
+      }
+      if (listed.edges == 0) add(Errc::kRecordInvalid, entry + "no edge");
     }
   }
 

@@ -98,6 +98,7 @@ class Layout {
     add(SectionKind::kInstances, kNoOwner, scene.instances);
     add(SectionKind::kPoses, kNoOwner, scene.poses);
     add(SectionKind::kLayers, kNoOwner, scene.layers);
+    add(SectionKind::kInstanceEdges, kNoOwner, scene.instance_edges);
   }
 
   void place() {
@@ -109,7 +110,8 @@ class Layout {
           section.kind == SectionKind::kNames || section.kind == SectionKind::kMaterials ||
           section.kind == SectionKind::kMaterialRuns ||
           section.kind == SectionKind::kFaceMaterials || section.kind == SectionKind::kLeftOut ||
-          section.kind == SectionKind::kCookRecord || section.kind == SectionKind::kActiveEdges;
+          section.kind == SectionKind::kCookRecord || section.kind == SectionKind::kActiveEdges ||
+          section.kind == SectionKind::kInstanceEdges;
       entry.is_required = !informative;
       entry.owner = section.owner;
       entry.offset = section_begin(at, section.bytes.size());

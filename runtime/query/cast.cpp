@@ -33,7 +33,8 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
                       half,
                       compared,
                       triangle,
-                      placed != nullptr && placed->is_mirror};
+                      placed != nullptr && placed->is_mirror,
+                      placed != nullptr ? placed->inactive : InactiveEdges()};
   if (wanted == Wanted::kAll) {
     error = faces.visit_wanted(tree, face_index, t_max, [&](const FaceRef& face) {
       found.face = face;

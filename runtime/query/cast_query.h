@@ -10,6 +10,7 @@
 
 #include <boxtree/cast.h>
 
+#include "format/instance_edges.h"
 #include "runtime/primitive/moving_shape.h"
 #include "runtime/query/ray_query.h"
 #include "runtime/query/relative_pose.h"
@@ -40,14 +41,16 @@ struct CastCandidate {
   Triangle triangle;
   Triangle in_tree;        // the same in tree space
   bool is_mirror = false;  // whether its corners 1 and 2 have changed places there
+  InactiveEdges inactive;  // of the instance, besides those of the tree
 };
 
 /// A cast on a tree that is placed by a pose: triangles are compared where it places them.
 struct PlacedCast {
-  AffineMap to_world;  // from tree space
-  bool is_mirror;      // whether the pose turns the order of corners over
-  MovingShape moving;  // in the world
-  double scale;        // s of `moving` = it * s of the query in tree space; a power of two
+  AffineMap to_world;      // from tree space
+  bool is_mirror;          // whether the pose turns the order of corners over
+  MovingShape moving;      // in the world
+  double scale;            // s of `moving` = it * s of the query in tree space; a power of two
+  InactiveEdges inactive;  // see BoundScene::Placed
 
   [[nodiscard]] Triangle apply(const Triangle& triangle) const noexcept {
     Triangle placed = to_world.apply(triangle);

@@ -27,7 +27,8 @@ bool is_active(const BoundTree& tree, const CastCandidate& found,
   if (part.feature == Feature::kFace || !tree.active_edges()) return true;
   std::uint32_t edges = 1u << part.index;
   if (part.feature == Feature::kVertex) edges |= 1u << (part.index + 2) % 3;
-  return (active_edges_of(tree.active_edges(), found.original, found.in_tree) & edges) != 0;
+  const std::uint32_t of_tree = active_edges_of(tree.active_edges(), found.original, found.in_tree);
+  return (of_tree & ~found.inactive.of_triangle(found.original, found.half) & edges) != 0;
 }
 
 Eigen::Vector3d face_normal(const Triangle& triangle, const Eigen::Vector3d& normal) noexcept {

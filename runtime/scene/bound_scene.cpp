@@ -149,7 +149,7 @@ std::optional<BoundScene::Placed> BoundScene::place(std::uint32_t number,
   const Pose pose = stored_pose(number);
   const std::optional<Placement> placement = place_in_units(tree, pose);
   if (!placement) return std::nullopt;
-  return Placed{&tree, pose, *placement, record.id, record.layer};
+  return Placed{&tree, pose, *placement, record.id, record.layer, edges_.of_instance(number)};
 }
 
 std::optional<BoundScene::Placed> BoundScene::place_now(std::uint32_t number) const noexcept {

@@ -13,6 +13,7 @@
 
 #include <boxtree/scene.h>
 
+#include "format/instance_edges.h"
 #include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/scene/largest.h"
@@ -46,6 +47,7 @@ class BoundScene {
   [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
   [[nodiscard]] std::uint32_t layer_count() const noexcept { return record().layer_count; }
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half) const;
+  [[nodiscard]] const InstanceEdgesView& edges() const noexcept { return edges_; }
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept {
     return materials_[number];
@@ -73,6 +75,7 @@ class BoundScene {
     Placement placement;  // to units of the scene
     std::uint32_t id;
     std::uint32_t layer;
+    InactiveEdges inactive;  // besides those of the tree
 
     /// Nothing when they are beyond kMaxCoordinate.
     [[nodiscard]] std::optional<PlacementBounds> bounds() const noexcept;
@@ -145,6 +148,7 @@ class BoundScene {
   std::vector<Tree> trees_;
   Bytes names_;
   Bytes left_out_;
+  InstanceEdgesView edges_;
   const std::byte* instances_ = nullptr;
   const std::byte* poses_ = nullptr;
   const std::byte* layers_ = nullptr;

@@ -33,12 +33,14 @@ double scale_of(const Ray& line, const BoundTree& tree) noexcept {
 // and the triangle are off by, measured in the world: that of the start, and of the direction times
 // the largest s at which the shape is near the tree. L^-1 makes no vector longer than 1 /
 // stretch.least times its length; it takes axes of the shape to axes, up to what is measured, too.
-InstanceCast::InstanceCast(const UnitCast& cast, const BoundTree& tree,
-                           const Placement& placement) noexcept
-    : line_(placement.to_object(cast.line)), is_moving_(cast.is_moving) {
+InstanceCast::InstanceCast(const UnitCast& cast, const BoundScene::Placed& instance) noexcept
+    : line_(instance.placement.to_object(cast.line)), is_moving_(cast.is_moving) {
+  const BoundTree& tree = *instance.tree;
+  const Placement& placement = instance.placement;
   const AffineMap& to_world = placement.to_world();
   placed_.to_world = to_world;
   placed_.is_mirror = is_mirror(to_world.linear);
+  placed_.inactive = instance.inactive;
 
   const Eigen::Vector3d& center = cast.line.origin;
   const Box<double> root = root_box<double>(tree);

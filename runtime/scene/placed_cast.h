@@ -3,7 +3,7 @@
 #pragma once
 
 #include "runtime/query/cast_query.h"
-#include "runtime/scene/placement.h"
+#include "runtime/scene/bound_scene.h"
 
 namespace boxtree {
 
@@ -18,7 +18,7 @@ struct UnitCast {
 /// the world, all triangles are compared.
 class InstanceCast {
  public:
-  InstanceCast(const UnitCast& cast, const BoundTree& tree, const Placement& placement) noexcept;
+  InstanceCast(const UnitCast& cast, const BoundScene::Placed& instance) noexcept;
 
   [[nodiscard]] CastQuery::Path path() const noexcept {
     return {around_, line_, is_moving_, &placed_};

@@ -57,6 +57,13 @@ Status BoundScene::bind_sections(const File& opened) {
   layers_ = *layers;
   names_ = file.section(SectionKind::kNames);
   materials_ = MaterialNames(file.section(SectionKind::kMaterials), names_);
+  const Bytes edges = file.section(SectionKind::kInstanceEdges);
+  if (!InstanceEdgesView::are_rows_inside(edges.size(), record.static_count)) {
+    return error_with(Errc::kSectionSize, section_text(SectionKind::kInstanceEdges),
+                      ": # bytes, expected 8 for each of # instances, and a multiple of 4",
+                      {edges.size(), record.static_count});
+  }
+  edges_ = InstanceEdgesView(edges, record.static_count);
   left_out_ = file.section(SectionKind::kLeftOut);
   if (left_out_.size() % sizeof(LeftOutRecord) != 0) {
     return error_with(Errc::kSectionSize, section_text(SectionKind::kLeftOut), ": # bytes",
@@ -171,6 +178,7 @@ Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
     const auto bounds = placed->bounds();
     if (!bounds) return corrupt("instance #: its pose");
     moving.push_back({number, *placed, *bounds});
+    moving.back().placed.inactive = {};  // it may leave those beside it
   }
   moving_ = std::move(moving);
   has_detached_ = detaches;

@@ -61,7 +61,7 @@ struct SceneCastQuery {
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const BoundTree& tree = *placed.tree;
-    const InstanceCast on_instance(cast, tree, placed.placement);
+    const InstanceCast on_instance(cast, placed);
     const OptionsOfInstance of_instance(options, instance);
     const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
       const double to = RayInTree::scaled((*all)(described(tree, query.moving, found, instance)),
@@ -160,6 +160,19 @@ Result<Visit> all_touches(const Scene& queried, const Shape& shape, const Motion
 }
 
 }  // namespace
+
+Result<std::uint32_t> active_edges(const Scene& queried, const SceneFace& face,
+                                   std::uint32_t half) {
+  const DefaultFloatState state;
+  const BoundScene& scene = BoundScene::of(queried);
+  const Result<InstanceInfo> info = scene.info(face.instance);
+  if (!info) return info.error();
+  const Result<std::uint32_t> of_tree = active_edges(scene.trees()[info->tree], face.face, half);
+  const auto placed = scene.place_now(face.instance);
+  if (!of_tree || !placed) return of_tree;
+  const std::uint32_t original = placed->tree->original_of(face.face.index);
+  return *of_tree & ~placed->inactive.of_triangle(original, half);
+}
 
 SceneCastResult cast_closest(const Scene& scene, const Sphere& sphere, const Motion& motion,
                              const SceneFaceOptions& options) {

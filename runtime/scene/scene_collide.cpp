@@ -24,7 +24,7 @@ struct SceneCollideQuery : BoxInFrame {
 
   [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
-    const InstanceCast on_instance(cast, *placed.tree, placed.placement);
+    const InstanceCast on_instance(cast, placed);
     const Result<Visit> visited =
         visit_touched(*placed.tree, on_instance.path(), admission.work,
                       [&](const CastQuery& query, const CastCandidate& found) {

@@ -16,6 +16,7 @@ import xxhash
 NO_OWNER = 0xFFFFFFFF
 NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES, ACTIVE_EDGES = 2, 3, 4, 5, 7, 19, 20
 MATERIALS, MATERIAL_RUNS, FACE_MATERIALS = 15, 16, 17
+SCENE, INSTANCES, POSES, INSTANCE_EDGES = 10, 12, 13, 21
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
 
@@ -672,12 +673,79 @@ class Tree:
                 "active_edges": self.active_edges(), "materials": self.materials()}
 
 
+class Placed:
+    """A static instance in the world (section 11)."""
+
+    def __init__(self, file, trees, number):
+        self.tree = trees[struct.unpack_from("<I", file.section(INSTANCES), 16 * number)[0]]
+        size = file.section(SCENE)[20]
+        rows = struct.unpack_from("<12f" if size == 4 else "<12d", file.section(POSES),
+                                  12 * size * number)
+        self.rows = [rows[4 * i:4 * i + 4] for i in range(3)]
+        self.sides = {}
+        for face in range(self.tree.leaf_faces):
+            corners = self.corners(face)
+            for i, corner in enumerate(corners):
+                ends = frozenset((corner, corners[(i + 1) % len(corners)]))
+                self.sides.setdefault(ends, set()).add(frozenset(corners))
+
+    def corners(self, face):
+        """Corners of a face in world coordinates."""
+        triangles = self.tree.triangles(face)
+        return [self.world(p) for p in list(triangles[0]) + [t[2] for t in triangles[1:]]]
+
+    def world(self, point):
+        o, scale = self.tree.origin, 2.0 ** self.tree.exponent
+        x, y, z = (coordinate * scale for coordinate in point)
+        moved = [(((m0 * o[0] + m1 * o[1]) + m2 * o[2]) + t if any(o) else t, m0, m1, m2)
+                 for m0, m1, m2, t in self.rows]
+        return tuple((((t + m0 * x) + m1 * y) + m2 * z) + 0.0 for t, m0, m1, m2 in moved)
+
+
+def instance_edges(file, trees):
+    """For each static instance the edges that are not active there (section 11.2): face and bits."""
+    section = file.section(INSTANCE_EDGES)
+    if not section or any(tree.geometry == EXTERNAL for tree in trees):
+        return None
+    count = struct.unpack_from("<I", file.section(SCENE), 4)[0]
+    expect(len(section) >= 8 * count and len(section) % 4 == 0, "size of section instance_edges")
+    entries = struct.unpack(f"<{len(section) // 4 - 2 * count}I", section[8 * count:])
+    instances = [Placed(file, trees, i) for i in range(count)]
+    lists = []
+    for i, placed in enumerate(instances):
+        first, size = struct.unpack_from("<2I", section, 8 * i)
+        expect(first + size <= len(entries), "a list inside the section")
+        before = -1
+        lists.append([])
+        for entry in entries[first:first + size]:
+            face, bits = entry >> 4, entry & 15
+            expect(before < face < placed.tree.leaf_faces, "faces of a list ascend")
+            before = face
+            corners = placed.corners(face)
+            expect(0 < bits < 1 << len(corners), "edges of a face")
+            for e, corner in enumerate(corners):
+                if not bits >> e & 1:
+                    continue
+                ends = frozenset((corner, corners[(e + 1) % len(corners)]))
+                expect(len(placed.sides[ends]) == 1, "an edge that a tree has once")
+                others = {sheet for other in instances if other is not placed
+                          for sheet in other.sides.get(ends, ())} - {frozenset(corners)}
+                expect(len(others) >= 1, "the edge of another instance")
+            lists[-1].append([face, bits])
+    return lists
+
+
 def read(data):
+    return read_file(data)[0]
+
+
+def read_file(data):
+    """What is found of the trees, and the edges where instances meet."""
     file = File(data)
     records = file.section(1)
     expect(len(records) % 128 == 0, "size of section trees")
-    return [Tree(file, i, records[128 * i:128 * (i + 1)]).check()
-            for i in range(len(records) // 128)]
+    trees = [Tree(file, i, records[128 * i:128 * (i + 1)]) for i in range(len(records) // 128)]
+    return [tree.check() for tree in trees], instance_edges(file, trees)
 
 
 def main(arguments):
@@ -687,7 +755,8 @@ def main(arguments):
     if path.endswith(".hex"):
         data = bytes.fromhex(data.decode())
     try:
-        print(json.dumps({"trees": read(data)}))
+        trees, edges = read_file(data)
+        print(json.dumps({"trees": trees, "instance_edges": edges}))
     except (Broken, struct.error) as broken:
         print(f"{path}: not as specified: {broken}", file=sys.stderr)
         return 1

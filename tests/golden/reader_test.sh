@@ -73,6 +73,30 @@ for mesh in runs turns; do
   done
 done
 
+# Tiles that meet: one mesh in four places, one of them turned and mirrored, on a grid and not.
+awk 'BEGIN {
+  for (y = 0; y <= 4; ++y) for (x = 0; x <= 4; ++x) print "v", x - 2, y - 2, 0
+  for (y = 0; y < 4; ++y) for (x = 1; x <= 4; ++x) {
+    a = 5 * y + x
+    if (x == y) print "f", a, a + 1, a + 6, a + 5
+    else { print "f", a, a + 1, a + 6; print "f", a, a + 6, a + 5 }
+  }
+}' >"$work/tile.obj"
+for precision in "exact = true" "tolerance = 0.001"; do
+  {
+    printf '[scene]\nactive_edges = 5\n%s\n[[mesh]]\nname = "tile"\nfile = "tile.obj"\n' "$precision"
+    for at in "0, 0" "4, 0" "0, 4"; do printf '[[instance]]\nmesh = "tile"\ntranslation = [%s, 0]\n' "$at"; done
+    printf '[[instance]]\nmesh = "tile"\ntranslation = [4, 4, 0]\naxis = [0, 0, 1]\ndegrees = 90\nscale = [-1, 1, 1]\n'
+  } >"$work/tiles.toml"
+  "$boxtree" cook --profile "$work/tiles.toml" -o "$work/tiles.bxt" -q
+  "$boxtree" verify "$work/tiles.bxt" -q
+  read_bxt "$work/tiles.bxt" >"$work/theirs" || fail "tiles, $precision"
+  # Four edges at each of two sides.
+  edges='[.instance_edges[] | map(.[1] | . % 2 + (. / 2 | floor) % 2 + (. / 4 | floor) % 2 + (. / 8 | floor)) | add]'
+  [ "$(jq -c "$edges" "$work/theirs")" = "[8,8,8,8]" ] ||
+    fail "tiles, $precision: $(jq -c .instance_edges "$work/theirs")"
+done
+
 # Each byte of a golden file matters to the second reader too.
 /usr/bin/python3 - "$golden" <<'PYTHON'
 import glob, struct, sys

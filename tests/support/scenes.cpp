@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "tests/support/scenes.h"
 
+#include <optional>
 #include <utility>
 
+#include <gtest/gtest.h>
+
 #include "cooker/cook.h"
+#include "cooker/encode/instance_edges.h"
 #include "tests/support/require.h"
 
 namespace boxtree::test {
@@ -21,8 +25,20 @@ CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes, cooker::ScenePart
                        const std::vector<CodecId>& codecs, const cooker::CookOptions& options) {
   if (parts.layers.empty()) parts.layers.push_back({"all"});
   std::vector<cooker::EncodedTree> trees;
+  std::optional<cooker::Grid> grid;
+  if (options.geometry == GeometryId::kGrid) {
+    std::vector<const cooker::SourceMesh*> all;
+    for (const cooker::SourceMesh& mesh : meshes) all.push_back(&mesh);
+    grid = require(cooker::choose_grid(all, options.grid));
+  }
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    trees.push_back(require(cooker::cook_as(meshes[i], codecs[i % codecs.size()], options)));
+    cooker::CookOptions of_mesh = options;
+    of_mesh.codec = codecs[i % codecs.size()];
+    trees.push_back(require(cooker::cook_mesh(meshes[i], of_mesh, grid)).tree);
+  }
+  if (options.active_edges) {
+    const Status found = cooker::find_instance_edges(trees, {}, *options.active_edges, parts);
+    EXPECT_TRUE(found.ok()) << found.error().message();
   }
   std::vector<std::byte> bytes = require(cooker::serialize({trees, {}, &parts}));
   File file = require(File::open(bytes));

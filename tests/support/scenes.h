@@ -23,7 +23,8 @@ struct CookedScene {
 };
 
 /// Encodes each mesh with the codec at the same index of `codecs` (which repeat) and writes the
-/// scene. Precondition: `parts` refers to these meshes; if it has no layers, one is added.
+/// scene. Trees on a grid share it. Precondition: `parts` refers to these meshes; if it has no
+/// layers, one is added.
 [[nodiscard]] CookedScene cook_scene(std::vector<cooker::SourceMesh> meshes,
                                      cooker::SceneParts parts,
                                      const std::vector<CodecId>& codecs = {CodecId::kWide8},

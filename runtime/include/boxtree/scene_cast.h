@@ -76,4 +76,12 @@ BOXTREE_API Result<Visit> cast_all(const Scene& scene, const ConvexHull& hull, c
                                    SceneCastVisitor visitor, const SceneFaceOptions& options = {});
 #endif
 
+/// Which edges of a triangle of an instance are active, as active_edges() of its tree tells it,
+/// with bit i from corner i of Scene::triangle(face, half) on; but boundaries of the tree at which
+/// the surface goes on in another instance, as both rest in the file, are not active. An instance
+/// that moves, or was made movable, has the edges of its tree. Errors: also those of Scene::info().
+[[nodiscard]] BOXTREE_API Result<std::uint32_t> active_edges(const Scene& scene,
+                                                             const SceneFace& face,
+                                                             std::uint32_t half = 0);
+
 }  // namespace boxtree

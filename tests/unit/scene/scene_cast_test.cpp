@@ -299,8 +299,7 @@ TEST(SceneCastFeatures, AreThoseOfTheFace) {
                            Feature feature, std::uint32_t index, const Eigen::Vector3d& point,
                            bool is_active) {
     const Triangle triangle = require(scene.triangle({instance, face}, half));
-    const Tree& tree = scene.trees()[require(scene.info(instance)).tree];
-    std::uint32_t bits = require(active_edges(tree, face, half));
+    const std::uint32_t bits = require(active_edges(scene, {instance, face}, half));
     const Eigen::Vector3d& from = triangle.corner[index];
     const Eigen::Vector3d along = triangle.corner[(index + 1) % 3] - from;
     if (feature == Feature::kVertex) {
