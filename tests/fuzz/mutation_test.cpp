@@ -32,7 +32,7 @@ std::vector<std::byte> small_file(const Encoding& encoding) {
     const auto faces = static_cast<std::uint32_t>(mesh.faces.size());
     cooker::FaceMaterials materials;
     for (std::uint32_t i = 0; i < encoding.materials; ++i) {
-      materials.names.push_back("m" + std::to_string(i));
+      materials.names.push_back(std::string("m").append(std::to_string(i)));
       materials.runs.push_back({i * faces / encoding.materials, i});
     }
     return test::cook_bytes(mesh, materials, encoding.codec, options);

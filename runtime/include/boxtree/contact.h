@@ -34,13 +34,13 @@ BOXTREE_API QueryResult<FacePair> first_contact(const Tree& first, const Pose& f
 
 /// Where two triangles of two trees touch. Points and vectors are those of the world.
 struct PairContact {
-  FacePair faces;
+  FacePair faces;                     ///< The faces that they belong to.
   std::uint32_t first_triangle = 0;   ///< Of the first face: 0, or 1 for the second half of a quad.
   std::uint32_t second_triangle = 0;  ///< Of the second one.
   /// The ends of the segment that both triangles share, the same if that is a point. Of triangles
   /// in one plane, which share a polygon, the two of its corners that are farthest apart.
   Eigen::Vector3d start = Eigen::Vector3d::Zero();
-  Eigen::Vector3d end = Eigen::Vector3d::Zero();
+  Eigen::Vector3d end = Eigen::Vector3d::Zero();    ///< The other end.
   Eigen::Vector3d point = Eigen::Vector3d::Zero();  ///< Between them, on both.
   /// Unit vector along which the second triangle leaves the first one soonest. It is that of the
   /// two alone, whichever sides of them are solid; see tree.triangle() for their own normals.

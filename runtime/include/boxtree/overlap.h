@@ -49,6 +49,7 @@ enum class ClipDepth : std::uint8_t {
 struct Frustum {
   /// Unaligned, so that their layout does not depend on compiler options.
   using Plane = Eigen::Matrix<double, 4, 1, Eigen::DontAlign>;
+  /// A matrix of four rows of four numbers, which takes (x, y, z, 1) to clip space.
   using ViewProjection = Eigen::Matrix<double, 4, 4, Eigen::DontAlign>;
 
   std::array<Plane, 6> planes;  ///< Object space; normals point inside.

@@ -46,7 +46,7 @@ SourceMesh tile(unsigned seed) {
   for (unsigned y = 0; y < 4; ++y) {
     for (unsigned x = 0; x < 4; ++x) {
       const unsigned a = 5 * y + x, b = a + 1, c = b + 5, d = a + 5;
-      const unsigned kind = random() % 3;
+      const auto kind = static_cast<unsigned>(random() % 3);
       if (kind == 0) {
         mesh.faces.push_back({{a, b, c, d}});
       } else if (kind == 1) {
@@ -71,13 +71,13 @@ SceneParts lattice(unsigned seed, std::uint32_t count, std::uint32_t trees) {
     placed.id = i;
     placed.moves = random() % 8 == 0;
     Eigen::Matrix3d linear = Eigen::Matrix3d::Zero();
-    const unsigned turn = random() % 3;
+    const auto turn = static_cast<unsigned>(random() % 3);
     for (unsigned k = 0; k < 3; ++k) {
       const auto row = static_cast<Eigen::Index>((k + turn) % 3);
       linear(row, static_cast<Eigen::Index>(k)) = random() % 2 == 0 ? 1 : -1;
     }
     Eigen::Vector3d at;
-    for (Eigen::Index k = 0; k < 3; ++k) at[k] = 2.0 * (random() % 2);
+    for (Eigen::Index k = 0; k < 3; ++k) at[k] = random() % 2 == 0 ? 0 : 2;
     if (random() % 4 == 0) {
       const double slope = random() % 2 == 0 ? 0.25 : 0.5;  // 14 and 27 degrees
       Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
@@ -149,7 +149,7 @@ TEST(InstanceEdges, AreThoseOfBruteForceOverAllPlacedFaces) {
       const std::uint32_t found = require(active_edges(scene, face, half));
       EXPECT_EQ(found, edges_of_half(expected[id][face.face.id], is_quad, half)) << seed;
       const Tree& tree = scene.trees()[require(scene.info(face.instance)).tree];
-      inactive += found != require(active_edges(tree, face.face, half)) ? 1 : 0;
+      if (found != require(active_edges(tree, face.face, half))) ++inactive;
     });
   }
   EXPECT_GT(inactive, 500u);
