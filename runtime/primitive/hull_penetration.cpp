@@ -228,10 +228,7 @@ class Difference {
     if (found == 3) {
       thin_axis_[0] = across;
     } else if (found == 2) {
-      Eigen::Index smallest = 0;
-      static_cast<void>(line.cwiseAbs().minCoeff(&smallest));
-      const Corners other{Eigen::Vector3d::Zero(), line, Eigen::Vector3d::Unit(smallest)};
-      thin_axis_[0] = unit_normal({other});
+      thin_axis_[0] = unit_across(line);
       thin_axis_[1] = unit_normal({{Eigen::Vector3d::Zero(), line, thin_axis_[0]}});
     } else {
       thin_axis_ = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(), Eigen::Vector3d::UnitZ()};

@@ -61,6 +61,14 @@ Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept {
   return normalised(normal);
 }
 
+Eigen::Vector3d unit_across(const Eigen::Vector3d& along) noexcept {
+  Eigen::Index smallest = 0;
+  static_cast<void>(along.cwiseAbs().minCoeff(&smallest));
+  const Eigen::Vector3d other = Eigen::Vector3d::Unit(smallest);
+  const Eigen::Vector3d across = unit_normal({{Eigen::Vector3d::Zero(), along, other}});
+  return across.isZero(0) ? other : across;
+}
+
 namespace {
 
 // The cofactors of a matrix, and the sign of its determinant, but for a factor.

@@ -15,6 +15,9 @@ namespace boxtree {
 /// (kMaxCoordinate).
 [[nodiscard]] Eigen::Vector3d unit_normal(const Triangle& triangle) noexcept;
 
+/// Some unit vector across `along`, which may be zero.
+[[nodiscard]] Eigen::Vector3d unit_across(const Eigen::Vector3d& along) noexcept;
+
 /// The unit normal of a surface after `linear`, the linear part of a pose, has been applied to it:
 /// on the side to which the pose maps the old one, mirrors included. Zero for zero.
 [[nodiscard]] Eigen::Vector3d placed_normal(const Eigen::Matrix3d& linear,

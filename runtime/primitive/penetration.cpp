@@ -91,11 +91,7 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
   if (least.normal.isZero(0)) {
     // A core along a face without area: any direction across both.
     const Eigen::Vector3d along = shape.axes == 0 ? corner[1] - corner[0] : shape.axis[0];
-    Eigen::Index smallest = 0;
-    static_cast<void>(along.cwiseAbs().minCoeff(&smallest));
-    const Eigen::Vector3d across = Eigen::Vector3d::Unit(smallest);
-    least.normal = unit_normal({{Eigen::Vector3d::Zero(), along, across}});
-    if (least.normal.isZero(0)) least.normal = across;
+    least.normal = unit_across(along);
     least.depth = 0;
   }
   return {closest, least.normal, std::max(0.0, shape.radius + least.depth),

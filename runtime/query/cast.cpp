@@ -93,20 +93,6 @@ CastHit hit_of(const BoundTree& tree, const MovingShape& moving, const CastCandi
 
 namespace {
 
-// One cast of any shape. `answer`: called with the query once it has walked the tree. Precondition:
-// nothing is invalid.
-template <class Answer>
-Errc run_cast(const BoundTree& tree, const ShapeInTree& shape, const CastLine& cast,
-              CastQuery::Wanted wanted, const CastQuery::Visitor* visitor,
-              const FaceOptions& options, const Answer& answer) {
-  QueryWork work(options.limits);
-  WalkBound nodes(tree.node_count(), &work);
-  CastQuery query(tree, {shape.shape, cast.line, cast.is_moving}, wanted, visitor, nodes, &options);
-  const Errc error = query.run();
-  if (error == Errc::kOk) answer(query);
-  return error;
-}
-
 CastHit described(const CastQuery& query, const CastLine& cast, const CastCandidate& found) {
   return hit_of(query.tree, query.moving, found, cast.line, query.parameter_exponent,
                 query.tree.frame());
@@ -118,15 +104,14 @@ CastResult one_touch_in(const BoundTree& tree, const ShapeInTree& shape, const M
                         CastQuery::Wanted wanted, const FaceOptions& options) {
   const CastLine cast(shape, motion);
   if (cast.invalid != nullptr) return {Errc::kInvalidQuery, cast.invalid};
-  CastResult result;
-  const Errc error =
-      run_cast(tree, shape, cast, wanted, nullptr, options, [&](const CastQuery& query) {
-        if (!query.best.is_hit) return;
-        CastHit hit = described(query, cast, query.best);
-        name(tree, hit.face);
-        result = hit;
-      });
-  return error == Errc::kOk ? result : CastResult(error);
+  QueryWork work(options.limits);
+  WalkBound nodes(tree.node_count(), &work);
+  CastQuery query(tree, {shape.shape, cast.line, cast.is_moving}, wanted, nullptr, nodes, &options);
+  const Errc error = query.run();
+  if (error != Errc::kOk || !query.best.is_hit) return error;
+  CastHit hit = described(query, cast, query.best);
+  name(tree, hit.face);
+  return hit;
 }
 
 Result<Visit> all_touches_in(const BoundTree& tree, const ShapeInTree& shape, const Motion& motion,
@@ -137,13 +122,12 @@ Result<Visit> all_touches_in(const BoundTree& tree, const ShapeInTree& shape, co
     return RayInTree::scaled(visitor(described(query, cast, found)), query.parameter_exponent);
   };
   const CastQuery::Visitor all(touched);
-  Visit end = Visit::kComplete;
-  const Errc error = run_cast(tree, shape, cast, CastQuery::Wanted::kAll, &all, options,
-                              [&](const CastQuery& query) {
-                                end = query.faces.stopped ? Visit::kStopped : Visit::kComplete;
-                              });
-  if (error != Errc::kOk) return error;
-  return end;
+  QueryWork work(options.limits);
+  WalkBound nodes(tree.node_count(), &work);
+  CastQuery query(tree, {shape.shape, cast.line, cast.is_moving}, CastQuery::Wanted::kAll, &all,
+                  nodes, &options);
+  if (const Errc error = query.run(); error != Errc::kOk) return error;
+  return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }
 
 namespace {

@@ -133,11 +133,7 @@ class TouchingTriangles {
         if (squared_length(edge) > squared_length(along)) along = edge;
       }
     }
-    Eigen::Index smallest = 0;
-    static_cast<void>(along.cwiseAbs().minCoeff(&smallest));
-    const Eigen::Vector3d across = Eigen::Vector3d::Unit(smallest);
-    normal = unit_normal({{Eigen::Vector3d::Zero(), along, across}});
-    if (normal.isZero(0)) normal = across;
+    normal = unit_across(along);
     depth = 0;
   }
 

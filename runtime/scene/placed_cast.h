@@ -9,9 +9,9 @@ namespace boxtree {
 
 /// A cast in the units of a scene.
 struct UnitCast {
-  ConvexShape shape;  // its center is the origin of the line
-  Ray line;           // the largest component of its direction is in [1/2, 1)
-  bool is_moving;     // see CastLine
+  const ConvexShape& shape;  // its center is the origin of the line
+  const Ray& line;           // the largest component of its direction is in [1/2, 1)
+  bool is_moving;            // see CastLine
 };
 
 /// The same on an instance. Where its placement is so uneven that its tree's space tells nothing of

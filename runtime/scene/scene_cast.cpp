@@ -16,57 +16,42 @@
 namespace boxtree {
 namespace {
 
-// In units of the scene, with a direction whose largest component is in [1/2, 1): its parameter is
-// t * 2^parameter_exponent. Triangles are compared there; boxes, in the scene's frame, are widened
-// by the shape and by what rounding on the way there, and MovingShape, may be off.
-struct SceneCastQuery {
-  SceneCastQuery(const Admission& admitted, const ShapeInTree& shape, const CastLine& in_world,
-                 const SceneFaceOptions& face_options, CastQuery::Wanted wanted_touches,
-                 const SceneCastVisitor* visitor) noexcept
-      : admission(admitted),
-        world(in_world.line),
-        exponent(exponent_of(largest_magnitude(world.direction))),
-        parameter_exponent(exponent - scene().record().scale_exponent),
-        cast{shape.shape,
-             {scene().to_units(world.origin),
-              RayInTree::scaled(AxisLanes(world.direction), -exponent).vector(), 0,
-              RayInTree::scaled(world.t_max, parameter_exponent)},
-             in_world.is_moving},
+// Triangles are compared in units of the scene; boxes, in its frame, are widened by the shape and
+// by what rounding on the way there, and MovingShape, may be off.
+LineInScene cast_in_scene(const BoundScene& scene, const ConvexShape& shape,
+                          const Ray& world) noexcept {
+  const LineInUnits units(scene, world);
+  const Eigen::Vector3d extent = shape.half_extents();
+  const double largest = largest_in_frame(scene) + 2 * largest_magnitude(extent);
+  const double origins = largest_magnitude(units.line.origin) +
+                         largest_magnitude(scene.to_units(scene.frame().origin));
+  return {units, line_in_frame(scene, units.line, 16 * (largest + origins), extent)};
+}
+
+struct SceneCastQuery : LineInScene {
+  SceneCastQuery(const Admission& admitted, const ShapeInTree& shape_in_units,
+                 const CastLine& in_world, const SceneFaceOptions& face_options,
+                 CastQuery::Wanted wanted_touches, const SceneCastVisitor* visitor) noexcept
+      : LineInScene(cast_in_scene(admitted.scene, shape_in_units.shape, in_world.line)),
+        admission(admitted),
+        shape(shape_in_units.shape),
+        is_moving(in_world.is_moving),
         options(face_options),
         wanted(wanted_touches),
-        all(visitor),
-        in_frame(make_in_frame()) {}
-
-  [[nodiscard]] const BoundScene& scene() const noexcept { return admission.scene; }
-
-  [[nodiscard]] TopLevelRay make_in_frame() const noexcept {
-    const Eigen::Vector3d extent = cast.shape.half_extents();
-    const double largest = largest_in_frame(scene()) + 2 * largest_magnitude(extent);
-    const double origins = largest_magnitude(cast.line.origin) +
-                           largest_magnitude(scene().to_units(scene().frame().origin));
-    return line_in_frame(scene(), cast.line, 16 * (largest + origins), extent);
-  }
+        all(visitor) {}
 
   [[nodiscard]] bool is_done() const noexcept {
     return error != Errc::kOk || stopped || (wanted == CastQuery::Wanted::kAny && best.is_hit);
   }
-  [[nodiscard]] double bound() const noexcept { return cast.line.t_max; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return in_frame.slab.key(box, in_frame.s_min);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame, cast.line.t_max);
-  }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const BoundTree& tree = *placed.tree;
-    const InstanceCast on_instance(cast, placed);
+    const InstanceCast on_instance({shape, line, is_moving}, placed);
     const OptionsOfInstance of_instance(options, instance);
     const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
       const double to = RayInTree::scaled((*all)(described(tree, query.moving, found, instance)),
                                           parameter_exponent);
-      cast.line.t_max = std::min(cast.line.t_max, to);
+      line.t_max = std::min(line.t_max, to);
       return to;
     };
     const CastQuery::Visitor visitor(touched);
@@ -84,25 +69,23 @@ struct SceneCastQuery {
     best_instance = instance;
     best_tree = &tree;
     best_moving = query.moving;
-    cast.line.t_max = found.s;
+    line.t_max = found.s;
     return !is_done();
   }
 
   [[nodiscard]] SceneCastHit described(const BoundTree& tree, const MovingShape& moving,
                                        const CastCandidate& found,
                                        std::uint32_t instance) const noexcept {
-    return {hit_of(tree, moving, found, world, parameter_exponent, scene().units()), instance};
+    return {hit_of(tree, moving, found, world, parameter_exponent, admission.scene.units()),
+            instance};
   }
 
   Admission admission;
-  const Ray& world;
-  int exponent;  // of the direction in the world
-  int parameter_exponent;
-  UnitCast cast;  // t_max of its line shrinks to the best touch
+  const ConvexShape& shape;
+  bool is_moving;
   const SceneFaceOptions& options;
   CastQuery::Wanted wanted;
   const SceneCastVisitor* all;  // of kAll, or null
-  TopLevelRay in_frame;
   CastCandidate best;
   std::uint32_t best_id = 0;
   std::uint32_t best_instance = 0;

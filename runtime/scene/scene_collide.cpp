@@ -15,24 +15,17 @@ namespace {
 
 // `visit_touch(instance, query, candidate)` -> bool, whether to go on: see visit_touched.
 template <class VisitTouch>
-struct SceneCollideQuery : BoxInFrame {
+struct SceneCollideQuery : BoxInFrame, InstanceOutcome {
   Admission admission;
   UnitCast cast;  // of no length
   const VisitTouch& visit_touch;
-  Errc error = Errc::kOk;
-  bool stopped = false;
 
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const InstanceCast on_instance(cast, placed);
-    const Result<Visit> visited =
-        visit_touched(*placed.tree, on_instance.path(), admission.work,
-                      [&](const CastQuery& query, const CastCandidate& found) {
-                        return visit_touch(instance, query, found);
-                      });
-    if (!visited) error = visited.code();
-    stopped = visited && *visited == Visit::kStopped;
-    return !is_done();
+    return note(visit_touched(*placed.tree, on_instance.path(), admission.work,
+                              [&](const CastQuery& query, const CastCandidate& found) {
+                                return visit_touch(instance, query, found);
+                              }));
   }
 };
 
@@ -54,9 +47,10 @@ Result<Visit> visit_touched_in(const BoundScene& scene, const ShapeInTree& shape
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
-  const UnitCast cast{shape.shape, line_at(scene.to_units(shape.center)), false};
+  const Ray line = line_at(scene.to_units(shape.center));
+  const UnitCast cast{shape.shape, line, false};
   SceneCollideQuery<VisitTouch> query{
-      {bounds_in_frame(scene, cast)}, {scene, kBoxQueries, layers, work}, cast, visit_touch};
+      {bounds_in_frame(scene, cast)}, {}, {scene, kBoxQueries, layers, work}, cast, visit_touch};
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 

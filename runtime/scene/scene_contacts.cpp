@@ -11,7 +11,7 @@ namespace {
 // between the world and the space in which two trees are compared (PlacementBounds::error), each by
 // its own tree's share. The first tree of a comparison is the one whose pose magnifies errors less,
 // so both shares suffice.
-struct BodyInScene : BoxInFrame {
+struct BodyInScene : BoxInFrame, InstanceOutcome {
   Admission admission;
   const BoundTree& tree;
   const Pose& pose;
@@ -19,20 +19,13 @@ struct BodyInScene : BoxInFrame {
   std::uint32_t own_instance;  // kNoInstance for a body that is no part of the scene
   bool is_first;               // in reports
   BodyPairVisitor visitor;
-  Errc error = Errc::kOk;
-  bool stopped = false;
-
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
     if (instance == own_instance) return true;
     const BodyPair::Placed own{own_instance, tree, pose}, met{instance, *other.tree, other.pose};
-    const Result<Visit> visited = other.placement.condition() < condition
-                                      ? visitor({met, own, is_first}, admission.work)
-                                      : visitor({own, met, !is_first}, admission.work);
-    if (!visited) error = visited.code();
-    stopped = visited && *visited == Visit::kStopped;
-    return !is_done();
+    return note(other.placement.condition() < condition
+                    ? visitor({met, own, is_first}, admission.work)
+                    : visitor({own, met, !is_first}, admission.work));
   }
 };
 
@@ -56,6 +49,7 @@ BodyInScene body_of(const BoundScene& scene, std::uint32_t instance,
                     const BoundScene::Placed& placed, const PlacementBounds& bounds,
                     BodyPairVisitor visitor, QueryWork& work) {
   return {{scene.to_frame(bounds.world)},
+          {},
           {scene, kPairQueries, scene.layer(placed.layer).collides_with, work},
           *placed.tree,
           placed.pose,
@@ -115,6 +109,7 @@ Result<Visit> visit_pairs_with(const BoundScene& scene, const BoundTree& tree, c
   const auto bounds = placement->bounds(root_box<double>(tree));
   if (!bounds) return Errc::kInvalidPose;
   BodyInScene body{{scene.to_frame(bounds->world)},
+                   {},
                    {scene, kPairQueries, layers, work},
                    tree,
                    pose,

@@ -81,14 +81,13 @@ struct PlacedFrustum {
   }
 };
 
-// `answer(instance, placed, work)` -> Result<Visit>.
+// `answer(units, instance, placed, work)` -> Result<Visit>.
 template <class Answer>
-struct FrustumInScene {
+struct FrustumInScene : InstanceOutcome {
   Admission admission;
+  FrustumSides units;
   FrustumSides sides;  // in the scene's frame
   const Answer& answer;
-  Errc error = Errc::kOk;
-  bool stopped = false;
 
   // Of the top level, whose leaves are instances.
   struct Instances {
@@ -104,7 +103,6 @@ struct FrustumInScene {
     [[nodiscard]] bool leaf(NodeRef ref) const { return visit(top.instance(ref)); }
   };
 
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return sides.overlaps(box);
@@ -115,34 +113,32 @@ struct FrustumInScene {
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     if (placed.tree->empty()) return true;
-    const Result<Visit> visited = answer(instance, placed, admission.work);
-    if (!visited) error = visited.code();
-    stopped = visited && *visited == Visit::kStopped;
-    return !is_done();
+    return note(answer(units, instance, placed, admission.work));
   }
 };
 
 template <class Answer>
-Result<Visit> visit_in_frustum(const BoundScene& scene, const FrustumSides& units, LayerMask layers,
+Result<Visit> visit_in_frustum(const Scene& queried, const Frustum& frustum, LayerMask layers,
                                const QueryLimits& limits, const Answer& answer) {
-  QueryWork work(limits);
-  FrustumInScene<Answer> query{{scene, kBoxQueries, layers, work}, in_frame(scene, units), answer};
-  return outcome_of(visit_overlapping_instances(scene, query), query);
-}
-
-}  // namespace
-
-Result<Visit> overlap_frustum(const Scene& queried, const Frustum& frustum,
-                              SceneFaceVisitor visitor, LayerMask layers,
-                              const QueryLimits& limits) {
   const DefaultFloatState state;
   const BoundScene& scene = BoundScene::of(queried);
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   if (!is_finite(frustum)) return invalid_query("planes");
   const FrustumSides units = in_units(scene, frustum);
+  QueryWork work(limits);
+  FrustumInScene<Answer> query{
+      {}, {scene, kBoxQueries, layers, work}, units, in_frame(scene, units), answer};
+  return outcome_of(visit_overlapping_instances(scene, query), query);
+}
+
+}  // namespace
+
+Result<Visit> overlap_frustum(const Scene& scene, const Frustum& frustum, SceneFaceVisitor visitor,
+                              LayerMask layers, const QueryLimits& limits) {
   return visit_in_frustum(
-      scene, units, layers, limits,
-      [&](std::uint32_t instance, const BoundScene::Placed& placed, QueryWork& work) {
+      scene, frustum, layers, limits,
+      [&](const FrustumSides& units, std::uint32_t instance, const BoundScene::Placed& placed,
+          QueryWork& work) {
         const BoundTree& tree = *placed.tree;
         const AffineMap& to_world = placed.placement.to_world();
         const Eigen::Vector3d largest = max_abs_of(to_world.hull(root_box<double>(tree)));
@@ -154,17 +150,13 @@ Result<Visit> overlap_frustum(const Scene& queried, const Frustum& frustum,
       });
 }
 
-Result<Visit> instances_in_frustum(const Scene& queried, const Frustum& frustum,
+Result<Visit> instances_in_frustum(const Scene& scene, const Frustum& frustum,
                                    SceneInstanceVisitor visitor, LayerMask layers,
                                    const QueryLimits& limits) {
-  const DefaultFloatState state;
-  const BoundScene& scene = BoundScene::of(queried);
-  if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
-  if (!is_finite(frustum)) return invalid_query("planes");
-  const FrustumSides units = in_units(scene, frustum);
   return visit_in_frustum(
-      scene, units, layers, limits,
-      [&](std::uint32_t instance, const BoundScene::Placed& placed, QueryWork&) -> Result<Visit> {
+      scene, frustum, layers, limits,
+      [&](const FrustumSides& units, std::uint32_t instance, const BoundScene::Placed& placed,
+          QueryWork&) -> Result<Visit> {
         const bool may_touch = in_tree(units, placed).overlaps(root_box<double>(*placed.tree));
         return may_touch && !visitor(instance) ? Visit::kStopped : Visit::kComplete;
       });

@@ -9,6 +9,7 @@
 #include <boxtree/scene.h>
 
 #include "runtime/primitive/vector3.h"
+#include "runtime/query/ray_query.h"
 #include "runtime/scene/bound_scene.h"
 #include "runtime/scene/scene_walk.h"
 #include "runtime/scene/top_level_walk.h"
@@ -31,6 +32,43 @@ namespace boxtree {
   const RaySlab slab(origin, line.direction, max_abs);
   return {origin, line.direction, max_abs, slab.widened(AxisLanes(extent)), line.t_min, extent};
 }
+
+/// A line of the world in units of the scene, with a direction whose largest component is in
+/// [1/2, 1): its parameter is t * 2^parameter_exponent.
+struct LineInUnits {
+  LineInUnits(const BoundScene& scene, const Ray& in_world) noexcept
+      : LineInUnits(scene, in_world, exponent_of(largest_magnitude(in_world.direction))) {}
+
+  const Ray& world;
+  int parameter_exponent;
+  Ray line;  // t_max shrinks to the best hit
+
+ private:
+  LineInUnits(const BoundScene& scene, const Ray& in_world, int exponent) noexcept
+      : world(in_world),
+        parameter_exponent(exponent - scene.record().scale_exponent),
+        line{scene.to_units(world.origin),
+             RayInTree::scaled(AxisLanes(world.direction), -exponent).vector(),
+             RayInTree::scaled(world.t_min, parameter_exponent),
+             RayInTree::scaled(world.t_max, parameter_exponent)} {}
+};
+
+/// What queries along a line compare with boxes of instances: the line in the scene's frame.
+struct LineInScene : LineInUnits {
+  LineInScene(const LineInUnits& in_units, const TopLevelRay& ray_in_frame) noexcept
+      : LineInUnits(in_units), in_frame(ray_in_frame) {}
+
+  [[nodiscard]] double bound() const noexcept { return line.t_max; }
+  template <class S>
+  [[nodiscard]] double key(const Box<S>& box) const noexcept {
+    return in_frame.slab.key(box, in_frame.s_min);
+  }
+  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
+    return walk_top_level(top, instances, in_frame, line.t_max);
+  }
+
+  TopLevelRay in_frame;
+};
 
 /// The options of a query on the tree of one instance.
 class OptionsOfInstance {

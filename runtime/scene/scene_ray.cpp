@@ -30,48 +30,32 @@ struct SceneRayWishes {
   const SceneRayVisitor* all = nullptr;  // null: one hit is wanted
 };
 
-// In units of the scene, with a direction whose largest component is in [1/2, 1): its parameter is
-// t * 2^parameter_exponent. Boxes of instances are widened by PlacementBounds::error(). What
-// remains is the error of the ray's origin on its way to object space and back, which a larger
-// max_abs adds to the slab's margin.
-struct SceneRayQuery {
+// Boxes of instances are widened by PlacementBounds::error(). What remains is the error of the
+// ray's origin on its way to object space and back, which a larger max_abs adds to the slab's
+// margin.
+LineInScene ray_in_scene(const BoundScene& scene, const Ray& world) noexcept {
+  const LineInUnits units(scene, world);
+  const double largest = largest_in_frame(scene);
+  const double origin = largest_magnitude(units.line.origin);
+  const double max_abs = largest + 16 * scene.condition() * (origin + largest);
+  return {units, line_in_frame(scene, units.line, max_abs)};
+}
+
+struct SceneRayQuery : LineInScene {
   SceneRayQuery(const Admission& admitted, const Ray& in_world, bool stop_at_first,
                 const SceneRayWishes* ray_wishes) noexcept
-      : admission(admitted),
-        world(in_world),
-        exponent(exponent_of(largest_magnitude(world.direction))),
-        parameter_exponent(exponent - scene().record().scale_exponent),
-        ray{scene().to_units(world.origin),
-            RayQuery::scaled(AxisLanes(world.direction), -exponent).vector(),
-            RayQuery::scaled(world.t_min, parameter_exponent),
-            RayQuery::scaled(world.t_max, parameter_exponent)},
+      : LineInScene(ray_in_scene(admitted.scene, in_world)),
+        admission(admitted),
         any(stop_at_first),
-        wishes(ray_wishes),
-        in_frame(make_in_frame()) {}
-
-  [[nodiscard]] const BoundScene& scene() const noexcept { return admission.scene; }
-
-  [[nodiscard]] TopLevelRay make_in_frame() const noexcept {
-    const double largest = largest_in_frame(scene());
-    const double origin = largest_magnitude(ray.origin);
-    return line_in_frame(scene(), ray, largest + 16 * scene().condition() * (origin + largest));
-  }
+        wishes(ray_wishes) {}
 
   [[nodiscard]] bool is_done() const noexcept {
     return error != Errc::kOk || stopped || (any && best.is_hit);
   }
-  [[nodiscard]] double bound() const noexcept { return ray.t_max; }
-  template <class S>
-  [[nodiscard]] double key(const Box<S>& box) const noexcept {
-    return in_frame.slab.key(box, in_frame.s_min);
-  }
-  [[nodiscard]] Errc walk(const TopLevel& top, InstanceVisitor instances) const {
-    return walk_top_level(top, instances, in_frame, ray.t_max);
-  }
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     RayCandidate found;
-    const Ray in_object = placed.placement.to_object(ray);
+    const Ray in_object = placed.placement.to_object(line);
     error = wishes == nullptr ? cast_ray(*placed.tree, in_object, any, admission.work, found)
                               : wishes->cast(*this, instance, placed, in_object, found);
     if (!found.is_hit || error != Errc::kOk) return !is_done();
@@ -80,7 +64,7 @@ struct SceneRayQuery {
     best_id = placed.id;
     best_instance = instance;
     best_to_units = placed.placement.to_world();
-    ray.t_max = found.t;
+    line.t_max = found.t;
     return !is_done();
   }
 
@@ -88,19 +72,14 @@ struct SceneRayQuery {
   [[nodiscard]] SceneRayHit described(const RayCandidate& hit, std::uint32_t instance,
                                       const AffineMap& to_units) const noexcept {
     return {{parameter_of(world, hit.t, parameter_exponent), hit.face, hit.half, hit.u, hit.v,
-             scene().to_world(to_units.apply(hit.point())),
+             admission.scene.to_world(to_units.apply(hit.point())),
              placed_normal(to_units.linear, unit_normal(hit.triangle))},
             instance};
   }
 
   Admission admission;
-  const Ray& world;
-  int exponent;  // of the direction in the world
-  int parameter_exponent;
-  Ray ray;  // t_max shrinks to the best hit
   bool any;
   const SceneRayWishes* wishes;
-  TopLevelRay in_frame;
   RayCandidate best;
   std::uint32_t best_id = 0;
   std::uint32_t best_instance = 0;
@@ -121,7 +100,7 @@ Errc cast_with_wishes(SceneRayQuery& query, std::uint32_t instance,
     const double to = RayInTree::scaled(
         (*wishes.all)(query.described(in_scene, instance, placed.placement.to_world())),
         query.parameter_exponent);
-    query.ray.t_max = std::min(query.ray.t_max, to);
+    query.line.t_max = std::min(query.line.t_max, to);
     return RayInTree::scaled(to, in_tree.parameter_exponent);
   };
   const RayWishes::Visitor all(visit);

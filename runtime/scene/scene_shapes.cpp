@@ -18,14 +18,11 @@ namespace {
 
 // What boxes and spheres share: `run_query(placed, faces)` answers for one instance.
 template <class Shape>
-struct ShapeInScene {
+struct ShapeInScene : InstanceOutcome {
   Admission admission;
   const Shape& shape;
   SceneFaceVisitor visitor;
-  Errc error = Errc::kOk;
-  bool stopped = false;
 
-  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
   template <class S>
   [[nodiscard]] bool overlaps(const Box<S>& box) const noexcept {
     return shape.overlaps(box);
@@ -34,10 +31,7 @@ struct ShapeInScene {
     return shape.walk(top, instances);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
-    const Result<Visit> visited = shape.run_query(placed, {visitor, instance}, admission.work);
-    if (!visited) error = visited.code();
-    stopped = visited && *visited == Visit::kStopped;
-    return !is_done();
+    return note(shape.run_query(placed, {visitor, instance}, admission.work));
   }
 };
 
@@ -45,7 +39,7 @@ template <class Shape>
 Result<Visit> query_scene(const BoundScene& scene, const Shape& shape, SceneFaceVisitor visitor,
                           LayerMask layers, const QueryLimits& limits) {
   QueryWork work(limits);
-  ShapeInScene<Shape> query{{scene, kBoxQueries, layers, work}, shape, visitor};
+  ShapeInScene<Shape> query{{}, {scene, kBoxQueries, layers, work}, shape, visitor};
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 

@@ -32,6 +32,20 @@ struct Admission {
   [[nodiscard]] bool admits(std::uint32_t instance, std::uint32_t layer) const noexcept;
 };
 
+/// What is known of a query that visits instances one after the other.
+struct InstanceOutcome {
+  Errc error = Errc::kOk;
+  bool stopped = false;
+
+  [[nodiscard]] bool is_done() const noexcept { return error != Errc::kOk || stopped; }
+  /// Keeps what came of an instance. Returns whether to go on.
+  [[nodiscard]] bool note(const Result<Visit>& visited) noexcept {
+    if (!visited) error = visited.code();
+    stopped = visited && *visited == Visit::kStopped;
+    return !is_done();
+  }
+};
+
 /// What a query compares with boxes of instances by a box, in the scene's frame.
 struct BoxInFrame {
   Box<double> in_frame;
