@@ -3,22 +3,37 @@
 #include "format/message.h"
 
 #include <string>
-#include <utility>
 
 namespace boxtree {
 
-Error error_with(Errc code, std::string_view place, std::string_view text,
-                 std::initializer_list<std::uint64_t> numbers) {
-  std::string detail(place);
-  const std::uint64_t* number = numbers.begin();
+namespace {
+
+// Appends `text`, each '#' replaced by the next number; without numbers, as it is.
+void append(std::string& detail, std::string_view text, const std::uint64_t* number = nullptr) {
   for (const char c : text) {
-    if (c == '#') {
+    if (c == '#' && number != nullptr) {
       detail += std::to_string(*number++);
     } else {
       detail += c;
     }
   }
-  return {code, std::move(detail)};
+}
+
+}  // namespace
+
+Error error_with(Errc code, std::string_view place, std::string_view text,
+                 std::initializer_list<std::uint64_t> numbers) {
+  Error error{code, {}};
+  append(error.detail, place);
+  append(error.detail, text, numbers.size() > 0 ? numbers.begin() : nullptr);
+  return error;
+}
+
+Error error_at(std::string_view place, const Error& error) {
+  Error placed{error.code, {}};
+  append(placed.detail, place);
+  append(placed.detail, error.detail);
+  return placed;
 }
 
 Error index_error(Errc code, std::string_view what, std::uint64_t index, std::uint64_t count) {

@@ -16,6 +16,9 @@ namespace boxtree {
 [[nodiscard]] Error error_with(Errc code, std::string_view place, std::string_view text,
                                std::initializer_list<std::uint64_t> numbers = {});
 
+/// The error, its detail after `place`.
+[[nodiscard]] Error error_at(std::string_view place, const Error& error);
+
 /// "there is no tree 2; expected 0 or 1", of `count` things called `what`.
 /// Precondition: index >= count.
 [[nodiscard]] Error index_error(Errc code, std::string_view what, std::uint64_t index,

@@ -50,9 +50,8 @@ Result<File> open_blob(Bytes blob, std::uint64_t memory_limit) {
   const Result<Bytes> section = blob_section(blob);
   if (!section) return section.error();
   if (section->size() < sizeof(BlobHeader)) {
-    return Error{Errc::kSectionSize,
-                 section_text(SectionKind::kBlob) + ": " +
-                     section_size_error(section->size(), sizeof(BlobHeader)).detail};
+    return section_error(SectionKind::kBlob,
+                         section_size_error(section->size(), sizeof(BlobHeader)));
   }
   const auto header = load<BlobHeader>(section->data());
   if (header.reserved0 != 0 || header.reserved1 != 0) {

@@ -16,11 +16,13 @@ namespace boxtree {
 /// "section " and its name, for messages.
 [[nodiscard]] std::string section_text(SectionKind kind);
 
-/// The bytes of `section`, if there are `count * element` of them. `place` begins error messages.
-/// Precondition: the product does not overflow; that of two record fields never does. Errors:
-/// kSectionMissing when bytes are required and there are none; kSectionSize.
+/// The error, said of a section.
+[[nodiscard]] Error section_error(SectionKind kind, const Error& error);
+
+/// The bytes of `section`, if there are `count * element` of them. Precondition: the product does
+/// not overflow; that of two record fields never does. Errors: kSectionMissing when bytes are
+/// required and there are none; kSectionSize.
 [[nodiscard]] Result<const std::byte*> sized_section(Bytes section, SectionKind kind,
-                                                     std::string_view place, std::uint64_t count,
-                                                     std::uint64_t element);
+                                                     std::uint64_t count, std::uint64_t element);
 
 }  // namespace boxtree

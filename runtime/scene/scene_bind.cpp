@@ -30,7 +30,7 @@ Status BoundScene::bind_sections(const File& opened) {
   const Bytes section = file.section(SectionKind::kScene);
   if (section.empty()) return Errc::kNoScene;
   const auto sized = [&](SectionKind kind, std::uint64_t count, std::uint64_t element) {
-    return sized_section(file.section(kind), kind, "", count, element);
+    return sized_section(file.section(kind), kind, count, element);
   };
   if (const auto found = sized(SectionKind::kScene, 1, sizeof(SceneRecord)); !found) {
     return found.error();

@@ -67,20 +67,24 @@ Result<Tree> BoundTree::bind(const TreeParts& parts, std::uint32_t index,
   if (Status status = check_tree_record(parts.record, index); !status) return status.error();
   tree.keep(parts.record);
   tree.name_ = parts.name;
-  const std::string place = "tree " + std::to_string(std::uint64_t{index}) + ": ";
-  if (Status status = tree.bind_nodes(parts, place); !status) return status.error();
-  const bool external = tree.geometry_ == GeometryId::kExternal;
-  if (Status status = external ? tree.bind_external_geometry(parts, place, options)
-                               : tree.bind_stored_geometry(parts, place);
-      !status) {
-    return status.error();
+  if (Status status = tree.bind_sections(parts, options); !status) {
+    return error_at(error_with(status.code(), {}, "tree #: ", {index}).detail, status.error());
   }
-  if (Status status = tree.bind_face_ids(parts, place, options); !status) return status.error();
-  if (Status status = tree.bind_duplicates(parts, place); !status) return status.error();
-  if (Status status = tree.bind_active_edges(parts, place, options); !status) return status.error();
-  if (Status status = tree.bind_materials(parts, place, options); !status) return status.error();
   tree.leaves_.prepare_floats(tree.largest_abs_);
   return bound;
+}
+
+Status BoundTree::bind_sections(const TreeParts& parts, const BindOptions& options) {
+  Status status = bind_nodes(parts);
+  if (status) {
+    status = geometry_ == GeometryId::kExternal ? bind_external_geometry(parts, options)
+                                                : bind_stored_geometry(parts);
+  }
+  if (status) status = bind_face_ids(parts, options);
+  if (status) status = bind_duplicates(parts);
+  if (status) status = bind_active_edges(parts, options);
+  if (status) status = bind_materials(parts, options);
+  return status;
 }
 
 void BoundTree::keep(const TreeRecord& record) {
@@ -103,26 +107,26 @@ void BoundTree::keep(const TreeRecord& record) {
   largest_abs_ = max_abs_.maxCoeff();
 }
 
-Status BoundTree::bind_nodes(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_nodes(const TreeParts& parts) {
   if (!has_nodes()) return {};
-  const std::string where = place + section_text(SectionKind::kNodes);
-  if (parts.nodes.empty()) return error_with(Errc::kSectionMissing, where, " is absent");
+  if (parts.nodes.empty()) {
+    return error_with(Errc::kSectionMissing, section_text(SectionKind::kNodes), " is absent");
+  }
   const Status status = bind_codec(codec_, counts_, parts.nodes, functions_, nodes_);
-  if (!status) return Error{status.code(), where + ": " + status.error().detail};
+  if (!status) return section_error(SectionKind::kNodes, status.error());
   has_float_nodes_ = is_in_float_range(root_f64_);
   return {};
 }
 
-Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string& place) {
-  if (has_clusters(geometry_)) return bind_clusters(parts, place);
+Status BoundTree::bind_stored_geometry(const TreeParts& parts) {
+  if (has_clusters(geometry_)) return bind_clusters(parts);
   const std::size_t stride = 3 * (has_f64_positions_ ? sizeof(double) : sizeof(float));
   const std::uint64_t vertices =
       std::clamp<std::uint64_t>(parts.vertices.size() / stride, face_count_ > 0, kMaxVertices);
-  const auto positions =
-      sized_section(parts.vertices, SectionKind::kVertices, place, vertices, stride);
+  const auto positions = sized_section(parts.vertices, SectionKind::kVertices, vertices, stride);
   if (!positions) return positions.error();
   const auto corners =
-      sized_section(parts.corners, SectionKind::kCorners, place, face_count_,
+      sized_section(parts.corners, SectionKind::kCorners, face_count_,
                     std::uint64_t{parts.record.corners_per_face} * parts.record.corner_bytes);
   if (!corners) return corners.error();
   leaves_ =
@@ -132,12 +136,12 @@ Status BoundTree::bind_stored_geometry(const TreeParts& parts, const std::string
   return {};
 }
 
-Status BoundTree::bind_clusters(const TreeParts& parts, const std::string& place) {
-  const auto corners = sized_section(parts.corners, SectionKind::kCorners, place, 0, 1);
+Status BoundTree::bind_clusters(const TreeParts& parts) {
+  const auto corners = sized_section(parts.corners, SectionKind::kCorners, 0, 1);
   if (!corners) return corners.error();
   // Clusters take more bytes than their table; each is looked for where it is read.
   const std::uint64_t least = cluster_table_bytes(face_count_);
-  const auto clusters = sized_section(parts.vertices, SectionKind::kVertices, place,
+  const auto clusters = sized_section(parts.vertices, SectionKind::kVertices,
                                       std::max<std::uint64_t>(parts.vertices.size(), least), 1);
   if (!clusters) return clusters.error();
   leaves_ = LeafReader({parts.vertices, face_count_, parts.record.corners_per_face,
@@ -146,93 +150,90 @@ Status BoundTree::bind_clusters(const TreeParts& parts, const std::string& place
   return {};
 }
 
-Status BoundTree::bind_external_geometry(const TreeParts& parts, const std::string& place,
-                                         const BindOptions& options) {
-  if (!options.mesh) return error_with(Errc::kExternalMeshNeeded, place, "no mesh was given");
+Status BoundTree::bind_external_geometry(const TreeParts& parts, const BindOptions& options) {
+  if (!options.mesh) return error_with(Errc::kExternalMeshNeeded, {}, "no mesh was given");
   const MeshArrays& mesh = *options.mesh;
   if (!are_readable(mesh)) {
-    return error_with(Errc::kExternalMeshMismatch, place,
+    return error_with(Errc::kExternalMeshMismatch, {},
                       "expected 3 or 4 corners a face, of 2 or 4 bytes, positions apart, no null");
   }
   if (mesh.face_count != face_count_ || mesh.positions_f64 != has_f64_positions_) {
     const auto bits = [](bool f64) -> std::uint64_t { return f64 ? 64 : 32; };
     return error_with(
-        Errc::kExternalMeshMismatch, place, "expected # faces of f# positions, given # of f#",
+        Errc::kExternalMeshMismatch, {}, "expected # faces of f# positions, given # of f#",
         {face_count_, bits(has_f64_positions_), mesh.face_count, bits(mesh.positions_f64)});
   }
   if (options.verify_mesh) {
     const Result<std::uint64_t> hash = geometry_hash(mesh);
     if (!hash) return hash.error();
     if (*hash != parts.record.geometry_hash) {
-      return error_with(Errc::kExternalMeshMismatch, place, "the mesh's content differs");
+      return error_with(Errc::kExternalMeshMismatch, {}, "the mesh's content differs");
     }
   }
   leaves_ = LeafReader(mesh, frame_);
   return {};
 }
 
-Status BoundTree::bind_face_ids(const TreeParts& parts, const std::string& place,
-                                const BindOptions& options) {
+Status BoundTree::bind_face_ids(const TreeParts& parts, const BindOptions& options) {
   // External faces are found by source number, or through the ids of the tree's own order.
   const bool are_needed = geometry_ == GeometryId::kExternal && face_count_ > 0;
   if (parts.face_ids.empty() ? are_needed && !is_in_source_order_
                              : is_in_source_order_ || face_count_ == 0) {
-    return error_with(Errc::kRecordInvalid, place, "face ids are not as specified");
+    return error_with(Errc::kRecordInvalid, {}, "face ids are not as specified");
   }
   if (!parts.face_ids.empty()) {
     // Fields take more bytes than that; each is looked for where it is read.
     const std::uint64_t bytes =
         std::max<std::uint64_t>(parts.face_ids.size(), least_id_bytes(face_count_));
-    const auto ids = sized_section(parts.face_ids, SectionKind::kFaceIds, place, bytes, 1);
+    const auto ids = sized_section(parts.face_ids, SectionKind::kFaceIds, bytes, 1);
     if (!ids) return ids.error();
     face_ids_ = FaceIdView(parts.face_ids);
   }
   if (are_needed && face_ids_) leaves_.set_order(face_ids_);
   if (options.require_face_ids && !has_face_ids() && !empty()) {
     return error_with(
-        Errc::kPartLeftOut, place,
+        Errc::kPartLeftOut, {},
         "face ids were left out when it was cooked: cook without --no-face-ids, or face_ids = "
         "false of its profile");
   }
   return {};
 }
 
-Status BoundTree::bind_duplicates(const TreeParts& parts, const std::string& place) {
+Status BoundTree::bind_duplicates(const TreeParts& parts) {
   const std::uint8_t width = parts.record.duplicate_bytes;
-  const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates, place,
+  const auto originals = sized_section(parts.duplicates, SectionKind::kDuplicates,
                                        number_array_bytes(duplicate_count(), width), 1);
   if (!originals) return originals.error();
   if (width != 0) duplicates_ = {*originals, width};
   return {};
 }
 
-Status BoundTree::bind_active_edges(const TreeParts& parts, const std::string& place,
-                                    const BindOptions& options) {
+Status BoundTree::bind_active_edges(const TreeParts& parts, const BindOptions& options) {
   const Bytes section = parts.active_edges;
   if (section.empty()) {
     if (!options.require_active_edges || empty()) return {};
-    return error_with(Errc::kPartLeftOut, place,
+    return error_with(Errc::kPartLeftOut, {},
                       "it was cooked without --active-edges, or active_edges of a profile");
   }
   std::uint64_t bytes = sizeof(ActiveEdgesHeader);
   if (section.size() >= bytes) {
     bytes = active_edges_bytes(face_count_, load<ActiveEdgesHeader>(section.data()).start_count);
   }
-  const auto edges = sized_section(section, SectionKind::kActiveEdges, place, bytes, 1);
+  const auto edges = sized_section(section, SectionKind::kActiveEdges, bytes, 1);
   if (!edges) return edges.error();
   active_edges_ = ActiveEdgesView(section, face_count_);
   return {};
 }
 
-Status BoundTree::bind_materials(const TreeParts& parts, const std::string& place,
-                                 const BindOptions& options) {
+Status BoundTree::bind_materials(const TreeParts& parts, const BindOptions& options) {
   material_names_ = MaterialNames(parts.materials, parts.names);
-  const auto bound = MaterialView::bind(parts.material_runs, parts.face_materials, face_count_,
-                                        material_names_.count(), place);
-  if (!bound) return bound.error();
-  materials_ = *bound;
+  if (Status status = materials_.bind(parts.material_runs, parts.face_materials, face_count_,
+                                      material_names_.count());
+      !status) {
+    return status;
+  }
   if (!options.require_materials || materials_ || empty()) return {};
-  return error_with(Errc::kPartLeftOut, place,
+  return error_with(Errc::kPartLeftOut, {},
                     "it was cooked without --materials, or materials = false left them out of its "
                     "profile, or its source has none");
 }

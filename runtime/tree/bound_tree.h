@@ -164,18 +164,15 @@ class BoundTree {
   BoundTree() = default;
   [[nodiscard]] static BoundTree& inside(Tree& tree) noexcept;
   void keep(const TreeRecord& record);
-  Status bind_nodes(const TreeParts& parts, const std::string& place);
-  Status bind_stored_geometry(const TreeParts& parts, const std::string& place);
-  Status bind_clusters(const TreeParts& parts, const std::string& place);
-  Status bind_external_geometry(const TreeParts& parts, const std::string& place,
-                                const BindOptions& options);
-  Status bind_face_ids(const TreeParts& parts, const std::string& place,
-                       const BindOptions& options);
-  Status bind_duplicates(const TreeParts& parts, const std::string& place);
-  Status bind_active_edges(const TreeParts& parts, const std::string& place,
-                           const BindOptions& options);
-  Status bind_materials(const TreeParts& parts, const std::string& place,
-                        const BindOptions& options);
+  Status bind_sections(const TreeParts& parts, const BindOptions& options);
+  Status bind_nodes(const TreeParts& parts);
+  Status bind_stored_geometry(const TreeParts& parts);
+  Status bind_clusters(const TreeParts& parts);
+  Status bind_external_geometry(const TreeParts& parts, const BindOptions& options);
+  Status bind_face_ids(const TreeParts& parts, const BindOptions& options);
+  Status bind_duplicates(const TreeParts& parts);
+  Status bind_active_edges(const TreeParts& parts, const BindOptions& options);
+  Status bind_materials(const TreeParts& parts, const BindOptions& options);
 
   CodecId codec_{};
   GeometryId geometry_{};

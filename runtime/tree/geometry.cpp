@@ -75,13 +75,7 @@ void LeafReader::prepare_floats(double max_abs) noexcept {
 Errc LeafReader::read(std::uint32_t first, std::uint32_t count, TriangleBatch& out) const noexcept {
   out.count = 0;
   if (!in_range(first, count, mesh_.face_count)) return Errc::kFaceOutOfRange;
-  if (has_clusters()) return read_clusters(first, count, out);
-  if (mesh_.positions_f64) {
-    return mesh_.corner_bytes == 2 ? read_as<double, std::uint16_t>(first, count, out)
-                                   : read_as<double, std::uint32_t>(first, count, out);
-  }
-  return mesh_.corner_bytes == 2 ? read_as<float, std::uint16_t>(first, count, out)
-                                 : read_as<float, std::uint32_t>(first, count, out);
+  return has_clusters() ? read_clusters(first, count, out) : read_arrays(first, count, out);
 }
 
 Errc LeafReader::read_clusters(std::uint32_t first, std::uint32_t count,
@@ -130,28 +124,20 @@ std::uint32_t LeafReader::stored_face(std::uint32_t face, bool is_first,
   return ids[face % kLeafFaces];
 }
 
-template <class Scalar, class Corner>
-Errc LeafReader::read_as(std::uint32_t first, std::uint32_t count,
-                         TriangleBatch& out) const noexcept {
-  constexpr auto kMissing = static_cast<Corner>(kMissingCorner);
-  const std::uint32_t corners_per_face = mesh_.corners_per_face;
+Errc LeafReader::read_arrays(std::uint32_t first, std::uint32_t count,
+                             TriangleBatch& out) const noexcept {
   std::uint32_t triangles = 0;
   std::array<std::uint32_t, kLeafFaces> ids;
   for (std::uint32_t f = first; f < first + count; ++f) {
     const std::uint32_t stored = stored_face(f, f == first, ids);
     if (stored >= mesh_.face_count) return Errc::kFaceOutOfRange;
-    const std::byte* const face =
-        mesh_.corners + std::size_t{stored} * corners_per_face * sizeof(Corner);
-    const std::uint32_t corner_count =
-        corners_per_face == 4 && load<Corner>(face, 3) != kMissing ? 4 : 3;
+    const std::array<std::uint32_t, 4> corner = face_of(mesh_, stored);
+    const std::uint32_t corner_count = corner[3] == kMissingCorner ? 3 : 4;
     if (triangles + corner_count - 2 > kMaxLeafTriangles) return Errc::kFaceOutOfRange;
     std::array<Eigen::Vector3d, 4> position;
     for (std::uint32_t i = 0; i < corner_count; ++i) {
-      const std::uint32_t vertex = load<Corner>(face, i);
-      if (vertex >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
-      const auto p = load<std::array<Scalar, 3>>(mesh_.positions +
-                                                 std::size_t{vertex} * mesh_.position_stride);
-      position[i] = frame_.to_tree({p[0], p[1], p[2]});
+      if (corner[i] >= mesh_.vertex_count) return Errc::kVertexOutOfRange;
+      position[i] = frame_.to_tree(position_of(mesh_, corner[i]));
       if (!is_within_range(position[i])) return Errc::kVertexNotFinite;
     }
     for (std::uint32_t second = 1; second + 1 < corner_count; ++second) {

@@ -108,11 +108,8 @@ class LeafReader {
                           TriangleBatch& out) const noexcept;
 
  private:
-  // Scalar of the positions, type of the corner numbers.
-  template <class Scalar, class Corner>
-  [[nodiscard]] Errc read_as(std::uint32_t first, std::uint32_t count,
-                             TriangleBatch& out) const noexcept;
-
+  [[nodiscard]] Errc read_arrays(std::uint32_t first, std::uint32_t count,
+                                 TriangleBatch& out) const noexcept;
   [[nodiscard]] std::uint32_t stored_face(std::uint32_t face, bool is_first,
                                           std::span<std::uint32_t, kLeafFaces> ids) const noexcept;
   [[nodiscard]] Errc read_clusters(std::uint32_t first, std::uint32_t count,

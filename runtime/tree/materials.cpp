@@ -3,7 +3,6 @@
 
 #include <algorithm>
 
-#include "format/message.h"
 #include "format/numbers.h"
 #include "format/scene_record.h"
 #include "runtime/file/section.h"
@@ -28,26 +27,22 @@ std::string_view MaterialNames::operator[](std::uint32_t number) const noexcept 
   return {reinterpret_cast<const char*>(names_) + offset, size};
 }
 
-Result<MaterialView> MaterialView::bind(Bytes runs, Bytes faces, std::uint32_t face_count,
-                                        std::uint32_t material_count, const std::string& place) {
-  const std::uint64_t run_count = runs.size() / sizeof(MaterialRun);
-  if (runs.size() % sizeof(MaterialRun) != 0 || run_count > face_count) {
-    return error_with(Errc::kSectionSize, place,
-                      section_text(SectionKind::kMaterialRuns) + ": # bytes", {runs.size()});
-  }
+Status MaterialView::bind(Bytes runs, Bytes faces, std::uint32_t face_count,
+                          std::uint32_t material_count) {
+  const std::uint64_t run_count =
+      std::min<std::uint64_t>(runs.size() / sizeof(MaterialRun), face_count);
+  const auto run_bytes =
+      sized_section(runs, SectionKind::kMaterialRuns, run_count, sizeof(MaterialRun));
+  if (!run_bytes) return run_bytes.error();
   const std::uint8_t width = material_number_bytes(material_count);
-  if (!faces.empty() && faces.size() != number_array_bytes(face_count, width)) {
-    return error_with(
-        Errc::kSectionSize, place,
-        section_text(SectionKind::kFaceMaterials) + ": # bytes, expected # for # materials",
-        {faces.size(), number_array_bytes(face_count, width), material_count});
-  }
-  MaterialView materials;
-  if (runs.empty() && faces.empty()) return materials;  // a section of no bytes has an address
-  materials.bytes_ = faces.empty() ? runs.data() : faces.data();
-  materials.run_count_ = faces.empty() ? static_cast<std::uint32_t>(run_count) : 0;
-  materials.width_ = width;
-  return materials;
+  const auto face_bytes =
+      sized_section(faces, SectionKind::kFaceMaterials, faces.empty() ? 0 : face_count, width);
+  if (!face_bytes) return face_bytes.error();
+  if (runs.empty() && faces.empty()) return {};  // a section of no bytes has an address
+  bytes_ = faces.empty() ? *run_bytes : *face_bytes;
+  run_count_ = faces.empty() ? static_cast<std::uint32_t>(run_count) : 0;
+  width_ = width;
+  return {};
 }
 
 std::uint32_t MaterialView::of(const FaceRef& face, std::uint32_t face_count) const noexcept {

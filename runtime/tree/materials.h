@@ -34,10 +34,8 @@ class MaterialNames {
 class MaterialView {
  public:
   MaterialView() noexcept = default;
-  /// Of sections material_runs and face_materials. Error: kSectionSize, whose message begins with
-  /// `place`.
-  static Result<MaterialView> bind(Bytes runs, Bytes faces, std::uint32_t face_count,
-                                   std::uint32_t material_count, const std::string& place);
+  /// To sections material_runs and face_materials. Precondition: of none. Error: kSectionSize.
+  Status bind(Bytes runs, Bytes faces, std::uint32_t face_count, std::uint32_t material_count);
 
   explicit operator bool() const noexcept { return bytes_ != nullptr; }
   /// kNoMaterial if there are none, or for want of the face's id; any number on corrupt bytes.

@@ -29,7 +29,8 @@ readelf -d "$lib/libboxtree.so" >"$work/dynamic"
 grep -q "soname: \[libboxtree.so.$soversion\]" "$work/dynamic" || fail "wrong soname: $(cat "$work/dynamic")"
 if grep -E 'RPATH|RUNPATH' "$work/dynamic"; then fail "has a path to search"; fi
 
-# Exported is what the public headers declare: their functions, and members of their classes.
+# Exported is what the public headers declare: their functions, and members of their
+# classes and structs, which mark functions one by one.
 nm -DC --defined-only --format=posix "$lib/libboxtree.so" | grep -v ' A ' >"$work/exported"
 [ -s "$work/exported" ] || fail "nothing is exported"
 sed -E 's/@@.*//; s/\(.*//' "$work/exported" | sort -u >"$work/names"
@@ -38,7 +39,7 @@ while read -r name _; do
   [[ $name == boxtree::* ]] || fail "exports $name, which is not boxtree's"
   name=${name#boxtree::}
   if [[ $name == *::* ]]; then
-    grep -q "^class BOXTREE_API ${name%%::*} {" "$work/headers" || fail "exports $name, whose class is not public"
+    grep -qE "^(class BOXTREE_API|struct) ${name%%::*} \{" "$work/headers" || fail "exports $name, whose class is not public"
   fi
   grep -qE "(^|[^A-Za-z_])${name##*::} ?\(" "$work/headers" || fail "exports $name, which no public header declares"
 done <"$work/names"

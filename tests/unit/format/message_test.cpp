@@ -7,6 +7,17 @@
 namespace boxtree {
 namespace {
 
+TEST(ErrorWith, ReplacesSignsByNumbersInTheTextAlone) {
+  EXPECT_EQ(error_with(Errc::kTreeIndex, "at #: ", "# of #", {1, 20}).detail, "at #: 1 of 20");
+  EXPECT_EQ(error_with(Errc::kTreeIndex, {}, "# stays").detail, "# stays");
+}
+
+TEST(ErrorAt, PutsThePlaceInFront) {
+  const Error error = error_at("tree #1: ", {Errc::kTreeIndex, "no # here"});
+  EXPECT_EQ(error.code, Errc::kTreeIndex);
+  EXPECT_EQ(error.detail, "tree #1: no # here");
+}
+
 TEST(IndexError, SaysWhichNumbersThereAre) {
   const auto detail = [](std::uint64_t index, std::uint64_t count) {
     return index_error(Errc::kTreeIndex, "tree", index, count).detail;
