@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "runtime/primitive/rounding.h"
 #include "runtime/query/cast_query.h"
@@ -18,6 +19,15 @@ struct ConvexAxes {
   std::uint32_t count;
   float axis[3][3];  // of length 1
   float half[3];     // rounded up
+};
+
+/// One of the axes, on its own: projections on it overlap from their distance ahead, less `reach`,
+/// times `per_ahead` on, until their distance behind, and `reach`, times `per_behind`.
+struct AxisMotion {
+  bool is_against;   // whether the shape moves against it
+  float reach;       // of the whole shape, and what projections of boxes are off
+  float per_ahead;   // 1 / speed, rounded down
+  float per_behind;  // 1 / speed, rounded up; 0 where it hardly moves along it
 };
 
 /// Boxes are decoded, and rounded no further; see RayBoxFilter.
@@ -50,12 +60,38 @@ struct CastFilter : RayBoxFilter {
       }
       core.half[i] = float_above(shape.half[i] * length);
     }
+    for (std::uint32_t i = 0; i < shape.axes; ++i) motion[i] = motion_along(core.axis[i]);
   }
 
   float radius;
   float outer_radius;  // of a ball that holds the shape
   float direction[3];
   ConvexAxes core;
+  AxisMotion motion[3];
+
+ private:
+  // Along a vector, which is rounded no further. u = 2^-24.
+  [[nodiscard]] AxisMotion motion_along(const float (&v)[3]) const noexcept {
+    double size = 0, along = 0, reach = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      size += std::abs(double{v[k]});
+      along += double{v[k]} * direction[k];
+    }
+    for (std::uint32_t i = 0; i < core.count; ++i) {
+      double projected = 0;
+      for (std::size_t k = 0; k < 3; ++k) projected += double{v[k]} * core.axis[i][k];
+      reach += std::abs(projected) * core.half[i];
+    }
+    // More than the speed may be off, and quotients by it round.
+    constexpr double kError = 16 * kRoundoffF32;
+    const double speed = std::abs(along), doubt = kError * size;
+    AxisMotion out;
+    out.is_against = along < 0;
+    out.reach = float_above(reach + radius * size + 3 * size * error);
+    out.per_ahead = static_cast<float>((1 - kError) / (speed + doubt));
+    out.per_behind = speed > 2 * doubt ? static_cast<float>((1 + kError) / (speed - doubt)) : 0;
+    return out;
+  }
 };
 
 }  // namespace boxtree

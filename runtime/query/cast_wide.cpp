@@ -12,7 +12,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "runtime/query/triangle_distance-inl.h"
+#include "runtime/query/moving_separation-inl.h"
 #include "runtime/walk/nearest-inl.h"
 #include "runtime/walk/prefetch-inl.h"
 
@@ -29,7 +29,7 @@ Errc walk_cast(const BoundTree& tree, CastQuery& query) {
 class CastLeaves {
  public:
   CastLeaves(const BoundTree& tree, CastQuery& query, const CastFilter& filter)
-      : query_(query), filter_(filter), leaf_(tree) {
+      : query_(query), filter_(filter), shape_(filter), leaf_(tree) {
     set_bound();
   }
 
@@ -54,24 +54,17 @@ class CastLeaves {
     return bits_of(hn::Le(enter, leave));
   }
 
-  /// The same for a ball around the shape, by one step from `enter` on; see advance().
-  HWY_INLINE std::uint32_t advance_ball(const VectorBox& box, FloatVector& enter) const {
-    const Floats d;
-    const FloatVector zero = hn::Zero(d);
-    FloatVector squared = zero, size = zero, approach = zero;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const FloatVector direction = hn::Set(d, filter_.direction[k]);
-      const FloatVector center = hn::MulAdd(enter, direction, hn::Set(d, filter_.origin[k]));
-      const FloatVector way = hn::Sub(hn::Max(zero, hn::Sub(box.low[k], center)),
-                                      hn::Max(zero, hn::Sub(center, box.high[k])));
-      squared = hn::MulAdd(way, way, squared);
-      size = hn::Add(size, hn::Abs(way));
-      approach = hn::MulAdd(way, direction, approach);
+  /// The same for the shape itself, as far as a few directions tell, from `enter` on.
+  HWY_INLINE std::uint32_t advance_to_boxes(const VectorBox& box, FloatVector& enter) const {
+    const MovingBoxes boxes(shape_, box, enter);
+    MovingInterval interval;
+    if (shape_.axes() == 3) {
+      boxes.cut_by_axes(interval);
+    } else {
+      interval.cut(boxes.gap_of_ball());
     }
-    const FloatVector reach = hn::MulAdd(hn::Sqrt(squared), hn::Set(d, filter_.outer_radius),
-                                         hn::Mul(size, hn::Set(d, 3 * filter_.error)));
-    enter = advanced(enter, hn::Sub(squared, reach), size, approach);
-    return bits_of(hn::Le(enter, hn::Set(d, bound_)));
+    enter = hn::Add(enter, interval.enter());
+    return bits_of(hn::And(interval.is_left(), hn::Le(enter, hn::Set(Floats(), bound_))));
   }
 
   /// Whether to go on.
@@ -90,7 +83,6 @@ class CastLeaves {
         hn::Store(leave, Floats(), last + part * kLanes);
       }
       near &= leaf_.lanes(group);
-      if (near != 0 && query_.best.is_hit) near = touched_before_bound(group, near);
       if (near != 0) near = advance(group, near, key, last);
       while (near != 0) {
         const std::uint32_t i = take_smallest(near, key);
@@ -116,156 +108,95 @@ class CastLeaves {
  private:
   void set_bound() { bound_ = filter_.bound(query_.t_max); }
 
-  // By how much s rises where a vector of magnitudes `size` separates by `missing` more than the
-  // shape reaches, and the shape moves along it by `approach`: both times the vector's length.
-  // Infinity where it moves away.
-  static HWY_INLINE FloatVector advanced(FloatVector s, FloatVector missing, FloatVector size,
-                                         FloatVector approach) {
-    const Floats d;
-    const FloatVector speed =
-        hn::MulAdd(size, hn::Set(d, static_cast<float>(8 * kRoundoffF32)), approach);
-    const FloatVector touch = hn::MulAdd(hn::Div(missing, speed),
-                                         hn::Set(d, static_cast<float>(1 - 8 * kRoundoffF32)), s);
-    const FloatVector later = hn::IfThenElse(hn::Gt(speed, hn::Zero(d)), touch,
-                                             hn::Set(d, std::numeric_limits<float>::infinity()));
-    return hn::IfThenElse(hn::Gt(missing, hn::Zero(d)), later, s);
-  }
-
-  // By how much a direction separates the shape and triangles more than rounding may, times the
-  // direction's length; its magnitudes, and how fast the shape moves along it, likewise.
-  struct Separation {
-    FloatVector missing, size, approach;
-  };
-
-  // At `s`, by the direction from the point of the core that is closest to the triangle's point
-  // that is closest to it, as nearly as one projection after the other gets there; what a direction
-  // separates, it does however it was found. `offset`: of that point of the core from the center,
-  // the last one and the new one. A projection of a vector v is off by the sum of its magnitudes
-  // times what coordinates are off by, see CastFilter, and by 8u of the largest coordinate, which
-  // is less.
-  HWY_NOINLINE Separation separation(std::size_t group, std::size_t part, FloatVector s,
-                                     Vector3& offset) const {
-    const Floats d;
-    const auto all = [&](float x) { return hn::Set(d, x); };
-    const ConvexAxes& core = filter_.core;
-    Vector3 direction, center, point;
-    for (std::size_t k = 0; k < 3; ++k) {
-      direction.at[k] = all(filter_.direction[k]);
-      center.at[k] = hn::MulAdd(s, direction.at[k], all(filter_.origin[k]));
-      point.at[k] = hn::Add(center.at[k], offset.at[k]);
-    }
-    Vector3 way = way_to(SeenTriangles(point, filter_.error, leaf_, group, part));
-    if (core.count != 0) {
-      // To the point of the core that is closest to where that way ends.
-      const Vector3 end{{hn::Add(offset.at[0], way.at[0]), hn::Add(offset.at[1], way.at[1]),
-                         hn::Add(offset.at[2], way.at[2])}};
-      for (std::size_t k = 0; k < 3; ++k) offset.at[k] = hn::Zero(d);
-      for (std::uint32_t i = 0; i < core.count; ++i) {
-        const Vector3 axis = axis_of(core, i);
-        const FloatVector half = all(core.half[i]);
-        const FloatVector along = hn::Min(hn::Max(dot(end, axis), hn::Neg(half)), half);
-        for (std::size_t k = 0; k < 3; ++k) {
-          offset.at[k] = hn::MulAdd(along, axis.at[k], offset.at[k]);
-        }
-      }
-      way = minus(end, offset);
-    }
-    const FloatVector size =
-        hn::Add(hn::Add(hn::Abs(way.at[0]), hn::Abs(way.at[1])), hn::Abs(way.at[2]));
-    FloatVector gap = all(std::numeric_limits<float>::infinity());
-    for (std::size_t c = 0; c < 3; ++c) {
-      Vector3 corner;
-      for (std::size_t k = 0; k < 3; ++k) corner.at[k] = leaf_.at(c, k, group, part);
-      gap = hn::Min(gap, dot(way, minus(corner, center)));
-    }
-    const FloatVector error = all(3 * filter_.error + leaf_.corner_error());
-    FloatVector reach =
-        hn::MulAdd(hn::Sqrt(dot(way, way)), all(filter_.radius), hn::Mul(size, error));
-    for (std::uint32_t i = 0; i < core.count; ++i) {
-      reach = hn::MulAdd(hn::Abs(dot(way, axis_of(core, i))), all(core.half[i]), reach);
-    }
-    return {hn::Sub(gap, reach), size, dot(way, direction)};
-  }
-
-  // Raises `from`, from which on the shape may touch triangles, by steps of
-  // MovingShape::first_touch in single precision. Returns those of `near` that it may touch up to
-  // `to`.
+  // Raises `from`, from which on the shape may touch triangles, up to where it does. Returns those
+  // of `near` that it may touch up to `to`.
   HWY_NOINLINE std::uint32_t advance(std::size_t group, std::uint32_t near, float* from,
                                      const float* to) const {
-    const Floats d;
     std::uint32_t bits = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
-      std::uint32_t lanes = (near >> (part * kLanes)) & kAllLanes;
-      FloatVector s = hn::Load(d, from + part * kLanes);
-      Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
-      for (int step = 0; step < kSteps && lanes != 0; ++step) {
-        const auto [missing, size, approach] = separation(group, part, s, offset);
-        s = advanced(s, missing, size, approach);
-        lanes &= bits_of(hn::Le(s, hn::Load(d, to + part * kLanes)));
-      }
-      hn::Store(s, d, from + part * kLanes);
-      bits |= lanes << (part * kLanes);
+      const std::uint32_t lanes = (near >> (part * kLanes)) & kAllLanes;
+      if (lanes == 0) continue;
+      const FloatVector last = hn::Load(Floats(), to + part * kLanes);
+      FloatVector s = hn::Load(Floats(), from + part * kLanes);
+      bits |= advance(group, part, lanes, s, last) << (part * kLanes);
+      hn::Store(s, Floats(), from + part * kLanes);
     }
     return bits;
+  }
+
+  HWY_INLINE std::uint32_t advance(std::size_t group, std::size_t part, std::uint32_t lanes,
+                                   FloatVector& s, FloatVector last) const {
+    const FloatVector start = s;
+    const auto cut = [&](const MovingInterval& interval) {
+      s = hn::Add(start, interval.enter());
+      lanes &= bits_of(hn::And(interval.is_left(), hn::Le(s, last)));
+    };
+    if (shape_.axes() != 0) {
+      const MovingTriangles triangles(filter_, leaf_, group, part, start);
+      MovingInterval interval;
+      triangles.cut_by_faces(interval);
+      cut(interval);
+      if (lanes == 0) return 0;
+      if (shape_.axes() != 0) {
+        triangles.cut_by_edges(interval);
+        cut(interval);
+      }
+    }
+    if (filter_.radius > 0) {
+      if (query_.best.is_hit) lanes = touched_before_bound(group, part, lanes);
+      if (lanes != 0) lanes = advance_round(group, part, lanes, s, last);
+    }
+    return lanes;
+  }
+
+  // The same for what is round, by steps of MovingShape::first_touch.
+  HWY_INLINE std::uint32_t advance_round(std::size_t group, std::size_t part, std::uint32_t lanes,
+                                         FloatVector& s, FloatVector last) const {
+    const Floats d;
+    Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
+    for (int step = 0; step < kSteps && lanes != 0; ++step) {
+      const MovingTriangles triangles(filter_, leaf_, group, part, s);
+      MovingInterval interval;
+      interval.cut(triangles.gap_along(triangles.way_from_core(offset)));
+      const FloatVector later = interval.enter();
+      s = hn::Add(s, later);
+      lanes &= bits_of(hn::And(interval.is_left(), hn::Le(s, last)));
+      if ((lanes & bits_of(hn::Gt(later, hn::Set(d, kSettled * filter_.error)))) == 0) break;
+    }
+    return lanes;
   }
 
   // Those of `near` that the shape can touch before the bound, as seen from there: not what a
   // direction separates then that it moves along, since the gap was larger before.
   HWY_NOINLINE std::uint32_t touched_before_bound(std::size_t group, std::uint32_t near) const {
-    const Floats d;
+    if (!(filter_.radius > 0)) return near;
+    std::uint32_t bits = 0;
     for (std::size_t part = 0; part < kParts; ++part) {
-      if (((near >> (part * kLanes)) & kAllLanes) == 0) continue;
-      Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
-      for (std::uint32_t step = 0; step <= filter_.core.count; ++step) {
-        const auto [missing, size, approach] = separation(group, part, hn::Set(d, bound_), offset);
-        const auto is_ahead = hn::And(
-            hn::Gt(missing, hn::Zero(d)),
-            hn::Gt(approach, hn::Mul(size, hn::Set(d, static_cast<float>(8 * kRoundoffF32)))));
-        near &= ~(bits_of(is_ahead) << (part * kLanes));
-        if (((near >> (part * kLanes)) & kAllLanes) == 0) break;
-      }
+      const std::uint32_t lanes = (near >> (part * kLanes)) & kAllLanes;
+      if (lanes != 0) bits |= touched_before_bound(group, part, lanes) << (part * kLanes);
     }
-    return near;
+    return bits;
+  }
+  HWY_INLINE std::uint32_t touched_before_bound(std::size_t group, std::size_t part,
+                                                std::uint32_t lanes) const {
+    const Floats d;
+    Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
+    const FloatVector s = hn::Set(d, bound_);
+    const MovingTriangles triangles(filter_, leaf_, group, part, s);
+    for (std::uint32_t step = 0; step <= shape_.axes() && lanes != 0; ++step) {
+      lanes &= ~bits_of(triangles.gap_along(triangles.way_from_core(offset)).is_ahead());
+    }
+    return lanes;
   }
   static constexpr std::uint32_t kAllLanes = (1u << kLanes) - 1;
 
-  [[nodiscard]] static HWY_INLINE Vector3 axis_of(const ConvexAxes& core, std::uint32_t i) {
-    const Floats d;
-    return {
-        {hn::Set(d, core.axis[i][0]), hn::Set(d, core.axis[i][1]), hn::Set(d, core.axis[i][2])}};
-  }
-
-  // From the point to about the closest of the triangle.
-  [[nodiscard]] static HWY_INLINE Vector3 way_to(const SeenTriangles& seen) {
-    const Floats d;
-    Vector3 rest = from_segment(seen.w, seen.e1);
-    FloatVector squared = dot(rest, rest);
-    const auto consider = [&](const Vector3& w, const Vector3& edge) {
-      const Vector3 other = from_segment(w, edge);
-      const FloatVector of_edge = dot(other, other);
-      const auto is_nearer = hn::Lt(of_edge, squared);
-      squared = hn::IfThenElse(is_nearer, of_edge, squared);
-      for (std::size_t k = 0; k < 3; ++k) {
-        rest.at[k] = hn::IfThenElse(is_nearer, other.at[k], rest.at[k]);
-      }
-    };
-    consider(seen.w, seen.e2);
-    consider(seen.w1, seen.e3);
-    const FloatVector height =
-        hn::Div(dot(seen.n, seen.w),
-                hn::Max(dot(seen.n, seen.n), hn::Set(d, std::numeric_limits<float>::min())));
-    Vector3 way;
-    for (std::size_t k = 0; k < 3; ++k) {
-      way.at[k] = hn::Neg(hn::IfThenElse(seen.outside, rest.at[k], hn::Mul(height, seen.n.at[k])));
-    }
-    return way;
-  }
-
-  // Near a touch each step squares what is left.
+  // Near a touch each step squares what is left, and ends once it is about what rounding hides.
   static constexpr int kSteps = 4;
+  static constexpr float kSettled = 64;
 
   CastQuery& query_;
   const CastFilter& filter_;
+  MovingFloats shape_;
   LeafFloats leaf_;
   float bound_ = 0;
 };
@@ -282,7 +213,7 @@ class CastFaces {
   [[nodiscard]] WalkBound& nodes() const { return query_.nodes; }
   HWY_INLINE std::uint32_t intersect(const VectorBox& boxes, FloatVector& key) const {
     FloatVector leave;
-    return leaves_.intersect(boxes, key, leave) & leaves_.advance_ball(boxes, key);
+    return leaves_.intersect(boxes, key, leave) & leaves_.advance_to_boxes(boxes, key);
   }
   [[nodiscard]] bool reads_ahead() const { return false; }
   HWY_INLINE void expanding(const WideLinks& links, std::uint32_t passing) {
