@@ -32,10 +32,29 @@ double ConvexShape::outer_radius() const noexcept {
   return (radius + std::sqrt(squared)) * (1 + 16 * kRoundoffF64);
 }
 
+namespace {
+
+// closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
+double point_distance_error(double max_abs) noexcept {
+  return 16 * kRoundoffF64 * max_abs + kSeparationUnderflow;
+}
+
+}  // namespace
+
+ClosestPoints closest_points(const ConvexShape& shape, const Corners& corner) noexcept {
+  if (shape.axes == 0) {
+    const Eigen::Vector3d point = Eigen::Vector3d::Zero();
+    const Eigen::Vector3d between = closest_point_on_triangle(point, {corner});
+    return {std::sqrt(squared_length(between)) + point_distance_error(max_abs_of(corner)), point,
+            between};
+  }
+  const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
+  const TriangleDistance found = segment_closest_points(-arm, arm, {corner});
+  return {found.upper, found.first, found.second - found.first};
+}
+
 CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept {
   if (shape.hull != nullptr) return shape.hull->distance(shape.hull->point, corner);
-  // closest_point.cpp: the largest error seen is 8 u of the largest coordinate.
-  constexpr double kPointDistanceError = 16 * kRoundoffF64;
   CoreDistance found;
   double max_abs = max_abs_of(corner);
   if (shape.axes == 0) {
@@ -43,7 +62,7 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
     found.core = core[0];
     found.between = closest_point_on_triangle(core[0], {corner});
     found.length = std::sqrt(squared_length(found.between));
-    const double error = kPointDistanceError * max_abs + kSeparationUnderflow;
+    const double error = point_distance_error(max_abs);
     found.lower = std::max(0.0, found.length - error);
     found.upper = found.length + error;
     found.along = separation_along(found.between, core, corner, max_abs);
@@ -51,7 +70,7 @@ CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noex
   }
   const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
   max_abs = std::max(max_abs, largest_magnitude(arm));
-  const TriangleDistance distance = triangle_distance({{-arm, arm, arm}}, {corner});
+  const TriangleDistance distance = segment_distance(-arm, arm, {corner});
   found.lower = distance.lower;
   found.upper = distance.upper;
   found.core = distance.first;

@@ -93,6 +93,17 @@ struct CoreDistance {
   Eigen::Vector3d between;  // from there to the closest point of the triangle
 };
 
+/// Points of the core of a sphere or capsule and of a triangle that are closest to each other, to
+/// within rounding; of a core that pierces the triangle they need not be. A fraction of what
+/// core_distance() costs.
+struct ClosestPoints {
+  double upper;  // of the distance of core and triangle
+  Eigen::Vector3d core;
+  Eigen::Vector3d between;  // from there to that of the triangle
+};
+[[nodiscard]] ClosestPoints closest_points(const ConvexShape& shape,
+                                           const Corners& corner) noexcept;
+
 /// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;
 

@@ -14,6 +14,7 @@
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
+#include "runtime/primitive/touch_estimate.h"
 #include "runtime/primitive/vector3.h"
 
 namespace boxtree {
@@ -46,37 +47,101 @@ bool may_touch(const MovingShape& moving, const CoreDistance& at) noexcept {
   return at.lower <= moving.shape.radius + 2 * moving.doubt;
 }
 
-// A lower bound of when a core comes that near to the triangle's plane; infinity for never. It is
-// that of the triangle where its inside is touched. Precondition: as of first_touch.
-double plane_touch(const MovingShape& moving, const Triangle& triangle, double from,
-                   double reach) noexcept {
-  const Corners corner = placed(moving, triangle, from);
-  const Eigen::Vector3d n = cross(corner[1] - corner[0], corner[2] - corner[0]);
-  const double length = std::sqrt(squared_length(n));
-  // Any vector will do, so that only what follows is rounded; of one that is too short to be a
-  // direction nothing follows.
-  if (!(length >= kShortestDirection)) return from;
-  const auto [low, high, half] = project(n, moving.shape, corner);
-  // Relative to the length, as in separation_along.
-  const double error = kSeparationError * 2 * (max_abs_of(corner) + half / length);
-  const double speed = dot(n, moving.direction) / length;
-  constexpr double kSpeedError = 8 * kRoundoffF64;
-  const double ahead = std::max((low - half) / length, -(high + half) / length);
-  const bool is_behind = (low - half) < -(high + half);
-  const double gap = ahead - reach - 2 * error;
-  if (!(gap > 0)) return from;
-  const double toward = (is_behind ? -speed : speed) + kSpeedError;
-  return toward > 0 ? from + gap / toward * (1 - 8 * kRoundoffF64) : kInfinity;
+// Let R be the largest coordinate of corners and shape, |v|_1 the sum of a direction's magnitudes.
+// Projections of corners are off by 3 u |v|_1 R, of a core with three axes by 16 u |v|_1 R, of a
+// ball by 4 u |v|_1 R, and sums of these by as much again.
+constexpr double kProjectionError = 64 * kRoundoffF64;
+
+// What the closest points at s say, found to within rounding: along the line between them the core
+// is `gap` away, or less than 0, by units of a vector by which the shape moves `speed` per unit of
+// s.
+struct Approach {
+  Approach(const MovingShape& moving, const Triangle& triangle, double at) noexcept : s(at) {
+    const ConvexShape& shape = moving.shape;
+    const Corners corner = placed(moving, triangle, s);
+    points = closest_points(shape, corner);
+    const Eigen::Vector3d& v = points.between;
+    size = (std::abs(v[0]) + std::abs(v[1])) + std::abs(v[2]);
+    length = std::sqrt(squared_length(v));
+    double largest = std::max(max_abs_of(corner), shape.radius);
+    if (shape.axes != 0) {
+      largest = std::max(largest, shape.half[0] * largest_magnitude(shape.axis[0]));
+    }
+    const auto [low, high, half] = project(v, shape, corner);
+    gap = low - half - shape.radius * length - size * (kProjectionError * largest + moving.doubt);
+    speed = dot(v, moving.direction);
+  }
+
+  [[nodiscard]] bool has_direction() const noexcept { return size >= kShortestDirection; }
+  [[nodiscard]] double speed_error() const noexcept { return 4 * kRoundoffF64 * size; }
+
+  // Whether shape and triangle may touch at `other`, near s, as far as these points tell.
+  [[nodiscard]] bool may_touch(const MovingShape& moving, double other) const noexcept {
+    const double there = std::sqrt(squared_length(points.between + (s - other) * moving.direction));
+    const double error = (points.upper - length) + 8 * kRoundoffF64 * (length + there);
+    return there + error <= moving.shape.radius + 2 * moving.doubt;
+  }
+
+  double s;
+  ClosestPoints points;
+  double size;  // the sum of magnitudes of the line between them
+  double length;
+  double gap;
+  double speed;
+};
+
+// Where an approach has led: to `s`, before which nothing touches, and whether they may touch
+// there.
+struct Approached {
+  double s;
+  bool is_touch;
+};
+
+// From an estimate, which a single look may prove, else by steps along the line between the closest
+// points; these end where rounding hides the line, or in a touch. Nothing as in first_touch().
+std::optional<Approached> approached(const MovingShape& moving, const Triangle& triangle,
+                                     double from, double to) noexcept {
+  constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the quotient rounds up
+  double s = from;
+  const double estimate =
+      estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
+  if (estimate < kInfinity) {
+    const Approach look(moving, triangle, from + estimate);
+    const double slowest = look.speed - look.speed_error();
+    if (look.has_direction() && slowest > 0) {
+      // The gap was larger before, if it is one; else they do not touch before it was.
+      const double by = look.gap > 0 ? look.gap / (look.speed + look.speed_error()) * kShorten
+                                     : look.gap / slowest * (1 + 8 * kRoundoffF64);
+      s = std::max(from, look.s + by);
+      if (s > to) return std::nullopt;
+      if (look.may_touch(moving, s)) return Approached{s, true};
+    }
+  }
+  for (int step = 0; step < kMostSteps; ++step) {
+    const Approach look(moving, triangle, s);
+    if (look.points.upper <= moving.shape.radius + 2 * moving.doubt) return Approached{s, true};
+    if (!look.has_direction() || !(look.gap > 0)) break;
+    const double speed = look.speed + look.speed_error();
+    if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
+    const double next = s + look.gap / speed * kShorten;
+    if (!(next > s)) break;
+    s = next;
+    if (s > to) return std::nullopt;
+  }
+  return Approached{s, false};
 }
 
 std::optional<double> first_touch_of_core(const MovingShape& moving, const Triangle& triangle,
                                           double from, double to) noexcept {
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the divisions and sums round up
   const double reach = moving.shape.radius + moving.doubt;
-  // A hull's first step is along a normal, too, where it touches a face.
-  const bool has_center = moving.shape.hull == nullptr;
-  double s = has_center ? std::max(from, plane_touch(moving, triangle, from, reach)) : from;
-  if (s > to || s == kInfinity) return std::nullopt;
+  double s = from;
+  if (moving.shape.hull == nullptr) {
+    const std::optional<Approached> quick = approached(moving, triangle, from, to);
+    if (!quick) return std::nullopt;
+    if (quick->is_touch) return quick->s;
+    s = quick->s;
+  }
   for (int step = 0; step < kMostSteps; ++step) {
     const CoreDistance at = core_distance(moving.shape, placed(moving, triangle, s));
     if (may_touch(moving, at)) return s;
@@ -95,43 +160,45 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
   return s;
 }
 
-// One direction that may separate a box and a triangle: where their projections overlap.
-class Axes {
+// A box and a triangle along all directions that can separate them, in the box's own frame: there
+// its axes are those of coordinates, and what is orthogonal to one and to an edge of the triangle
+// is two coordinates of that edge.
+//
+// The axes are orthonormal to within 4 u. Let R be the largest coordinate of corners and box: one
+// of a corner in the frame is off by 8 u R and by twice what the corner is; the box reaches 16 u R
+// farther along a unit vector than its halves say; a projection and what is subtracted from it
+// round by 16 u R.
+class BoxAndTriangle {
  public:
-  Axes(const MovingShape& moving, const Corners& corner) noexcept
-      : moving_(moving), corner_(corner) {
-    const ConvexShape& shape = moving.shape;
+  BoxAndTriangle(const MovingShape& moving, const Triangle& triangle, double at) noexcept
+      : moving_(moving), triangle_(triangle) {
+    const Corners corner = placed(moving, triangle, at);
     double size = max_abs_of(corner);
-    for (const double half : shape.half) size = std::max(size, half);
-    // Unit vectors within 4 u on each axis: three projections of corners, four of the box.
-    error_ = 32 * kRoundoffF64 * size + 2 * moving.doubt;
-  }
-
-  // Along a vector of length 1, or 0: then it is no direction.
-  void try_axis(const Eigen::Vector3d& axis) noexcept {
-    if (axis.isZero(0)) return;
-    const auto [low, high, half] = project(axis, moving_.shape, corner_);
-    // They overlap while first <= s * speed <= last.
-    const double first = low - half, last = high + half;
-    const double speed = dot(axis, moving_.direction);
-    if (speed < 0) {
-      try_interval(-last, -first, -speed, axis);
-    } else {
-      try_interval(first, last, speed, -axis);
-    }
+    for (const double half : moving.shape.half) size = std::max(size, half);
+    error_ = 64 * kRoundoffF64 * size + 2 * moving.doubt;
+    for (std::size_t i = 0; i < 3; ++i) corner_[i] = turned(corner[i]);
+    direction_ = turned(moving.direction);
   }
 
   // Ends early where first_touch() is nothing.
   void try_all(double from = 0, double to = kInfinity) noexcept {
-    const Corners edge = edges_of(corner_);
-    for (const Eigen::Vector3d& axis : moving_.shape.axis) try_axis(axis);
+    for (Eigen::Index k = 0; k < 3; ++k) try_axis(Eigen::Vector3d::Unit(k));
     if (!first_touch(from, to)) return;
-    try_axis(unit_normal({corner_}));
-    if (!first_touch(from, to)) return;
-    for (const Eigen::Vector3d& of_triangle : edge) {
-      for (const Eigen::Vector3d& of_box : moving_.shape.axis) {
-        try_axis(unit_normal({{Eigen::Vector3d::Zero(), of_triangle, of_box}}));
-        if (!first_touch(from, to)) return;
+    // The edges of the triangle are more accurate than those of its corners in the frame.
+    const Eigen::Vector3d normal = turned(unit_normal(triangle_));
+    if (!normal.isZero(0)) try_axis(normal);
+    for (const Eigen::Vector3d& of_triangle : edges_of(triangle_.corner)) {
+      if (!first_touch(from, to)) return;
+      const Eigen::Vector3d edge = turned(of_triangle);
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
+        const double square = edge[i] * edge[i] + edge[j] * edge[j];
+        if (!(square >= kShortestDirection * kShortestDirection)) continue;
+        const double scale = 1 / std::sqrt(square);
+        Eigen::Vector3d axis = Eigen::Vector3d::Zero();
+        axis[i] = -edge[j] * scale;
+        axis[j] = edge[i] * scale;
+        try_axis(axis);
       }
     }
   }
@@ -142,27 +209,52 @@ class Axes {
     return enter <= leave && s <= to ? std::optional(s) : std::nullopt;
   }
 
+  // In space, from the triangle to the box: see `overlap`.
+  [[nodiscard]] Eigen::Vector3d normal() const noexcept {
+    const std::array<Eigen::Vector3d, 3>& axis = moving_.shape.axis;
+    return back_[0] * axis[0] + back_[1] * axis[1] + back_[2] * axis[2];
+  }
+  // How far projections are off.
+  [[nodiscard]] double error() const noexcept { return error_; }
+
   double enter = 0;          // they do not touch before
   double leave = kInfinity;  // nor after
   double enter_by = 0;       // they touch by then, if at all
   // Of the axes along which they come nearer, that along which they overlap least: by how much, or
-  // less than 0 where it is a gap, and the direction from the triangle to the box. Of equal ones
-  // those of the box, then the normal of the face.
+  // less than 0 where it is a gap. Of equal ones those of the box, then the normal of the face.
   double overlap = kInfinity;
-  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
-  /// How far projections are off.
-  [[nodiscard]] double error() const noexcept { return error_; }
 
  private:
   // How far speeds along a unit vector are off.
   static constexpr double kSpeedError = 16 * kRoundoffF64;
+
+  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& v) const noexcept {
+    const std::array<Eigen::Vector3d, 3>& axis = moving_.shape.axis;
+    return {dot(v, axis[0]), dot(v, axis[1]), dot(v, axis[2])};
+  }
+
+  // Along a unit vector.
+  void try_axis(const Eigen::Vector3d& axis) noexcept {
+    const double a = dot(axis, corner_[0]), b = dot(axis, corner_[1]), c = dot(axis, corner_[2]);
+    const std::array<double, 3>& of_box = moving_.shape.half;
+    const double half = std::abs(axis[0]) * of_box[0] + std::abs(axis[1]) * of_box[1] +
+                        std::abs(axis[2]) * of_box[2];
+    const double low = std::min({a, b, c}) - half, high = std::max({a, b, c}) + half;
+    // They overlap while low <= s * speed <= high.
+    const double speed = dot(axis, direction_);
+    if (speed < 0) {
+      try_interval(-high, -low, -speed, axis);
+    } else {
+      try_interval(low, high, speed, -axis);
+    }
+  }
 
   // `speed` is not negative; `back`: the axis, against the motion.
   void try_interval(double first, double last, double speed, const Eigen::Vector3d& back) noexcept {
     const double slowest = speed - kSpeedError;
     if (slowest > 0 && -first < overlap - 2 * error_) {
       overlap = -first;
-      normal = back;
+      back_ = back;
     }
     if (first > error_) {  // ahead
       enter = std::max(enter, (first - error_) / (speed + kSpeedError));
@@ -178,35 +270,96 @@ class Axes {
   }
 
   const MovingShape& moving_;
-  const Corners& corner_;
+  const Triangle& triangle_;
   double error_;
+  Corners corner_;
+  Eigen::Vector3d direction_;
+  Eigen::Vector3d back_ = Eigen::Vector3d::Zero();
 };
 
 std::optional<double> first_touch_of_box(const MovingShape& moving, const Triangle& triangle,
                                          double from, double to) noexcept {
-  const Corners corner = placed(moving, triangle, from);
-  Axes axes(moving, corner);
-  axes.try_all(from, to);
-  return axes.first_touch(from, to);
+  BoxAndTriangle both(moving, triangle, from);
+  both.try_all(from, to);
+  return both.first_touch(from, to);
 }
 
 MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,
                                     double s) noexcept {
   const Corners corner = placed(moving, triangle, s);
-  Axes axes(moving, corner);
-  axes.try_all();
+  BoxAndTriangle both(moving, triangle, s);
+  both.try_all();
   MovingShape::Contact contact;
-  const double error = 2 * axes.error();
-  contact.by = s + std::min(axes.enter_by, std::max(axes.leave, 0.0)) * (1 + 8 * kRoundoffF64);
+  const double error = 2 * both.error();
+  contact.by = s + std::min(both.enter_by, std::max(both.leave, 0.0)) * (1 + 8 * kRoundoffF64);
   contact.point = moving.center_at(s) + point_inside_box(moving.shape, error, corner);
-  if (!(axes.overlap <= 2 * error)) {  // they have overlapped from the start on
+  if (!(both.overlap <= 2 * error)) {  // they have overlapped from the start on
     const Penetration start = penetration(moving.shape, corner, moving.doubt);
     contact.normal = start.normal;
     contact.feature = start.feature;
     return contact;
   }
-  contact.normal = axes.normal;
+  contact.normal = both.normal();
   contact.feature = farthest_feature(contact.normal, corner, 2 * error);
+  return contact;
+}
+
+MovingShape::Contact contact_of_hull(const MovingShape& moving, const Triangle& triangle,
+                                     double s) noexcept {
+  const ConvexShape& shape = moving.shape;
+  const double doubt = moving.doubt;
+  const Corners corner = placed(moving, triangle, s);
+  const Penetration found =
+      s > 0 ? shape.hull->penetration(shape.hull->point, corner, doubt, &moving.direction)
+            : penetration(shape, corner, doubt);
+  MovingShape::Contact contact{moving.center_at(s) + found.point, found.normal, found.feature, s};
+  // Until it is certain that they touch, or the distance does not fall any more.
+  CoreDistance at = core_distance(shape, corner);
+  double step = 0;
+  for (int n = 0; n < kMostSteps; ++n) {
+    const double missing = at.upper + doubt;
+    // Rounding tilts the line between points that are near each other, but no normal.
+    const bool is_last = at.length <= 8 * doubt;
+    const double speed =
+        is_last ? -dot(found.normal, moving.direction) : dot(at.between, moving.direction);
+    if (!(missing > 0) || !(speed > 0)) break;
+    step = is_last ? step + (at.length + 2 * doubt) / speed
+                   : std::max(2 * step, 2 * missing * at.length / speed);
+    at = core_distance(shape, placed(moving, triangle, s + step));
+    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
+    contact.by = s + step;
+    if (is_last) break;
+  }
+  return contact;
+}
+
+// The closest points where the shape touches, or nearly does.
+ClosestPoints points_in_contact(const MovingShape& moving, const Corners& corner) noexcept {
+  const ClosestPoints points = closest_points(moving.shape, corner);
+  if (moving.shape.axes == 0 || points.upper <= moving.shape.radius + 4 * moving.doubt) {
+    return points;
+  }
+  const CoreDistance certain = core_distance(moving.shape, corner);  // the core may pierce it
+  return {certain.upper, certain.core, certain.between};
+}
+
+MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& triangle,
+                                     double s) noexcept {
+  const Corners corner = placed(moving, triangle, s);
+  ClosestPoints at = points_in_contact(moving, corner);
+  const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at.core);
+  MovingShape::Contact contact{moving.center_at(s) + found.point, found.normal, found.feature, s};
+  // Until it is certain that they touch, or the distance does not fall any more.
+  double step = 0;
+  for (int n = 0; n < kMostSteps; ++n) {
+    const double missing = at.upper + moving.doubt - moving.shape.radius;
+    const double speed = dot(at.between, moving.direction);
+    if (!(missing > 0) || !(speed > 0)) break;
+    const double length = std::sqrt(squared_length(at.between));
+    step = std::max(2 * step, 2 * missing * length / speed);
+    at = points_in_contact(moving, placed(moving, triangle, s + step));
+    contact.by = s + step;
+  }
   return contact;
 }
 
@@ -226,29 +379,8 @@ std::optional<double> MovingShape::first_touch(const Triangle& triangle, double 
 
 MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s) const noexcept {
   if (is_box()) return contact_of_box(*this, triangle, s);
-  const Corners corner = placed(*this, triangle, s);
-  const Penetration found =
-      shape.hull != nullptr && s > 0
-          ? shape.hull->penetration(shape.hull->point, corner, doubt, &direction)
-          : penetration(shape, corner, doubt);
-  Contact contact{center_at(s) + found.point, found.normal, found.feature, s};
-  // Until it is certain that they touch, or the distance does not fall any more.
-  CoreDistance at = core_distance(shape, corner);
-  double step = 0;
-  for (int n = 0; n < kMostSteps; ++n) {
-    const double missing = at.upper + doubt - shape.radius;
-    // Rounding tilts the line between points that are near each other, but no normal of a hull.
-    const bool is_last = shape.hull != nullptr && at.length <= 8 * doubt;
-    const double speed = is_last ? -dot(found.normal, direction) : dot(at.between, direction);
-    if (!(missing > 0) || !(speed > 0)) break;
-    step = is_last ? step + (at.length + 2 * doubt) / speed
-                   : std::max(2 * step, 2 * missing * at.length / speed);
-    at = core_distance(shape, placed(*this, triangle, s + step));
-    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
-    contact.by = s + step;
-    if (is_last) break;
-  }
-  return contact;
+  return shape.hull != nullptr ? contact_of_hull(*this, triangle, s)
+                               : contact_of_core(*this, triangle, s);
 }
 
 }  // namespace boxtree

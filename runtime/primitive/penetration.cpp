@@ -79,9 +79,16 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
     return shape.hull->penetration(shape.hull->point, corner, doubt, nullptr);
   }
   if (shape.axes == 3) return of_box(shape, corner, doubt);
-  const CoreDistance at = core_distance(shape, corner);
-  const Eigen::Vector3d closest = closest_point_on_triangle(at.core, {corner});
-  const Eigen::Vector3d between = at.core - closest;
+  // A core may pierce the triangle.
+  const Eigen::Vector3d core = shape.axes == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
+                                               : core_distance(shape, corner).core;
+  return penetration_of_core(shape, corner, doubt, core);
+}
+
+Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner, double doubt,
+                                const Eigen::Vector3d& core) noexcept {
+  const Eigen::Vector3d closest = closest_point_on_triangle(core, {corner});
+  const Eigen::Vector3d between = core - closest;
   const double length = std::sqrt(squared_length(between));
   LeastDepth least(shape, corner, doubt);
   if (length > 2 * doubt) least.try_axis(between / length);
@@ -95,7 +102,7 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
     least.depth = 0;
   }
   return {closest, least.normal, std::max(0.0, shape.radius + least.depth),
-          feature_of(at.core, corner, closest)};
+          feature_of(core, corner, closest)};
 }
 
 }  // namespace boxtree

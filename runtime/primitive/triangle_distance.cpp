@@ -96,8 +96,9 @@ struct Search {
            dot(q[(j + 2) % 3] - on_q, between) >= doubt;
   }
 
-  bool try_all_edges() noexcept {
-    for (std::size_t i = 0; i < 3; ++i) {
+  // `p_edges`: 1 if p is a segment.
+  bool try_all_edges(std::size_t p_edges) noexcept {
+    for (std::size_t i = 0; i < p_edges; ++i) {
       for (std::size_t j = 0; j < 3; ++j) {
         if (try_edges(i, j)) return true;
       }
@@ -157,6 +158,10 @@ struct Search {
     return squared < before;
   }
 
+  [[nodiscard]] double upper() const noexcept {
+    return std::sqrt(squared) * kUpperQuotient + (kPointError * max_abs + kUpperUnderflow);
+  }
+
   const Corners& p;
   const Corners& q;
   Corners p_edge;
@@ -169,27 +174,48 @@ struct Search {
   Eigen::Vector3d between;  // second - first
 };
 
-}  // namespace
-
-TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept {
-  Search search(p.corner, q.corner);
-  if (!search.try_all_edges()) {
-    search.try_face(p.corner, search.p_edge, q.corner, true);
-    search.try_face(q.corner, search.q_edge, p.corner, false);
-  }
-  const auto upper = [&] {
-    return std::sqrt(search.squared) * kUpperQuotient +
-           (kPointError * search.max_abs + kUpperUnderflow);
-  };
+// What the search has found, with a lower bound.
+TriangleDistance distance_found(Search& search) noexcept {
   // Bounds this close differ by rounding alone.
-  const auto enough = [&] { return upper() - 2 * kPointError * search.max_abs; };
+  const auto enough = [&] { return search.upper() - 2 * kPointError * search.max_abs; };
   const auto separation = [&] {
     return separation_near(search.first, search.second, search.p, search.q, search.max_abs,
                            enough());
   };
   double lower = separation();
   if (!(lower >= enough()) && search.try_contacts()) lower = std::max(lower, separation());
-  return {lower, upper(), search.first, search.second};
+  return {lower, search.upper(), search.first, search.second};
+}
+
+void search_from_segment(Search& search) noexcept {
+  if (!search.try_all_edges(1)) search.try_face(search.q, search.q_edge, search.p, false);
+}
+
+}  // namespace
+
+TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept {
+  Search search(p.corner, q.corner);
+  if (!search.try_all_edges(3)) {
+    search.try_face(p.corner, search.p_edge, q.corner, true);
+    search.try_face(q.corner, search.q_edge, p.corner, false);
+  }
+  return distance_found(search);
+}
+
+TriangleDistance segment_distance(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                  const Triangle& q) noexcept {
+  const Corners segment{from, to, to};
+  Search search(segment, q.corner);
+  search_from_segment(search);
+  return distance_found(search);
+}
+
+TriangleDistance segment_closest_points(const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                                        const Triangle& q) noexcept {
+  const Corners segment{from, to, to};
+  Search search(segment, q.corner);
+  search_from_segment(search);
+  return {0, search.upper(), search.first, search.second};
 }
 
 }  // namespace boxtree

@@ -22,4 +22,15 @@ struct TriangleDistance {
 /// points. Symmetric except for rounding.
 [[nodiscard]] TriangleDistance triangle_distance(const Triangle& p, const Triangle& q) noexcept;
 
+/// The same of a segment and a triangle, in half the time.
+[[nodiscard]] TriangleDistance segment_distance(const Eigen::Vector3d& from,
+                                                const Eigen::Vector3d& to,
+                                                const Triangle& q) noexcept;
+
+/// Likewise, without a bound below: `lower` is 0. If the segment pierces the triangle, the points
+/// need not be close to each other.
+[[nodiscard]] TriangleDistance segment_closest_points(const Eigen::Vector3d& from,
+                                                      const Eigen::Vector3d& to,
+                                                      const Triangle& q) noexcept;
+
 }  // namespace boxtree
