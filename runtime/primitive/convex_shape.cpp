@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/rounding.h"
@@ -51,6 +52,19 @@ ClosestPoints closest_points(const ConvexShape& shape, const Corners& corner) no
   const Eigen::Vector3d arm = shape.half[0] * shape.axis[0];
   const TriangleDistance found = segment_closest_points(-arm, arm, {corner});
   return {found.upper, found.first, found.second - found.first};
+}
+
+ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner) noexcept {
+  const ClosestPoints points = closest_points(shape, corner);
+  if (shape.axes == 0) return points;
+  // What the line between them separates by their distance, but for rounding, has no closer points.
+  const auto [low, high, half] = project(points.between, shape, corner);
+  const double square = squared_length(points.between);
+  const double error =
+      points.upper - std::sqrt(square) + kSeparationError * (max_abs_of(corner) + half);
+  if (square > 0 && low - half >= square - 2 * error * std::sqrt(square)) return points;
+  const CoreDistance certain = core_distance(shape, corner);
+  return {certain.upper, certain.core, certain.between};
 }
 
 CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept {
@@ -110,37 +124,48 @@ TrianglePart farthest_feature(const Eigen::Vector3d& direction, const Corners& c
 }
 
 // The mean of the corners of what the box cuts out (Sutherland and Hodgman, "Reentrant Polygon
-// Clipping", 1974).
+// Clipping", 1974), in the frame of its axes.
 Eigen::Vector3d point_inside_box(const ConvexShape& box, double widened,
                                  const Corners& corner) noexcept {
   constexpr std::size_t kMost = 9;  // each of six planes adds one at most
-  std::array<Eigen::Vector3d, kMost + 1> polygon;
-  std::copy(corner.begin(), corner.end(), polygon.begin());
+  using Polygon = std::array<Eigen::Vector3d, kMost + 1>;
+  std::array<Polygon, 2> polygons;
+  Polygon* polygon = &polygons[0];
+  Polygon* kept = &polygons[1];
+  for (std::size_t i = 0; i < corner.size(); ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      (*polygon)[i][static_cast<Eigen::Index>(k)] = dot(box.axis[k], corner[i]);
+    }
+  }
   std::size_t count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
+    const auto axis = static_cast<Eigen::Index>(k);
     for (const double side : {-1.0, 1.0}) {
-      std::array<Eigen::Vector3d, kMost + 1> kept;
-      std::size_t left = 0;
       const auto depth = [&](const Eigen::Vector3d& p) {
-        return box.half[k] + widened - side * dot(box.axis[k], p);
+        return box.half[k] + widened - side * p[axis];
       };
+      bool is_inside = true;
+      for (std::size_t i = 0; i < count; ++i) is_inside &= depth((*polygon)[i]) >= 0;
+      if (is_inside) continue;
+      std::size_t left = 0;
       for (std::size_t i = 0; i < count; ++i) {
-        const Eigen::Vector3d& a = polygon[i];
-        const Eigen::Vector3d& b = polygon[(i + 1) % count];
+        const Eigen::Vector3d& a = (*polygon)[i];
+        const Eigen::Vector3d& b = (*polygon)[i + 1 == count ? 0 : i + 1];
         const double of_a = depth(a), of_b = depth(b);
-        if (of_a >= 0 && left < kMost) kept[left++] = a;
+        if (of_a >= 0 && left < kMost) (*kept)[left++] = a;
         if ((of_a >= 0) != (of_b >= 0) && left < kMost) {
-          kept[left++] = a + (of_a / (of_a - of_b)) * (b - a);
+          (*kept)[left++] = a + (of_a / (of_a - of_b)) * (b - a);
         }
       }
-      std::copy(kept.begin(), kept.begin() + static_cast<std::ptrdiff_t>(left), polygon.begin());
+      std::swap(polygon, kept);
       count = left;
     }
   }
   if (count == 0) return closest_point_on_triangle(Eigen::Vector3d::Zero(), {corner});
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  for (std::size_t i = 0; i < count; ++i) sum += polygon[i];
-  return sum / static_cast<double>(count);
+  for (std::size_t i = 0; i < count; ++i) sum += (*polygon)[i];
+  const Eigen::Vector3d mean = sum / static_cast<double>(count);
+  return mean[0] * box.axis[0] + mean[1] * box.axis[1] + mean[2] * box.axis[2];
 }
 
 }  // namespace boxtree

@@ -103,6 +103,9 @@ struct ClosestPoints {
 };
 [[nodiscard]] ClosestPoints closest_points(const ConvexShape& shape,
                                            const Corners& corner) noexcept;
+/// The same of a core that may pierce the triangle; at the cost of core_distance() if it seems to.
+[[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape,
+                                           const Corners& corner) noexcept;
 
 /// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;

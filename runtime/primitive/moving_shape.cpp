@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "runtime/primitive/normal.h"
+#include "runtime/primitive/box_axes.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
@@ -104,7 +104,9 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the quotient rounds up
   double s = from;
   const double estimate =
-      estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
+      moving.direction.isZero(0)
+          ? kInfinity
+          : estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
   if (estimate < kInfinity) {
     const Approach look(moving, triangle, from + estimate);
     const double slowest = look.speed - look.speed_error();
@@ -160,47 +162,20 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
   return s;
 }
 
-// A box and a triangle along all directions that can separate them, in the box's own frame: there
-// its axes are those of coordinates, and what is orthogonal to one and to an edge of the triangle
-// is two coordinates of that edge.
-//
-// The axes are orthonormal to within 4 u. Let R be the largest coordinate of corners and box: one
-// of a corner in the frame is off by 8 u R and by twice what the corner is; the box reaches 16 u R
-// farther along a unit vector than its halves say; a projection and what is subtracted from it
-// round by 16 u R.
-class BoxAndTriangle {
+// A box and a triangle along all directions that can separate them, in time.
+class BoxOnItsWay {
  public:
-  BoxAndTriangle(const MovingShape& moving, const Triangle& triangle, double at) noexcept
-      : moving_(moving), triangle_(triangle) {
-    const Corners corner = placed(moving, triangle, at);
-    double size = max_abs_of(corner);
-    for (const double half : moving.shape.half) size = std::max(size, half);
-    error_ = 64 * kRoundoffF64 * size + 2 * moving.doubt;
-    for (std::size_t i = 0; i < 3; ++i) corner_[i] = turned(corner[i]);
-    direction_ = turned(moving.direction);
-  }
+  BoxOnItsWay(const MovingShape& moving, const Triangle& triangle, double at) noexcept
+      : axes_(moving.shape, triangle, placed(moving, triangle, at)),
+        error_(axes_.error() + 2 * moving.doubt),
+        direction_(axes_.turned(moving.direction)) {}
 
   // Ends early where first_touch() is nothing.
   void try_all(double from = 0, double to = kInfinity) noexcept {
-    for (Eigen::Index k = 0; k < 3; ++k) try_axis(Eigen::Vector3d::Unit(k));
-    if (!first_touch(from, to)) return;
-    // The edges of the triangle are more accurate than those of its corners in the frame.
-    const Eigen::Vector3d normal = turned(unit_normal(triangle_));
-    if (!normal.isZero(0)) try_axis(normal);
-    for (const Eigen::Vector3d& of_triangle : edges_of(triangle_.corner)) {
-      if (!first_touch(from, to)) return;
-      const Eigen::Vector3d edge = turned(of_triangle);
-      for (Eigen::Index k = 0; k < 3; ++k) {
-        const Eigen::Index i = (k + 1) % 3, j = (k + 2) % 3;
-        const double square = edge[i] * edge[i] + edge[j] * edge[j];
-        if (!(square >= kShortestDirection * kShortestDirection)) continue;
-        const double scale = 1 / std::sqrt(square);
-        Eigen::Vector3d axis = Eigen::Vector3d::Zero();
-        axis[i] = -edge[j] * scale;
-        axis[j] = edge[i] * scale;
-        try_axis(axis);
-      }
-    }
+    axes_.visit([&](const BoxAxis& axis) {
+      try_axis(axis);
+      return axis.is_more_to_come || first_touch(from, to).has_value();
+    });
   }
 
   // By the axes so far, of a shape that is where it is at `from`.
@@ -209,11 +184,8 @@ class BoxAndTriangle {
     return enter <= leave && s <= to ? std::optional(s) : std::nullopt;
   }
 
-  // In space, from the triangle to the box: see `overlap`.
-  [[nodiscard]] Eigen::Vector3d normal() const noexcept {
-    const std::array<Eigen::Vector3d, 3>& axis = moving_.shape.axis;
-    return back_[0] * axis[0] + back_[1] * axis[1] + back_[2] * axis[2];
-  }
+  // From the triangle to the box: see `overlap`.
+  [[nodiscard]] Eigen::Vector3d normal() const noexcept { return axes_.turned_back(back_); }
   // How far projections are off.
   [[nodiscard]] double error() const noexcept { return error_; }
 
@@ -228,33 +200,24 @@ class BoxAndTriangle {
   // How far speeds along a unit vector are off.
   static constexpr double kSpeedError = 16 * kRoundoffF64;
 
-  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& v) const noexcept {
-    const std::array<Eigen::Vector3d, 3>& axis = moving_.shape.axis;
-    return {dot(v, axis[0]), dot(v, axis[1]), dot(v, axis[2])};
-  }
-
-  // Along a unit vector.
-  void try_axis(const Eigen::Vector3d& axis) noexcept {
-    const double a = dot(axis, corner_[0]), b = dot(axis, corner_[1]), c = dot(axis, corner_[2]);
-    const std::array<double, 3>& of_box = moving_.shape.half;
-    const double half = std::abs(axis[0]) * of_box[0] + std::abs(axis[1]) * of_box[1] +
-                        std::abs(axis[2]) * of_box[2];
-    const double low = std::min({a, b, c}) - half, high = std::max({a, b, c}) + half;
-    // They overlap while low <= s * speed <= high.
-    const double speed = dot(axis, direction_);
+  void try_axis(const BoxAxis& axis) noexcept {
+    // They overlap while low - half <= s * speed <= high + half.
+    const double low = axis.low - axis.half, high = axis.high + axis.half;
+    const double speed = dot(axis.along, direction_);
     if (speed < 0) {
-      try_interval(-high, -low, -speed, axis);
+      try_interval(-high, -low, -speed, axis.along, 1);
     } else {
-      try_interval(low, high, speed, -axis);
+      try_interval(low, high, speed, axis.along, -1);
     }
   }
 
-  // `speed` is not negative; `back`: the axis, against the motion.
-  void try_interval(double first, double last, double speed, const Eigen::Vector3d& back) noexcept {
+  // `speed` is not negative; `back` times the axis is against the motion.
+  void try_interval(double first, double last, double speed, const Eigen::Vector3d& axis,
+                    double back) noexcept {
     const double slowest = speed - kSpeedError;
     if (slowest > 0 && -first < overlap - 2 * error_) {
       overlap = -first;
-      back_ = back;
+      back_ = back * axis;
     }
     if (first > error_) {  // ahead
       enter = std::max(enter, (first - error_) / (speed + kSpeedError));
@@ -269,17 +232,15 @@ class BoxAndTriangle {
     }
   }
 
-  const MovingShape& moving_;
-  const Triangle& triangle_;
+  const BoxAxes axes_;
   double error_;
-  Corners corner_;
-  Eigen::Vector3d direction_;
+  Eigen::Vector3d direction_;  // in the box's frame
   Eigen::Vector3d back_ = Eigen::Vector3d::Zero();
 };
 
 std::optional<double> first_touch_of_box(const MovingShape& moving, const Triangle& triangle,
                                          double from, double to) noexcept {
-  BoxAndTriangle both(moving, triangle, from);
+  BoxOnItsWay both(moving, triangle, from);
   both.try_all(from, to);
   return both.first_touch(from, to);
 }
@@ -287,7 +248,7 @@ std::optional<double> first_touch_of_box(const MovingShape& moving, const Triang
 MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& triangle,
                                     double s) noexcept {
   const Corners corner = placed(moving, triangle, s);
-  BoxAndTriangle both(moving, triangle, s);
+  BoxOnItsWay both(moving, triangle, s);
   both.try_all();
   MovingShape::Contact contact;
   const double error = 2 * both.error();
@@ -333,21 +294,11 @@ MovingShape::Contact contact_of_hull(const MovingShape& moving, const Triangle& 
   return contact;
 }
 
-// The closest points where the shape touches, or nearly does.
-ClosestPoints points_in_contact(const MovingShape& moving, const Corners& corner) noexcept {
-  const ClosestPoints points = closest_points(moving.shape, corner);
-  if (moving.shape.axes == 0 || points.upper <= moving.shape.radius + 4 * moving.doubt) {
-    return points;
-  }
-  const CoreDistance certain = core_distance(moving.shape, corner);  // the core may pierce it
-  return {certain.upper, certain.core, certain.between};
-}
-
 MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& triangle,
                                      double s) noexcept {
   const Corners corner = placed(moving, triangle, s);
-  ClosestPoints at = points_in_contact(moving, corner);
-  const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at.core);
+  ClosestPoints at = contact_points(moving.shape, corner);
+  const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at);
   MovingShape::Contact contact{moving.center_at(s) + found.point, found.normal, found.feature, s};
   // Until it is certain that they touch, or the distance does not fall any more.
   double step = 0;
@@ -357,7 +308,7 @@ MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& 
     if (!(missing > 0) || !(speed > 0)) break;
     const double length = std::sqrt(squared_length(at.between));
     step = std::max(2 * step, 2 * missing * length / speed);
-    at = points_in_contact(moving, placed(moving, triangle, s + step));
+    at = contact_points(moving.shape, placed(moving, triangle, s + step));
     contact.by = s + step;
   }
   return contact;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "runtime/primitive/box_axes.h"
 #include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/normal.h"
 #include "runtime/primitive/rounding.h"
@@ -30,6 +31,9 @@ class LeastDepth {
   void try_axis(const Eigen::Vector3d& axis) noexcept {
     if (axis.isZero(0)) return;
     const auto [low, high, half] = project(axis, shape_, corner_);
+    try_projection(axis, low, high, half);
+  }
+  void try_projection(const Eigen::Vector3d& axis, double low, double high, double half) noexcept {
     // Beyond the triangle's high side, or its low one.
     if (high + half < depth - error_) {
       depth = high + half;
@@ -44,9 +48,6 @@ class LeastDepth {
   void try_all() noexcept {
     const Corners edge = edges_of(corner_);
     try_axis(unit_normal({corner_}));
-    if (shape_.axes == 3) {
-      for (const Eigen::Vector3d& axis : shape_.axis) try_axis(axis);
-    }
     for (const Eigen::Vector3d& of_triangle : edge) {
       for (std::uint32_t k = 0; k < shape_.axes; ++k) {
         try_axis(unit_normal({{Eigen::Vector3d::Zero(), of_triangle, shape_.axis[k]}}));
@@ -66,7 +67,16 @@ class LeastDepth {
 
 Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) noexcept {
   LeastDepth least(box, corner, doubt);
-  least.try_all();
+  least.try_axis(unit_normal({corner}));
+  const double depth_of_face = least.depth;
+  const Triangle triangle{corner};
+  const BoxAxes axes(box, triangle, corner);
+  axes.visit([&](const BoxAxis& axis) {
+    least.try_projection(axis.along, axis.low, axis.high, axis.half);
+    return true;
+  });
+  // Any but that of the face is in the frame of the box.
+  if (least.depth != depth_of_face) least.normal = axes.turned_back(least.normal);
   return {point_inside_box(box, least.error(), corner), least.normal, std::max(0.0, least.depth),
           // Where the box leaves it.
           farthest_feature(least.normal, corner, least.error())};
@@ -79,15 +89,15 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
     return shape.hull->penetration(shape.hull->point, corner, doubt, nullptr);
   }
   if (shape.axes == 3) return of_box(shape, corner, doubt);
-  // A core may pierce the triangle.
-  const Eigen::Vector3d core = shape.axes == 0 ? Eigen::Vector3d(Eigen::Vector3d::Zero())
-                                               : core_distance(shape, corner).core;
-  return penetration_of_core(shape, corner, doubt, core);
+  return penetration_of_core(shape, corner, doubt, contact_points(shape, corner));
 }
 
 Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner, double doubt,
-                                const Eigen::Vector3d& core) noexcept {
-  const Eigen::Vector3d closest = closest_point_on_triangle(core, {corner});
+                                const ClosestPoints& points) noexcept {
+  const Eigen::Vector3d& core = points.core;
+  // Of a sphere they are that already.
+  const Eigen::Vector3d closest =
+      shape.axes == 0 ? points.between : closest_point_on_triangle(core, {corner});
   const Eigen::Vector3d between = core - closest;
   const double length = std::sqrt(squared_length(between));
   LeastDepth least(shape, corner, doubt);

@@ -18,8 +18,8 @@ struct Penetration {
 [[nodiscard]] Penetration penetration(const ConvexShape& shape, const Corners& corner,
                                       double doubt) noexcept;
 
-/// Of a sphere or capsule, whose core is closest to the triangle at `core`.
+/// Of a sphere or capsule; `closest`: as contact_points() found them.
 [[nodiscard]] Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,
-                                              double doubt, const Eigen::Vector3d& core) noexcept;
+                                              double doubt, const ClosestPoints& closest) noexcept;
 
 }  // namespace boxtree
