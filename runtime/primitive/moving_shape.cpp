@@ -56,7 +56,9 @@ constexpr double kProjectionError = 64 * kRoundoffF64;
 // is `gap` away, or less than 0, by units of a vector by which the shape moves `speed` per unit of
 // s.
 struct Approach {
-  Approach(const MovingShape& moving, const Triangle& triangle, double at) noexcept : s(at) {
+  [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle,
+                             double at) noexcept
+      : s(at) {
     const ConvexShape& shape = moving.shape;
     const Corners corner = placed(moving, triangle, s);
     points = closest_points(shape, corner);
@@ -171,7 +173,7 @@ class BoxOnItsWay {
         direction_(axes_.turned(moving.direction)) {}
 
   // Ends early where first_touch() is nothing.
-  void try_all(double from = 0, double to = kInfinity) noexcept {
+  [[gnu::noinline]] void try_all(double from = 0, double to = kInfinity) noexcept {
     axes_.visit([&](const BoxAxis& axis) {
       try_axis(axis);
       return axis.is_more_to_come || first_touch(from, to).has_value();

@@ -74,7 +74,7 @@ struct Search {
   // The parameter of the common perpendicular comes from cross products, not from the usual a c - b
   // b: its error is then u / sin(angle) and not u / sin^2. It moves the point in a direction in
   // which the distance changes with the sine only, so the distance is off by rounding alone.
-  bool try_edges(std::size_t i, std::size_t j) noexcept {
+  [[gnu::noinline]] bool try_edges(std::size_t i, std::size_t j) noexcept {
     const Eigen::Vector3d& a = p[i];
     const Eigen::Vector3d& b = q[j];
     const Eigen::Vector3d& e = p_edge[i];
@@ -108,8 +108,8 @@ struct Search {
 
   // The corner nearest to the face, if all are on one side of it. If its foot lies beyond the
   // face's edges, the closest point is on an edge and has been found.
-  void try_face(const Corners& face, const Corners& face_edge, const Corners& corner,
-                bool face_is_p) noexcept {
+  [[gnu::noinline]] void try_face(const Corners& face, const Corners& face_edge,
+                                  const Corners& corner, bool face_is_p) noexcept {
     const Eigen::Vector3d n = cross(face_edge[0], face_edge[1]);
     std::size_t lowest = 0;
     std::array<double, 3> height;
@@ -187,7 +187,7 @@ TriangleDistance distance_found(Search& search) noexcept {
   return {lower, search.upper(), search.first, search.second};
 }
 
-void search_from_segment(Search& search) noexcept {
+[[gnu::noinline]] void search_from_segment(Search& search) noexcept {
   if (!search.try_all_edges(1)) search.try_face(search.q, search.q_edge, search.p, false);
 }
 

@@ -55,7 +55,7 @@ class CastLeaves {
   }
 
   /// The same for the shape itself, as far as a few directions tell, from `enter` on.
-  HWY_INLINE std::uint32_t advance_to_boxes(const VectorBox& box, FloatVector& enter) const {
+  HWY_NOINLINE std::uint32_t advance_to_boxes(const VectorBox& box, FloatVector& enter) const {
     const MovingBoxes boxes(shape_, box, enter);
     MovingInterval interval;
     if (shape_.axes() == 3) {
@@ -150,8 +150,8 @@ class CastLeaves {
   }
 
   // The same for what is round, by steps of MovingShape::first_touch.
-  HWY_INLINE std::uint32_t advance_round(std::size_t group, std::size_t part, std::uint32_t lanes,
-                                         FloatVector& s, FloatVector last) const {
+  HWY_NOINLINE std::uint32_t advance_round(std::size_t group, std::size_t part, std::uint32_t lanes,
+                                           FloatVector& s, FloatVector last) const {
     const Floats d;
     Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
     for (int step = 0; step < kSteps && lanes != 0; ++step) {
@@ -177,8 +177,8 @@ class CastLeaves {
     }
     return bits;
   }
-  HWY_INLINE std::uint32_t touched_before_bound(std::size_t group, std::size_t part,
-                                                std::uint32_t lanes) const {
+  HWY_NOINLINE std::uint32_t touched_before_bound(std::size_t group, std::size_t part,
+                                                  std::uint32_t lanes) const {
     const Floats d;
     Vector3 offset{{hn::Zero(d), hn::Zero(d), hn::Zero(d)}};
     const FloatVector s = hn::Set(d, bound_);

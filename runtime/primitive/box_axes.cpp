@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// One after the other by number, so that callers compile what they do with them once.
+#include "runtime/primitive/box_axes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "runtime/primitive/normal.h"
+#include "runtime/primitive/rounding.h"
+#include "runtime/primitive/separation.h"
+
+namespace boxtree {
+namespace {
+
+// The axes are orthonormal to within 4 u. Let R be the largest coordinate of corners and box: one
+// of a corner in the frame is off by 8 u R and by twice what the corner is; the box reaches 16 u
+// R farther along a unit vector than its halves say; a projection and what is subtracted from it
+// round by 16 u R.
+constexpr double kError = 64 * kRoundoffF64;
+
+}  // namespace
+
+BoxAxes::BoxAxes(const ConvexShape& box, const Triangle& triangle, const Corners& corner) noexcept
+    : box_(box), triangle_(triangle) {
+  double size = max_abs_of(corner);
+  for (const double half : box.half) size = std::max(size, half);
+  error_ = kError * size;
+  const Corners edge = edges_of(triangle.corner);
+  for (std::size_t i = 0; i < 3; ++i) {
+    corner_[i] = turned(corner[i]);
+    edge_[i] = turned(edge[i]);
+  }
+}
+
+Eigen::Vector3d BoxAxes::turned(const Eigen::Vector3d& v) const noexcept {
+  return {dot(v, box_.axis[0]), dot(v, box_.axis[1]), dot(v, box_.axis[2])};
+}
+
+bool BoxAxes::get(std::uint32_t n, BoxAxis& axis) const noexcept {
+  Eigen::Vector3d& along = axis.along;
+  if (n < 3) {
+    axis.is_more_to_come = n < 2;
+    along = Eigen::Vector3d::Unit(n);
+  } else if (n == 3) {
+    axis.is_more_to_come = false;
+    along = turned(unit_normal(triangle_));
+    if (along.isZero(0)) return false;
+  } else {
+    const std::uint32_t k = (n - 4) % 3, i = (k + 1) % 3, j = (k + 2) % 3;
+    const Eigen::Vector3d& edge = edge_[(n - 4) / 3];
+    axis.is_more_to_come = k < 2;
+    const double square = edge[i] * edge[i] + edge[j] * edge[j];
+    if (!(square >= kShortestDirection * kShortestDirection)) return false;
+    const double scale = 1 / std::sqrt(square);
+    along[k] = 0;
+    along[i] = -edge[j] * scale;
+    along[j] = edge[i] * scale;
+  }
+  const double a = dot(along, corner_[0]), b = dot(along, corner_[1]), c = dot(along, corner_[2]);
+  axis.low = std::min(a, std::min(b, c));
+  axis.high = std::max(a, std::max(b, c));
+  axis.half = std::abs(along[0]) * box_.half[0] + std::abs(along[1]) * box_.half[1] +
+              std::abs(along[2]) * box_.half[2];
+  return true;
+}
+
+}  // namespace boxtree

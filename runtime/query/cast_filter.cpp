@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: MIT
+// A cast, rounded to single precision.
+#include "runtime/query/cast_filter.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace boxtree {
+
+CastFilter::CastFilter(const CastQuery& query) noexcept
+    : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
+                   rounding(query.near) + given_away(query.origin_max_abs, query.near)) {
+  widen(query.extent);
+  const ConvexShape& shape = query.shape;
+  radius = float_above(shape.radius);
+  outer_radius = float_above(shape.outer_radius());
+  for (std::size_t k = 0; k < 3; ++k) {
+    direction[k] = query.is_moving ? static_cast<float>(query.direction[k]) : 0.0f;
+  }
+  core.count = shape.axes;
+  for (std::uint32_t i = 0; i < shape.axes; ++i) {
+    const double length = std::sqrt(squared_length(shape.axis[i]));
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double component = shape.axis[i][static_cast<Eigen::Index>(k)];
+      core.axis[i][k] = length > 0 ? static_cast<float>(component / length) : 0.0f;
+    }
+    core.half[i] = float_above(shape.half[i] * length);
+  }
+  for (std::uint32_t i = 0; i < shape.axes; ++i) motion[i] = motion_along(core.axis[i]);
+}
+
+// Along a vector, which is rounded no further. u = 2^-24.
+AxisMotion CastFilter::motion_along(const float (&v)[3]) const noexcept {
+  double size = 0, along = 0, half = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    size += std::abs(double{v[k]});
+    along += double{v[k]} * direction[k];
+  }
+  for (std::uint32_t i = 0; i < core.count; ++i) {
+    double projected = 0;
+    for (std::size_t k = 0; k < 3; ++k) projected += double{v[k]} * core.axis[i][k];
+    half += std::abs(projected) * core.half[i];
+  }
+  // More than the speed may be off, and quotients by it round.
+  constexpr double kError = 16 * kRoundoffF32;
+  const double speed = std::abs(along), doubt = kError * size;
+  AxisMotion out;
+  out.is_against = along < 0;
+  out.extent = float_above(half + radius * size + 3 * size * error);
+  out.per_ahead = static_cast<float>((1 - kError) / (speed + doubt));
+  out.per_behind = speed > 2 * doubt ? static_cast<float>((1 + kError) / (speed - doubt)) : 0;
+  return out;
+}
+
+}  // namespace boxtree
