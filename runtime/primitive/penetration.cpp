@@ -55,6 +55,20 @@ class LeastDepth {
     }
   }
 
+  // Along a line between the two, made orthogonal to what it may start or end on: near each other,
+  // rounding tilts it, and an edge sticks out by as much of its length.
+  void try_across(const Eigen::Vector3d& between) noexcept {
+    const auto try_one = [&](const Eigen::Vector3d& along) {
+      const double square = squared_length(along);
+      if (!(square > 0)) return;
+      const Eigen::Vector3d across = between - (dot(between, along) / square) * along;
+      const double length = std::sqrt(squared_length(across));
+      if (length > 0) try_axis(across / length);
+    };
+    for (const Eigen::Vector3d& of_triangle : edges_of(corner_)) try_one(of_triangle);
+    for (std::uint32_t k = 0; k < shape_.axes; ++k) try_one(shape_.axis[k]);
+  }
+
   double depth = std::numeric_limits<double>::infinity();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   [[nodiscard]] double error() const noexcept { return error_; }
@@ -104,7 +118,10 @@ Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,
   if (length > 2 * doubt) least.try_axis(between / length);
   // Rounding tilts the line between points that are near each other, or decides which way it
   // points: then other directions are better.
-  if (!(least.depth <= least.error() - length)) least.try_all();
+  if (!(least.depth <= least.error() - length)) {
+    least.try_across(between);
+    least.try_all();
+  }
   if (least.normal.isZero(0)) {
     // A core along a face without area: any direction across both.
     const Eigen::Vector3d along = shape.axes == 0 ? corner[1] - corner[0] : shape.axis[0];

@@ -195,6 +195,32 @@ TEST_P(Collide, AHullOfManyPointsIsNearlyABall) {
   }
 }
 
+// A sphere leaves a triangle soonest away from the point closest to its center, however near it is:
+// the depth is the radius less that distance. Near an edge, rounding tilts the line between them.
+TEST_P(Collide, ASphereNearlyCenteredOnAnEdgeIsAsDeepAsItIs) {
+  const test::CookedTree cooked = test::cook_tree(test::sphere(6, 8), GetParam());
+  std::size_t count = 0;
+  for (std::uint32_t f = 0; f < cooked.tree.face_count(); ++f) {
+    for (int exponent = 1; exponent < 50; ++exponent) {
+      const auto corner = test::require(cooked.tree.triangle({kNoFaceId, f}, 0)).corner;
+      const Eigen::Vector3d on = corner[0] + 0.5 * (1 + unit()) * (corner[1] - corner[0]);
+      const Eigen::Vector3d out = corner[0] + corner[1] - 2 * corner[2] + vector();
+      const Sphere sphere{on + std::ldexp(out.norm(), -exponent) * out.normalized(), 1.5};
+      const LongShape exact = test::long_shape(sphere);
+      ASSERT_TRUE(collide(cooked.tree, sphere, [&](const Contact& contact) {
+        const LongTriangle triangle = test::long_triangle(
+            test::require(cooked.tree.triangle(contact.face, contact.triangle)));
+        const long double distance = test::distance(exact, LongVector::Zero(), triangle);
+        EXPECT_LE(contact.depth, 1.5L - distance + 4 * kDoubt) << f << " 2^-" << exponent;
+        EXPECT_GE(contact.depth, 1.5L - distance - 4 * kDoubt) << f << " 2^-" << exponent;
+        ++count;
+        return true;
+      }));
+    }
+  }
+  EXPECT_GT(count, 10'000u);
+}
+
 INSTANTIATE_TEST_SUITE_P(Encodings, Collide,
                          testing::Values(test::Encoding{CodecId::kWide8, GeometryId::kExact},
                                          test::Encoding{CodecId::kWide4, GeometryId::kGrid},
