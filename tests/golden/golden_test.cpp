@@ -121,6 +121,68 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   EXPECT_EQ(touched, std::vector<std::uint32_t>{3});
 }
 
+// The bounds hold the time at which they touch, and are as near to each other as cast.h says for
+// coordinates up to 64.
+void expect_cast(const CastResult& hit, std::uint32_t face, double t, Feature feature) {
+  ASSERT_TRUE(hit.ok() && hit.has_value());
+  EXPECT_EQ(hit->face.id, face);
+  EXPECT_LE(hit->t_lower, t);
+  EXPECT_GE(hit->t, t);
+  EXPECT_LE(hit->t - hit->t_lower, 4 * 64 * 0x1p-46);
+  EXPECT_EQ(hit->feature, feature);
+  EXPECT_FALSE(hit->initially_touching);
+}
+
+TEST_P(Golden, FilesOfEveryVersionAnswerCastsAndContacts) {
+  const std::vector<std::byte> golden = golden_bytes(GetParam());
+  const Result<File> file = File::open(Bytes(golden));
+  ASSERT_TRUE(file.ok()) << file.error().message();
+  const Result<Tree> tree = Tree::bind(*file);
+  ASSERT_TRUE(tree.ok()) << tree.error().message();
+  const Motion down{{0, 0, -1}};
+
+  const Sphere sphere{{0.25, 0.25, 3}, 0.5};
+  const CastResult onto_face = cast_closest(*tree, sphere, down);
+  expect_cast(onto_face, 0, 2.5, Feature::kFace);
+  EXPECT_NEAR((onto_face->normal - Eigen::Vector3d(0, 0, 1)).norm(), 0, 1e-14);
+  EXPECT_NEAR((onto_face->point - Eigen::Vector3d(0.25, 0.25, 0)).norm(), 0, 1e-12);
+  // The face without area, across it.
+  expect_cast(cast_closest(*tree, Capsule{{0.4375, 6, 3}, {0.4375, 8, 3}, 0.25}, down), 4, 1.75,
+              Feature::kEdge);
+  // The quad and a piece of the pentagon share the plane: the smaller face id answers.
+  OrientedBox box;
+  box.center = {4.5, 0.5, 3};
+  box.half_extents = {0.25, 0.125, 0.5};
+  expect_cast(cast_closest(*tree, box, down), 1, 2, Feature::kFace);
+  const std::vector<Eigen::Vector3d> points = {{0, 0, 0}, {0.125, 0, 1}, {0, 0.125, 1}};
+  ConvexHull hull;
+  hull.points = points;
+  hull.position = {12.03125, 3.25, 3};
+  expect_cast(cast_closest(*tree, hull, down), 3, 2.875, Feature::kFace);
+  EXPECT_FALSE(cast_closest(*tree, Sphere{{0, 20, 3}, 0.5}, down));
+
+  std::size_t contacts = 0;
+  ASSERT_TRUE(collide(*tree, Sphere{{0.25, 0.25, 0.25}, 0.5}, [&](const Contact& contact) {
+                ++contacts;
+                EXPECT_EQ(contact.face.id, 0u);
+                EXPECT_EQ(contact.feature, Feature::kFace);
+                EXPECT_EQ(contact.depth, 0.25);
+                EXPECT_EQ(contact.normal, Eigen::Vector3d(0, 0, 1));
+                EXPECT_EQ(contact.point, Eigen::Vector3d(0.25, 0.25, 0));
+                return true;
+              }).ok());
+  EXPECT_EQ(contacts, 1u);
+  box.center[2] = 0.75;
+  std::vector<std::uint32_t> touched;
+  ASSERT_TRUE(overlap_oriented_box(*tree, box, [&](const FaceRef& face) {
+                touched.push_back(face.id);
+                return true;
+              }).ok());
+  std::sort(touched.begin(), touched.end());
+  touched.erase(std::unique(touched.begin(), touched.end()), touched.end());  // pieces
+  EXPECT_EQ(touched, (std::vector<std::uint32_t>{1, 2, 5}));
+}
+
 std::string kind_name(const testing::TestParamInfo<Kind>& kind) {
   std::string name = kind.param.name;
   std::replace(name.begin(), name.end(), '-', '_');
