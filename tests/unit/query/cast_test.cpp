@@ -468,6 +468,38 @@ TEST_P(CastCases, AHullFromAMillionDiagonalsAway) {
   EXPECT_LT(hit->t - hit->t_lower, 1e-14);
 }
 
+// Faces around the origin, each half as large as the one before: what separates them in single
+// precision has squares below its smallest number.
+TEST(CastAtTinyFaces, TouchesAllOfThem) {
+  constexpr std::uint32_t kFaces = 100;
+  SourceMesh mesh;
+  mesh.name = "halves";
+  for (std::uint32_t i = 0; i < kFaces; ++i) {
+    const float size = std::ldexp(1.0F, -static_cast<int>(i));
+    for (const float x : {1.0F, 1.0F, 0.5F, 1.25F, 1.0F, 0.625F, 1.0F, 1.125F, 0.75F}) {
+      mesh.positions.f32.push_back(size * x);
+    }
+    mesh.faces.push_back({{3 * i, 3 * i + 1, 3 * i + 2, cooker::kNoCorner}});
+  }
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    if (encoding.geometry == GeometryId::kGrid) continue;  // where they are one place
+    SCOPED_TRACE(codec_name(encoding.codec));
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    std::mt19937_64 random(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    for (int i = 0; i < 200; ++i) {
+      const Sphere sphere{0.3 * Eigen::Vector3d(unit(random), unit(random), unit(random)), 0.05};
+      const Motion motion{-sphere.center, 1.5};
+      std::uint32_t touched = 0;
+      ASSERT_TRUE(cast_all(cooked.tree, sphere, motion, [&](const CastHit& hit) {
+        touched += hit.face.id >= 30 ? 1u : 0u;
+        return motion.t_max;
+      }));
+      ASSERT_EQ(touched, kFaces - 30) << i;
+    }
+  }
+}
+
 TEST(CastIntoAVertex, TouchesItFirst) {
   SourceMesh mesh;
   mesh.name = "pyramid";
