@@ -3,6 +3,7 @@
 #include "tests/robustness/answers.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <random>
@@ -29,6 +30,7 @@ class Maker {
       queries.points.push_back(i % 5 == 0 ? vertex() : point());
     }
     for (std::size_t i = 0; i < counts.poses; ++i) queries.poses.push_back(pose(i));
+    for (std::size_t i = 0; i < counts.casts; ++i) queries.casts.push_back(cast(i));
     return queries;
   }
 
@@ -84,6 +86,28 @@ class Maker {
     if (i % 3 == 2) pose.scale(Eigen::Vector3d(0.5 + unit(), -0.5 - unit(), 0.5 + unit()));
     pose.translate(-bounds_.center());
     return pose;
+  }
+
+  // Of every kind in turn.
+  Cast cast(std::size_t i) {
+    const double reach = size_.maxCoeff() * (0.02 + 0.2 * unit() * unit());
+    Eigen::Vector3d half = reach * Eigen::Vector3d(0.1 + unit(), 0.1 + unit(), 0.1 + unit());
+    std::vector<Shape> shapes = shapes_of(half);
+    Shape shape = shapes[i % shapes.size()];
+    if (i % 2 == 1) {
+      const decltype(OrientedBox::rotation) turn(unit() - 0.5, unit() - 0.5, unit() - 0.5,
+                                                 unit() - 0.5);
+      std::visit(
+          [&](auto& held) {
+            if constexpr (requires { held.rotation; }) held.rotation = turn;
+          },
+          shape);
+    }
+    const Eigen::Vector3d from = i % 5 == 4 ? vertex() : point();
+    Motion motion{vertex() - from, 1.5};
+    if (i % 3 == 1) motion.direction = size_.maxCoeff() * axis();
+    if (i % 7 == 6) motion.direction.setZero();
+    return {moved_to(std::move(shape), from), motion};
   }
 
   const SourceMesh& mesh_;
@@ -149,6 +173,65 @@ std::vector<std::uint64_t> query_point(const Tree& tree, const Eigen::Vector3d& 
   return out.take();
 }
 
+std::vector<std::uint64_t> query_cast(const Tree& tree, const Cast& cast, int exponent) {
+  return with_shape(cast.shape, [&](const auto& shape) {
+    Writer out(exponent);
+    const CastResult hit = cast_closest(tree, shape, cast.motion);
+    out.add(code_of(hit));
+    if (!hit.ok()) return out.take();
+    const CastResult any = cast_any(tree, shape, cast.motion);
+    out.add(code_of(any));
+    out.add(any.ok() && any.has_value() ? 1 : 0);
+    if (!hit.has_value()) return out.take();
+    std::vector<std::array<std::uint64_t, 4>> all;
+    const auto visit = cast_all(tree, shape, cast.motion, [&](const CastHit& each) {
+      all.push_back({each.face.id, each.triangle, bits(each.t), bits(each.t_lower)});
+      return cast.motion.t_max;
+    });
+    out.add(code_of(visit));
+    out.add(hit->face.id);
+    out.add(hit->triangle);
+    out.add(static_cast<std::uint64_t>(hit->feature));
+    out.add_number(hit->t);
+    out.add_number(hit->t_lower);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      out.add_number(hit->normal[k]);
+      out.add_length(hit->point[k]);
+    }
+    std::sort(all.begin(), all.end());
+    for (const auto& each : all) {
+      for (const std::uint64_t word : each) out.add(word);
+    }
+    return out.take();
+  });
+}
+
+std::vector<std::uint64_t> query_contacts(const Tree& tree, const Shape& tested, int exponent) {
+  return with_shape(tested, [&](const auto& shape) {
+    std::vector<std::vector<std::uint64_t>> all;
+    const auto visit = collide(tree, shape, [&](const Contact& contact) {
+      Writer one(exponent);
+      one.add(contact.face.id);
+      one.add(contact.triangle);
+      one.add(static_cast<std::uint64_t>(contact.feature));
+      one.add_length(contact.depth);
+      for (Eigen::Index k = 0; k < 3; ++k) {
+        one.add_number(contact.normal[k]);
+        one.add_length(contact.point[k]);
+      }
+      all.push_back(one.take());
+      return true;
+    });
+    std::sort(all.begin(), all.end());
+    Writer out(0);
+    out.add(code_of(visit));
+    for (const auto& one : all) {
+      for (const std::uint64_t word : one) out.add(word);
+    }
+    return out.take();
+  });
+}
+
 // Query: visitor -> result of a query that visits faces.
 template <class Query>
 std::vector<std::uint64_t> query_faces(Query query) {
@@ -192,6 +275,10 @@ QuerySet scaled(const QuerySet& queries, int exponent) {
   for (Sphere& sphere : out.spheres) sphere = {sphere.center * factor, sphere.radius * factor};
   for (Eigen::Vector3d& point : out.points) point *= factor;
   for (Pose& pose : out.poses) pose.translation() *= factor;
+  for (Cast& cast : out.casts) {
+    cast.shape = times(std::move(cast.shape), factor);
+    cast.motion.direction *= factor;
+  }
   return out;
 }
 
@@ -211,6 +298,10 @@ Answers run_query(const Tree& tree, const QuerySet& queries, int exponent) {
     answers.push_back(query_point(tree, point, exponent));
   }
   for (const Pose& pose : queries.poses) answers.push_back(query_pairs(tree, pose));
+  for (const Cast& cast : queries.casts) {
+    answers.push_back(query_cast(tree, cast, exponent));
+    answers.push_back(query_contacts(tree, cast.shape, exponent));
+  }
   return answers;
 }
 

@@ -6,14 +6,10 @@
 #include <utility>
 #include <vector>
 
+#include "tests/robustness/moving_shapes.h"
 #include "tests/robustness/subjects.h"
 
 namespace boxtree::robustness {
-
-struct Sphere {
-  Eigen::Vector3d center;
-  double radius;
-};
 
 /// In object space. For pairs, the tree against itself; the second one has that pose.
 struct QuerySet {
@@ -22,6 +18,7 @@ struct QuerySet {
   std::vector<Sphere> spheres;
   std::vector<Eigen::Vector3d> points;
   std::vector<Pose> poses;
+  std::vector<Cast> casts;  // what they touch where they start is a query of its own
 };
 
 /// Number of queries of each kind.
@@ -31,6 +28,7 @@ struct QueryCounts {
   std::size_t spheres = 60;
   std::size_t points = 60;
   std::size_t poses = 6;
+  std::size_t casts = 10;
 };
 
 /// Seeded queries on a mesh. A part of each kind is degenerate: along axes, through vertices, of

@@ -13,6 +13,7 @@
 #include "runtime/query/relative_pose.h"
 #include "runtime/tree/bound_tree.h"
 #include "runtime/walk/traversal.h"
+#include "tests/robustness/cast_reference.h"
 
 namespace boxtree::robustness {
 namespace {
@@ -44,7 +45,8 @@ class Brute {
       : run_(run),
         subject_(subject),
         frame_(BoundTree::of(subject.tree()).frame()),
-        triangles_(decoded_triangles(subject.tree())) {}
+        triangles_(decoded_triangles(subject.tree())),
+        casts_(subject.tree()) {}
 
   void check_ray(const Ray& ray, std::size_t number) {
     const RayShear shear(frame_.to_tree(ray.origin), ray.direction);
@@ -130,6 +132,12 @@ class Brute {
              "pose", number);
   }
 
+  void check_cast(const Cast& cast, std::size_t number) {
+    const std::string name = subject_.name + ": cast " + std::to_string(number);
+    casts_.check_cast(run_, subject_.tree(), cast, name);
+    casts_.check_contacts(run_, subject_.tree(), cast.shape, name);
+  }
+
  private:
   void complain(bool right, const char* what, std::size_t number) {
     run_.check(right, [&] { return subject_.name + ": " + what + " " + std::to_string(number); });
@@ -154,6 +162,7 @@ class Brute {
   const Subject& subject_;
   const Frame& frame_;
   std::vector<DecodedTriangle> triangles_;
+  CastReference casts_;
 };
 
 bool boxes_intersect(const Box<double>& a, const Box<double>& b) {
@@ -176,6 +185,7 @@ void check_brute_force(Run& run, const Subject& subject, const QuerySet& queries
     brute.check_point(queries.points[i], i);
   }
   for (std::size_t i = 0; i < queries.poses.size(); ++i) brute.check_pose(queries.poses[i], i);
+  for (std::size_t i = 0; i < queries.casts.size(); ++i) brute.check_cast(queries.casts[i], i);
 }
 
 std::size_t check_answers(Run& run, const SourceMesh& mesh, const QuerySet& queries) {

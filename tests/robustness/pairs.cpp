@@ -146,7 +146,7 @@ void no_nan(Run& run) {
   std::size_t misses = 0;
   const auto is_weight = [](double x) { return x >= 0 && x <= 1; };
   for (const SourceMesh& mesh : meshes) {
-    const QuerySet queries = queries_for(mesh, 27, {300, 0, 0, 100, 4});
+    const QuerySet queries = queries_for(mesh, 27, {300, 0, 0, 100, 4, 40});
     for_each_subject(mesh, [&](const Subject& subject) {
       const auto name = [&] { return subject.name; };
       for (const Ray& ray : queries.rays) {
@@ -160,6 +160,17 @@ void no_nan(Run& run) {
         const auto closest = closest_point(subject.tree(), point);
         run.check(closest.has_value() && closest->point.allFinite() && closest->distance >= 0,
                   name);
+      }
+      for (const Cast& cast : queries.casts) {
+        with_shape(cast.shape, [&](const auto& shape) {
+          const CastResult hit = cast_closest(subject.tree(), shape, cast.motion);
+          misses += hit.has_value() ? 0u : 1u;
+          run.check(hit.ok(), name);
+          if (!hit.has_value()) return;
+          run.check(hit->t_lower >= 0 && hit->t_lower <= hit->t && hit->t <= cast.motion.t_max,
+                    name);
+          run.check(hit->point.allFinite() && hit->normal.allFinite(), name);
+        });
       }
       Pose away = Pose::Identity();
       away.translation() = 3 * bounds_of(mesh).diagonal() + Eigen::Vector3d::Ones();

@@ -105,6 +105,14 @@ void negative_zero(Run& run) {
       if (ray.direction[k] == 0) ray.direction[k] = -ray.direction[k];
     }
   }
+  for (Cast& cast : turned.casts) {
+    Eigen::Vector3d at = position_of(cast.shape);
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      if (at[k] == 0) at[k] = -at[k];
+      if (cast.motion.direction[k] == 0) cast.motion.direction[k] = -cast.motion.direction[k];
+    }
+    cast.shape = moved_to(std::move(cast.shape), at);
+  }
   for (Eigen::AlignedBox3d& box : turned.boxes) {
     for (Eigen::Index k = 0; k < 3; ++k) {
       if (box.min()[k] == 0) box.min()[k] = -box.min()[k];
@@ -302,6 +310,22 @@ void invalid_queries(Run& run) {
         refused(any_hit(tree, {zero, v}).code(), Errc::kInvalidQuery, "any-hit ray direction");
         refused(closest_point(tree, v).code(), Errc::kInvalidQuery, "point");
         refused(overlap_sphere(tree, v, 1, all).code(), Errc::kInvalidQuery, "sphere center");
+        for (const Shape& shape : shapes_of(one)) {
+          const auto visit = [](const CastHit&) { return 1.0; };
+          const auto refuse = [&](const Shape& placed, const Motion& motion) {
+            with_shape(placed, [&](const auto& s) {
+              refused(cast_closest(tree, s, motion).code(), Errc::kInvalidQuery, "cast");
+              refused(cast_any(tree, s, motion).code(), Errc::kInvalidQuery, "any cast");
+              refused(cast_all(tree, s, motion, visit).code(), Errc::kInvalidQuery, "all casts");
+            });
+          };
+          refuse(moved_to(shape, v), Motion{one, 1});
+          refuse(shape, Motion{v, 1});
+          if (std::isnan(bad) || bad < 0) refuse(shape, Motion{one, bad});
+          with_shape(moved_to(shape, v), [&](const auto& s) {
+            refused(collide(tree, s, all).code(), Errc::kInvalidQuery, "shape");
+          });
+        }
         refused(overlap_box(tree, {zero, v}, all).code(), Errc::kInvalidQuery, "box");
         refused(overlap_box(tree, {v, one}, all).code(), Errc::kInvalidQuery, "box");
         Pose pose = Pose::Identity();

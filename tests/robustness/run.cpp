@@ -20,8 +20,9 @@ Run run_case(const Case& tested, bool full) {
 
 std::vector<Case> all_cases() {
   std::vector<Case> cases;
-  for (const auto& theme : {range_cases(), scale_cases(), ray_cases(), pair_cases(), pose_cases(),
-                            degenerate_cases(), shape_cases(), store_cases(), file_cases()}) {
+  for (const auto& theme :
+       {range_cases(), scale_cases(), ray_cases(), cast_cases(), pair_cases(), pose_cases(),
+        degenerate_cases(), shape_cases(), store_cases(), file_cases()}) {
     cases.insert(cases.end(), theme.begin(), theme.end());
   }
   // R before E, each by number.

@@ -93,6 +93,7 @@ struct Case {
 [[nodiscard]] std::vector<Case> range_cases();
 [[nodiscard]] std::vector<Case> scale_cases();
 [[nodiscard]] std::vector<Case> ray_cases();
+[[nodiscard]] std::vector<Case> cast_cases();
 [[nodiscard]] std::vector<Case> pair_cases();
 [[nodiscard]] std::vector<Case> pose_cases();
 [[nodiscard]] std::vector<Case> degenerate_cases();

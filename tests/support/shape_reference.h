@@ -152,14 +152,18 @@ inline bool holds_origin(std::span<const LongVector> d) {
   return true;
 }
 
-// Of the hull of points and a triangle that is relative to them.
-inline long double distance_of_hull(const LongShape& hull, const LongTriangle& triangle) {
+// From the hull of points to a triangle that is relative to them; 0 where they touch.
+inline LongVector between_of_hull(const LongShape& hull, const LongTriangle& triangle) {
   std::vector<LongVector> differences;
   for (const LongTriangle& point : hull.core) {
     for (const LongVector& corner : triangle) differences.push_back(corner - point[0]);
   }
-  if (holds_origin(differences)) return 0;
-  return std::sqrt(squared_to_hull(differences));
+  const LongVector closest = closest_of_hull(differences);
+  // All of it beyond a plane: much faster than to look whether the origin is inside.
+  const bool is_apart = std::all_of(differences.begin(), differences.end(),
+                                    [&](const LongVector& d) { return d.dot(closest) > 0; });
+  if (!is_apart && holds_origin(differences)) return LongVector::Zero();
+  return closest;
 }
 
 // Whether anything is left of the triangle when the six sides of a box have cut it.
@@ -198,38 +202,60 @@ inline bool crosses(const LongTriangle& segment, const LongTriangle& triangle) {
   return (x > 0 && y > 0 && z > 0) || (x < 0 && y < 0 && z < 0);
 }
 
-// The distance of the core, `moved` from where it started.
-inline long double distance(const LongShape& shape, const LongVector& moved,
-                            const LongTriangle& triangle) {
+// From the core, `moved` from where it started, to the triangle; 0 where they touch.
+inline LongVector between(const LongShape& shape, const LongVector& moved,
+                          const LongTriangle& triangle) {
   LongTriangle relative;
   for (std::size_t c = 0; c < 3; ++c) relative[c] = triangle[c] - moved;
-  if (shape.is_hull) return distance_of_hull(shape, relative);
-  if (shape.is_solid && overlaps(shape, relative)) return 0;
-  if (!shape.is_solid && crosses(shape.core[0], relative)) return 0;
-  long double least = std::numeric_limits<long double>::infinity();
-  for (const LongTriangle& side : shape.core) {
-    least = std::min(least, distance_in_extended_precision(side, relative));
+  if (shape.is_hull) return between_of_hull(shape, relative);
+  if (shape.is_solid && overlaps(shape, relative)) return LongVector::Zero();
+  if (!shape.is_solid && crosses(shape.core[0], relative)) return LongVector::Zero();
+  LongVector shortest = between_in_extended_precision(shape.core[0], relative);
+  for (std::size_t i = 1; i < shape.core.size(); ++i) {
+    const LongVector other = between_in_extended_precision(shape.core[i], relative);
+    if (other.squaredNorm() < shortest.squaredNorm()) shortest = other;
+  }
+  return shortest;
+}
+
+// The distance of the core.
+inline long double distance(const LongShape& shape, const LongVector& moved,
+                            const LongTriangle& triangle) {
+  return between(shape, moved, triangle).norm();
+}
+
+// The least distance on the way between two times. It is convex in time: a golden section.
+inline long double least_distance(const LongShape& shape, const LongVector& direction,
+                                  long double from, long double to, const LongTriangle& triangle) {
+  constexpr long double kGolden = 0.6180339887498948482L;
+  const auto at = [&](long double s) { return distance(shape, s * direction, triangle); };
+  long double low = from, high = to;
+  long double least = at(low);
+  if (!(high > low)) return least;
+  least = std::min(least, at(high));
+  long double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  long double of_a = at(a), of_b = at(b);
+  for (int i = 0; i < 60 && least > 0; ++i) {
+    least = std::min({least, of_a, of_b});
+    if (of_a < of_b) {
+      high = std::exchange(b, a);
+      of_b = of_a;
+      a = high - kGolden * (high - low);
+      of_a = at(a);
+    } else {
+      low = std::exchange(a, b);
+      of_a = of_b;
+      b = low + kGolden * (high - low);
+      of_b = at(b);
+    }
   }
   return least;
 }
 
-// The least distance on the way from 0 to `to`.
+// The same on the way from 0.
 inline long double least_distance(const LongShape& shape, const LongVector& direction,
                                   long double to, const LongTriangle& triangle) {
-  const auto at = [&](long double s) { return distance(shape, s * direction, triangle); };
-  long double low = 0, high = to;
-  long double least = std::min(at(low), at(high));
-  for (int i = 0; i < 60 && high > low; ++i) {
-    const long double a = low + (high - low) * 0.382L, b = low + (high - low) * 0.618L;
-    const long double of_a = at(a), of_b = at(b);
-    least = std::min({least, of_a, of_b});
-    if (of_a < of_b) {
-      high = b;
-    } else {
-      low = a;
-    }
-  }
-  return least;
+  return least_distance(shape, direction, 0, to, triangle);
 }
 
 /// A triangle, in a ball that rules most of them out.
@@ -259,6 +285,20 @@ inline std::vector<BoundedTriangle> bounded_triangles(const Tree& tree) {
   return triangles;
 }
 
+/// The least distance of one triangle on the way, or something above `enough`. Only where the
+/// balls around both are so near is looked at, to see it to all digits on long ways, too.
+inline long double least_of(const BoundedTriangle& item, const LongShape& shape,
+                            const LongVector& direction, long double to, long double enough) {
+  const LongVector w = item.center - shape.center;
+  const long double dd = direction.squaredNorm();
+  const long double s = dd > 0 ? std::clamp(w.dot(direction) / dd, 0.0L, to) : 0;
+  const long double near = item.radius + shape.reach + enough;
+  if ((w - s * direction).norm() > near) return std::numeric_limits<long double>::infinity();
+  const long double around = dd > 0 ? 1.0625L * near / std::sqrt(dd) : 0;
+  return least_distance(shape, direction, std::max(0.0L, s - around), std::min(to, s + around),
+                        item.corner);
+}
+
 class Surface {
  public:
   explicit Surface(const Tree& tree) : Surface(bounded_triangles(tree)) {}
@@ -273,11 +313,7 @@ class Surface {
                                   long double to, long double enough) const {
     long double best = std::numeric_limits<long double>::infinity();
     for (const BoundedTriangle& item : triangles_) {
-      const LongVector w = item.center - shape.center;
-      const long double dd = direction.squaredNorm();
-      const long double s = dd > 0 ? std::clamp(w.dot(direction) / dd, 0.0L, to) : 0;
-      if ((w - s * direction).norm() - item.radius - shape.reach > enough) continue;
-      best = std::min(best, least_distance(shape, direction, to, item.corner));
+      best = std::min(best, least_of(item, shape, direction, to, enough));
     }
     return best;
   }
@@ -303,6 +339,27 @@ inline long double depth_along(const LongShape& shape, const LongVector& directi
     for (const LongVector& corner : part) lowest = std::min(lowest, corner.dot(direction));
   }
   return highest - lowest + shape.radius;
+}
+
+/// Whether the shape comes as near to the triangle as its radius between two times. Where they are
+/// apart along a direction, they stay so until the motion has closed that gap, so the search goes
+/// on from there; where this gets nowhere, the least distance decides.
+inline bool touches_between(const LongShape& shape, const LongVector& direction, long double from,
+                            long double to, const LongTriangle& triangle) {
+  long double s = from;
+  for (int i = 0; i < 40; ++i) {
+    const LongVector gap = between(shape, s * direction, triangle);
+    const long double length = gap.norm();
+    if (length <= shape.radius) return true;
+    const LongVector along = -gap / length;  // the way back
+    const long double apart = s * direction.dot(along) - depth_along(shape, along, triangle);
+    if (!(apart > 0.5L * (length - shape.radius))) break;
+    const long double speed = -direction.dot(along);
+    if (speed <= 0) return false;
+    s += apart / speed;
+    if (s > to) return false;
+  }
+  return least_distance(shape, direction, s, to, triangle) <= shape.radius;
 }
 
 }  // namespace boxtree::test

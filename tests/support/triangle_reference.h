@@ -16,19 +16,26 @@ namespace boxtree::test {
 using LongVector = Eigen::Matrix<long double, 3, 1>;
 using LongTriangle = std::array<LongVector, 3>;
 
-// Squared distance of the origin from the hull of points. Every vertex, segment and triangle of the
-// points is tried, each by a small linear system. A closest point is in one of them unless the
-// origin is inside; then the result is at least zero.
-inline long double squared_to_hull(std::span<const LongVector> d) {
-  long double best = d[0].squaredNorm();
+// The point of the hull of points that is closest to the origin. Every vertex, segment and triangle
+// of the points is tried, each by a small linear system. A closest point is in one of them unless
+// the origin is inside; then the result is some point of them.
+inline LongVector closest_of_hull(std::span<const LongVector> d) {
+  LongVector closest = d[0];
+  long double best = closest.squaredNorm();
+  const auto try_point = [&](const LongVector& point) {
+    const long double square = point.squaredNorm();
+    if (!(square < best)) return;
+    best = square;
+    closest = point;
+  };
   for (std::size_t i = 0; i < d.size(); ++i) {
-    best = std::min(best, d[i].squaredNorm());
+    try_point(d[i]);
     for (std::size_t j = 0; j < i; ++j) {
       const LongVector e = d[j] - d[i];
       const long double ee = e.squaredNorm();
       if (ee > 0) {
         const long double s = std::clamp(-e.dot(d[i]) / ee, 0.0L, 1.0L);
-        best = std::min(best, (d[i] + s * e).squaredNorm());
+        try_point(d[i] + s * e);
       }
       for (std::size_t k = 0; k < j; ++k) {
         const LongVector f = d[k] - d[i];
@@ -38,21 +45,26 @@ inline long double squared_to_hull(std::span<const LongVector> d) {
         const long double s = n.dot((-d[i]).cross(f)) / nn;
         const long double t = n.dot(e.cross(-d[i])) / nn;
         if (s < 0 || t < 0 || s + t > 1) continue;
-        best = std::min(best, (d[i] + s * e + t * f).squaredNorm());
+        try_point(d[i] + s * e + t * f);
       }
     }
   }
-  return best;
+  return closest;
 }
 
-/// The distance of the triangles, that is of the origin from the hull of the differences of their
-/// corners. Not valid for triangles that cross.
-inline long double distance_in_extended_precision(const LongTriangle& p, const LongTriangle& q) {
+/// From the first triangle to the second where they are closest, that is from the origin to the
+/// hull of the differences of their corners. Not valid for triangles that cross.
+inline LongVector between_in_extended_precision(const LongTriangle& p, const LongTriangle& q) {
   std::array<LongVector, 9> differences;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) differences[3 * i + j] = q[j] - p[i];
   }
-  return std::sqrt(squared_to_hull(differences));
+  return closest_of_hull(differences);
+}
+
+/// How long that is.
+inline long double distance_in_extended_precision(const LongTriangle& p, const LongTriangle& q) {
+  return between_in_extended_precision(p, q).norm();
 }
 
 inline double distance_in_extended_precision(const Triangle& p, const Triangle& q) {
