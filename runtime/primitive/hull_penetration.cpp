@@ -369,6 +369,10 @@ Penetration hull_penetration(std::span<const Eigen::Vector3d> points, const Corn
   Penetration found;
   found.normal = difference.normal;
   found.depth = std::max(0.0, difference.depth);
+  if (found.normal.isZero(0)) {  // both are one place
+    found.normal = Eigen::Vector3d::UnitX();
+    found.depth = 0;
+  }
   found.feature = farthest_feature(found.normal, corner, difference.error());
   if (difference.witness(found.point) &&
       hull_distance(points, {found.point, found.point, found.point}).lower <= 2 * doubt) {

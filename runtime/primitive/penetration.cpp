@@ -123,8 +123,11 @@ Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,
     least.try_all();
   }
   if (least.normal.isZero(0)) {
-    // A core along a face without area: any direction across both.
-    const Eigen::Vector3d along = shape.axes == 0 ? corner[1] - corner[0] : shape.axis[0];
+    // A core along a face without area: any direction across both, of which one may be a place.
+    Eigen::Vector3d along = shape.axis[0];
+    for (const Eigen::Vector3d& edge : edges_of(corner)) {
+      if (squared_length(along) < squared_length(edge)) along = edge;
+    }
     least.normal = unit_across(along);
     least.depth = 0;
   }

@@ -227,6 +227,37 @@ INSTANTIATE_TEST_SUITE_P(Encodings, Collide,
                                          test::Encoding{CodecId::kPlainF32, GeometryId::kArrays}),
                          test::encoding_name);
 
+// Faces that are a segment, whose first corners are one, and a point, with shapes that are a point:
+// the normal leads away from the segment, and there is one where both are a point.
+TEST(CollideWithoutSize, HasANormalAndNoDepth) {
+  SourceMesh mesh;
+  mesh.name = "segment and point";
+  mesh.positions.f32 = {0, 0, 0, 0, 0, 0, 8, 0, 0, 1, 2, 3, 1, 2, 3, 1, 2, 3};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}, {{3, 4, 5, cooker::kNoCorner}}};
+  const std::vector<Eigen::Vector3d> none(2, Eigen::Vector3d::Zero());
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    for (const auto& [at, face] : {std::pair(Eigen::Vector3d(2, 0, 0), 0u), {{1, 2, 3}, 1u}}) {
+      const auto check = [&, at = at, face = face](const auto& shape) {
+        std::size_t count = 0;
+        ASSERT_TRUE(collide(cooked.tree, shape, [&](const Contact& contact) {
+          ++count;
+          EXPECT_EQ(contact.face.id, face);
+          EXPECT_EQ(contact.depth, 0);
+          EXPECT_NEAR(contact.normal.norm(), 1, 1e-12);
+          EXPECT_TRUE(face != 0 || std::abs(contact.normal.x()) < 1e-12);
+          EXPECT_EQ(contact.point, at);
+          return true;
+        }));
+        EXPECT_EQ(count, 1u);
+      };
+      check(Sphere{at, 0});
+      check(Capsule{at, at, 0});
+      check(ConvexHull{none, at, {1, 0, 0, 0}});
+    }
+  }
+}
+
 TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   const auto contact = [](double x, const Eigen::Vector3d& normal, double depth) {
     Contact c;
