@@ -28,7 +28,7 @@ struct QueryCounts {
   std::size_t spheres = 60;
   std::size_t points = 60;
   std::size_t poses = 6;
-  std::size_t casts = 10;
+  std::size_t casts = 5;  // brute force takes its time
 };
 
 /// Seeded queries on a mesh. A part of each kind is degenerate: along axes, through vertices, of
