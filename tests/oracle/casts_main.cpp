@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: MIT
 // boxtree_casts: draws a triangle and a moving shape after the other and compares when they touch,
 // and how they part where they touch at the start, with distances in extended precision. Half of
-// the cases are degenerate: needles, segments, points, motions in the plane, touches at the start,
-// grazes. Exits with 7 when an answer is wrong.
+// the cases, or as many as are wished, are degenerate: needles, segments, points, motions in the
+// plane and without length, touches at the start, grazes, shared edges. Exits with 7 when an answer
+// is wrong.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <random>
@@ -42,7 +44,8 @@ struct Case {
 
 class Draw {
  public:
-  explicit Draw(std::uint64_t seed) : random_(seed) {}
+  /// `degenerate`: so many of a hundred cases.
+  Draw(std::uint64_t seed, std::uint32_t degenerate) : random_(seed), degenerate_(degenerate) {}
 
   Case next(std::uint32_t axes) {
     Case drawn;
@@ -69,7 +72,7 @@ class Draw {
     drawn.shape.center = 3 * size * coarse(vector());
     const Eigen::Vector3d to = size * vector();
     drawn.direction = to - drawn.shape.center;
-    if (random_() % 2 == 0) make_degenerate(drawn, size);
+    if (random_() % 100 < degenerate_) make_degenerate(drawn, size);
     // Its largest component in [1/2, 1).
     const double largest = largest_magnitude(drawn.direction);
     if (largest > 0) drawn.direction = std::ldexp(1.0, -std::ilogb(largest) - 1) * drawn.direction;
@@ -110,7 +113,7 @@ class Draw {
 
   void make_degenerate(Case& drawn, double size) {
     auto& [a, b, c] = drawn.triangle.corner;
-    switch (random_() % 9) {
+    switch (random_() % 11) {
       case 0:  // a needle
         c = a + 0.5 * (1 + unit()) * (b - a) + std::pow(10.0, -12 + 5 * unit()) * size * vector();
         break;
@@ -133,10 +136,17 @@ class Draw {
         drawn.direction.setZero();
         drawn.shape.center = a + drawn.shape.radius * vector();
         break;
-      case 7: {  // grazes a plane of whole numbers
-        for (Eigen::Vector3d* corner : {&a, &b, &c}) (*corner)[2] = 0;
-        drawn.shape.center[2] = drawn.shape.axes == 3 ? drawn.shape.half[2] : drawn.shape.radius;
+      case 7:  // grazes a plane
+        rest_on_plane(drawn);
         drawn.direction[2] = 0;
+        break;
+      case 8:  // touches a plane at the start
+        rest_on_plane(drawn);
+        break;
+      case 9: {  // an edge of the triangle is one of the shape, at s = 1 of the way
+        const auto [p, q] = edge_of(drawn);
+        a = drawn.shape.center + drawn.direction + p;
+        b = drawn.shape.center + drawn.direction + q;
         break;
       }
       default:  // far away
@@ -145,7 +155,27 @@ class Draw {
     }
   }
 
+  // The triangle at z = 0, the shape on it.
+  static void rest_on_plane(Case& drawn) {
+    for (Eigen::Vector3d& corner : drawn.triangle.corner) corner[2] = 0;
+    drawn.shape.center[2] = drawn.shape.axes == 3 ? drawn.shape.half[2] : drawn.shape.radius;
+  }
+
+  // Relative to its center. That of a sphere is across its lowest point.
+  static std::pair<Eigen::Vector3d, Eigen::Vector3d> edge_of(const Case& drawn) {
+    const ConvexShape& shape = drawn.shape;
+    if (!drawn.points.empty()) return {drawn.points.front(), drawn.points.back()};
+    if (shape.axes == 3) {
+      const Eigen::Vector3d side = shape.half[1] * shape.axis[1] + shape.half[2] * shape.axis[2];
+      return {side - shape.half[0] * shape.axis[0], side + shape.half[0] * shape.axis[0]};
+    }
+    const Eigen::Vector3d low(0, 0, -shape.radius), across(shape.radius, 0, 0);
+    if (shape.axes == 1) return {low - shape.axis[0], low + shape.axis[0]};
+    return {low - across, low + across};
+  }
+
   std::mt19937_64 random_;
+  std::uint32_t degenerate_;
 };
 
 LongShape long_shape_of(const Case& drawn) {
@@ -183,6 +213,23 @@ struct Tally {
   long double farthest = 0;    // from touching, at t, in units of 2^-53 of the largest coordinate
 };
 
+// Whether the shape, at `s` of its way or before, is nearer to the triangle than its radius. A
+// direction along which they are apart, and which the motion only shortens, settles most.
+bool touches_before(const LongShape& shape, const LongVector& direction, long double s,
+                    const test::BoundedTriangle& triangle, const LongVector& normal,
+                    long double size) {
+  const long double along = direction.dot(normal);
+  if (along <= 0 && depth_along(shape, normal, triangle.corner) - s * along <= 0) return false;
+  if (shape.radius > 0) {
+    return test::least_of(triangle, shape, direction, s, shape.radius) <
+           shape.radius * (1 - 1e-18L);
+  }
+  // Without a radius it may touch at `s`; so a little before, if long double tells the difference.
+  const long double before = s * (1 - 0x1p-50L);
+  return (s - before) * direction.norm() > 0x1p-58L * size &&
+         test::least_of(triangle, shape, direction, before, 0) <= 0;
+}
+
 void check(const Case& drawn, Draw& draw, Tally& tally) {
   double near = 2 * largest_magnitude(drawn.shape.half_extents());
   for (const Eigen::Vector3d& corner : drawn.triangle.corner) {
@@ -200,25 +247,28 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
 
   const LongShape shape = long_shape_of(drawn);
   const LongVector direction = drawn.direction.cast<long double>();
-  LongTriangle triangle;
-  for (std::size_t c = 0; c < 3; ++c) {
-    triangle[c] = drawn.triangle.corner[c].cast<long double>();
-  }
+  const LongTriangle triangle = test::long_triangle(drawn.triangle);
+  const test::BoundedTriangle bounded(triangle);
   ++tally.cases;
   const std::optional<double> s = moving.first_touch(drawn.triangle, 0, to);
   if (!s) {
-    tally.missed += test::least_distance(shape, direction, to, triangle) <= shape.radius;
+    tally.missed += test::touches_between(shape, direction, 0, to, triangle) ? 1u : 0u;
     return;
   }
   ++tally.touches;
   const MovingShape::Contact contact = moving.contact_at(drawn.triangle, *s);
   if (*s > 0) {
     tally.early +=
-        test::least_distance(shape, direction, *s, triangle) < shape.radius * (1 - 1e-18L);
+        touches_before(shape, direction, *s, bounded, contact.normal.cast<long double>(), size);
   }
-  const long double beyond =
-      test::least_distance(shape, direction, contact.by, triangle) - shape.radius;
-  tally.farthest = std::max(tally.farthest, beyond / size * 0x1p53L);
+  // At that time, or before.
+  long double beyond =
+      test::distance(shape, LongVector(contact.by * direction), triangle) - shape.radius;
+  if (beyond / size * 0x1p53L > tally.farthest) {
+    const long double least = test::least_distance(shape, direction, contact.by, triangle);
+    beyond = least - shape.radius;
+    tally.farthest = std::max(tally.farthest, beyond / size * 0x1p53L);
+  }
   tally.invented += beyond > allowed;
   if (*s > 0) return;
   ++tally.at_start;
@@ -235,7 +285,8 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
   tally.parted += is_wrong;
 }
 
-int run(std::uint64_t count, std::uint64_t seed, const std::vector<std::string>& shapes) {
+int run(std::uint64_t count, std::uint32_t degenerate, std::uint64_t seed,
+        const std::vector<std::string>& shapes) {
   bool is_right = true;
   fmt::print(
       "shape    cases      touches    at start   missed  early  invented  contacts  farthest, "
@@ -243,7 +294,7 @@ int run(std::uint64_t count, std::uint64_t seed, const std::vector<std::string>&
   for (const auto& [name, axes] :
        {std::pair("sphere", 0u), {"capsule", 1u}, {"box", 3u}, {"hull", kHull}}) {
     if (!shapes.empty() && std::find(shapes.begin(), shapes.end(), name) == shapes.end()) continue;
-    Draw draw(seed * 8 + axes);
+    Draw draw(seed * 8 + axes, degenerate);
     Tally tally;
     for (std::uint64_t i = 0; i < count; ++i) check(draw.next(axes), draw, tally);
     fmt::print("{:8} {:<10} {:<10} {:<10} {:<7} {:<6} {:<9} {:<9} {:.1f}\n", name, tally.cases,
@@ -251,7 +302,8 @@ int run(std::uint64_t count, std::uint64_t seed, const std::vector<std::string>&
                tally.parted, static_cast<double>(tally.farthest));
     is_right &= tally.missed + tally.early + tally.invented + tally.parted == 0;
     // A program that never draws a touch checks nothing.
-    is_right &= count < 1000 || (tally.touches > count / 10 && tally.at_start > count / 100);
+    is_right &= count < 1000 || (tally.touches > count / 10 && tally.at_start > count / 1000);
+    std::fflush(stdout);
   }
   return is_right ? 0 : kDifferenceFound;
 }
@@ -264,8 +316,10 @@ int main(int argc, char** argv) {
   std::uint64_t count = 2000, seed = 1;
   std::vector<std::string> shapes;
   app.add_option("--cases", count, "Of each shape")->capture_default_str();
+  std::uint32_t degenerate = 50;
+  app.add_option("--degenerate", degenerate, "So many of a hundred")->capture_default_str();
   app.add_option("--seed", seed)->capture_default_str();
   app.add_option("--shape", shapes, "sphere, capsule, box or hull [all]");
   CLI11_PARSE(app, argc, argv);
-  return boxtree::oracle::run(count, seed, shapes);
+  return boxtree::oracle::run(count, degenerate, seed, shapes);
 }
