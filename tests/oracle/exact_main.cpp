@@ -109,7 +109,8 @@ std::vector<Family> chosen(const Options& options) {
   std::vector<Family> families;
   for (const Family& family : all_families()) {
     const auto& names = options.families;
-    if (names.empty() || std::find(names.begin(), names.end(), family.name) != names.end()) {
+    const bool is_named = std::find(names.begin(), names.end(), family.name) != names.end();
+    if (is_named || (names.empty() && family.share > 0)) {
       families.push_back(family);
     }
   }
@@ -120,9 +121,10 @@ int run(const Options& options) {
   const std::vector<Family> families = chosen(options);
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::uint64_t wrong = 0, shares = 0;
-  for (const Family& family : families) shares += family.share;
+  const auto share_of = [](const Family& family) { return std::max(family.share, 1u); };
+  for (const Family& family : families) shares += share_of(family);
   for (const Family& family : families) {
-    const Outcome outcome = run(family, options, options.answers * family.share / shares);
+    const Outcome outcome = run(family, options, options.answers * share_of(family) / shares);
     print(family, outcome, options);
     rows.push_back(json_of(family, outcome));
     wrong += outcome.tally.wrong();
@@ -146,7 +148,7 @@ int main_of(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--seed", options.seed, "Meshes and queries depend on it alone")
       ->capture_default_str();
-  app.add_option("--family", options.families, "Families to run [all]")
+  app.add_option("--family", options.families, "Families to run [all but hulls]")
       ->check(CLI::IsMember(names));
   app.add_option("--only", options.only, "One case by its number");
   app.add_option("--json", options.json, "Write what was found to this file");

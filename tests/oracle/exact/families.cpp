@@ -13,6 +13,11 @@ const std::vector<Family>& all_families() {
       {"rays", "closest_hit, any_hit: within 2^-46 of the farthest corner", 1, run_rays},
       {"distances", "distance, overlap_within: bounds that hold, exact classification", 1,
        run_distances},
+#ifdef BOXTREE_ORACLE_HAS_CGAL
+      {"casts", "cast_closest: nothing missed, bounds that hold, within 2^-46", 1, run_casts},
+      {"contacts", "collide: nothing missed, within 2^-46, depths that part", 1, run_contacts},
+      {"hulls", "casts and contacts of hulls, likewise; when named", 0, run_hulls},
+#endif
       {"scenes", "all queries of a scene under updates, against all placed triangles", 2,
        run_scenes},
   };
