@@ -6,6 +6,7 @@
 #include "runtime/primitive/predicates.h"
 #include "runtime/tree/bound_tree.h"
 #include "tests/oracle/pair_tester.h"
+#include "tests/oracle/shape_tester.h"
 #include "tests/support/require.h"
 
 namespace boxtree::test {
@@ -29,7 +30,43 @@ bool trees_intersect(const Triangle& p, const Triangle& q, CodecId codec) {
   return require(first_contact(a, Pose::Identity(), b, Pose::Identity())).has_value();
 }
 
+bool tree_touches(const Triangle& triangle, const TestedShape& shape, CodecId codec) {
+  const cooker::EncodedTree encoded = cook_one(triangle, codec);
+  const Tree tree = require(cooker::bind_encoded(encoded));
+  const std::vector<Eigen::Vector3d>& p = shape.points;
+  bool touches = false;
+  const auto note = [&](const FaceRef&) { return !(touches = true); };
+  switch (shape.kind) {
+    case 0:
+      static_cast<void>(require(overlap_sphere(tree, p[0], shape.radius, note)));
+      break;
+    case 1:
+      static_cast<void>(require(overlap_capsule(tree, {p[0], p[1], shape.radius}, note)));
+      break;
+    case 2: {
+      OrientedBox box;
+      box.center = (p[0] + p[7]) / 2;
+      box.half_extents = (p[7] - p[0]) / 2;
+      static_cast<void>(require(overlap_oriented_box(tree, box, note)));
+      break;
+    }
+    default: {
+      ConvexHull hull;
+      hull.points = p;
+      static_cast<void>(require(overlap_convex_hull(tree, hull, note)));
+    }
+  }
+  return touches;
+}
+
 }  // namespace
+
+void add_boxtree_testers(std::vector<ShapeTester>& testers) {
+  testers.push_back({"boxtree", "trees",
+                     [turn = std::size_t{0}](const Triangle& t, const TestedShape& s) mutable {
+                       return tree_touches(t, s, kCodecs[turn++ % kCodecs.size()].id);
+                     }});
+}
 
 void add_boxtree_testers(std::vector<PairTester>& testers) {
   testers.push_back({"boxtree", "predicate", triangles_intersect});

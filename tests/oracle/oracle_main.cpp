@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// boxtree_oracle: pairs of triangles before CGAL's exact kernel, rays at edges and vertices of
-// closed meshes, ours and the installed libraries' wrong answers side by side. Exits with 7 when
-// one of ours is wrong.
+// boxtree_oracle: pairs of triangles before CGAL's exact kernel, triangles and convex shapes before
+// its exact quadratic programs, rays at edges and vertices of closed meshes, ours and the installed
+// libraries' wrong answers side by side. Exits with 7 when one of ours is wrong.
 #include <cmath>
 #include <cstdio>
 #include <exception>
@@ -13,7 +13,9 @@
 
 #include "tests/bench/libraries.h"
 #include "tests/oracle/cgal_classifier.h"
+#include "tests/oracle/cgal_distance.h"
 #include "tests/oracle/pair_tester.h"
+#include "tests/oracle/shape_tester.h"
 #include "tests/robustness/mesh_kinds.h"
 #include "tests/unit/primitive/triangle_cases.h"
 
@@ -126,6 +128,103 @@ std::uint64_t classify_pairs(std::size_t count) {
   return ours;
 }
 
+enum class Placing { kRandom, kGrid };
+
+// Shapes about the size of the triangle: anywhere, or with whole coordinates up to 4, so that many
+// touch with nothing to spare.
+class Shapes {
+ public:
+  explicit Shapes(Placing placing) : placing_(placing), random_(0x5a9e) {}
+
+  Triangle triangle() { return {{vector(1), vector(1), vector(1)}}; }
+  TestedShape next(int kind) {
+    TestedShape shape;
+    shape.kind = kind;
+    const Eigen::Vector3d at = vector(1);
+    if (kind <= 1) shape.radius = placing_ == Placing::kGrid ? 1 : 0.5 * (1 + unit());
+    if (kind <= 1) shape.points = {at};
+    if (kind == 1) shape.points.push_back(vector(1));
+    if (kind == 1 && shape.points[0] == at && shape.points[1] == at) shape.points[1][2] += 1;
+    if (kind < 2) return shape;
+    const Eigen::Vector3d size =
+        placing_ == Placing::kGrid
+            ? Eigen::Vector3d(vector(1).cwiseAbs() + Eigen::Vector3d::Ones())
+            : Eigen::Vector3d(vector(0.25).cwiseAbs() + Eigen::Vector3d::Constant(0.25));
+    // Of a hull, a box that is sheared: its corners stay in their planes.
+    Eigen::Matrix3d shear = Eigen::Matrix3d::Identity();
+    if (kind == 3) shear(0, 1) = shear(1, 2) = 1;
+    for (int i = 0; i < 8; ++i) {
+      const Eigen::Vector3d corner((i & 1) != 0 ? size[0] : 0, (i & 2) != 0 ? size[1] : 0,
+                                   (i & 4) != 0 ? size[2] : 0);
+      shape.points.push_back(at + shear * corner);
+    }
+    return shape;
+  }
+
+ private:
+  double unit() { return std::ldexp(static_cast<double>(random_() >> 40), -23) - 1; }
+  Eigen::Vector3d vector(double size) {
+    Eigen::Vector3d v(unit(), unit(), unit());
+    if (placing_ == Placing::kGrid) return (4 * v).array().round();
+    return 4 * size * v;
+  }
+
+  Placing placing_;
+  std::mt19937_64 random_;
+};
+
+bool touches_exactly(const Triangle& triangle, const TestedShape& shape) {
+  std::vector<oracle::ExactVector> points, corners;
+  for (const Eigen::Vector3d& p : shape.points) points.push_back(oracle::exact(p));
+  for (const Eigen::Vector3d& c : triangle.corner) corners.push_back(oracle::exact(c));
+  const oracle::ExactNumber radius(shape.radius);
+  return oracle::squared_distance(points, corners) <= oracle::ExactSquare(radius * radius);
+}
+
+// Returns how many of ours were wrong.
+std::uint64_t classify_shapes(std::size_t count) {
+  std::vector<ShapeTester> testers;
+  add_boxtree_testers(testers);
+#ifdef BOXTREE_BENCH_FCL
+  add_fcl_testers(testers);
+#endif
+  std::vector<std::string> rows(testers.size() + 1);
+  std::uint64_t ours = 0;
+  for (const Placing placing : {Placing::kRandom, Placing::kGrid}) {
+    for (int kind = 0; kind < 4; ++kind) {
+      Shapes shapes(placing);
+      std::vector<Wrong> wrong(testers.size());
+      std::uint64_t touching = 0;
+      for (std::size_t i = 0; i < count; ++i) {
+        const Triangle triangle = shapes.triangle();
+        const TestedShape shape = shapes.next(kind);
+        const bool truth = touches_exactly(triangle, shape);
+        touching += truth ? 1u : 0u;
+        for (std::size_t t = 0; t < testers.size(); ++t) {
+          const bool answer = testers[t].touch(triangle, shape);
+          wrong[t].missed += truth && !answer ? 1u : 0u;
+          wrong[t].invented += !truth && answer ? 1u : 0u;
+        }
+      }
+      rows[0] += fmt::format(" {} |", touching);
+      for (std::size_t t = 0; t < testers.size(); ++t) {
+        rows[t + 1] += fmt::format(" {} / {} |", wrong[t].missed, wrong[t].invented);
+        if (is_ours(testers[t].library)) ours += wrong[t].missed + wrong[t].invented;
+      }
+    }
+  }
+  fmt::print("A triangle and a shape, {} a kind: contacts missed / invented\n\n| library |", count);
+  for (const char* placing : {"random", "whole coordinates"}) {
+    for (const char* name : kShapeNames) fmt::print(" {}, {} |", name, placing);
+  }
+  fmt::print("\n|---|---|---|---|---|---|---|---|---|\n| that touch |{}", rows[0]);
+  for (std::size_t t = 0; t < testers.size(); ++t) {
+    fmt::print("\n| {} {} |{}", testers[t].library, testers[t].variant, rows[t + 1]);
+  }
+  fmt::print("\n\n");
+  return ours;
+}
+
 struct Closed {
   const char* name;
   cooker::SourceMesh mesh;
@@ -201,13 +300,15 @@ std::uint64_t count_leaks(std::size_t count) {
 }  // namespace boxtree::test
 
 int main(int argc, char** argv) {
-  std::size_t pairs = 20'000, rays = 20'000;
+  std::size_t pairs = 20'000, rays = 20'000, shapes = 1'000;
   CLI::App app("Ours and other libraries before exact arithmetic.");
   app.add_option("--pairs", pairs, "triangle pairs of each family [20000]");
   app.add_option("--rays", rays, "rays at each closed mesh [20000]");
+  app.add_option("--shapes", shapes, "shapes of each kind [1000]");
   CLI11_PARSE(app, argc, argv);
   try {
     const std::uint64_t wrong = (pairs > 0 ? boxtree::test::classify_pairs(pairs) : 0) +
+                                (shapes > 0 ? boxtree::test::classify_shapes(shapes) : 0) +
                                 (rays > 0 ? boxtree::test::count_leaks(rays) : 0);
     for (const std::string& library : boxtree::bench::missing_libraries()) {
       fmt::print("{} is not installed\n", library);
