@@ -21,6 +21,9 @@
 #include "cooker/scene_account.h"
 #include "format/container.h"
 #include "format/face_ids.h"
+#include "format/face_numbers.h"
+#include "format/numbers.h"
+#include "format/scene_record.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -76,6 +79,7 @@ class Cook {
     if (Status status = assemble(); !status) return status.error();
     if (options_.number_by_tree) number_by_tree(file_.trees.front());
     if (!input_.has_top_level) keep_materials();
+    keep_user_data();
     if (Status status = keep_to_bytes(); !status) return status.error();
     if (Status status = summarise(); !status) return status.error();
     return std::move(file_);
@@ -119,9 +123,10 @@ class Cook {
     if (!imported) return imported.error();
     if (Status status = check_digits(imported->report); !status) return status;
     input_.scene.meshes[mesh].mesh = std::move(imported->mesh);
-    std::vector<MaterialRun>& runs = input_.scene.meshes[mesh].materials;
+    std::vector<FaceRun>& runs = input_.scene.meshes[mesh].materials;
     runs = std::move(imported->materials.runs);
     renumber(runs, MaterialJoin(input_.scene.materials).add(imported->materials.names));
+    input_.scene.meshes[mesh].user_data = std::move(imported->user_data);
     input_.imports.push_back(std::move(imported->report));
     return {};
   }
@@ -152,8 +157,9 @@ class Cook {
 
   [[nodiscard]] SearchOptions search_options(std::size_t mesh, bool has_grid) const {
     SearchOptions search = static_cast<const SearchOptions&>(options_);
+    search.face_order = !input_.scene.meshes[mesh].user_data.empty();
     if (!input_.has_top_level) {
-      search.face_order = options_.materials;
+      search.face_order |= options_.materials;
       return search;
     }
     if (profile_.active_edges) search.active_edges = profile_.active_edges->value;
@@ -201,7 +207,7 @@ class Cook {
         return Error{Errc::kProfileInvalid,
                      mesh.name + ": hidden_faces leave nothing of it; leave_out drops an object"};
       }
-      take_materials(m);
+      take_face_numbers(m);
       SearchOptions search = search_options(m, (*grids)[m].has_value());
       if (options_.number_by_tree) {
         // Ids of the faces of the mesh instead of polygons: in the tree they give its order.
@@ -230,17 +236,26 @@ class Cook {
     return {};
   }
 
-  // Runs that no face has any more, since faces were dropped, are left out where they are too many
-  // to be stored.
-  void take_materials(std::size_t m) {
+  // Keeps what trees store of the numbers of faces, since the mesh is freed. Runs that no face has
+  // any more, since faces were dropped, are left out; materials of scenes only where they are too
+  // many to be stored.
+  void take_face_numbers(std::size_t m) {
     const SourceMesh& mesh = input_.scene.meshes[m].mesh;
-    std::vector<MaterialRun>& runs = input_.scene.meshes[m].materials;
-    if (runs.empty() || (input_.has_top_level && runs.size() <= mesh.faces.size())) return;
+    std::vector<FaceRun>& materials = input_.scene.meshes[m].materials;
+    if (!input_.has_top_level || materials.size() > mesh.faces.size()) {
+      if (!materials.empty()) materials_of_faces_[m] = take_numbers(mesh, materials);
+    }
+    std::vector<FaceRun>& user_data = input_.scene.meshes[m].user_data;
+    if (!user_data.empty()) user_data_of_faces_[m] = take_numbers(mesh, user_data);
+  }
+
+  static std::vector<std::uint32_t> take_numbers(const SourceMesh& mesh,
+                                                 std::vector<FaceRun>& runs) {
     std::vector<std::uint32_t> ids;
     for (std::size_t face = 0; face < mesh.faces.size(); ++face) ids.push_back(mesh.face_id(face));
-    std::vector<std::uint32_t> of_faces = materials_of_faces(mesh, runs);
+    std::vector<std::uint32_t> of_faces = numbers_of_faces(mesh, runs);
     runs = runs_of(ids, of_faces);
-    if (!input_.has_top_level) materials_of_faces_[m] = std::move(of_faces);
+    return of_faces;
   }
 
   // Trees that share their geometry store are chosen together.
@@ -384,36 +399,52 @@ class Cook {
   void keep_materials() {
     if (!options_.materials) return;
     number_materials(file_.materials.names);
-    const std::uint64_t width =
+    const std::uint8_t width =
         material_number_bytes(static_cast<std::uint32_t>(file_.materials.names.size()));
     for (std::size_t t = 0; t < file_.trees.size(); ++t) {
-      const EncodedTree& tree = file_.trees[t];
-      TreeMaterials& materials = file_.materials.of_trees.emplace_back();
+      FaceNumbers& materials = file_.materials.of_trees.emplace_back();
       const auto known = materials_of_faces_.find(mesh_of_tree_[t]);
       if (known == materials_of_faces_.end()) continue;
-      std::vector<std::uint32_t>& faces = materials.faces;
-      for (const std::uint32_t face : tree.face_order) {
-        faces.push_back(material_number_[known->second[face]]);
-      }
-      std::vector<MaterialRun>& runs = materials.runs;
-      if (options_.number_by_tree) {
-        std::vector<std::uint32_t> ids(faces.size());
-        std::iota(ids.begin(), ids.end(), 0u);
-        runs = runs_of(ids, faces);
-      } else {
-        for (const MaterialRun& run : input_.scene.meshes[mesh_of_tree_[t]].materials) {
-          runs.push_back({run.first_face, material_number_[run.material]});
-        }
-      }
-      // One run covers all faces, whatever their ids.
-      const bool has_ids = tree.faces_in_source_order || !tree.geometry.face_ids.empty();
-      const bool are_found = runs.size() == 1 || has_ids;
-      if (are_found && runs.size() * sizeof(MaterialRun) <= faces.size() * width) {
-        faces.clear();
-      } else {
-        runs.clear();
-      }
+      std::vector<FaceRun> runs = input_.scene.meshes[mesh_of_tree_[t]].materials;
+      renumber(runs, material_number_);
+      std::vector<std::uint32_t>& of_faces = known->second;
+      for (std::uint32_t& material : of_faces) material = material_number_[material];
+      EncodedTree& tree = file_.trees[t];
+      materials = both_forms(tree, std::move(runs), of_faces);
+      tree.material_forms = keep_smaller(materials, width, has_ids(tree));
     }
+  }
+
+  // Of all trees: likewise, in as few bits as the largest takes.
+  void keep_user_data() {
+    for (std::size_t t = 0; t < file_.trees.size(); ++t) {
+      const auto known = user_data_of_faces_.find(mesh_of_tree_[t]);
+      if (known == user_data_of_faces_.end()) continue;
+      EncodedTree& tree = file_.trees[t];
+      FaceNumbers numbers =
+          both_forms(tree, input_.scene.meshes[mesh_of_tree_[t]].user_data, known->second);
+      const std::uint8_t width =
+          number_bytes(*std::max_element(numbers.faces.begin(), numbers.faces.end()));
+      tree.user_data_forms = keep_smaller(numbers, width, has_ids(tree));
+      tree.user_data = encode_face_numbers(numbers, width);
+    }
+  }
+
+  static bool has_ids(const EncodedTree& tree) {
+    return tree.faces_in_source_order || !tree.geometry.face_ids.empty();
+  }
+
+  // Numbers of the faces of a tree from those of its mesh: the runs of ids, and each face's.
+  [[nodiscard]] FaceNumbers both_forms(const EncodedTree& tree, std::vector<FaceRun> runs,
+                                       std::span<const std::uint32_t> of_faces) const {
+    FaceNumbers numbers{std::move(runs), {}};
+    for (const std::uint32_t face : tree.face_order) numbers.faces.push_back(of_faces[face]);
+    if (options_.number_by_tree) {
+      std::vector<std::uint32_t> ids(numbers.faces.size());
+      std::iota(ids.begin(), ids.end(), 0u);
+      numbers.runs = runs_of(ids, numbers.faces);
+    }
+    return numbers;
   }
 
   // Numbers the materials of meshes that keep theirs, in the order of the source.
@@ -421,7 +452,7 @@ class Cook {
     std::vector<bool> used(input_.scene.materials.size(), false);
     for (const std::size_t m : mesh_of_tree_) {
       if (!plan_.meshes[m].materials) continue;
-      for (const MaterialRun& run : input_.scene.meshes[m].materials) used[run.material] = true;
+      for (const FaceRun& run : input_.scene.meshes[m].materials) used[run.number] = true;
     }
     material_number_.assign(used.size(), kNoMaterial);
     for (std::size_t i = 0; i < used.size(); ++i) {
@@ -433,23 +464,23 @@ class Cook {
 
   // Materials by runs of source faces if face ids are kept, else per face; then drops face ids that
   // only this needed.
-  [[nodiscard]] TreeMaterials materials_of(std::size_t t, EncodedTree& tree) const {
+  [[nodiscard]] FaceNumbers materials_of(std::size_t t, EncodedTree& tree) const {
     const std::size_t m = mesh_of_tree_[t];
-    const std::vector<MaterialRun>& runs = input_.scene.meshes[m].materials;
-    TreeMaterials materials;
+    const std::vector<FaceRun>& runs = input_.scene.meshes[m].materials;
+    FaceNumbers materials;
     const bool ids_are_wanted = plan_.meshes[m].face_ids;
     const bool ids_are_structure =
         tree.geometry.geometry == GeometryId::kExternal;  // leaves refer to faces by them
     const auto material_at = [&](std::uint32_t id) {
       const auto after = std::upper_bound(
           runs.begin(), runs.end(), id,
-          [](std::uint32_t value, const MaterialRun& run) { return value < run.first_face; });
-      return material_number_[std::prev(after)->material];
+          [](std::uint32_t value, const FaceRun& run) { return value < run.first_face; });
+      return material_number_[std::prev(after)->number];
     };
     if (plan_.meshes[m].materials && !runs.empty()) {
       if (runs.size() == 1 || ids_are_wanted || ids_are_structure) {
-        for (const MaterialRun& run : runs) {
-          materials.runs.push_back({run.first_face, material_number_[run.material]});
+        for (const FaceRun& run : runs) {
+          materials.runs.push_back({run.first_face, material_number_[run.number]});
         }
       } else {
         const FaceIdView ids =
@@ -509,6 +540,7 @@ class Cook {
                                  profile_.cite(profile_.budget.bytes->line), limit, layout->bytes)};
       }
       if (Status status = assemble(); !status) return status;
+      keep_user_data();
     }
   }
 
@@ -600,7 +632,8 @@ class Cook {
   SourceMesh numbered_;                  // as imported, then in the order of the tree
   std::vector<std::uint32_t> polygons_;  // source numbers of its faces; empty: the same
 
-  std::map<std::size_t, std::vector<std::uint32_t>> materials_of_faces_;  // of meshes that have any
+  // Of meshes that have any.
+  std::map<std::size_t, std::vector<std::uint32_t>> materials_of_faces_, user_data_of_faces_;
   std::vector<std::uint32_t> material_number_;
   CookedFile file_;
 };

@@ -56,6 +56,9 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
       {"skip_bad", options.import.skip_bad}};
   // Recorded only if not the default, so that records of other files stay the same.
   if (options.materials) record["options"]["materials"] = true;
+  if (!options.import.user_data.empty()) {
+    record["options"]["user_data"] = options.import.user_data;
+  }
   if (options.active_edges) record["options"]["active_edges"] = *options.active_edges;
   if (options.number_by_tree) record["options"]["faces"] = "reordered";
   if (!options.costs.empty()) record["options"]["costs"] = "own";

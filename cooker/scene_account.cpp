@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "format/container.h"
+#include "format/face_numbers.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -115,6 +116,11 @@ class Account {
     if (are_edges && cooked_.profile.active_edges) {
       line.line = cited(cooked_.profile.active_edges->line);
     }
+    const bool is_user_data =
+        entry.kind == SectionKind::kUserDataRuns || entry.kind == SectionKind::kFaceUserData;
+    if (is_user_data && cooked_.profile.user_data) {
+      line.line = cited(cooked_.profile.user_data->line);
+    }
     why_.push_back(std::move(line));
   }
 
@@ -164,6 +170,10 @@ class Account {
       case SectionKind::kFaceMaterials:
         aspect = Aspect::kMaterials;
         return {};
+      case SectionKind::kUserDataRuns:
+      case SectionKind::kFaceUserData:
+        return fmt::format("'{}' of the source; {}", cooked_.options.import.user_data,
+                           forms_text(*cooked_.trees[entry.owner].user_data_forms));
       case SectionKind::kLeftOut:
         return "so that a query for what is left out is told why";
       case SectionKind::kBlob:
@@ -260,7 +270,7 @@ class Account {
     std::uint64_t bytes = 0;
     for (std::size_t m = 0; m < cooked_.scene.meshes.size(); ++m) {
       if (decision.owner_kind == OwnerKind::kMesh && m != decision.owner) continue;
-      bytes += cooked_.scene.meshes[m].materials.size() * sizeof(MaterialRun);
+      bytes += cooked_.scene.meshes[m].materials.size() * sizeof(FaceRun);
     }
     return bytes;
   }

@@ -111,6 +111,10 @@ std::string_view section_name(SectionKind kind) noexcept {
       return "active_edges";
     case SectionKind::kInstanceEdges:
       return "instance_edges";
+    case SectionKind::kUserDataRuns:
+      return "user_data_runs";
+    case SectionKind::kFaceUserData:
+      return "face_user_data";
   }
   return "unknown";
 }

@@ -55,12 +55,14 @@ enum class SectionKind : std::uint32_t {
   kPoses = 13,          // f32[12] or f64[12] per instance
   kLayers = 14,         // LayerRecord[]
   kMaterials = 15,      // MaterialRecord[]
-  kMaterialRuns = 16,   // owner: a tree; MaterialRun[]
+  kMaterialRuns = 16,   // owner: a tree; FaceRun[] (format/face_numbers.h)
   kFaceMaterials = 17,  // owner: a tree; material of each face in tree order
   kLeftOut = 18,        // LeftOutRecord[]
   kDuplicates = 19,     // owner: a tree; the face of which each duplicate is a copy
   kActiveEdges = 20,    // owner: a tree; which edges are active (format/active_edges.h)
   kInstanceEdges = 21,  // edges where instances meet (format/instance_edges.h)
+  kUserDataRuns = 22,   // owner: a tree; FaceRun[]
+  kFaceUserData = 23,   // owner: a tree; user data of each face in tree order
 };
 
 /// "nodes"; "unknown" for a kind this reader does not know.

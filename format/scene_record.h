@@ -84,14 +84,6 @@ struct MaterialRecord {
 };
 static_assert(sizeof(MaterialRecord) == 8 && std::is_trivially_copyable_v<MaterialRecord>);
 
-/// Source faces from `first_face` up to that of the next run have one material. The first run of a
-/// tree starts at face 0.
-struct MaterialRun {
-  std::uint32_t first_face;
-  std::uint32_t material;
-};
-static_assert(sizeof(MaterialRun) == 8 && std::is_trivially_copyable_v<MaterialRun>);
-
 /// Bytes of each material number: as many as the largest one takes.
 [[nodiscard]] constexpr std::uint8_t material_number_bytes(std::uint32_t material_count) noexcept {
   if (material_count <= 1u << 8) return 1;

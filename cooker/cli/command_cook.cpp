@@ -339,6 +339,13 @@ void add_cook_command(Command& program, int& status) {
       command.add_flag("--materials", arguments->job.options.materials,
                        "Keep the materials of faces of trees: usemtl of OBJ files, materials of "
                        "glTF, FBX and others [else left out; scenes have theirs]");
+  Option* user_data =
+      command
+          .add_option("--user-data", arguments->job.options.import.user_data,
+                      "Keep a number for each face: an integer property of the faces of a PLY "
+                      "file, or 'groups' of an OBJ file, numbered by their first faces [else "
+                      "left out]")
+          ->type_name("PROPERTY");
   Option* active_edges = command.add_option(
       "--active-edges", arguments->job.options.active_edges,
       "Store which edges are active: boundaries, and those at which the surface bends away by more "
@@ -399,7 +406,7 @@ void add_cook_command(Command& program, int& status) {
                         "Try also what cannot win, for the table"));
   // What a profile says of all this would be contradicted.
   for (Option* option : {codec, goal, exact, tolerance, grid_bits, grid_step, budget, slowdown,
-                         no_face_ids, materials, active_edges, external}) {
+                         no_face_ids, materials, user_data, active_edges, external}) {
     profile->excludes(option);
   }
   command.example("One mesh", "boxtree cook bunny.obj -o bunny.bxt");

@@ -23,6 +23,7 @@
 #include "cooker/text/counted.h"
 #include "format/active_edges.h"
 #include "format/container.h"
+#include "format/face_numbers.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/tree/frame.h"
@@ -42,6 +43,7 @@ struct TreeBytes {
   std::uint64_t face_ids = 0;
   std::uint64_t active_edges = 0;
   std::uint64_t materials = 0;
+  std::uint64_t user_data = 0;
   std::uint64_t other = 0;
 };
 
@@ -54,6 +56,7 @@ TreeBytes bytes_of(const File& file, std::uint32_t index) {
           size(SectionKind::kFaceIds),
           size(SectionKind::kActiveEdges),
           size(SectionKind::kMaterialRuns) + size(SectionKind::kFaceMaterials),
+          size(SectionKind::kUserDataRuns) + size(SectionKind::kFaceUserData),
           sizeof(TreeRecord)};
 }
 
@@ -93,12 +96,20 @@ Json edge_angle_json(const File& file, std::uint32_t index) {
   return load<ActiveEdgesHeader>(section.data()).degrees;
 }
 
-// How the materials of faces are stored; null without any.
-Json form_of_materials(const File& file, std::uint32_t index) {
+// How numbers of faces are stored; null without any. `runs`: the section of one form.
+Json form_of(const File& file, SectionKind runs, std::uint32_t index) {
   const OpenFile& opened = OpenFile::of(file);
-  if (!opened.section(SectionKind::kMaterialRuns, index).empty()) return "runs";
-  if (!opened.section(SectionKind::kFaceMaterials, index).empty()) return "faces";
+  if (!opened.section(by_face(runs), index).empty()) return "faces";
+  if (!opened.section(runs, index).empty()) return "runs";
   return nullptr;
+}
+
+void print_form(const char* what, const Json& tree, const char* key) {
+  const Json& form = tree[key];
+  if (form.is_null()) return;
+  fmt::print("  {}: {}, {:.2f} bytes per triangle\n", what,
+             form == "runs" ? "by runs of the source's faces" : "of each face",
+             tree["bytes_per_triangle"][key].get<double>());
 }
 
 // Of a file without a scene.
@@ -123,19 +134,22 @@ Json tree_json(const File& file, std::uint32_t index) {
                {"depth", record.depth}};
   json["bytes"] = {{"tree", bytes.tree},           {"geometry", bytes.geometry},
                    {"face_ids", bytes.face_ids},   {"active_edges", bytes.active_edges},
-                   {"materials", bytes.materials}, {"other", bytes.other}};
+                   {"materials", bytes.materials}, {"user_data", bytes.user_data},
+                   {"other", bytes.other}};
   json["bytes_per_triangle"] = {{"tree", per_triangle(bytes.tree, record)},
                                 {"total", per_triangle(bytes.tree + bytes.geometry, record)},
                                 {"face_ids", per_triangle(bytes.face_ids, record)},
                                 {"active_edges", per_triangle(bytes.active_edges, record)},
-                                {"materials", per_triangle(bytes.materials, record)}};
+                                {"materials", per_triangle(bytes.materials, record)},
+                                {"user_data", per_triangle(bytes.user_data, record)}};
   json["grid_step"] = grid_step_json(record.geometry, record.grid_exponent);
   json["max_vertex_error"] = record.max_vertex_error;
   json["face_ids"] = bytes.face_ids > 0                              ? "stored"
                      : (record.flags & kTreeFacesInSourceOrder) != 0 ? "source order"
                                                                      : "none";
   json["active_edges"] = edge_angle_json(file, index);
-  json["materials"] = form_of_materials(file, index);
+  json["materials"] = form_of(file, SectionKind::kMaterialRuns, index);
+  json["user_data"] = form_of(file, SectionKind::kUserDataRuns, index);
   const Frame frame(record.origin, record.scale_exponent);
   Eigen::Vector3d low;
   Eigen::Vector3d high;
@@ -232,11 +246,8 @@ void print_file(const Json& json) {
           "triangle\n",
           degrees.get<double>(), tree["bytes_per_triangle"]["active_edges"].get<double>());
     }
-    if (const Json& form = tree["materials"]; !form.is_null()) {
-      fmt::print("  materials: {}, {:.2f} bytes per triangle\n",
-                 form == "runs" ? "by runs of the source's faces" : "of each face",
-                 tree["bytes_per_triangle"]["materials"].get<double>());
-    }
+    print_form("materials", tree, "materials");
+    print_form("user data", tree, "user_data");
     fmt::print("{}", text_of_moves(tree));
     fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));

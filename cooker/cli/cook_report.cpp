@@ -6,7 +6,9 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -227,6 +229,28 @@ void add_left_out(const SceneSummary& scene, Json& trees) {
   }
 }
 
+// How numbers of faces are stored, and what the other form would take.
+void add_forms(const char* what, const std::optional<FaceNumberBytes>& forms, Json& tree) {
+  if (!forms) return;
+  tree[what] = {{"form", forms->keeps_runs() ? "runs" : "faces"},
+                {"bytes", forms->kept()},
+                {"bytes_by_runs", forms->runs ? Json(*forms->runs) : Json(nullptr)},
+                {"bytes_by_face", forms->faces}};
+}
+
+// The same; several trees are told apart by their names.
+void add_forms(const Summary& summary, std::string& text) {
+  for (const CookedTree& cooked : summary.trees) {
+    const std::string owner = summary.trees.size() == 1 ? "" : shown(cooked.tree.name) + ": ";
+    for (const auto& [what, forms] : {std::pair("materials", &cooked.tree.material_forms),
+                                      std::pair("user data", &cooked.tree.user_data_forms)}) {
+      if (!*forms) continue;
+      text +=
+          fmt::format("  {}{}: {} bytes, {}\n", owner, what, (*forms)->kept(), forms_text(**forms));
+    }
+  }
+}
+
 }  // namespace
 
 Json trees_json(const Summary& summary) {
@@ -253,6 +277,8 @@ Json trees_json(const Summary& summary) {
                                    {"geometry", geometry_name(other.geometry)},
                                    {"why", other.why}});
     }
+    add_forms("materials", cooked.tree.material_forms, tree);
+    add_forms("user_data", cooked.tree.user_data_forms, tree);
     tree["left_out"] = Json::array();
     for (const LeftOut& part : cooked.left_out) {
       tree["left_out"].push_back({{"what", part.what}, {"bytes", part.bytes}, {"why", part.why}});
@@ -307,6 +333,15 @@ std::vector<std::string> warnings_of(const ImportReport& import) {
         fmt::format("{}: {} is not there: no file of that name can be read. Faces and the "
                     "names of their materials are complete without it",
                     source, file.string()));
+  }
+  if (import.has_no_materials) {
+    warnings.push_back(fmt::format(
+        "{}: --materials finds no material: usemtl of OBJ files, glTF, FBX and others have some",
+        source));
+  }
+  if (import.has_no_groups) {
+    warnings.push_back(
+        fmt::format("{}: no line 'g' begins a group: the user data of every face is 0", source));
   }
   if (import.has_open_end) {
     warnings.push_back(fmt::format(
@@ -385,6 +420,7 @@ std::string trees_text(const Summary& summary, bool candidates) {
   } else {
     add_choices(summary, text);
   }
+  if (!summary.scene) add_forms(summary, text);
   for (const ImportReport& import : summary.imports) add_import(import, text);
   return text;
 }

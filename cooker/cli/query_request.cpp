@@ -32,11 +32,12 @@ void add_face(const Tree& tree, const FaceRef& face, Json& json) {
   json["face"] = face_json(face);
   const std::uint32_t material = tree.material(face);
   add_material(json, material, tree.material_name(material));
+  add_user_data(json, tree.user_data(face));
 }
 
-// A face in a list: an object if the tree has materials, else its number.
+// A face in a list: an object if the tree has materials or user data, else its number.
 Json listed_face(const Tree& tree, const FaceRef& face) {
-  if (!BoundTree::of(tree).has_materials()) return face_json(face);
+  if (!BoundTree::of(tree).has_materials() && !tree.has_user_data()) return face_json(face);
   Json json;
   add_face(tree, face, json);
   return json;

@@ -461,6 +461,11 @@ inline void add_material(Json& json, std::uint32_t material, std::string_view na
   if (material != kNoMaterial) json["material"] = name.empty() ? Json(material) : Json(name);
 }
 
+/// Adds the user data of a face, if it has some.
+inline void add_user_data(Json& json, const std::optional<std::uint32_t>& number) {
+  if (number) json["user_data"] = *number;
+}
+
 /// Adds a hit of a ray in a tree or a scene; add_face(hit, json) adds what was hit.
 template <class Hit, class AddFace>
 void add_hit(Json& json, const Hit& hit, const AddFace& add_face) {

@@ -32,6 +32,8 @@ void add_face(const Scene& scene, const SceneFace& face, Json& json) {
   json["face"] = face_json(face.face);
   const std::uint32_t material = scene.material(face);
   add_material(json, material, scene.material_name(material));
+  const Result<InstanceInfo> info = scene.info(face.instance);
+  if (info) add_user_data(json, scene.trees()[info->tree].user_data(face.face));
 }
 
 Error not_for_scenes(const std::string& what) {

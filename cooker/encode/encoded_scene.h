@@ -47,7 +47,7 @@ struct SceneParts {
   std::vector<PlacedTree> instances;
   std::vector<SceneLayer> layers;
   std::vector<std::string> materials;
-  std::vector<TreeMaterials> tree_materials;  // one per tree, or empty
+  std::vector<FaceNumbers> tree_materials;  // one per tree, or empty
   std::vector<LeftOutPart> left_out;
   /// Edges that are not active where an instance is placed: entries of ListedEdges, ascending.
   std::vector<std::vector<std::uint32_t>> edge_lists;

@@ -4,12 +4,14 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include <boxtree/tree.h>
 
 #include "cooker/encode/encoded.h"
+#include "cooker/encode/face_numbers.h"
 
 namespace boxtree {
 struct TreeRecord;
@@ -33,6 +35,9 @@ struct EncodedTree {
   /// The face of the source that each face is; empty if nothing needs it.
   std::vector<std::uint32_t> face_order;
   double edge_degrees = 0;  // of active edges
+  EncodedFaceNumbers user_data;
+  /// What both forms of numbers of its faces take, of those that are stored in the smaller one.
+  std::optional<FaceNumberBytes> material_forms, user_data_forms;
 };
 
 /// The tree's record, whose claims the proof checks; its name starts at `name_offset` in the names

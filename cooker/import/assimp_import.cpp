@@ -131,7 +131,7 @@ Status take_over(const SourceFile& source, ImportWanted wanted, aiScene& scene,
   if (!is_scene) {
     Imported& mesh = out.emplace<Imported>();
     mesh.report = std::move(report);
-    std::vector<MaterialRun> runs;
+    std::vector<FaceRun> runs;
     Status status = flatten_scene(scene, placements, context, mesh, runs);
     if (status.ok() && context.options.materials) mesh.materials = take_materials(scene, runs);
     return status;

@@ -74,8 +74,9 @@ class Reader {
   const bool swapped_;
   const std::string& file_;
   IndexedMesh<T>& mesh_;
-  std::vector<std::uint32_t> corners_;  // of the current face or strip
-  std::array<double, 3> position_{};    // of the current vertex
+  std::vector<std::uint32_t> corners_;      // of the current face or strip
+  std::array<double, 3> position_{};        // of the current vertex
+  std::optional<std::uint32_t> user_data_;  // of the current face, if it is wanted
 };
 
 template <class T>
@@ -141,7 +142,7 @@ Status Reader<T>::read_faces() {
   if (Status status = mesh_.reserve_faces(count); !status.ok()) return status;
   for (std::uint64_t i = 0; i < count; ++i) {
     if (Status status = read_record(*layout_.face, i); !status.ok()) return status;
-    if (Status status = mesh_.add_face(corners_); !status.ok()) return status;
+    if (Status status = mesh_.add_face(corners_, user_data_); !status.ok()) return status;
   }
   return {};
 }
@@ -155,8 +156,8 @@ Status Reader<T>::read_strips() {
   return {};
 }
 
-// Reads one record of an element with lists; keeps the corners of a face or strip, and the position
-// of a vertex.
+// Reads one record of an element with lists; keeps the corners of a face or strip, user data of a
+// face, and the position of a vertex.
 template <class T>
 Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
   for (const PlyProperty& property : element.properties) {
@@ -168,6 +169,9 @@ Status Reader<T>::read_record(const PlyElement& element, std::uint64_t number) {
     if (at == nullptr) return ended_in(element, number);
     for (std::size_t k = 0; k < 3; ++k) {
       if (layout_.xyz[k] == &property) position_[k] = load_ply_value(at, property.type, swapped_);
+    }
+    if (layout_.user_data == &property) {
+      user_data_ = static_cast<std::uint32_t>(load_ply_integer(at, property.type, swapped_));
     }
   }
   return {};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/import/face_materials.h"
 
+#include "cooker/import/face_runs.h"
+
 namespace boxtree::cooker {
 
 void MaterialUse::add_face(std::uint32_t face) {
@@ -9,12 +11,11 @@ void MaterialUse::add_face(std::uint32_t face) {
   const auto [known, is_new] =
       numbers_.try_emplace(current_, static_cast<std::uint32_t>(out_.names.size()));
   if (is_new) out_.names.push_back(current_);
-  if (!out_.runs.empty() && out_.runs.back().material == known->second) return;
-  out_.runs.push_back({face, known->second});
+  add_face_to(out_.runs, face, known->second);
 }
 
 void MaterialUse::finish() {
-  if (out_.names.size() == 1 && out_.names[0] == kDefaultMaterial) out_ = {};
+  if (out_.names.size() == 1 && out_.names[0] == unnamed_) out_ = {};
 }
 
 }  // namespace boxtree::cooker

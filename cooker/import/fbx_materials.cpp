@@ -53,7 +53,7 @@ MeshMaterials materials_of(const aiMesh& mesh, std::span<aiMesh* const> parts) {
     ++taken[part];
     if (face.mNumIndices < 3) continue;
     const std::uint32_t material = parts[part]->mMaterialIndex;
-    if (runs.empty() || runs.back().material != material) runs.push_back({face_id, material});
+    if (runs.empty() || runs.back().number != material) runs.push_back({face_id, material});
     ++face_id;
   }
   return runs;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "format/scene_record.h"
+#include "format/face_numbers.h"
 
 struct aiScene;
 
@@ -14,7 +14,7 @@ namespace boxtree::cooker {
 
 /// Runs of the faces of one mesh with three corners or more, numbered from 0: ascending, the first
 /// run starts at face 0. Materials are indices into aiScene::mMaterials, or kNoMaterial.
-using MeshMaterials = std::vector<MaterialRun>;
+using MeshMaterials = std::vector<FaceRun>;
 
 /// `in_order`: the file read without materials; `sorted`: with them. Moves the materials of
 /// `sorted` to `in_order` and returns the runs of each mesh of `in_order`. A mesh whose faces

@@ -242,15 +242,15 @@ std::uint64_t count_faces(const aiScene& scene, std::span<const MeshInstance> in
 template <class T>
 Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                const SourceContext& context, Flattener<T>& flattener,
-               std::vector<MaterialRun>& materials) {
+               std::vector<FaceRun>& materials) {
   for (const MeshInstance& instance : instances) {
     aiMesh*& mesh = scene.mMeshes[instance.mesh];
     const std::uint32_t first_face = flattener.next_face_id();
     if (Status status = flattener.add(*mesh, instance.transform); !status.ok()) return status;
     const bool has_faces = flattener.next_face_id() > first_face;
     if (has_faces && !context.materials.empty()) {
-      for (const MaterialRun& run : context.materials[instance.mesh]) {
-        materials.push_back({first_face + run.first_face, run.material});
+      for (const FaceRun& run : context.materials[instance.mesh]) {
+        materials.push_back({first_face + run.first_face, run.number});
       }
     } else if (has_faces) {
       materials.push_back({first_face, mesh->mMaterialIndex});
@@ -272,7 +272,7 @@ void free_attributes(aiScene& scene) {
 
 Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                          const SourceContext& context, Imported& out,
-                         std::vector<MaterialRun>& materials) {
+                         std::vector<FaceRun>& materials) {
   const std::uint64_t faces = count_faces(scene, instances);
   if (Status status = check_face_count(faces, context.file); !status.ok()) return status;
   Positions& positions = out.mesh.positions;
@@ -291,7 +291,7 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
 }
 
 Status flatten_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
-                     Imported& out, std::vector<MaterialRun>& materials) {
+                     Imported& out, std::vector<FaceRun>& materials) {
   free_attributes(scene);
   out.report.meshes_unplaced = placements.unplaced;
   std::vector<MeshInstance> instances;

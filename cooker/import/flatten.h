@@ -11,7 +11,7 @@
 #include "cooker/import/fbx_materials.h"
 #include "cooker/import/import.h"
 #include "cooker/import/node_graph.h"
-#include "format/scene_record.h"
+#include "format/face_numbers.h"
 
 struct aiScene;
 
@@ -43,10 +43,10 @@ void free_attributes(aiScene& scene);
 /// instance with faces; a material is an index into aiScene::mMaterials or kNoMaterial.
 Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                          const SourceContext& context, Imported& out,
-                         std::vector<MaterialRun>& materials);
+                         std::vector<FaceRun>& materials);
 
 /// The same for all placements; kNoFaces if the result is empty.
 Status flatten_scene(aiScene& scene, const Placements& placements, const SourceContext& context,
-                     Imported& out, std::vector<MaterialRun>& materials);
+                     Imported& out, std::vector<FaceRun>& materials);
 
 }  // namespace boxtree::cooker

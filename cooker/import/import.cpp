@@ -37,7 +37,8 @@ struct Request {
 // Formats with one mesh and no nodes. Only OBJ has materials.
 struct MeshReader {
   const char* extension;
-  bool keeps_f64;  // with Precision::kF64
+  bool keeps_f64;      // with Precision::kF64
+  bool has_user_data;  // of faces
   Status (*read)(const SourceFile& source, const ImportOptions& options, Imported& out,
                  FaceMaterials& materials);
 };
@@ -49,17 +50,18 @@ Status without_materials(const SourceFile& source, const ImportOptions& options,
 }
 
 constexpr std::array kMeshReaders = {
-    MeshReader{"obj", true, import_obj},
-    MeshReader{"off", true, without_materials<import_off>},
-    MeshReader{"ply", true, without_materials<import_ply>},
-    MeshReader{"stl", false, without_materials<import_stl>},
+    MeshReader{"obj", true, true, import_obj},
+    MeshReader{"off", true, false, without_materials<import_off>},
+    MeshReader{"ply", true, true, without_materials<import_ply>},
+    MeshReader{"stl", false, false, without_materials<import_stl>},
 };
 
 SourceScene scene_of(Imported&& imported, FaceMaterials&& materials, const std::string& name) {
   SourceScene scene;
   scene.report = std::move(imported.report);
   const auto source_faces = static_cast<std::uint32_t>(scene.report.source_faces);
-  scene.meshes.push_back({std::move(imported.mesh), source_faces, std::move(materials.runs)});
+  scene.meshes.push_back({std::move(imported.mesh), source_faces, std::move(materials.runs),
+                          std::move(imported.user_data)});
   scene.meshes[0].mesh.name = name;
   scene.materials = std::move(materials.names);
   scene.instances.push_back({name, 0, 0, Pose::Identity()});
@@ -122,13 +124,26 @@ Result<ImportedFile> import_checked(const Request& request) {
   const fs::path& path = request.source.path();
   if (Status status = check_source_file(request.source); !status.ok()) return status.error();
   const MeshReader* const reader = find_extension(kMeshReaders, path);
+  if (!request.options.user_data.empty() && (reader == nullptr || !reader->has_user_data)) {
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}: user data of faces '{}': expected a PLY file, whose faces have "
+                             "properties, or an OBJ file, which has {}",
+                             request.source.title(), request.options.user_data, kGroups)};
+  }
   ImportedFile out;
   const Status status =
       reader != nullptr ? read_mesh(*reader, request, out)
                         : import_with_assimp(request.source, request.options, request.wanted, out);
   if (!status.ok()) return explained(request.source, status.error());
-  if (auto* mesh = std::get_if<Imported>(&out)) mesh->mesh.name = path.stem().string();
-  if (auto* scene = std::get_if<SourceScene>(&out)) scene->name = path.stem().string();
+  const bool wants_materials = request.options.materials;
+  if (auto* mesh = std::get_if<Imported>(&out)) {
+    mesh->mesh.name = path.stem().string();
+    mesh->report.has_no_materials = wants_materials && mesh->materials.runs.empty();
+  }
+  if (auto* scene = std::get_if<SourceScene>(&out)) {
+    scene->name = path.stem().string();
+    scene->report.has_no_materials = wants_materials && scene->materials.empty();
+  }
   return out;
 }
 

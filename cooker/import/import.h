@@ -16,6 +16,7 @@
 #include "cooker/import/face_materials.h"
 #include "cooker/import/source_file.h"
 #include "cooker/import/source_mesh.h"
+#include "format/face_numbers.h"
 
 namespace boxtree::cooker {
 
@@ -39,9 +40,16 @@ struct ImportOptions {
   /// [false] Fill in Imported::materials; scenes have theirs whatever this is. Costs a second
   /// reading of FBX files.
   bool materials = false;
+  /// [none] Fill in Imported::user_data: from the property of faces with this name in a PLY file,
+  /// from the groups of an OBJ file if it is kGroups. kMeshUnsupported if the file has none such.
+  std::string user_data;
   /// [none] An input that is not a file. It can refer to no other.
   std::optional<SourceBytes> bytes;
 };
+
+/// ImportOptions::user_data: groups of an OBJ file, numbered in the order in which they first have
+/// a face.
+inline constexpr std::string_view kGroups = "groups";
 
 /// SkippedFace::mesh: no face of the mesh is left.
 inline constexpr std::uint32_t kNoMesh = 0xffffffffu;
@@ -72,6 +80,8 @@ struct ImportReport {
   /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther
   /// than unnoticed_move (f32_digits.h). The mesh has it, too.
   double moved_by_f32 = 0;
+  bool has_no_materials = false;     // with ImportOptions::materials: no face has one
+  bool has_no_groups = false;        // with kGroups: all faces are in the group without a name
   bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.
@@ -91,6 +101,9 @@ struct Imported {
   SourceMesh mesh;
   ImportReport report;
   FaceMaterials materials;  // with ImportOptions::materials
+  /// With ImportOptions::user_data: numbers by runs of faces, as SceneMesh::materials. Those below
+  /// zero are the same 32 bits in two's complement.
+  std::vector<FaceRun> user_data;
 };
 
 /// Reads `path` and flattens all its mesh instances into one mesh: instances in node order (depth

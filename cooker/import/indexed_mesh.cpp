@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/import/face_runs.h"
 #include "cooker/import/weld.h"
 #include "format/limits.h"
 
@@ -54,11 +55,13 @@ Status IndexedMesh<T>::reserve_faces(std::uint64_t count) {
 }
 
 template <class T>
-Status IndexedMesh<T>::add_face(std::span<const std::uint32_t> corners) {
+Status IndexedMesh<T>::add_face(std::span<const std::uint32_t> corners,
+                                std::optional<std::uint32_t> user_data) {
   if (corners.size() < 3) {
     count_no_face(corners.size(), out_.report);
     return {};
   }
+  if (user_data) add_face_to(out_.user_data, next_face_id_, *user_data);
   if (std::optional<FaceFault> fault = fault_of(corners)) return add_bad_face(std::move(*fault));
   const std::uint32_t face_id = next_face_id_++;
   ++out_.report.source_faces;

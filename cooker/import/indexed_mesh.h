@@ -48,7 +48,8 @@ class IndexedMesh {
   Status reserve_faces(std::uint64_t count);
   /// Adds a polygon by the numbers of its vertices, from 0. Polygons with fewer than three are
   /// counted and skipped.
-  Status add_face(std::span<const std::uint32_t> corners);
+  Status add_face(std::span<const std::uint32_t> corners,
+                  std::optional<std::uint32_t> user_data = {});
   /// Adds a polygon that the reader has found to be bad.
   Status add_bad_face(FaceFault fault);
   /// Adds the triangles of strips; a vertex number of -1 ends a strip. Every other triangle of a

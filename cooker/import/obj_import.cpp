@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -22,6 +23,9 @@ namespace boxtree::cooker {
 namespace {
 
 namespace fs = std::filesystem;
+
+// The group of faces that are in no other, by the format.
+constexpr std::string_view kDefaultGroup = "default";
 
 // Whether a keyword belongs to the format or a common extension. Invisible bytes and keywords in
 // capitals are unknown, so that no vertex or face is skipped.
@@ -45,13 +49,15 @@ template <class T>
 class Reader {
  public:
   Reader(std::string_view text, const std::string& file, const ImportOptions& options,
-         IndexedMesh<T>& mesh, ImportReport& report, FaceMaterials& materials)
+         IndexedMesh<T>& mesh, ImportReport& report, FaceMaterials& materials,
+         FaceMaterials& groups)
       : text_(text),
         file_(file),
         options_(options),
         mesh_(mesh),
         report_(report),
-        materials_(materials) {}
+        materials_(materials),
+        groups_(groups, kDefaultGroup) {}
 
   Status read();
 
@@ -78,6 +84,7 @@ class Reader {
   IndexedMesh<T>& mesh_;
   ImportReport& report_;
   MaterialUse materials_;
+  MaterialUse groups_;
   std::vector<std::string> libraries_;
   std::size_t vertices_so_far_ = 0;
   ObjStatement statement_{};  // current statement
@@ -135,6 +142,10 @@ Status Reader<T>::read_statement() {
     return failure(fmt::format("no statement of OBJ begins with {:?}", keyword));
   }
   if (keyword == "usemtl") materials_.begin(name);
+  if (keyword == "g") {
+    split_tokens(name, words_);
+    groups_.begin(fmt::format("{}", fmt::join(words_, " ")));
+  }
   if (keyword == "mtllib" && !name.empty()) libraries_.emplace_back(name);
   return {};
 }
@@ -168,7 +179,10 @@ Status Reader<T>::read_face() {
   }
   // With fewer corners it is not a face, so skip_bad does not apply.
   if (fault && words_.size() < 3) return Error{fault->code, file_ + ": " + fault->reason};
-  if (words_.size() >= 3) materials_.add_face(mesh_.next_face_id());
+  if (words_.size() >= 3) {
+    materials_.add_face(mesh_.next_face_id());
+    groups_.add_face(mesh_.next_face_id());
+  }
   return fault ? mesh_.add_bad_face(std::move(*fault)) : mesh_.add_face(corners_);
 }
 
@@ -235,16 +249,26 @@ void find_libraries(const SourceFile& source, const std::vector<std::string>& na
 
 Status import_obj(const SourceFile& source, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials) {
+  if (!options.user_data.empty() && options.user_data != kGroups) {
+    return Error{Errc::kMeshUnsupported,
+                 fmt::format("{}: user data of faces '{}': an OBJ file has '{}' alone",
+                             source.title(), options.user_data, kGroups)};
+  }
   std::vector<std::string> libraries;
+  FaceMaterials groups;
   const auto read = [&]<class T>(std::string_view text, const std::string& file,
                                  std::vector<T>& positions) {
     IndexedMesh<T> mesh(file, options, positions, out);
-    Reader<T> reader(statements_of(text), file, options, mesh, out.report, materials);
+    Reader<T> reader(statements_of(text), file, options, mesh, out.report, materials, groups);
     Status status = reader.read();
     libraries = reader.libraries();
     return status;
   };
   if (Status status = read_text_into(source, options, out, read); !status.ok()) return status;
+  if (!options.user_data.empty()) {
+    out.report.has_no_groups = groups.names == std::vector<std::string>{std::string(kDefaultGroup)};
+    out.user_data = std::move(groups.runs);
+  }
   find_libraries(source, libraries, out.report);
   if (out.report.files_read.size() <= 1) return {};
   const Result<std::uint64_t> hash = hash_source_files(out.report.files_read);

@@ -13,8 +13,9 @@ namespace boxtree::cooker {
 
 /// Reads the OBJ file `path` into `out`, except the name, as specified for import_mesh: faces in
 /// the order of the file, whatever their objects and groups. `materials` gets the names in
-/// `usemtl`. Existing material libraries count among the files read, but nothing is imported from
-/// them. Free-form curves and surfaces are skipped.
+/// `usemtl`; Imported::user_data the numbers of groups, if they are wanted. Existing material
+/// libraries count among the files read, but nothing is imported from them. Free-form curves and
+/// surfaces are skipped.
 Status import_obj(const SourceFile& source, const ImportOptions& options, Imported& out,
                   FaceMaterials& materials);
 

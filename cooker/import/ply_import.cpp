@@ -25,6 +25,11 @@ Status import_ply(const SourceFile& source, const ImportOptions& options, Import
   if (Status status = find_ply_parts(layout); !status.ok())
     return in_file(source.title(), status.error());
 
+  if (!options.user_data.empty()) {
+    if (Status status = find_user_data(options.user_data, layout); !status.ok())
+      return in_file(source.title(), status.error());
+  }
+
   const bool has_doubles = std::any_of(
       layout.xyz.begin(), layout.xyz.end(),
       [](const PlyProperty* coordinate) { return coordinate->type == PlyType::kFloat64; });

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: MIT
 #include "cooker/import/ply_layout.h"
 
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
+
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -53,6 +57,33 @@ Status find_corners(const PlyElement* element, const PlyProperty*& found) {
 }
 
 }  // namespace
+
+Status find_user_data(const std::string& name, PlyLayout& layout) {
+  const auto refusal = [&](const std::string& why) {
+    return Error{Errc::kMeshUnsupported, fmt::format("user data of faces '{}': {}", name, why)};
+  };
+  if (layout.tristrips != nullptr && layout.tristrips->count > 0) {
+    return refusal("the file has 'tristrips', whose triangles have no properties of their own");
+  }
+  std::vector<std::string> names;  // of those that it could be
+  for (const PlyProperty& property : layout.face->properties) {
+    const bool is_meant = property.name == name;
+    if (!property.length && is_integer(property.type)) {
+      names.push_back(property.name);
+      if (!is_meant) continue;
+      if (layout.user_data != nullptr) return refusal("faces have it twice");
+      layout.user_data = &property;
+    } else if (is_meant) {
+      return refusal(property.length ? "expected one integer a face, found a list"
+                                     : "expected an integer, found a floating-point number");
+    }
+  }
+  if (layout.user_data != nullptr) return {};
+  return refusal(fmt::format("faces have no such property; {}{}",
+                             names.empty() ? "they have none that is an integer"
+                                           : "integers of theirs are: " + listed(names),
+                             suggestion(name, names)));
+}
 
 Status find_ply_parts(PlyLayout& layout) {
   const PlyHeader& header = layout.header;

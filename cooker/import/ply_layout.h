@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <string>
 
 #include "cooker/import/ply_header.h"
 
@@ -12,10 +13,11 @@ namespace boxtree::cooker {
 struct PlyLayout {
   PlyHeader header;
   const PlyElement* vertex = nullptr;
-  const PlyElement* face = nullptr;       // one polygon each
-  const PlyElement* tristrips = nullptr;  // any number of triangles each, as in Stanford's files
-  const PlyProperty* corners = nullptr;   // the property of faces that holds their corners
-  const PlyProperty* strip = nullptr;     // the same for strips
+  const PlyElement* face = nullptr;        // one polygon each
+  const PlyElement* tristrips = nullptr;   // any number of triangles each, as in Stanford's files
+  const PlyProperty* corners = nullptr;    // the property of faces that holds their corners
+  const PlyProperty* strip = nullptr;      // the same for strips
+  const PlyProperty* user_data = nullptr;  // of faces, if it is wanted
   std::array<const PlyProperty*, 3> xyz{};
 
   PlyLayout() = default;
@@ -27,5 +29,9 @@ struct PlyLayout {
 /// that must be unique is not, or if faces precede their vertices; kNoFaces if no element holds
 /// faces.
 Status find_ply_parts(PlyLayout& layout);
+
+/// Fills in user_data: the property `name` of faces. kMeshUnsupported if there is none such, or it
+/// is not one integer a face. Precondition: the other members are filled in.
+Status find_user_data(const std::string& name, PlyLayout& layout);
 
 }  // namespace boxtree::cooker

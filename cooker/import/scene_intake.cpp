@@ -27,11 +27,11 @@ class MaterialIntake {
       : scene_(scene), names_(names), numbers_(scene.mNumMaterials, kNoMaterial) {}
 
   // Turns runs of aiScene::mMaterials into runs of `names`.
-  std::vector<MaterialRun> take(std::span<const MaterialRun> runs) {
-    std::vector<MaterialRun> taken;
-    for (const MaterialRun& run : runs) {
-      const std::uint32_t material = number_of(run.material);
-      if (taken.empty() || taken.back().material != material) {
+  std::vector<FaceRun> take(std::span<const FaceRun> runs) {
+    std::vector<FaceRun> taken;
+    for (const FaceRun& run : runs) {
+      const std::uint32_t material = number_of(run.number);
+      if (taken.empty() || taken.back().number != material) {
         taken.push_back({run.first_face, material});
       }
     }
@@ -165,7 +165,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
                               context_.materials};
   std::vector<MeshInstance> parts;
   for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
-  std::vector<MaterialRun> runs;
+  std::vector<FaceRun> runs;
   const Status status = flatten_instances(scene_, parts, uses_, context, imported, runs);
   out_.report = std::move(imported.report);
   if (!status.ok()) return status.error();
@@ -184,7 +184,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
 
 }  // namespace
 
-FaceMaterials take_materials(const aiScene& scene, std::span<const MaterialRun> runs) {
+FaceMaterials take_materials(const aiScene& scene, std::span<const FaceRun> runs) {
   FaceMaterials taken;
   MaterialIntake intake(scene, taken.names);
   taken.runs = intake.take(runs);

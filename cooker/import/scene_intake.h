@@ -18,6 +18,6 @@ Status take_scene(aiScene& scene, const Placements& placements, const SourceCont
 
 /// The materials of a flattened scene, of which only the materials have to be left; `runs` are
 /// those of flatten_scene.
-[[nodiscard]] FaceMaterials take_materials(const aiScene& scene, std::span<const MaterialRun> runs);
+[[nodiscard]] FaceMaterials take_materials(const aiScene& scene, std::span<const FaceRun> runs);
 
 }  // namespace boxtree::cooker

@@ -23,17 +23,13 @@ Shape shape_of(const SceneMesh& mesh) {
 }
 
 bool is_equal(const SceneMesh& a, const SceneMesh& b) {
-  const auto is_same_run = [](const MaterialRun& x, const MaterialRun& y) {
-    return x.first_face == y.first_face && x.material == y.material;
-  };
-  return has_same_shape(a, b) && std::equal(a.materials.begin(), a.materials.end(),
-                                            b.materials.begin(), b.materials.end(), is_same_run);
+  return has_same_shape(a, b) && a.materials == b.materials;
 }
 
 }  // namespace
 
 bool has_same_shape(const SceneMesh& a, const SceneMesh& b) {
-  if (a.source_faces != b.source_faces) return false;
+  if (a.source_faces != b.source_faces || a.user_data != b.user_data) return false;
   if (a.mesh.moved_by_f32 != b.mesh.moved_by_f32) return false;  // they differ in the source
   const Shape of_a = shape_of(a), of_b = shape_of(b);
   for (std::size_t i = 0; i < of_a.size(); ++i) {
@@ -94,8 +90,8 @@ std::uint32_t MaterialJoin::add_unnamed() {
   return number;
 }
 
-void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers) {
-  for (MaterialRun& run : runs) run.material = numbers[run.material];
+void renumber(std::vector<FaceRun>& runs, const std::vector<std::uint32_t>& numbers) {
+  for (FaceRun& run : runs) run.number = numbers[run.number];
 }
 
 std::uint64_t hash_of_shape(const SceneMesh& mesh) {

@@ -14,7 +14,7 @@
 
 #include "cooker/import/import.h"
 #include "cooker/import/source_mesh.h"
-#include "format/scene_record.h"
+#include "format/face_numbers.h"
 
 namespace boxtree::cooker {
 
@@ -25,11 +25,13 @@ struct SceneMesh {
   /// Materials by runs of source face numbers (SourceMesh::face_id): ascending, the first run
   /// starts at face 0, neighbours differ. Numbers are indices into SourceScene::materials. Empty:
   /// none.
-  std::vector<MaterialRun> materials;
+  std::vector<FaceRun> materials;
+  std::vector<FaceRun> user_data;  // as in Imported
 };
 
 /// Whether two meshes are equal except for name and materials: positions bit for bit (-0 is not
-/// +0), how far f32 moved them, faces and their numbers. Equal meshes have the same hash.
+/// +0), how far f32 moved them, faces, their numbers and user data. Equal meshes have the same
+/// hash.
 [[nodiscard]] bool has_same_shape(const SceneMesh& a, const SceneMesh& b);
 [[nodiscard]] std::uint64_t hash_of_shape(const SceneMesh& mesh);
 
@@ -69,7 +71,7 @@ class MaterialJoin {
 };
 
 /// Gives each run `numbers[material]`.
-void renumber(std::vector<MaterialRun>& runs, const std::vector<std::uint32_t>& numbers);
+void renumber(std::vector<FaceRun>& runs, const std::vector<std::uint32_t>& numbers);
 
 /// A placed mesh.
 struct SceneInstance {

@@ -18,9 +18,9 @@ namespace {
 
 using Words = std::span<const std::string_view>;
 
-// A vertex number as in binary files: negative numbers become large ones, which are out of range.
-// Empty if it is not an integer or has more than 32 bits.
-std::optional<std::uint32_t> read_vertex_number(std::string_view word) {
+// An integer as in binary files: negative numbers become large ones. Empty if it is not an integer
+// or has more than 32 bits.
+std::optional<std::uint32_t> read_32_bits(std::string_view word) {
   const std::optional<std::int64_t> number = read_integer(word);
   constexpr std::int64_t kLeast = std::numeric_limits<std::int32_t>::min();
   constexpr std::int64_t kMost = std::numeric_limits<std::uint32_t>::max();
@@ -63,8 +63,9 @@ class Reader {
   const PlyLayout& layout_;
   const std::string& file_;
   IndexedMesh<T>& mesh_;
-  std::array<double, 3> position_{};    // of the current vertex
-  std::vector<std::uint32_t> corners_;  // of the current face or strip
+  std::array<double, 3> position_{};        // of the current vertex
+  std::vector<std::uint32_t> corners_;      // of the current face or strip
+  std::optional<std::uint32_t> user_data_;  // of the current face, if it is wanted
 };
 
 template <class T>
@@ -177,6 +178,11 @@ Status Reader<T>::take_row(const PlyElement& element) {
     if (property.length) count = static_cast<std::size_t>(*read_count(row_[at++]));
     if (&property == layout_.corners || &property == layout_.strip) {
       if (Status status = take_corners(Words(row_).subspan(at, count)); !status.ok()) return status;
+    } else if (&property == layout_.user_data) {
+      user_data_ = read_32_bits(row_[at]);
+      if (!user_data_) {
+        return failure(fmt::format("user data '{}' is no integer of 32 bits", row_[at]));
+      }
     } else if (&element == layout_.vertex) {
       for (std::size_t k = 0; k < 3; ++k) {
         if (layout_.xyz[k] == &property) position_[k] = double{vertex_[at]};
@@ -187,7 +193,7 @@ Status Reader<T>::take_row(const PlyElement& element) {
   if (&element == layout_.vertex) {
     for (const double x : position_) mesh_.add_coordinate(x);
   } else if (&element == layout_.face) {
-    return mesh_.add_face(corners_);
+    return mesh_.add_face(corners_, user_data_);
   } else if (&element == layout_.tristrips) {
     return mesh_.add_strips(corners_);
   }
@@ -198,7 +204,7 @@ template <class T>
 Status Reader<T>::take_corners(Words words) {
   corners_.clear();
   for (const std::string_view word : words) {
-    const std::optional<std::uint32_t> number = read_vertex_number(word);
+    const std::optional<std::uint32_t> number = read_32_bits(word);
     if (!number) return failure(fmt::format("'{}' is no number of a vertex", word));
     corners_.push_back(*number);
   }

@@ -14,7 +14,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "cooker/import/mesh_arrays.h"
-#include "cooker/proof/material_proof.h"
+#include "cooker/proof/face_number_proof.h"
 #include "cooker/proof/names.h"
 #include "cooker/proof/reserved.h"
 #include "cooker/proof/scene_proof.h"
@@ -346,11 +346,11 @@ Findings verify_file(const File& file, const std::optional<MeshArrays>& mesh) {
       findings.push_back(std::move(finding));
     }
   }
-  if (!file.has_scene()) {
-    check_materials(file, [&](const std::string& fault) {
-      if (findings.size() < kMaxFindings) findings.push_back({Errc::kRecordInvalid, fault});
-    });
-  }
+  const auto add = [&](const std::string& fault) {
+    if (findings.size() < kMaxFindings) findings.push_back({Errc::kRecordInvalid, fault});
+  };
+  if (!file.has_scene()) check_materials(file, add);
+  check_user_data(file, add);
   for (Error& finding : prove_scene(file)) findings.push_back(std::move(finding));
   return findings;
 }

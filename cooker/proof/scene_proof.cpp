@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cooker/import/mesh_arrays.h"
-#include "cooker/proof/material_proof.h"
+#include "cooker/proof/face_number_proof.h"
 #include "cooker/proof/names.h"
 #include "format/instance_edges.h"
 #include "runtime/file/open_file.h"

@@ -154,7 +154,8 @@ Result<CookInput> load_file(const fs::path& path, const ImportOptions& options,
   if (auto* mesh = std::get_if<Imported>(&*file)) {
     input.has_top_level = false;
     note_import(input, std::move(mesh->report), mesh->mesh.name);
-    input.scene.meshes.push_back({std::move(mesh->mesh), {}, std::move(mesh->materials.runs)});
+    input.scene.meshes.push_back(
+        {std::move(mesh->mesh), {}, std::move(mesh->materials.runs), std::move(mesh->user_data)});
     input.scene.materials = std::move(mesh->materials.names);
   } else {
     input.scene = std::move(std::get<SourceScene>(*file));

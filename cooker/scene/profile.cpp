@@ -203,6 +203,7 @@ void ProfileReader::read_scene_keys(Fields& fields) {
   if (const auto degrees = fields.number("active_edges", kSharpAngle)) {
     profile_.active_edges = *degrees;
   }
+  if (const auto user_data = fields.text("user_data")) profile_.user_data = *user_data;
   read_needs(fields, profile_.scene);
 }
 

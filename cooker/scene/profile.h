@@ -110,7 +110,8 @@ struct Profile {
 
   std::optional<Stated<std::filesystem::path>> source;  // never together with `instances`
   Needs scene;
-  std::optional<Stated<double>> active_edges;  // degrees; empty: they are left out
+  std::optional<Stated<double>> active_edges;    // degrees; empty: they are left out
+  std::optional<Stated<std::string>> user_data;  // see ImportOptions; empty: it is left out
   SceneBudget budget;
   std::vector<ProfileObject> objects;  // in the order of matching; the last is "other"
   std::vector<ProfileMesh> meshes;

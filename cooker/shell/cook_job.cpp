@@ -54,6 +54,7 @@ class Job {
       Result<Profile> profile = read_profile(job_.profile);
       if (!profile) return profile.error();
       profile_ = std::move(*profile);
+      if (profile_.user_data) options_.import.user_data = profile_.user_data->value;
     }
     return {};
   }
@@ -131,6 +132,7 @@ class Job {
     told.tree.geometry.vertices = {};
     told.tree.geometry.corners = {};
     told.tree.geometry.face_ids = {};
+    told.tree.user_data = {};
   }
 
   const CookJob& job_;

@@ -10,6 +10,7 @@
 #include "cooker/proof/proof.h"
 #include "cooker/text/utf8.h"
 #include "format/container.h"
+#include "format/face_numbers.h"
 #include "format/tree_record.h"
 #include "runtime/file/checksum.h"
 #include "runtime/file/mapping.h"
@@ -55,12 +56,12 @@ class Layout {
       add(SectionKind::kVertices, i, tree.geometry.vertices);
       add(SectionKind::kCorners, i, tree.geometry.corners);
       add(SectionKind::kFaceIds, i, tree.geometry.face_ids);
-      if (i < materials.runs.size()) {
-        add(SectionKind::kMaterialRuns, i, materials.runs[i]);
-        add(SectionKind::kFaceMaterials, i, materials.faces[i]);
+      if (i < materials.of_trees.size()) {
+        add_numbers(SectionKind::kMaterialRuns, i, materials.of_trees[i]);
       }
       add(SectionKind::kDuplicates, i, tree.geometry.duplicates);
       add(SectionKind::kActiveEdges, i, tree.geometry.active_edges);
+      add_numbers(SectionKind::kUserDataRuns, i, tree.user_data);
     }
     place();
   }
@@ -92,6 +93,11 @@ class Layout {
     if (!bytes.empty()) sections_.push_back({kind, owner, bytes});
   }
 
+  void add_numbers(SectionKind runs, std::uint32_t owner, const EncodedFaceNumbers& numbers) {
+    add(runs, owner, numbers.runs);
+    add(by_face(runs), owner, numbers.faces);
+  }
+
   void add_scene(const EncodedScene& scene) {
     add(SectionKind::kScene, kNoOwner, scene.scene);
     add(SectionKind::kSceneNodes, kNoOwner, scene.nodes);
@@ -111,7 +117,8 @@ class Layout {
           section.kind == SectionKind::kMaterialRuns ||
           section.kind == SectionKind::kFaceMaterials || section.kind == SectionKind::kLeftOut ||
           section.kind == SectionKind::kCookRecord || section.kind == SectionKind::kActiveEdges ||
-          section.kind == SectionKind::kInstanceEdges;
+          section.kind == SectionKind::kInstanceEdges ||
+          section.kind == SectionKind::kUserDataRuns || section.kind == SectionKind::kFaceUserData;
       entry.is_required = !informative;
       entry.owner = section.owner;
       entry.offset = section_begin(at, section.bytes.size());

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <string>
 
+#include "format/face_numbers.h"
 #include "format/message.h"
 #include "format/numbers.h"
+#include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "runtime/file/section.h"
 #include "runtime/tree/bound_tree.h"
@@ -33,14 +35,21 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
   if (index >= file.tree_count()) {
     return index_error(Errc::kTreeIndex, "tree", index, file.tree_count());
   }
-  return BoundTree::bind(
-      {file.tree_record(index), file.tree_name(index), file.section(SectionKind::kNodes, index),
-       file.section(SectionKind::kVertices, index), file.section(SectionKind::kCorners, index),
-       file.section(SectionKind::kFaceIds, index), file.section(SectionKind::kDuplicates, index),
-       file.section(SectionKind::kActiveEdges, index), file.section(SectionKind::kMaterials),
-       file.section(SectionKind::kNames), file.section(SectionKind::kMaterialRuns, index),
-       file.section(SectionKind::kFaceMaterials, index)},
-      index, options);
+  return BoundTree::bind({file.tree_record(index),
+                          file.tree_name(index),
+                          file.section(SectionKind::kNodes, index),
+                          file.section(SectionKind::kVertices, index),
+                          file.section(SectionKind::kCorners, index),
+                          file.section(SectionKind::kFaceIds, index),
+                          file.section(SectionKind::kDuplicates, index),
+                          file.section(SectionKind::kActiveEdges, index),
+                          file.section(SectionKind::kMaterials),
+                          file.section(SectionKind::kNames),
+                          {file.section(SectionKind::kMaterialRuns, index),
+                           file.section(SectionKind::kFaceMaterials, index)},
+                          {file.section(SectionKind::kUserDataRuns, index),
+                           file.section(SectionKind::kFaceUserData, index)}},
+                         index, options);
 }
 
 Result<Tree> Tree::bind(const File& file, const BindOptions& options) {
@@ -80,10 +89,11 @@ Status BoundTree::bind_sections(const TreeParts& parts, const BindOptions& optio
     status = geometry_ == GeometryId::kExternal ? bind_external_geometry(parts, options)
                                                 : bind_stored_geometry(parts);
   }
-  if (status) status = bind_face_ids(parts, options);
+  if (status) status = bind_face_ids(parts);
   if (status) status = bind_duplicates(parts);
-  if (status) status = bind_active_edges(parts, options);
-  if (status) status = bind_materials(parts, options);
+  if (status) status = bind_active_edges(parts);
+  if (status) status = bind_face_numbers(parts);
+  if (status) status = check_required(options);
   return status;
 }
 
@@ -174,7 +184,7 @@ Status BoundTree::bind_external_geometry(const TreeParts& parts, const BindOptio
   return {};
 }
 
-Status BoundTree::bind_face_ids(const TreeParts& parts, const BindOptions& options) {
+Status BoundTree::bind_face_ids(const TreeParts& parts) {
   // External faces are found by source number, or through the ids of the tree's own order.
   const bool are_needed = geometry_ == GeometryId::kExternal && face_count_ > 0;
   if (parts.face_ids.empty() ? are_needed && !is_in_source_order_
@@ -190,12 +200,6 @@ Status BoundTree::bind_face_ids(const TreeParts& parts, const BindOptions& optio
     face_ids_ = FaceIdView(parts.face_ids);
   }
   if (are_needed && face_ids_) leaves_.set_order(face_ids_);
-  if (options.require_face_ids && !has_face_ids() && !empty()) {
-    return error_with(
-        Errc::kPartLeftOut, {},
-        "face ids were left out when it was cooked: cook without --no-face-ids, or face_ids = "
-        "false of its profile");
-  }
   return {};
 }
 
@@ -208,13 +212,9 @@ Status BoundTree::bind_duplicates(const TreeParts& parts) {
   return {};
 }
 
-Status BoundTree::bind_active_edges(const TreeParts& parts, const BindOptions& options) {
+Status BoundTree::bind_active_edges(const TreeParts& parts) {
   const Bytes section = parts.active_edges;
-  if (section.empty()) {
-    if (!options.require_active_edges || empty()) return {};
-    return error_with(Errc::kPartLeftOut, {},
-                      "it was cooked without --active-edges, or active_edges of a profile");
-  }
+  if (section.empty()) return {};
   std::uint64_t bytes = sizeof(ActiveEdgesHeader);
   if (section.size() >= bytes) {
     bytes = active_edges_bytes(face_count_, load<ActiveEdgesHeader>(section.data()).start_count);
@@ -225,17 +225,33 @@ Status BoundTree::bind_active_edges(const TreeParts& parts, const BindOptions& o
   return {};
 }
 
-Status BoundTree::bind_materials(const TreeParts& parts, const BindOptions& options) {
+Status BoundTree::bind_face_numbers(const TreeParts& parts) {
   material_names_ = MaterialNames(parts.materials, parts.names);
-  if (Status status = materials_.bind(parts.material_runs, parts.face_materials, face_count_,
-                                      material_names_.count());
-      !status) {
-    return status;
+  const Status status =
+      materials_.bind(parts.face_materials, SectionKind::kMaterialRuns, face_count_,
+                      material_number_bytes(material_names_.count()));
+  if (!status) return status;
+  return user_data_.bind(parts.user_data, SectionKind::kUserDataRuns, face_count_,
+                         width_of_numbers(parts.user_data.faces.size(), face_count_));
+}
+
+// Precondition: all else is bound.
+Status BoundTree::check_required(const BindOptions& options) const {
+  const char* missing = nullptr;
+  if (options.require_user_data && !user_data_) {
+    missing = "--user-data, or user_data of a profile";
   }
-  if (!options.require_materials || materials_ || empty()) return {};
-  return error_with(Errc::kPartLeftOut, {},
-                    "it was cooked without --materials, or materials = false left them out of its "
-                    "profile, or its source has none");
+  if (options.require_materials && !materials_) {
+    missing = "--materials, or with materials = false of its profile, or its source has none";
+  }
+  if (options.require_active_edges && !active_edges_) {
+    missing = "--active-edges, or active_edges of a profile";
+  }
+  if (options.require_face_ids && !has_face_ids()) {
+    missing = "face ids: with --no-face-ids, or face_ids = false of its profile";
+  }
+  if (missing == nullptr || empty()) return {};
+  return error_with(Errc::kPartLeftOut, "it was cooked without ", missing);
 }
 
 }  // namespace boxtree

@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,6 +20,7 @@
 #include "format/face_ids.h"
 #include "format/numbers.h"
 #include "runtime/tree/bound_codec.h"
+#include "runtime/tree/face_numbers.h"
 #include "runtime/tree/geometry.h"
 #include "runtime/tree/materials.h"
 
@@ -144,9 +146,15 @@ class BoundTree {
   /// The materials of its faces, or nothing, and their names.
   [[nodiscard]] bool has_materials() const noexcept { return bool{materials_}; }
   [[nodiscard]] std::uint32_t material(const FaceRef& face) const noexcept {
-    return materials_.of(face, face_count_);
+    return materials_.of(face, face_count_).value_or(kNoMaterial);
   }
   [[nodiscard]] const MaterialNames& material_names() const noexcept { return material_names_; }
+
+  /// What the application stored of its faces, or nothing.
+  [[nodiscard]] bool has_user_data() const noexcept { return bool{user_data_}; }
+  [[nodiscard]] std::optional<std::uint32_t> user_data(const FaceRef& face) const noexcept {
+    return user_data_.of(face, face_count_);
+  }
 
   /// A box of tree space in object space, rounded outward: it holds every position of object space
   /// that Frame::to_tree brings into `box`.
@@ -169,10 +177,11 @@ class BoundTree {
   Status bind_stored_geometry(const TreeParts& parts);
   Status bind_clusters(const TreeParts& parts);
   Status bind_external_geometry(const TreeParts& parts, const BindOptions& options);
-  Status bind_face_ids(const TreeParts& parts, const BindOptions& options);
+  Status bind_face_ids(const TreeParts& parts);
   Status bind_duplicates(const TreeParts& parts);
-  Status bind_active_edges(const TreeParts& parts, const BindOptions& options);
-  Status bind_materials(const TreeParts& parts, const BindOptions& options);
+  Status bind_active_edges(const TreeParts& parts);
+  Status bind_face_numbers(const TreeParts& parts);
+  [[nodiscard]] Status check_required(const BindOptions& options) const;
 
   CodecId codec_{};
   GeometryId geometry_{};
@@ -201,8 +210,9 @@ class BoundTree {
   BoxLanes root_lanes_ = BoxLanes(Box<float>{});  // of root_f32_
   bool has_float_nodes_ = false;
   // What no query reads.
-  MaterialView materials_;
+  FaceNumberView materials_;
   MaterialNames material_names_;
+  FaceNumberView user_data_;
 };
 
 }  // namespace boxtree

@@ -2,6 +2,7 @@
 // The tree as applications see it: a BoundTree in the storage of the Tree.
 #include <algorithm>
 #include <new>
+#include <optional>
 #include <string>
 
 #include <boxtree/tree.h>
@@ -55,6 +56,12 @@ std::string_view Tree::material_name(std::uint32_t number) const noexcept {
 }
 std::uint32_t Tree::material_count() const noexcept {
   return BoundTree::of(*this).material_names().count();
+}
+bool Tree::has_user_data() const noexcept {
+  return BoundTree::of(*this).has_user_data();
+}
+std::optional<std::uint32_t> Tree::user_data(const FaceRef& face) const noexcept {
+  return BoundTree::of(*this).user_data(face);
 }
 
 Eigen::AlignedBox3d Tree::bounds() const noexcept {

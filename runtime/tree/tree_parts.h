@@ -8,6 +8,7 @@
 
 #include "format/bytes.h"
 #include "format/tree_record.h"
+#include "runtime/tree/face_numbers.h"
 
 namespace boxtree {
 
@@ -24,8 +25,8 @@ struct TreeParts {
   // Of its file: what its materials are called.
   Bytes materials = {};
   Bytes names = {};
-  Bytes material_runs = {};
-  Bytes face_materials = {};
+  FaceNumberSections face_materials = {};
+  FaceNumberSections user_data = {};
 };
 
 /// Binds a tree whose parts are not in a file (yet). Errors: as Tree::bind.

@@ -1376,6 +1376,42 @@ expect 0 "$boxtree" info field.bxt
 grep -qx 'materials \["grass", *"stone"\]' out
 grep -q '  materials: of each face, 1.00 bytes per triangle' out
 
+expect 0 "$boxtree" cook field.obj -o field.bxt --materials
+grep -qx '  materials: 2 bytes, of each face; 16 bytes by runs of the source.s faces' out
+expect 0 "$boxtree" cook cube.obj -o cube.bxt --materials -q
+same "$(cat err)" 'boxtree: warning: cube.obj: --materials finds no material: usemtl of OBJ files, glTF, FBX and others have some'
+
+# User data of faces: a property of a PLY file, groups of an OBJ file.
+{
+  printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n'
+  printf 'property list uchar int vertex_indices\nproperty int zone\nproperty float heat\nend_header\n'
+  printf '0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 300 0\n3 0 2 3 -1 0\n'
+} >zones.ply
+expect 0 "$boxtree" cook zones.ply -o zones.bxt --user-data zone
+grep -qx '  user data: 8 bytes, of each face; 16 bytes by runs of the source.s faces' out
+expect 0 "$boxtree" verify zones.bxt
+expect 0 "$boxtree" query zones.bxt ray --origin 0.2,0.8,5 --direction 0,0,-1 --json
+same "$(jq -c '[.face, .user_data]' out)" '[1,4294967295]'
+expect 0 "$boxtree" query zones.bxt sphere --center 0.8,0.2,0 --radius 0.1 --json
+same "$(jq -c '.faces' out)" '[{"face":0,"user_data":300}]'
+expect 0 "$boxtree" info zones.bxt
+grep -q '  user data: of each face, 4.00 bytes per triangle' out
+expect 5 "$boxtree" cook zones.ply -o zones.bxt --user-data zones
+grep -q "zones.ply: user data of faces 'zones': faces have no such property; integers of theirs are: zone; did you mean 'zone'?" err
+expect 5 "$boxtree" cook zones.ply -o zones.bxt --user-data heat
+grep -q 'expected an integer, found a floating-point number' err
+printf 'solid\nendsolid\n' >zones.stl
+expect 5 "$boxtree" cook zones.stl -o zones.bxt --user-data zone
+grep -q 'zones.stl: .*expected a PLY file, whose faces have properties, or an OBJ file, which has groups' err
+expect 0 "$boxtree" cook cube.obj -o cube.bxt --user-data groups -q
+same "$(cat err)" "boxtree: warning: cube.obj: no line 'g' begins a group: the user data of every face is 0"
+printf '[scene]\nsource = "zones.ply"\nuser_data = "zone"\n' >zones.toml
+expect 0 "$boxtree" cook --profile zones.toml -o zones.bxt --why
+grep -q "face_user_data .* 'zone' of the source; of each face; 16 bytes by runs of the source's faces  <- zones.toml:3: user_data = \"zone\"" out
+expect 0 "$boxtree" query zones.bxt ray --origin 0.8,0.2,5 --direction 0,0,-1 --json
+same "$(jq -c '[.instance, .face, .user_data]' out)" '[0,0,300]'
+expect 1 "$boxtree" cook --profile zones.toml -o zones.bxt --user-data zone
+
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help
 grep -q -- '--codec' out

@@ -70,6 +70,24 @@ usemtl stone
 f 1 3 4
 """
 
+ZONES = """ply
+format ascii 1.0
+element vertex 4
+property float x
+property float y
+property float z
+element face 2
+property list uchar int vertex_indices
+property int zone
+end_header
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+3 0 1 2 300
+3 0 2 3 7
+"""
+
 # Sections of the page, and command lines with all that they print. [STATUS] of those that fail.
 ALL = "--min=-99,-99,-99 --max 99,99,99"
 VIEW = "0.01,0,0,0,0,0.01,0,0,0,0,0.005,0.5,0,0,0,1"
@@ -83,6 +101,8 @@ RUNS = {
         "cook crate.obj -o edges.bxt --active-edges 5",
         "cook field.obj -o field.bxt --materials",
         "cook field.obj -o no_ids.bxt --materials --no-face-ids",
+        "cook zones.ply -o zones.bxt --user-data zone",
+        "cook zones.ply -o idless.bxt --user-data zone --no-face-ids",
         "cook crate.obj -o blob.bxt --codec blob-zstd",
         "cook crate.obj crate.obj -o small.bxt --tolerance 0.001 --for memory --max-slowdown 9",
         "cook --scene bad.obj -o scene.bxt --skip-bad",
@@ -94,6 +114,7 @@ RUNS = {
         "info crate.bxt",
         "info edges.bxt",
         "info field.bxt",
+        "info zones.bxt",
         "[3] info arrays.bxt external.bxt blob.bxt level.gltf",
         "info parts.bxt",
         "info level.bxt",
@@ -107,6 +128,8 @@ RUNS = {
         "query arrays.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
         "query crate.bxt ray --origin 0.2,0.1,9 --direction 0,0,-1 --all",
         "query field.bxt ray --origin 0.2,0.8,9 --direction 0,0,-1",
+        "query zones.bxt ray --origin 0.2,0.8,9 --direction 0,0,-1",
+        "query zones.bxt ray --origin 0.2,0.8,9 --direction 0,0,-1 --all",
         "query level.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query parts.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0",
@@ -116,6 +139,7 @@ RUNS = {
     "query FILE collide": [
         "query crate.bxt collide --sphere 2 --at 0.2,0.1,0.5",
         "query arrays.bxt collide --box 0.1,0.2,0.6 --at 0.2,0.1,0.1 --merge 0.1",
+        "query zones.bxt collide --sphere 2 --at 0.2,0.1,0.5",
         "query level.bxt collide --sphere 0.5 --at 0,0.3,-3.3",
         "query nameless.bxt collide --sphere 0.5 --at 0,0.3,-3.3",
     ],
@@ -125,6 +149,8 @@ RUNS = {
         "query arrays.bxt cast --box 1,1,1 --at 0.2,0.1,9 --direction 0,0,-1 --any",
         "query crate.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
         "query arrays.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
+        "query zones.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
+        "query zones.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
         "query level.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
         "query level.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0 --all",
         "query nameless.bxt cast --sphere 0.25 --at 0,10,-3.3 --direction 0,-1,0",
@@ -138,6 +164,7 @@ RUNS = {
         "query crate.bxt sphere --center 0,0,0 --radius 9",
         f"query arrays.bxt box {ALL}",
         f"query field.bxt box {ALL}",
+        f"query zones.bxt box {ALL}",
         f"query level.bxt box {ALL}",
         f"query parts.bxt box {ALL}",
         f"query nameless.bxt box {ALL}",
@@ -149,6 +176,7 @@ RUNS = {
         "query crate.bxt point --at 9,9,9 --max-distance 1 --budget 9",
         "query crate.bxt point --at 9,9,9 --relative-error 0.5",
         "query field.bxt point --at 3,2,1",
+        "query zones.bxt point --at 3,2,1",
         "query level.bxt point --at 3,2,1",
         "query nameless.bxt point --at 3,2,1",
     ],
@@ -157,6 +185,8 @@ RUNS = {
         "query crate.bxt pair arrays.bxt --contacts",
         "query field.bxt pair no_ids.bxt --pose 0.1,0,0",
         "query field.bxt pair no_ids.bxt --pose 0.1,0,0 --contacts",
+        "query zones.bxt pair idless.bxt --pose 0.1,0,0",
+        "query zones.bxt pair idless.bxt --pose 0.1,0,0 --contacts",
         "query nameless.bxt --tree 0 pair nameless.bxt --tree2 0 --contacts",
         "query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0",
         "query parts.bxt contacts --move Crate=0.8,2.1,-6.8",
@@ -168,15 +198,18 @@ RUNS = {
         "query crate.bxt distance arrays.bxt --pose 9,0,0",
         "query crate.bxt distance crate.bxt --pose 9,0,0 --max-distance 1",
         "query field.bxt distance no_ids.bxt --pose 9,0,0",
+        "query zones.bxt distance idless.bxt --pose 9,0,0",
         "query nameless.bxt --tree 0 distance field.bxt --pose 99,0,0",
     ],
     "query FILE overlap": [
         "query crate.bxt overlap arrays.bxt",
         "query crate.bxt overlap crate.bxt --pose 9,0,0",
         "query field.bxt overlap no_ids.bxt",
+        "query zones.bxt overlap idless.bxt",
         "query nameless.bxt --tree 0 overlap nameless.bxt --tree2 0",
         f"query crate.bxt box {ALL} --within 0",
         f"query field.bxt box {ALL} --within 0",
+        f"query zones.bxt box {ALL} --within 0",
         f"query nameless.bxt --tree 0 box {ALL} --within 0",
         f"query arrays.bxt box {ALL} --within 0",
     ],
@@ -276,6 +309,7 @@ class Runs:
         shutil.copy(source / "samples/level/level.gltf", work)
         for name, text in (("parts.toml", PARTS), ("nameless.toml", NAMELESS), ("batch", BATCH),
                            ("results.json", RESULTS), ("bad.obj", BAD), ("flat.obj", FLAT), ("field.obj", FIELD),
+                           ("zones.ply", ZONES),
                            ("peers", PEERS)):
             (work / name).write_text(text)
         (work / "peers").chmod(0o755)

@@ -60,6 +60,7 @@ void exercise(Bytes bytes) {
   }();
   for (std::uint32_t face = 0; face <= std::min(tree->face_count(), 99u); ++face) {
     static_cast<void>(tree->material_name(tree->material({face, face})));
+    static_cast<void>(tree->user_data({face, face}));
   }
   for (const test::TreeQuery& query : queries) static_cast<void>(query.run_query(*tree, *tree, {}));
 }

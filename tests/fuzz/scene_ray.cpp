@@ -18,7 +18,9 @@ void run(Bytes input) {
     // What an answer names is there.
     if (closest.has_value()) {
       const std::uint32_t instance = closest->instance;
-      if (!scene.info(instance)) finding("a hit names no instance");
+      const Result<InstanceInfo> info = scene.info(instance);
+      if (!info) finding("a hit names no instance");
+      static_cast<void>(scene.trees()[info->tree].user_data(closest->face));
       static_cast<void>(scene.material_name(scene.material({instance, closest->face})));
     }
   });

@@ -94,6 +94,9 @@ bool write_materials(const fs::path& folder) {
     good = write(folder / "tree", "materials-" + std::to_string(each.runs.size()),
                  test::cook_bytes(mesh, each, CodecId::kWide8), 1) &&
            good;
+    good = write(folder / "tree", "user-data-" + std::to_string(each.runs.size()),
+                 test::cook_bytes(mesh, each.runs, CodecId::kWide8), 1) &&
+           good;
   }
   return good;
 }

@@ -15,6 +15,7 @@ void run(Bytes input) {
     check(any);
     if (closest.ok() && closest.has_value()) {
       static_cast<void>(tree.material_name(tree.material(closest->face)));
+      static_cast<void>(tree.user_data(closest->face));
     }
     // Nothing is missed: both know whether there is a hit.
     if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {

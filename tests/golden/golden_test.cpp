@@ -24,6 +24,7 @@ struct Kind {
   GeometryId geometry;
   std::optional<double> active_edges = std::nullopt;
   bool materials = false;
+  bool user_data = false;
 };
 
 std::vector<Kind> kinds() {
@@ -35,6 +36,8 @@ std::vector<Kind> kinds() {
   kinds.push_back({"wide8-grid", CodecId::kWide8, GeometryId::kGrid});
   kinds.push_back({"wide8-edges", CodecId::kWide8, GeometryId::kExact, 20.0});
   kinds.push_back({"wide8-materials", CodecId::kWide8, GeometryId::kExact, std::nullopt, true});
+  kinds.push_back(
+      {"wide8-user-data", CodecId::kWide8, GeometryId::kExact, std::nullopt, false, true});
   return kinds;
 }
 
@@ -56,6 +59,7 @@ std::vector<std::byte> golden_bytes(const Kind& kind) {
 // The wide codecs get a scene of more than one leaf: the same one, with more faces beside it.
 std::string scene_of(const Kind& kind) {
   if (kind.materials) return "scene-materials.obj";
+  if (kind.user_data) return "scene-user-data.ply";
   return is_wide(kind.codec) ? "scene-wide.obj" : "scene.obj";
 }
 
@@ -66,6 +70,7 @@ TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
   ASSERT_FALSE(golden.empty()) << "no golden file";
   cooker::ImportOptions import;
   import.materials = GetParam().materials;
+  if (GetParam().user_data) import.user_data = "zone";
   Result<cooker::Imported> imported = cooker::import_mesh(kFolder / scene_of(GetParam()), import);
   ASSERT_TRUE(imported.ok()) << imported.error().message();
   imported->mesh.name = "scene";
@@ -76,6 +81,8 @@ TEST_P(Golden, CookingGivesTheSameBytesAsEver) {
   const std::vector<std::byte> cooked =
       GetParam().materials
           ? test::cook_bytes(imported->mesh, imported->materials, GetParam().codec, cook)
+      : GetParam().user_data
+          ? test::cook_bytes(imported->mesh, imported->user_data, GetParam().codec, cook)
           : test::cook_bytes(imported->mesh, GetParam().codec, cook);
   ASSERT_EQ(cooked.size(), golden.size());
   for (std::size_t i = 0; i < golden.size(); ++i) ASSERT_EQ(cooked[i], golden[i]) << "byte " << i;
@@ -102,10 +109,13 @@ TEST_P(Golden, FilesOfEveryVersionOpenAndAnswer) {
   EXPECT_EQ(down->face.id, 0u);
   EXPECT_EQ(down->t, 3);
   EXPECT_EQ(tree->material_name(tree->material(down->face)), GetParam().materials ? "stone" : "");
+  const bool has_user_data = GetParam().user_data;
+  EXPECT_EQ(tree->user_data(down->face), has_user_data ? std::optional(7u) : std::nullopt);
   // The quad and a piece of the pentagon share the plane: the smaller face id answers.
   const auto shared = closest_hit(*tree, {{4.5, 0.5, 3}, {0, 0, -1}});
   ASSERT_TRUE(shared.ok() && shared.has_value());
   EXPECT_EQ(shared->face.id, 1u);
+  EXPECT_EQ(tree->user_data(shared->face), has_user_data ? std::optional(1000u) : std::nullopt);
   EXPECT_EQ(shared->t, 2.5);
   const auto closest = closest_point(*tree, {0.4375, 9, 1});
   ASSERT_TRUE(closest.ok() && closest.has_value());

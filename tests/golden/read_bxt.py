@@ -16,6 +16,7 @@ import xxhash
 NO_OWNER = 0xFFFFFFFF
 NODES, VERTICES, CORNERS, FACE_IDS, NAMES, DUPLICATES, ACTIVE_EDGES = 2, 3, 4, 5, 7, 19, 20
 MATERIALS, MATERIAL_RUNS, FACE_MATERIALS = 15, 16, 17
+USER_DATA_RUNS, FACE_USER_DATA = 22, 23
 SCENE, INSTANCES, POSES, INSTANCE_EDGES = 10, 12, 13, 21
 EMPTY, LEAF, SUBTREE = 0, 1, 2
 EXTERNAL, ARRAYS, GRID, EXACT = 1, 2, 3, 4
@@ -435,6 +436,8 @@ class Tree:
         self.material_runs = file.section(MATERIAL_RUNS, index)
         self.face_materials = file.section(FACE_MATERIALS, index)
         self.material_names = material_names(file)
+        self.user_data_runs = file.section(USER_DATA_RUNS, index)
+        self.face_user_data = file.section(FACE_USER_DATA, index)
         self.scalar = "d" if self.flags & 2 else "f"
         if self.geometry == EXTERNAL:
             expect(not self.vertices and not self.corners, "no arrays")
@@ -572,29 +575,39 @@ class Tree:
     def materials(self):
         """The name of the material of each face (section 11.1)."""
         names = self.material_names
-        expect(not self.material_runs or not self.face_materials, "runs or faces have materials")
-        if self.face_materials:
-            width = 1 if len(names) <= 256 else 2 if len(names) <= 65536 else 4
-            expect(len(self.face_materials) == width * self.face_count, "size of face_materials")
-            numbers = [int.from_bytes(self.face_materials[i:i + width], "little")
-                       for i in range(0, len(self.face_materials), width)]
-            expect(all(number < len(names) for number in numbers), "the material of a face")
-            return [names[number] for number in numbers]
-        expect(len(self.material_runs) % 8 == 0, "size of material_runs")
-        runs = list(struct.iter_unpack("<II", self.material_runs))
+        width = 1 if len(names) <= 256 else 2 if len(names) <= 65536 else 4
+        numbers = self.face_numbers("material", self.material_runs, self.face_materials, [width])
+        expect(all(number is None or number < len(names) for number in numbers),
+               "the material of a face")
+        return [None if number is None else names[number] for number in numbers]
+
+    def user_data(self):
+        """The user data of each face (section 8.4)."""
+        return self.face_numbers("user data", self.user_data_runs, self.face_user_data, [1, 2, 4])
+
+    def face_numbers(self, what, runs, faces, widths):
+        """The number of each face, by runs of source faces or by face."""
+        expect(not runs or not faces, "runs or faces have " + what)
+        if faces:
+            width = len(faces) // self.face_count
+            expect(width in widths and len(faces) == width * self.face_count,
+                   "size of %s of faces" % what)
+            return [int.from_bytes(faces[i:i + width], "little")
+                    for i in range(0, len(faces), width)]
+        expect(len(runs) % 8 == 0, "size of runs of " + what)
+        runs = list(struct.iter_unpack("<II", runs))
         expect(len(runs) <= self.face_count, "a face for each run")
-        for i, (first, number) in enumerate(runs):
+        for i, (first, _) in enumerate(runs):
             expect(first > runs[i - 1][0] if i else first == 0, "runs ascend from face 0")
-            expect(number < len(names), "the material of a run")
         found = []
         for face in range(self.face_count):
             known = self.face_id(face)
             if len(runs) == 1:
-                found.append(names[runs[0][1]])
+                found.append(runs[0][1])
             elif not runs or known is None:
                 found.append(None)
             else:
-                found.append(names[[number for first, number in runs if first <= known][-1]])
+                found.append([number for first, number in runs if first <= known][-1])
         return found
 
     def face_id(self, face):
@@ -670,7 +683,8 @@ class Tree:
                 "duplicates": self.duplicate_count, "triangles": self.triangle_count,
                 "nodes": self.node_count, "depth": self.depth,
                 "face_ids": [found["faces"][face] for face in sorted(found["faces"])],
-                "active_edges": self.active_edges(), "materials": self.materials()}
+                "active_edges": self.active_edges(), "materials": self.materials(),
+                "user_data": self.user_data()}
 
 
 class Placed:

@@ -73,6 +73,30 @@ for mesh in runs turns; do
   done
 done
 
+# User data of faces is that of the source, by runs or by face, in as few bytes as hold it.
+for zones in 'int(f / 100) % 7' 'f % 3' 'f * 99 % 60000' 'f * 999999 % 4294967296' '-1 - f % 200'; do
+  awk -v OFS=' ' '/^v / { vertices[n++] = $2 " " $3 " " $4 } /^f / { faces[m++] = $2 - 1 " " $3 - 1 " " $4 - 1 }
+    END {
+      print "ply\nformat ascii 1.0\nelement vertex", n "\nproperty float x\nproperty float y\nproperty float z"
+      print "element face", m "\nproperty list uchar int vertex_indices\nproperty int zone\nend_header"
+      for (i = 0; i < n; ++i) print vertices[i]
+      for (f = 0; f < m; ++f) printf "3 %s %.0f\n", faces[f], '"$zones"'
+    }' "$work/triangles.obj" >"$work/zones.ply"
+  awk '/^3 / && NF == 5 { printf "%.0f\n", $5 < 0 ? $5 + 4294967296 : $5 }' "$work/zones.ply" >"$work/wanted"
+  sort "$work/wanted" >"$work/all_wanted"
+  for options in "--codec wide8 --exact" "--codec wide4 --no-face-ids" "--codec dedup"; do
+    # shellcheck disable=SC2086 # several words
+    "$boxtree" cook "$work/zones.ply" -o "$work/mesh.bxt" --user-data zone $options -q
+    read_bxt "$work/mesh.bxt" >"$work/theirs" || fail "$zones, $options, user data"
+    jq -r '.trees[].user_data[]' "$work/theirs" | sort >"$work/found"
+    cmp "$work/found" "$work/all_wanted" || fail "$zones, $options: other user data"
+    if [ "${options##*--}" != no-face-ids ]; then
+      jq -r '.trees[] | [.face_ids, .user_data] | transpose | sort[] | .[1]' "$work/theirs" >"$work/found"
+      cmp "$work/found" "$work/wanted" || fail "$zones, $options: user data of other faces"
+    fi
+  done
+done
+
 # Tiles that meet: one mesh in four places, one of them turned and mirrored, on a grid and not.
 awk 'BEGIN {
   for (y = 0; y <= 4; ++y) for (x = 0; x <= 4; ++x) print "v", x - 2, y - 2, 0

@@ -69,8 +69,8 @@ Json faces_of(const SourceMesh& mesh) {
 // First face id and name of each run of one material.
 Json materials_of(const SourceScene& scene) {
   Json runs = Json::array();
-  for (const MaterialRun& run : scene.meshes.at(0).materials) {
-    runs.push_back({run.first_face, hex_of(scene.materials.at(run.material))});
+  for (const FaceRun& run : scene.meshes.at(0).materials) {
+    runs.push_back({run.first_face, hex_of(scene.materials.at(run.number))});
   }
   return runs;
 }

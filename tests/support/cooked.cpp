@@ -20,19 +20,35 @@ std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
   return cooker::serialize(std::span(&cooked, 1));
 }
 
-std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
-                                  const cooker::FaceMaterials& materials, CodecId codec,
-                                  cooker::CookOptions options) {
+namespace {
+
+std::vector<std::byte> cook_mesh_bytes(cooker::SceneMesh mesh, std::vector<std::string> materials,
+                                       CodecId codec, cooker::CookOptions options) {
   cooker::CookInput input;
   input.has_top_level = false;
   input.imports.emplace_back();
-  input.scene.meshes.push_back({mesh, {}, materials.runs});
-  input.scene.materials = materials.names;
+  input.scene.meshes.push_back(std::move(mesh));
+  input.scene.materials = std::move(materials);
   options.codec = codec;
   options.cook_record = false;
-  options.materials = true;
   const cooker::CookedFile cooked = require(cooker::cook(std::move(input), {}, options));
   return require(cooker::serialize(cooked.parts()));
+}
+
+}  // namespace
+
+std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
+                                  const std::vector<FaceRun>& user_data, CodecId codec,
+                                  cooker::CookOptions options) {
+  return cook_mesh_bytes({mesh, {}, {}, user_data}, {}, codec, std::move(options));
+}
+
+std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
+                                  const cooker::FaceMaterials& materials, CodecId codec,
+                                  cooker::CookOptions options) {
+  options.materials = true;
+  return cook_mesh_bytes({mesh, {}, materials.runs, {}}, materials.names, codec,
+                         std::move(options));
 }
 
 CookedTree cook_tree(const cooker::SourceMesh& mesh, CodecId codec,

@@ -21,6 +21,11 @@ namespace boxtree::test {
 [[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh, CodecId codec,
                                                 const cooker::CookOptions& options = {});
 
+/// The bytes of a file with one tree and the user data of its faces, by runs as in Imported.
+[[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
+                                                const std::vector<FaceRun>& user_data,
+                                                CodecId codec, cooker::CookOptions options = {});
+
 /// The bytes of a file with one tree and the materials of its faces.
 [[nodiscard]] std::vector<std::byte> cook_bytes(const cooker::SourceMesh& mesh,
                                                 const cooker::FaceMaterials& materials,

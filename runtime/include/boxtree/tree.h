@@ -79,6 +79,8 @@ struct BindOptions {
   /// Refuse a tree none of whose faces has a material [default false] rather than answer
   /// kNoMaterial later.
   bool require_materials = false;
+  /// Refuse a tree whose faces have no user data [default false] rather than answer nothing later.
+  bool require_user_data = false;
 };
 
 /// One tree. Points into the bytes of its File and, with external geometry, into the application's
@@ -127,6 +129,11 @@ class BOXTREE_API Tree {
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
   /// How many materials its file has, numbered from 0: those of all its trees.
   [[nodiscard]] std::uint32_t material_count() const noexcept;
+  /// Whether numbers of the application's own are stored of its faces (cook --user-data).
+  [[nodiscard]] bool has_user_data() const noexcept;
+  /// The number of a face that an answer names; nothing without any. A negative number of the
+  /// source is the same 32 bits in two's complement.
+  [[nodiscard]] std::optional<std::uint32_t> user_data(const FaceRef& face) const noexcept;
   /// A box around all faces, in object space, rounded outward. Empty for an empty tree.
   [[nodiscard]] Eigen::AlignedBox3d bounds() const noexcept;
 
@@ -154,7 +161,7 @@ class BOXTREE_API Tree {
   explicit Tree(const BoundTree& bound) noexcept;
 
   // A BoundTree, whose definition no application needs to compile.
-  static constexpr std::size_t kBytes = 768;
+  static constexpr std::size_t kBytes = 784;
   alignas(16) std::byte storage_[kBytes];
 };
 

@@ -19,9 +19,9 @@ namespace {
 
 using Runs = std::vector<std::array<std::uint32_t, 2>>;
 
-Runs runs_of(const std::vector<MaterialRun>& materials) {
+Runs runs_of(const std::vector<FaceRun>& materials) {
   Runs runs;
-  for (const MaterialRun& run : materials) runs.push_back({run.first_face, run.material});
+  for (const FaceRun& run : materials) runs.push_back({run.first_face, run.number});
   return runs;
 }
 
@@ -103,9 +103,9 @@ class FbxMaterials : public ImportTest {
     std::uint32_t first = 0;
     for (const SceneInstance& instance : scene.instances) {
       const SceneMesh& mesh = scene.meshes[instance.mesh];
-      for (const MaterialRun& run : mesh.materials) {
-        const bool differs = runs.empty() || runs.back()[1] != run.material;
-        if (differs) runs.push_back({first + run.first_face, run.material});
+      for (const FaceRun& run : mesh.materials) {
+        const bool differs = runs.empty() || runs.back()[1] != run.number;
+        if (differs) runs.push_back({first + run.first_face, run.number});
       }
       first += mesh.source_faces;
     }

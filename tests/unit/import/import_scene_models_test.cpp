@@ -29,15 +29,15 @@ void expect_scene(const SourceScene& scene) {
     EXPECT_LT(mesh.mesh.face_id(mesh.mesh.faces.size() - 1), mesh.source_faces);
     EXPECT_EQ(mesh.materials.empty(), scene.materials.empty());
     for (std::size_t k = 0; k < mesh.materials.size(); ++k) {
-      const MaterialRun& run = mesh.materials[k];
-      ASSERT_LT(run.material, scene.materials.size());
-      used[run.material] = true;
+      const FaceRun& run = mesh.materials[k];
+      ASSERT_LT(run.number, scene.materials.size());
+      used[run.number] = true;
       EXPECT_LT(run.first_face, mesh.source_faces);
       if (k == 0) {
         EXPECT_EQ(run.first_face, 0u);
       } else {
         EXPECT_GT(run.first_face, mesh.materials[k - 1].first_face);
-        EXPECT_NE(run.material, mesh.materials[k - 1].material);
+        EXPECT_NE(run.number, mesh.materials[k - 1].number);
       }
     }
   }

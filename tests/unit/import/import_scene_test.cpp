@@ -58,12 +58,12 @@ class ImportSceneTest : public ImportTest {
   }
 
   // The name of each face's material.
-  static void add_materials(const std::vector<MaterialRun>& runs, std::uint32_t faces,
+  static void add_materials(const std::vector<FaceRun>& runs, std::uint32_t faces,
                             const std::vector<std::string>& names, std::vector<std::string>& out) {
     std::size_t run = 0;
     for (std::uint32_t face = 0; face < faces; ++face) {
       if (run + 1 < runs.size() && runs[run + 1].first_face == face) ++run;
-      out.push_back(runs.empty() ? "" : names[runs[run].material]);
+      out.push_back(runs.empty() ? "" : names[runs[run].number]);
     }
   }
 };
@@ -76,7 +76,7 @@ Rows rows_of(const Pose& pose) {
 
 Runs runs_of(const SceneMesh& mesh) {
   Runs runs;
-  for (const MaterialRun& run : mesh.materials) runs.push_back({run.first_face, run.material});
+  for (const FaceRun& run : mesh.materials) runs.push_back({run.first_face, run.number});
   return runs;
 }
 

@@ -201,10 +201,10 @@ TEST_F(TextFormatTest, FacesBeforeTheFirstMaterialHaveNone) {
   const Result<SourceScene> scene = import_scene(path);
   ASSERT_TRUE(scene.ok()) << scene.error().detail;
   ASSERT_EQ(scene->meshes.size(), 1u);
-  const std::vector<MaterialRun>& runs = scene->meshes[0].materials;
+  const std::vector<FaceRun>& runs = scene->meshes[0].materials;
   ASSERT_EQ(runs.size(), 2u);
-  EXPECT_NE(scene->materials[runs[0].material], "red");
-  EXPECT_EQ(scene->materials[runs[1].material], "red");
+  EXPECT_NE(scene->materials[runs[0].number], "red");
+  EXPECT_EQ(scene->materials[runs[1].number], "red");
 }
 
 TEST_F(TextFormatTest, NumbersOfTextStlMayHaveAnyDigits) {

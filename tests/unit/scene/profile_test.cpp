@@ -297,6 +297,8 @@ constexpr ProfileFault kRanges[] = {
     {"[scene]\ntolerance = nan\n", "scene.toml:2: tolerance: expected a number above 0, found nan"},
     {"[scene]\nactive_edges = 91\n",
      "scene.toml:2: active_edges: expected degrees from 0 to 90, found 91"},
+    {"[scene]\nuser_data = 3\n",
+     "scene.toml:2: user_data: expected a text that is not empty, found 3"},
     {"[scene]\nactive_edges = true\n",
      "scene.toml:2: active_edges: expected degrees from 0 to 90, found true"},
     {"[scene]\nlargest_scale = -1\n",

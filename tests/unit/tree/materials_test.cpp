@@ -14,11 +14,13 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/proof/proof.h"
 #include "cooker/shell/cook_job.h"
+#include "format/face_numbers.h"
 #include "format/scene_record.h"
 #include "runtime/file/open_file.h"
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/require.h"
+#include "tests/support/source_faces.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree {
@@ -37,7 +39,7 @@ FaceMaterials random_materials(const SourceMesh& mesh, std::uint32_t count, doub
   for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
     if (face > 0 && uniform(random) > 1 / length) continue;
     const auto material = static_cast<std::uint32_t>(random() % count);
-    const bool differs = materials.runs.empty() || materials.runs.back().material != material;
+    const bool differs = materials.runs.empty() || materials.runs.back().number != material;
     if (differs) materials.runs.push_back({face, material});
   }
   return materials;
@@ -45,45 +47,16 @@ FaceMaterials random_materials(const SourceMesh& mesh, std::uint32_t count, doub
 
 std::string material_of(const FaceMaterials& materials, std::uint32_t id) {
   std::string name;
-  for (const MaterialRun& run : materials.runs) {
-    if (run.first_face <= id) name = materials.names[run.material];
+  for (const FaceRun& run : materials.runs) {
+    if (run.first_face <= id) name = materials.names[run.number];
   }
   return name;
 }
 
-// Corners, whichever comes first.
-using Key = std::array<double, 9>;
-Key key_of(std::array<Eigen::Vector3d, 3> corners) {
-  std::sort(corners.begin(), corners.end(), [](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
-  });
-  Key key;
-  for (std::size_t i = 0; i < 9; ++i) key[i] = corners[i / 3][static_cast<Eigen::Index>(i % 3)];
-  return key;
-}
-
-// Of each face of the tree, told apart by its corners.
 void expect_materials(const SourceMesh& mesh, const FaceMaterials& materials, const Tree& tree) {
-  std::map<Key, std::uint32_t> faces;
-  for (std::uint32_t face = 0; face < mesh.faces.size(); ++face) {
-    const auto corner = [&](std::size_t i) { return mesh.positions[mesh.faces[face].corner[i]]; };
-    faces[key_of({corner(0), corner(1), corner(2)})] = face;
-  }
-  ASSERT_EQ(faces.size(), mesh.faces.size());
-  std::uint32_t compared = 0;
-  static_cast<void>(require(overlap_box(tree, tree.bounds(), [&](const FaceRef& face) {
-    const Triangle triangle = require(tree.triangle(face));
-    const auto known =
-        faces.find(key_of({triangle.corner[0], triangle.corner[1], triangle.corner[2]}));
-    if (known == faces.end()) {
-      ADD_FAILURE() << "a face of no source";
-      return false;
-    }
-    EXPECT_EQ(tree.material_name(tree.material(face)), material_of(materials, known->second));
-    ++compared;
-    return true;
-  })));
-  EXPECT_EQ(compared, tree.face_count());
+  test::for_each_source_face(mesh, tree, [&](const FaceRef& face, std::uint32_t source) {
+    EXPECT_EQ(tree.material_name(tree.material(face)), material_of(materials, source));
+  });
 }
 
 std::size_t section_bytes(const File& file, SectionKind kind) {
@@ -115,7 +88,7 @@ TEST_P(MaterialsOf, EachFaceAreThoseOfTheSource) {
     const Tree tree = require(Tree::bind(file, bind));
     expect_materials(mesh, materials, tree);
     // The smaller of both forms; runs take the ids of faces, but for a single one.
-    const std::size_t by_runs = materials.runs.size() * sizeof(MaterialRun);
+    const std::size_t by_runs = materials.runs.size() * sizeof(FaceRun);
     const bool has_ids = face_ids || geometry == GeometryId::kExternal;
     const bool is_by_runs = by_runs <= mesh.faces.size() && (has_ids || materials.runs.size() == 1);
     EXPECT_EQ(section_bytes(file, SectionKind::kMaterialRuns), is_by_runs ? by_runs : 0);
@@ -289,11 +262,11 @@ TEST(TreeMaterials, AsManyAsFacesAreExpected) {
   const cooker::Materials two_faces{{"a"}, {{{}, {0, 0}}}};
   const auto bytes = require(cooker::serialize({std::span(&tree, 1), {}, nullptr, &two_faces}));
   const File file = require(File::open(Bytes(bytes)));
-  EXPECT_EQ(Tree::bind(file).error().detail, "tree 0: section face_materials: 2 bytes, expected " +
-                                                 std::to_string(tree.face_count) +
-                                                 " for 1 materials");
+  EXPECT_EQ(Tree::bind(file).error().detail,
+            "tree 0: section face_materials: 2 bytes, its record states " +
+                std::to_string(tree.face_count));
   EXPECT_EQ(Tree::bind(file).code(), Errc::kSectionSize);
-  const cooker::Materials many_runs{{"a"}, {{std::vector<MaterialRun>(tree.face_count + 1), {}}}};
+  const cooker::Materials many_runs{{"a"}, {{std::vector<FaceRun>(tree.face_count + 1), {}}}};
   const auto more = require(cooker::serialize({std::span(&tree, 1), {}, nullptr, &many_runs}));
   const File with_more = require(File::open(Bytes(more)));
   EXPECT_EQ(Tree::bind(with_more).code(), Errc::kSectionSize);
@@ -312,15 +285,15 @@ TEST(TreeMaterials, VerifySaysWhatIsWrong) {
   const std::vector<std::byte> runs =
       test::cook_bytes(mesh, {{"a", "b"}, {{0, 0}, {9, 1}, {20, 0}}}, CodecId::kWide8);
   const auto run_after = [&](const auto& change) {
-    return finding_after<MaterialRun>(runs, SectionKind::kMaterialRuns,
-                                      [&](MaterialRun& run, std::uint32_t i, std::uint32_t) {
-                                        if (i == 1) change(run);
-                                      });
+    return finding_after<FaceRun>(runs, SectionKind::kMaterialRuns,
+                                  [&](FaceRun& run, std::uint32_t i, std::uint32_t) {
+                                    if (i == 1) change(run);
+                                  });
   };
-  EXPECT_EQ(run_after([](MaterialRun&) {}), "");
-  EXPECT_EQ(run_after([](MaterialRun& run) { run.first_face = 0; }), "materials of tree 0: run 1");
-  EXPECT_EQ(run_after([](MaterialRun& run) { run.first_face = 20; }), "materials of tree 0: run 2");
-  EXPECT_EQ(run_after([](MaterialRun& run) { run.material = 2; }), "materials of tree 0: run 1");
+  EXPECT_EQ(run_after([](FaceRun&) {}), "");
+  EXPECT_EQ(run_after([](FaceRun& run) { run.first_face = 0; }), "materials of tree 0: run 1");
+  EXPECT_EQ(run_after([](FaceRun& run) { run.first_face = 20; }), "materials of tree 0: run 2");
+  EXPECT_EQ(run_after([](FaceRun& run) { run.number = 2; }), "materials of tree 0: run 1");
   EXPECT_EQ(
       finding_after<MaterialRecord>(runs, SectionKind::kMaterials,
                                     [](MaterialRecord& record, std::uint32_t i, std::uint32_t) {

@@ -261,9 +261,10 @@ TEST_P(Trees, FaceIdsCanBeLeftOutAndRequested) {
   bind.require_face_ids = true;
   const Result<Tree> refused = Tree::bind(cooked.file, 0, bind);
   EXPECT_EQ(refused.code(), Errc::kPartLeftOut);
-  EXPECT_EQ(refused.error().detail,
-            "tree 0: face ids were left out when it was cooked: cook without --no-face-ids, or "
-            "face_ids = false of its profile");
+  EXPECT_EQ(
+      refused.error().detail,
+      "tree 0: it was cooked without face ids: with --no-face-ids, or face_ids = false of its "
+      "profile");
 }
 
 TEST_P(Trees, DoublesFarFromTheOriginKeepTheirDigits) {
