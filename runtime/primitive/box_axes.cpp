@@ -12,11 +12,10 @@
 namespace boxtree {
 namespace {
 
-// The axes are orthonormal to within 4 u. Let R be the largest coordinate of corners and box: one
-// of a corner in the frame is off by 8 u R and by twice what the corner is; the box reaches 16 u
-// R farther along a unit vector than its halves say; a projection and what is subtracted from it
-// round by 16 u R.
-constexpr double kError = 64 * kRoundoffF64;
+// Let R be the largest coordinate of corners and box. One of a corner in the frame is off by 6 u R
+// and by twice what the corner is. Axes are orthonormal to within 4 u, so that along a unit vector
+// the box ends 21 u R farther out than its halves say, or less. Projections round by 5 u R.
+constexpr double kError = 32 * kRoundoffF64;
 
 }  // namespace
 

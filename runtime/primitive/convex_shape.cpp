@@ -16,7 +16,7 @@
 namespace boxtree {
 
 Eigen::Vector3d ConvexShape::half_extents() const noexcept {
-  Eigen::Vector3d extent = Eigen::Vector3d::Constant(radius);
+  Eigen::Vector3d extent = Eigen::Vector3d::Constant(radius + error);
   for (std::uint32_t i = 0; i < axes; ++i) extent += half[i] * axis[i].cwiseAbs();
   return extent * (1 + 8 * kRoundoffF64);
 }
@@ -30,7 +30,7 @@ double ConvexShape::outer_radius() const noexcept {
       squared += half[i] * half[j] * std::abs(dot(axis[i], axis[j]));
     }
   }
-  return (radius + std::sqrt(squared)) * (1 + 16 * kRoundoffF64);
+  return (radius + std::sqrt(squared) + 2 * error) * (1 + 16 * kRoundoffF64);
 }
 
 namespace {

@@ -49,7 +49,7 @@ struct ConvexShape {
   std::uint32_t axes = 0;
   double radius = 0;
   const ConvexPoints* hull = nullptr;
-  double error = 0;  // by which a center may be off before it is rounded
+  double error = 0;  // by which a center may be off before it is rounded; bounds hold it
 
   /// Half the extent of its bounds, on every axis, not rounded down.
   [[nodiscard]] Eigen::Vector3d half_extents() const noexcept;

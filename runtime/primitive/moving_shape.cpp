@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "runtime/primitive/box_axes.h"
+#include "runtime/primitive/normal.h"
 #include "runtime/primitive/penetration.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
@@ -52,45 +53,60 @@ bool may_touch(const MovingShape& moving, const CoreDistance& at) noexcept {
 // ball by 4 u |v|_1 R, and sums of these by as much again.
 constexpr double kProjectionError = 64 * kRoundoffF64;
 
-// What the closest points at s say, found to within rounding: along the line between them the core
-// is `gap` away, or less than 0, by units of a vector by which the shape moves `speed` per unit of
-// s.
-struct Approach {
-  [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle,
-                             double at) noexcept
-      : s(at) {
+// What a direction from the core to the triangle shows: they are `gap` apart, or less than 0, and
+// the shape moves `speed` per unit of s, both in units of its length.
+struct Line {
+  Line(const MovingShape& moving, const Corners& corner, const Eigen::Vector3d& v) noexcept
+      : size((std::abs(v[0]) + std::abs(v[1])) + std::abs(v[2])),
+        length(std::sqrt(squared_length(v))),
+        speed(dot(v, moving.direction)) {
     const ConvexShape& shape = moving.shape;
-    const Corners corner = placed(moving, triangle, s);
-    points = closest_points(shape, corner);
-    const Eigen::Vector3d& v = points.between;
-    size = (std::abs(v[0]) + std::abs(v[1])) + std::abs(v[2]);
-    length = std::sqrt(squared_length(v));
     double largest = std::max(max_abs_of(corner), shape.radius);
     if (shape.axes != 0) {
       largest = std::max(largest, shape.half[0] * largest_magnitude(shape.axis[0]));
     }
     const auto [low, high, half] = project(v, shape, corner);
     gap = low - half - shape.radius * length - size * (kProjectionError * largest + moving.doubt);
-    speed = dot(v, moving.direction);
   }
 
-  [[nodiscard]] bool has_direction() const noexcept { return size >= kShortestDirection; }
+  [[nodiscard]] bool is_direction() const noexcept { return size >= kShortestDirection; }
+  [[nodiscard]] bool shows_gap() const noexcept { return is_direction() && gap > 0; }
   [[nodiscard]] double speed_error() const noexcept { return 4 * kRoundoffF64 * size; }
+
+  double size;  // the sum of its magnitudes
+  double length;
+  double speed;
+  double gap;
+};
+
+// The closest points at s, found to within rounding.
+struct Approach {
+  [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle,
+                             double at) noexcept
+      : s(at),
+        corner(placed(moving, triangle, at)),
+        points(closest_points(moving.shape, corner)),
+        line(moving, corner, points.between) {}
 
   // Whether shape and triangle may touch at `other`, near s, as far as these points tell.
   [[nodiscard]] bool may_touch(const MovingShape& moving, double other) const noexcept {
     const double there = std::sqrt(squared_length(points.between + (s - other) * moving.direction));
-    const double error = (points.upper - length) + 8 * kRoundoffF64 * (length + there);
+    const double error = (points.upper - line.length) + 8 * kRoundoffF64 * (line.length + there);
     return there + error <= moving.shape.radius + 2 * moving.doubt;
   }
 
   double s;
+  Corners corner;
   ClosestPoints points;
-  double size;  // the sum of magnitudes of the line between them
-  double length;
-  double gap;
-  double speed;
+  Line line;  // between them
 };
+
+// Along the normal of the triangle, from the core's side.
+[[gnu::noinline]] Line line_of_face(const MovingShape& moving, const Corners& corner) noexcept {
+  const Eigen::Vector3d normal = unit_normal({corner});
+  const bool is_behind = dot(normal, corner[0]) < 0;
+  return {moving, corner, is_behind ? Eigen::Vector3d(-normal) : normal};
+}
 
 // Where an approach has led: to `s`, before which nothing touches, and whether they may touch
 // there.
@@ -111,11 +127,12 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
           : estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
   if (estimate < kInfinity) {
     const Approach look(moving, triangle, from + estimate);
-    const double slowest = look.speed - look.speed_error();
-    if (look.has_direction() && slowest > 0) {
+    const Line& line = look.line;
+    const double slowest = line.speed - line.speed_error();
+    if (line.is_direction() && slowest > 0) {
       // The gap was larger before, if it is one; else they do not touch before it was.
-      const double by = look.gap > 0 ? look.gap / (look.speed + look.speed_error()) * kShorten
-                                     : look.gap / slowest * (1 + 8 * kRoundoffF64);
+      const double by = line.gap > 0 ? line.gap / (line.speed + line.speed_error()) * kShorten
+                                     : line.gap / slowest * (1 + 8 * kRoundoffF64);
       s = std::max(from, look.s + by);
       if (s > to) return std::nullopt;
       if (look.may_touch(moving, s)) return Approached{s, true};
@@ -124,10 +141,12 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   for (int step = 0; step < kMostSteps; ++step) {
     const Approach look(moving, triangle, s);
     if (look.points.upper <= moving.shape.radius + 2 * moving.doubt) return Approached{s, true};
-    if (!look.has_direction() || !(look.gap > 0)) break;
-    const double speed = look.speed + look.speed_error();
+    // Rounding tilts a line that is short beside the triangle, so that corners cross the gap.
+    const Line line = look.line.shows_gap() ? look.line : line_of_face(moving, look.corner);
+    if (!line.shows_gap()) break;
+    const double speed = line.speed + line.speed_error();
     if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
-    const double next = s + look.gap / speed * kShorten;
+    const double next = s + line.gap / speed * kShorten;
     if (!(next > s)) break;
     s = next;
     if (s > to) return std::nullopt;

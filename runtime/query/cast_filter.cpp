@@ -8,8 +8,9 @@
 namespace boxtree {
 
 CastFilter::CastFilter(const CastQuery& query) noexcept
-    : RayBoxFilter(query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
-                   rounding(query.near) + given_away(query.origin_max_abs, query.near)) {
+    : RayBoxFilter(
+          query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
+          rounding(query.near) + given_away(query.origin_max_abs, query.near) + query.shape.error) {
   widen(query.extent);
   const ConvexShape& shape = query.shape;
   radius = float_above(shape.radius);

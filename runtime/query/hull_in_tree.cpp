@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 
+#include "runtime/primitive/expansion.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/vector3.h"
 
@@ -36,12 +37,18 @@ HullInTree::HullInTree(const Frame& frame, const ConvexHull& hull) noexcept {
   const auto rotated = [&](const Eigen::Vector3d& v) -> Eigen::Vector3d {
     return (v[0] * axis[0] + v[1] * axis[1]) + v[2] * axis[2];
   };
-  shape_.center = hull.position + rotated(middle);
+  const Eigen::Vector3d to_middle = rotated(middle);
+  Eigen::Vector3d rest;  // what the sum rounds
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Rounded sum = two_sum(hull.position[k], to_middle[k]);
+    shape_.center[k] = sum.value;
+    rest[k] = sum.error;
+  }
   const double scale = frame.inverse_scale;
   double size = 0;
   for (std::size_t i = 0; i < hull.points.size() && is_finite; ++i) {
     const Eigen::Vector3d from_middle = hull.points[i] - middle;
-    points_[i] = scale * rotated(from_middle);
+    points_[i] = scale * (rotated(from_middle) + rest);
     for (std::size_t k = 0; k < 3; ++k) {
       double& half = shape_.shape.half[k];
       half = std::max(half, std::abs(scale * from_middle[static_cast<Eigen::Index>(k)]));
@@ -56,7 +63,8 @@ HullInTree::HullInTree(const Frame& frame, const ConvexHull& hull) noexcept {
   shape_.shape.error =
       32 * kRoundoffF64 * (hull.rotation.vec().isZero(0) ? 0.0 : scale * largest_magnitude(middle));
   for (double& half : shape_.shape.half) {
-    half = half * (1 + 32 * kRoundoffF64) + 32 * kRoundoffF64 * size + shape_.shape.error;
+    half = half * (1 + 32 * kRoundoffF64) + 32 * kRoundoffF64 * size + shape_.shape.error +
+           2 * scale * largest_magnitude(rest);
   }
   points_of_shape_.point = {points_.data(), hull.points.size()};
   shape_.shape.hull = &points_of_shape_;

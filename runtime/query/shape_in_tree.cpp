@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "runtime/primitive/expansion.h"
 #include "runtime/primitive/vector3.h"
 
 namespace boxtree {
@@ -41,7 +42,11 @@ ShapeInTree in_tree(const Frame& frame, const Capsule& capsule) noexcept {
   if (!is_within_range(end)) out.invalid = "end";
   if (!is_unsigned(capsule.radius)) out.invalid = "radius";
   if (out.invalid != nullptr) return out;
-  out.center = capsule.start / 2 + capsule.end / 2;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Rounded middle = two_sum(capsule.start[k] / 2, capsule.end[k] / 2);
+    out.center[k] = middle.value;
+    out.shape.error = std::max(out.shape.error, std::abs(middle.error) * frame.inverse_scale);
+  }
   out.shape.axes = 1;
   out.shape.axis[0] = end / 2 - start / 2;
   out.shape.half[0] = 1;

@@ -258,6 +258,48 @@ TEST(CollideWithoutSize, HasANormalAndNoDepth) {
   }
 }
 
+// Its radius is less than what the middle of its ends rounds.
+TEST(CollideFarFromTheOrigin, ACapsuleWhoseMiddleRoundsMissesNothing) {
+  SourceMesh mesh;
+  mesh.name = "far face";
+  mesh.positions.precision = cooker::Precision::kF64;
+  mesh.positions.f64 = {-0x1.48f29c392ccc5p+22, 0x1.a7708179f04b1p+24, -0x1.e5b541d413e63p+22,
+                        -0x1.48f2986fc4ab8p+22, 0x1.a7708230a4023p+24, -0x1.e5b5441b514e5p+22,
+                        -0x1.48f298b9d2e79p+22, 0x1.a77081aaff03fp+24, -0x1.e5b53df24d679p+22};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const Eigen::Vector3d start(-0x1.48f29b48ff065p+22, 0x1.a77081a03f374p+24,
+                              -0x1.e5b5420b7ebffp+22);
+  Eigen::Vector3d end = start;
+  end.x() = std::nextafter(end.x(), 0);
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    if (encoding.geometry == GeometryId::kGrid) continue;
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    std::size_t count = 0;
+    ASSERT_TRUE(collide(cooked.tree, Capsule{start, end, 0x1.2ec4c9a61afd6p-30},
+                        [&](const Contact&) { return ++count > 0; }));
+    EXPECT_EQ(count, 1u);
+  }
+}
+
+// A face 2^26 times as long as it is wide, along whose plane a point moves, 2^-40 of its length
+// away: the line to the closest point is tilted by rounding and shows no gap.
+TEST(CastBesideANeedle, OfAPointInParallelTouchesNothing) {
+  SourceMesh mesh;
+  mesh.name = "needle";
+  mesh.positions.f32 = {0x1.57p-141f,     -0x1.fc920ap+94f, 0x1.a57ab8p+114f,
+                        -0x1.ae3398p+88f, 0x1.ea6da2p+33f,  0x1.03132p-26f,
+                        0x1.f2103cp-5f,   0x1.dd36fap-116f, 0x1.9ede32p+30f};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const Sphere point{{-0x1.1f1953592464ep+88, -0x1.1b07da01abeffp+93, 0x1.d51fc6e45f31ap+112}, 0};
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    if (encoding.geometry == GeometryId::kGrid) continue;
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    const auto hit = cast_closest(cooked.tree, point, {{0x1.151499b04bc78p+114, 0, 0}, 1});
+    ASSERT_TRUE(hit.ok());
+    EXPECT_FALSE(hit.has_value());
+  }
+}
+
 TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   const auto contact = [](double x, const Eigen::Vector3d& normal, double depth) {
     Contact c;
