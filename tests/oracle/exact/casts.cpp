@@ -434,18 +434,6 @@ Shape draw_shape(Draw& d, Kinds kinds, const Eigen::Vector3d& at, double length)
   }
 }
 
-// Capsules are placed by their middles.
-bool is_middle_a_double(const Shape& shape) {
-  const auto* const capsule = std::get_if<Capsule>(&shape);
-  if (capsule == nullptr) return true;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const double a = capsule->start[k] / 2, b = capsule->end[k] / 2, middle = a + b;
-    const double rest = middle - a;
-    if ((a - (middle - rest)) + (b - rest) != 0) return false;
-  }
-  return true;
-}
-
 bool is_finite(const Shape& shape) {
   return std::visit(
       []<class S>(const S& held) {
@@ -487,7 +475,7 @@ std::optional<Drawn> draw_placed(Draw& d, Kinds kinds, const Group& group) {
   if (!(largest(to_tree(group.frame(), position.at)) <= 0x1p210)) return std::nullopt;
   const double length = draw_length(d, group, position);
   Drawn drawn{draw_shape(d, kinds, position.at, length), position.at};
-  if (!is_finite(drawn.shape) || !is_middle_a_double(drawn.shape)) return std::nullopt;
+  if (!is_finite(drawn.shape)) return std::nullopt;
   return drawn;
 }
 
