@@ -49,9 +49,9 @@ bool may_touch(const MovingShape& moving, const CoreDistance& at) noexcept {
 }
 
 // Let R be the largest coordinate of corners and shape, |v|_1 the sum of a direction's magnitudes.
-// Projections of corners are off by 3 u |v|_1 R, of a core with three axes by 16 u |v|_1 R, of a
-// ball by 4 u |v|_1 R, and sums of these by as much again.
-constexpr double kProjectionError = 64 * kRoundoffF64;
+// Projections of corners and of a hull's points are off by 3 u |v|_1 R, of a segment by 4 u |v|_1
+// R, of a ball by 4 u |v|_1 R, and their sums round by as much.
+constexpr double kProjectionError = 16 * kRoundoffF64;
 
 // What a direction from the core to the triangle shows: they are `gap` apart, or less than 0, and
 // the shape moves `speed` per unit of s, both in units of its length.
@@ -62,11 +62,16 @@ struct Line {
         speed(dot(v, moving.direction)) {
     const ConvexShape& shape = moving.shape;
     double largest = std::max(max_abs_of(corner), shape.radius);
-    if (shape.axes != 0) {
-      largest = std::max(largest, shape.half[0] * largest_magnitude(shape.axis[0]));
+    for (std::uint32_t i = 0; i < shape.axes; ++i) {
+      largest = std::max(largest, shape.half[i] * largest_magnitude(shape.axis[i]));
     }
-    const auto [low, high, half] = project(v, shape, corner);
-    gap = low - half - shape.radius * length - size * (kProjectionError * largest + moving.doubt);
+    const Projection on = project(v, shape, corner);
+    double end = on.half;
+    if (shape.hull != nullptr) {
+      end = -kInfinity;
+      for (const Eigen::Vector3d& point : shape.hull->point) end = std::max(end, dot(v, point));
+    }
+    gap = on.low - end - shape.radius * length - size * (kProjectionError * largest + moving.doubt);
   }
 
   [[nodiscard]] bool is_direction() const noexcept { return size >= kShortestDirection; }
@@ -101,8 +106,20 @@ struct Approach {
   Line line;  // between them
 };
 
-// Along the normal of the triangle, from the core's side.
-[[gnu::noinline]] Line line_of_face(const MovingShape& moving, const Corners& corner) noexcept {
+// The line between the closest points or, where rounding tilts it so that corners cross the gap, as
+// it does to one that is short beside a triangle: one orthogonal to the longest edge, or to the
+// face.
+[[gnu::noinline]] Line line_with_gap(const MovingShape& moving, const Corners& corner,
+                                     const Eigen::Vector3d& between) noexcept {
+  const Line line(moving, corner, between);
+  if (line.shows_gap()) return line;
+  const Corners edge = edges_of(corner);
+  Eigen::Vector3d longest = edge[0];
+  for (const Eigen::Vector3d& e : edge) {
+    if (squared_length(e) > squared_length(longest)) longest = e;
+  }
+  const Line across(moving, corner, orthogonal_to(between, longest, Eigen::Vector3d::Zero()));
+  if (across.shows_gap()) return across;
   const Eigen::Vector3d normal = unit_normal({corner});
   const bool is_behind = dot(normal, corner[0]) < 0;
   return {moving, corner, is_behind ? Eigen::Vector3d(-normal) : normal};
@@ -141,8 +158,7 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   for (int step = 0; step < kMostSteps; ++step) {
     const Approach look(moving, triangle, s);
     if (look.points.upper <= moving.shape.radius + 2 * moving.doubt) return Approached{s, true};
-    // Rounding tilts a line that is short beside the triangle, so that corners cross the gap.
-    const Line line = look.line.shows_gap() ? look.line : line_of_face(moving, look.corner);
+    const Line line = line_with_gap(moving, look.corner, look.points.between);
     if (!line.shows_gap()) break;
     const double speed = line.speed + line.speed_error();
     if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
@@ -166,7 +182,8 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
     s = quick->s;
   }
   for (int step = 0; step < kMostSteps; ++step) {
-    const CoreDistance at = core_distance(moving.shape, placed(moving, triangle, s));
+    const Corners corner = placed(moving, triangle, s);
+    const CoreDistance at = core_distance(moving.shape, corner);
     if (may_touch(moving, at)) return s;
     // Nothing comes nearer by more than it moves.
     double advance = (at.lower - reach) / length_above(moving.direction);
@@ -174,6 +191,10 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
       const double speed = speed_along(at.between, moving.direction);
       if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
       advance = std::max(advance, (at.along - reach) * at.length / speed);
+    } else if (const Line line = line_with_gap(moving, corner, at.between); line.shows_gap()) {
+      const double speed = line.speed + line.speed_error();
+      if (!(speed > 0)) return std::nullopt;
+      advance = std::max(advance, line.gap / speed);
     }
     const double next = s + advance * kShorten;
     if (!(next > s)) return s;

@@ -300,6 +300,27 @@ TEST(CastBesideANeedle, OfAPointInParallelTouchesNothing) {
   }
 }
 
+// It flies past nearly in parallel, at first six roundings of the face's size away from touching.
+TEST(CastBesideAFace, OfATinyCapsuleDoesNotTouchAtOnce) {
+  SourceMesh mesh;
+  mesh.name = "large face";
+  mesh.positions.precision = cooker::Precision::kF64;
+  mesh.positions.f64 = {0, 0, -0x1p+157, 0x1p+157, 0, 0x1p+156, 0, 0x1p+157, 0x1p+157};
+  mesh.faces = {{{0, 1, 2, cooker::kNoCorner}}};
+  const Capsule capsule{{0x1.7ab3231a06908p+152, 0x1.b819ac59024dap+156, 0x1.93b423fc76791p+156},
+                        {0x1.7ab32319fc93fp+152, 0x1.b819ac590221ap+156, 0x1.93b423fc76bd5p+156},
+                        0x1.b3c650a9d9313p+114};
+  const Eigen::Vector3d direction(0x1.7f8b31b6de90cp+155, -0x1.b819ac59024dap+156,
+                                  -0x1.284579b46f778p+157);
+  for (const test::Encoding& encoding : test::all_encodings()) {
+    if (encoding.geometry == GeometryId::kGrid) continue;
+    const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+    const auto hit = cast_closest(cooked.tree, capsule, {direction, 1});
+    ASSERT_TRUE(hit.has_value());
+    EXPECT_GT(hit->t_lower, 1e-3);
+  }
+}
+
 TEST(MergeContacts, NeighboursOfOnePointBecomeTheDeepest) {
   const auto contact = [](double x, const Eigen::Vector3d& normal, double depth) {
     Contact c;
