@@ -49,7 +49,7 @@ awk '!after_template && /^[A-Za-z[][^#;=]* [&*]?[a-z_]+\(/ && !/BOXTREE_API/ {pr
 [ ! -s "$work/unmarked" ] || fail "not marked with BOXTREE_API: $(cat "$work/unmarked")"
 marked=$(sed -nE 's/.*BOXTREE_API [^(]*[ &]([a-z_]+)\(.*/\1/p' "$work/headers" | sort -u)
 [ "$(wc -w <<<"$marked")" -gt 15 ] || fail "no functions to look for: $marked"
-for name in $marked; do grep -qx "boxtree::$name" "$work/names" || fail "$name is not exported"; done
+for name in $marked; do grep -qxE "boxtree::([A-Za-z]+::)?$name" "$work/names" || fail "$name is not exported"; done
 
 # Programs, by CMake and by pkg-config.
 "$boxtree" cook "$source/samples/meshes/level.obj" -o "$work/level.bxt" --codec packed-f32 -q
