@@ -19,6 +19,14 @@ constexpr double kError = 32 * kRoundoffF64;
 
 }  // namespace
 
+Eigen::Vector3d in_frame_of(const ConvexShape& box, const Eigen::Vector3d& v) noexcept {
+  return {dot(v, box.axis[0]), dot(v, box.axis[1]), dot(v, box.axis[2])};
+}
+
+Eigen::Vector3d from_frame_of(const ConvexShape& box, const Eigen::Vector3d& v) noexcept {
+  return v[0] * box.axis[0] + v[1] * box.axis[1] + v[2] * box.axis[2];
+}
+
 BoxAxes::BoxAxes(const ConvexShape& box, const Triangle& triangle, const Corners& corner) noexcept
     : box_(box), triangle_(triangle) {
   double size = max_abs_of(corner);
@@ -26,13 +34,9 @@ BoxAxes::BoxAxes(const ConvexShape& box, const Triangle& triangle, const Corners
   error_ = kError * size;
   const Corners edge = edges_of(triangle.corner);
   for (std::size_t i = 0; i < 3; ++i) {
-    corner_[i] = turned(corner[i]);
-    edge_[i] = turned(edge[i]);
+    corner_[i] = in_frame_of(box_, corner[i]);
+    edge_[i] = in_frame_of(box_, edge[i]);
   }
-}
-
-Eigen::Vector3d BoxAxes::turned(const Eigen::Vector3d& v) const noexcept {
-  return {dot(v, box_.axis[0]), dot(v, box_.axis[1]), dot(v, box_.axis[2])};
 }
 
 bool BoxAxes::get(std::uint32_t n, BoxAxis& axis) const noexcept {
@@ -42,7 +46,7 @@ bool BoxAxes::get(std::uint32_t n, BoxAxis& axis) const noexcept {
     along = Eigen::Vector3d::Unit(n);
   } else if (n == 3) {
     axis.is_more_to_come = false;
-    along = turned(unit_normal(triangle_));
+    along = in_frame_of(box_, unit_normal(triangle_));
     if (along.isZero(0)) return false;
   } else {
     const std::uint32_t k = (n - 4) % 3, i = (k + 1) % 3, j = (k + 2) % 3;

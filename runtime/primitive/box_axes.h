@@ -11,6 +11,12 @@
 
 namespace boxtree {
 
+/// A vector in the frame of a box, and back.
+[[nodiscard]] Eigen::Vector3d in_frame_of(const ConvexShape& box,
+                                          const Eigen::Vector3d& v) noexcept;
+[[nodiscard]] Eigen::Vector3d from_frame_of(const ConvexShape& box,
+                                            const Eigen::Vector3d& v) noexcept;
+
 /// A box, whose center is the origin, and a triangle along one of them.
 struct BoxAxis {
   Eigen::Vector3d along;  // of length 1, in the box's frame
@@ -26,12 +32,6 @@ class BoxAxes {
 
   /// How far projections are off, besides twice what the corners are.
   [[nodiscard]] double error() const noexcept { return error_; }
-
-  /// To the box's frame and back.
-  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& v) const noexcept;
-  [[nodiscard]] Eigen::Vector3d turned_back(const Eigen::Vector3d& v) const noexcept {
-    return v[0] * box_.axis[0] + v[1] * box_.axis[1] + v[2] * box_.axis[2];
-  }
 
   /// Calls visit(const BoxAxis&) -> bool, whether to go on: with the axes of the box, the normal of
   /// the triangle, and what is orthogonal to an axis and an edge.

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "runtime/primitive/box_axes.h"
 #include "runtime/primitive/closest_point.h"
 #include "runtime/primitive/rounding.h"
 #include "runtime/primitive/separation.h"
@@ -132,11 +133,7 @@ Eigen::Vector3d point_inside_box(const ConvexShape& box, double widened,
   std::array<Polygon, 2> polygons;
   Polygon* polygon = &polygons[0];
   Polygon* kept = &polygons[1];
-  for (std::size_t i = 0; i < corner.size(); ++i) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      (*polygon)[i][static_cast<Eigen::Index>(k)] = dot(box.axis[k], corner[i]);
-    }
-  }
+  for (std::size_t i = 0; i < corner.size(); ++i) (*polygon)[i] = in_frame_of(box, corner[i]);
   std::size_t count = 3;
   for (std::size_t k = 0; k < 3; ++k) {
     const auto axis = static_cast<Eigen::Index>(k);
@@ -164,8 +161,7 @@ Eigen::Vector3d point_inside_box(const ConvexShape& box, double widened,
   if (count == 0) return closest_point_on_triangle(Eigen::Vector3d::Zero(), {corner});
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (std::size_t i = 0; i < count; ++i) sum += (*polygon)[i];
-  const Eigen::Vector3d mean = sum / static_cast<double>(count);
-  return mean[0] * box.axis[0] + mean[1] * box.axis[1] + mean[2] * box.axis[2];
+  return from_frame_of(box, sum / static_cast<double>(count));
 }
 
 }  // namespace boxtree

@@ -76,7 +76,9 @@ struct Line {
 
   [[nodiscard]] bool is_direction() const noexcept { return size >= kShortestDirection; }
   [[nodiscard]] bool shows_gap() const noexcept { return is_direction() && gap > 0; }
-  [[nodiscard]] double speed_error() const noexcept { return 4 * kRoundoffF64 * size; }
+  // What `speed` may be, rounding included.
+  [[nodiscard]] double slowest() const noexcept { return speed - 4 * kRoundoffF64 * size; }
+  [[nodiscard]] double fastest() const noexcept { return speed + 4 * kRoundoffF64 * size; }
 
   double size;  // the sum of its magnitudes
   double length;
@@ -106,13 +108,10 @@ struct Approach {
   Line line;  // between them
 };
 
-// The line between the closest points or, where rounding tilts it so that corners cross the gap, as
-// it does to one that is short beside a triangle: one orthogonal to the longest edge, or to the
-// face.
-[[gnu::noinline]] Line line_with_gap(const MovingShape& moving, const Corners& corner,
-                                     const Eigen::Vector3d& between) noexcept {
-  const Line line(moving, corner, between);
-  if (line.shows_gap()) return line;
+// For where rounding tilts the line between the closest points so that corners cross the gap, as it
+// does to one that is short beside a triangle: one orthogonal to the longest edge, or to the face.
+[[gnu::noinline]] Line other_line(const MovingShape& moving, const Corners& corner,
+                                  const Eigen::Vector3d& between) noexcept {
   const Corners edge = edges_of(corner);
   Eigen::Vector3d longest = edge[0];
   for (const Eigen::Vector3d& e : edge) {
@@ -145,11 +144,10 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   if (estimate < kInfinity) {
     const Approach look(moving, triangle, from + estimate);
     const Line& line = look.line;
-    const double slowest = line.speed - line.speed_error();
-    if (line.is_direction() && slowest > 0) {
+    if (line.is_direction() && line.slowest() > 0) {
       // The gap was larger before, if it is one; else they do not touch before it was.
-      const double by = line.gap > 0 ? line.gap / (line.speed + line.speed_error()) * kShorten
-                                     : line.gap / slowest * (1 + 8 * kRoundoffF64);
+      const double by = line.gap > 0 ? line.gap / line.fastest() * kShorten
+                                     : line.gap / line.slowest() * (1 + 8 * kRoundoffF64);
       s = std::max(from, look.s + by);
       if (s > to) return std::nullopt;
       if (look.may_touch(moving, s)) return Approached{s, true};
@@ -158,11 +156,11 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
   for (int step = 0; step < kMostSteps; ++step) {
     const Approach look(moving, triangle, s);
     if (look.points.upper <= moving.shape.radius + 2 * moving.doubt) return Approached{s, true};
-    const Line line = line_with_gap(moving, look.corner, look.points.between);
+    const Line line =
+        look.line.shows_gap() ? look.line : other_line(moving, look.corner, look.points.between);
     if (!line.shows_gap()) break;
-    const double speed = line.speed + line.speed_error();
-    if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
-    const double next = s + line.gap / speed * kShorten;
+    if (!(line.fastest() > 0)) return std::nullopt;  // it moves away from the gap
+    const double next = s + line.gap / line.fastest() * kShorten;
     if (!(next > s)) break;
     s = next;
     if (s > to) return std::nullopt;
@@ -191,10 +189,9 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
       const double speed = speed_along(at.between, moving.direction);
       if (!(speed > 0)) return std::nullopt;  // it moves away from the gap
       advance = std::max(advance, (at.along - reach) * at.length / speed);
-    } else if (const Line line = line_with_gap(moving, corner, at.between); line.shows_gap()) {
-      const double speed = line.speed + line.speed_error();
-      if (!(speed > 0)) return std::nullopt;
-      advance = std::max(advance, line.gap / speed);
+    } else if (const Line line = other_line(moving, corner, at.between); line.shows_gap()) {
+      if (!(line.fastest() > 0)) return std::nullopt;
+      advance = std::max(advance, line.gap / line.fastest());
     }
     const double next = s + advance * kShorten;
     if (!(next > s)) return s;
@@ -208,9 +205,10 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
 class BoxOnItsWay {
  public:
   BoxOnItsWay(const MovingShape& moving, const Triangle& triangle, double at) noexcept
-      : axes_(moving.shape, triangle, placed(moving, triangle, at)),
+      : moving_(moving),
+        axes_(moving.shape, triangle, placed(moving, triangle, at)),
         error_(axes_.error() + 2 * moving.doubt),
-        direction_(axes_.turned(moving.direction)) {}
+        direction_(in_frame_of(moving.shape, moving.direction)) {}
 
   // Ends early where first_touch() is nothing.
   [[gnu::noinline]] void try_all(double from = 0, double to = kInfinity) noexcept {
@@ -227,7 +225,9 @@ class BoxOnItsWay {
   }
 
   // From the triangle to the box: see `overlap`.
-  [[nodiscard]] Eigen::Vector3d normal() const noexcept { return axes_.turned_back(back_); }
+  [[nodiscard]] Eigen::Vector3d normal() const noexcept {
+    return from_frame_of(moving_.shape, back_);
+  }
   // How far projections are off.
   [[nodiscard]] double error() const noexcept { return error_; }
 
@@ -274,6 +274,7 @@ class BoxOnItsWay {
     }
   }
 
+  const MovingShape& moving_;
   const BoxAxes axes_;
   double error_;
   Eigen::Vector3d direction_;  // in the box's frame

@@ -90,7 +90,7 @@ Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) 
     return true;
   });
   // Any but that of the face is in the frame of the box.
-  if (least.depth != depth_of_face) least.normal = axes.turned_back(least.normal);
+  if (least.depth != depth_of_face) least.normal = from_frame_of(box, least.normal);
   return {point_inside_box(box, least.error(), corner), least.normal, std::max(0.0, least.depth),
           // Where the box leaves it.
           farthest_feature(least.normal, corner, least.error())};
