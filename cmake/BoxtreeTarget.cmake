@@ -47,29 +47,51 @@ function(boxtree_offer_headers target)
 endfunction()
 
 # An archive `boxtree_NAME`. The project's own targets link these; applications link boxtree::NAME, which
-# runtime/CMakeLists.txt makes of them.
+# runtime/CMakeLists.txt makes of them. In a release build,
+#   SMALL    what is not on the way of a query is compiled for size, and
+#   COMPACT  what takes little of its time without the copies of code that -O3 makes.
+# Sources that these name and the library does not have are left out. LINK says what the sources need of others,
+# as target_link_libraries does, and PRECOMPILE which headers are parsed once for all of them. The target property
+# BOXTREE_PARTS lists the targets that compile them, one for each way: g++ compiles sources with the optimisations
+# of the headers that are precompiled for them.
 function(boxtree_add_library name)
-  add_library(boxtree_${name} STATIC ${ARGN})
-  set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name})
-  boxtree_offer_headers(boxtree_${name})
-  target_include_directories(boxtree_${name} PUBLIC $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>)
-  boxtree_set_target(boxtree_${name})
-endfunction()
-
-# boxtree_small(SOURCES...): what is not on the way of a query is compiled for size; and
-# boxtree_compact(SOURCES...): what takes little of its time, without the copies of code that -O3
-# makes, in a release build.
-function(boxtree_small)
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-Os>)
-endfunction()
-function(boxtree_compact)
-  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_OPTIONS $<$<CONFIG:Release>:-O2>)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SMALL;COMPACT;LINK;PRECOMPILE")
+  set(sources ${arg_UNPARSED_ARGUMENTS})
+  set(parts boxtree_${name})
+  foreach(way IN ITEMS SMALL COMPACT)
+    set(of_way)
+    foreach(source IN LISTS arg_${way})
+      if(source IN_LIST sources)
+        list(APPEND of_way ${source})
+      endif()
+    endforeach()
+    if(of_way)
+      list(REMOVE_ITEM sources ${of_way})
+      string(TOLOWER boxtree_${name}_${way} part)
+      add_library(${part} OBJECT ${of_way})
+      target_compile_options(${part} PRIVATE $<$<CONFIG:Release>:$<IF:$<STREQUAL:${way},SMALL>,-Os,-O2>>)
+      list(APPEND parts ${part})
+    endif()
+  endforeach()
+  add_library(boxtree_${name} STATIC ${sources})
+  foreach(part IN LISTS parts)
+    boxtree_offer_headers(${part})
+    target_include_directories(${part} PUBLIC $<BUILD_INTERFACE:${BOXTREE_SOURCE_DIR}>)
+    boxtree_set_target(${part})
+    target_link_libraries(${part} ${arg_LINK})
+    if(arg_PRECOMPILE AND BOXTREE_PRECOMPILE_HEADERS)
+      target_precompile_headers(${part} PRIVATE ${arg_PRECOMPILE})
+    endif()
+    if(NOT part STREQUAL boxtree_${name})
+      target_sources(boxtree_${name} PRIVATE $<TARGET_OBJECTS:${part}>)
+    endif()
+  endforeach()
+  set_target_properties(boxtree_${name} PROPERTIES EXPORT_NAME ${name} BOXTREE_PARTS "${parts}")
 endfunction()
 
 # boxtree_precompile(TARGET HEADERS...): parses the headers of other projects once for all sources of a target. A
 # source must still include what it uses; builds without it (presets scalar and asan-ubsan) fail where one does
-# not. Not for targets with sources that boxtree_small or boxtree_compact lists: g++ compiles those with the
-# optimisations of the precompiled headers (the runtime grew from 450 to 494 KB).
+# not. Not for targets with sources that have optimisations of their own (the runtime grew from 450 to 494 KB).
 function(boxtree_precompile target)
   if(BOXTREE_PRECOMPILE_HEADERS)
     target_precompile_headers(${target} PRIVATE
