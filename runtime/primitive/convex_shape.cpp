@@ -56,7 +56,11 @@ ClosestPoints closest_points(const ConvexShape& shape, const Corners& corner) no
 }
 
 ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner) noexcept {
-  const ClosestPoints points = closest_points(shape, corner);
+  return contact_points(shape, corner, closest_points(shape, corner));
+}
+
+ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
+                             const ClosestPoints& points) noexcept {
   if (shape.axes == 0) return points;
   // What the line between them separates by their distance, but for rounding, has no closer points.
   const auto [low, high, half] = project(points.between, shape, corner);

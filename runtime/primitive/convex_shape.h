@@ -106,6 +106,9 @@ struct ClosestPoints {
 /// The same of a core that may pierce the triangle; at the cost of core_distance() if it seems to.
 [[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape,
                                            const Corners& corner) noexcept;
+/// From those that closest_points() has found.
+[[nodiscard]] ClosestPoints contact_points(const ConvexShape& shape, const Corners& corner,
+                                           const ClosestPoints& points) noexcept;
 
 /// Of a sphere, capsule or hull. Its center is the origin.
 [[nodiscard]] CoreDistance core_distance(const ConvexShape& shape, const Corners& corner) noexcept;

@@ -90,13 +90,18 @@ struct Line {
 struct Approach {
   [[gnu::noinline]] Approach(const MovingShape& moving, const Triangle& triangle,
                              double at) noexcept
-      : s(at),
-        corner(placed(moving, triangle, at)),
-        points(closest_points(moving.shape, corner)),
-        line(moving, corner, points.between) {}
+      : s(at), corner(placed(moving, triangle, at)), points(closest_points(moving.shape, corner)) {}
 
-  // Whether shape and triangle may touch at `other`, near s, as far as these points tell.
-  [[nodiscard]] bool may_touch(const MovingShape& moving, double other) const noexcept {
+  [[nodiscard]] Line line(const MovingShape& moving) const noexcept {
+    return {moving, corner, points.between};
+  }
+  // Whether shape and triangle may touch at s.
+  [[nodiscard]] bool may_touch(const MovingShape& moving) const noexcept {
+    return points.upper <= moving.shape.radius + 2 * moving.doubt;
+  }
+  // Whether they may at `other`, near s, as far as these points tell.
+  [[nodiscard]] bool may_touch(const MovingShape& moving, const Line& line,
+                               double other) const noexcept {
     const double there = std::sqrt(squared_length(points.between + (s - other) * moving.direction));
     const double error = (points.upper - line.length) + 8 * kRoundoffF64 * (line.length + there);
     return there + error <= moving.shape.radius + 2 * moving.doubt;
@@ -105,7 +110,6 @@ struct Approach {
   double s;
   Corners corner;
   ClosestPoints points;
-  Line line;  // between them
 };
 
 // For where rounding tilts the line between the closest points so that corners cross the gap, as it
@@ -124,11 +128,12 @@ struct Approach {
   return {moving, corner, is_behind ? Eigen::Vector3d(-normal) : normal};
 }
 
-// Where an approach has led: to `s`, before which nothing touches, and whether they may touch
-// there.
+// Where an approach has led: to `s`, before which nothing touches, whether they may touch there,
+// and the closest points there where these tell.
 struct Approached {
   double s;
   bool is_touch;
+  std::optional<ClosestPoints> points;
 };
 
 // From an estimate, which a single look may prove, else by steps along the line between the closest
@@ -143,21 +148,21 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
           : estimated_touch(moving.shape, moving.direction, placed(moving, triangle, from));
   if (estimate < kInfinity) {
     const Approach look(moving, triangle, from + estimate);
-    const Line& line = look.line;
+    const Line line = look.line(moving);
     if (line.is_direction() && line.slowest() > 0) {
       // The gap was larger before, if it is one; else they do not touch before it was.
       const double by = line.gap > 0 ? line.gap / line.fastest() * kShorten
                                      : line.gap / line.slowest() * (1 + 8 * kRoundoffF64);
       s = std::max(from, look.s + by);
       if (s > to) return std::nullopt;
-      if (look.may_touch(moving, s)) return Approached{s, true};
+      if (look.may_touch(moving, line, s)) return Approached{s, true, std::nullopt};
     }
   }
   for (int step = 0; step < kMostSteps; ++step) {
     const Approach look(moving, triangle, s);
-    if (look.points.upper <= moving.shape.radius + 2 * moving.doubt) return Approached{s, true};
-    const Line line =
-        look.line.shows_gap() ? look.line : other_line(moving, look.corner, look.points.between);
+    if (look.may_touch(moving)) return Approached{s, true, look.points};
+    Line line = look.line(moving);
+    if (!line.shows_gap()) line = other_line(moving, look.corner, look.points.between);
     if (!line.shows_gap()) break;
     if (!(line.fastest() > 0)) return std::nullopt;  // it moves away from the gap
     const double next = s + line.gap / line.fastest() * kShorten;
@@ -165,20 +170,15 @@ std::optional<Approached> approached(const MovingShape& moving, const Triangle& 
     s = next;
     if (s > to) return std::nullopt;
   }
-  return Approached{s, false};
+  return Approached{s, false, std::nullopt};
 }
 
-std::optional<double> first_touch_of_core(const MovingShape& moving, const Triangle& triangle,
-                                          double from, double to) noexcept {
+// From `from` on, before which nothing touches.
+std::optional<double> first_touch_by_distance(const MovingShape& moving, const Triangle& triangle,
+                                              double from, double to) noexcept {
   constexpr double kShorten = 1 - 8 * kRoundoffF64;  // what the divisions and sums round up
   const double reach = moving.shape.radius + moving.doubt;
   double s = from;
-  if (moving.shape.hull == nullptr) {
-    const std::optional<Approached> quick = approached(moving, triangle, from, to);
-    if (!quick) return std::nullopt;
-    if (quick->is_touch) return quick->s;
-    s = quick->s;
-  }
   for (int step = 0; step < kMostSteps; ++step) {
     const Corners corner = placed(moving, triangle, s);
     const CoreDistance at = core_distance(moving.shape, corner);
@@ -199,6 +199,13 @@ std::optional<double> first_touch_of_core(const MovingShape& moving, const Trian
     if (s > to) return std::nullopt;
   }
   return s;
+}
+
+std::optional<double> first_touch_of_core(const MovingShape& moving, const Triangle& triangle,
+                                          double from, double to) noexcept {
+  const std::optional<Approached> quick = approached(moving, triangle, from, to);
+  if (!quick) return std::nullopt;
+  return quick->is_touch ? quick->s : first_touch_by_distance(moving, triangle, quick->s, to);
 }
 
 // A box and a triangle along all directions that can separate them, in time.
@@ -367,8 +374,25 @@ double MovingShape::doubt_of(double near, double far) noexcept {
 
 std::optional<double> MovingShape::first_touch(const Triangle& triangle, double from,
                                                double to) const noexcept {
-  return is_box() ? first_touch_of_box(*this, triangle, from, to)
-                  : first_touch_of_core(*this, triangle, from, to);
+  if (is_box()) return first_touch_of_box(*this, triangle, from, to);
+  return shape.hull != nullptr ? first_touch_by_distance(*this, triangle, from, to)
+                               : first_touch_of_core(*this, triangle, from, to);
+}
+
+std::optional<Penetration> MovingShape::contact_at_rest(const Triangle& triangle) const noexcept {
+  const Corners corner = placed(*this, triangle, 0);
+  if (is_box()) return box_penetration(shape, triangle, corner, doubt);
+  std::optional<ClosestPoints> points;
+  if (shape.hull == nullptr) {
+    const std::optional<Approached> found = approached(*this, triangle, 0, 0);
+    if (!found) return std::nullopt;
+    points = found->points;
+  }
+  if (!points && !first_touch_by_distance(*this, triangle, 0, 0)) return std::nullopt;
+  if (shape.hull != nullptr) return penetration(shape, corner, doubt);
+  return penetration_of_core(
+      shape, corner, doubt,
+      points ? contact_points(shape, corner, *points) : contact_points(shape, corner));
 }
 
 MovingShape::Contact MovingShape::contact_at(const Triangle& triangle, double s) const noexcept {

@@ -12,6 +12,7 @@
 #include <boxtree/shape.h>
 
 #include "runtime/primitive/convex_shape.h"
+#include "runtime/primitive/penetration.h"
 #include "runtime/primitive/triangle.h"
 
 namespace boxtree {
@@ -39,6 +40,10 @@ struct MovingShape {
   /// `from`, unless `from` is 0.
   [[nodiscard]] std::optional<double> first_touch(const Triangle& triangle, double from,
                                                   double to) const noexcept;
+  /// Where a shape that stays where it is touches the triangle; nothing exactly where first_touch()
+  /// is nothing. Precondition: `direction` is zero.
+  [[nodiscard]] std::optional<Penetration> contact_at_rest(const Triangle& triangle) const noexcept;
+
   struct Contact {
     Eigen::Vector3d point;   // on the triangle
     Eigen::Vector3d normal;  // from it to the shape

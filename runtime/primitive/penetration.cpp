@@ -79,21 +79,25 @@ class LeastDepth {
   double error_;
 };
 
-Penetration of_box(const ConvexShape& box, const Corners& corner, double doubt) noexcept {
+// Nothing where an axis shows a gap of more than `apart`.
+std::optional<Penetration> of_box(const ConvexShape& box, const BoxAxes& axes,
+                                  const Corners& corner, double doubt, double apart) noexcept {
   LeastDepth least(box, corner, doubt);
   least.try_axis(unit_normal({corner}));
   const double depth_of_face = least.depth;
-  const Triangle triangle{corner};
-  const BoxAxes axes(box, triangle, corner);
+  bool may_touch = true;
   axes.visit([&](const BoxAxis& axis) {
-    least.try_projection(axis.along, axis.low, axis.high, axis.half);
-    return true;
+    may_touch = axis.low - axis.half <= apart && axis.high + axis.half >= -apart;
+    if (may_touch) least.try_projection(axis.along, axis.low, axis.high, axis.half);
+    return may_touch;
   });
+  if (!may_touch) return std::nullopt;
   // Any but that of the face is in the frame of the box.
   if (least.depth != depth_of_face) least.normal = from_frame_of(box, least.normal);
-  return {point_inside_box(box, least.error(), corner), least.normal, std::max(0.0, least.depth),
-          // Where the box leaves it.
-          farthest_feature(least.normal, corner, least.error())};
+  return Penetration{point_inside_box(box, least.error(), corner), least.normal,
+                     std::max(0.0, least.depth),
+                     // Where the box leaves it.
+                     farthest_feature(least.normal, corner, least.error())};
 }
 
 }  // namespace
@@ -102,8 +106,18 @@ Penetration penetration(const ConvexShape& shape, const Corners& corner, double 
   if (shape.hull != nullptr) {
     return shape.hull->penetration(shape.hull->point, corner, doubt, nullptr);
   }
-  if (shape.axes == 3) return of_box(shape, corner, doubt);
+  if (shape.axes == 3) {
+    const Triangle triangle{corner};
+    return *of_box(shape, BoxAxes(shape, triangle, corner), corner, doubt,
+                   std::numeric_limits<double>::infinity());
+  }
   return penetration_of_core(shape, corner, doubt, contact_points(shape, corner));
+}
+
+std::optional<Penetration> box_penetration(const ConvexShape& box, const Triangle& triangle,
+                                           const Corners& corner, double doubt) noexcept {
+  const BoxAxes axes(box, triangle, corner);
+  return of_box(box, axes, corner, doubt, axes.error() + 2 * doubt);
 }
 
 Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner, double doubt,

@@ -2,6 +2,8 @@
 // How a convex shape that touches a triangle leaves it soonest.
 #pragma once
 
+#include <optional>
+
 #include "runtime/primitive/convex_shape.h"
 
 namespace boxtree {
@@ -17,6 +19,12 @@ struct Penetration {
 /// be off. Of a hull the depth is least to within 2^-46 of the largest coordinate.
 [[nodiscard]] Penetration penetration(const ConvexShape& shape, const Corners& corner,
                                       double doubt) noexcept;
+
+/// Of a box, or nothing where some axis shows that they do not touch, by more than rounding.
+[[nodiscard]] std::optional<Penetration> box_penetration(const ConvexShape& box,
+                                                         const Triangle& triangle,
+                                                         const Corners& corner,
+                                                         double doubt) noexcept;
 
 /// Of a sphere or capsule; `closest`: as contact_points() found them.
 [[nodiscard]] Penetration penetration_of_core(const ConvexShape& shape, const Corners& corner,

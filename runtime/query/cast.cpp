@@ -24,8 +24,17 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
   const Triangle compared = placed == nullptr ? triangle : placed->apply(triangle);
   if (!admits_side(compared)) return;
   const double scale = placed == nullptr ? 1 : placed->scale;
-  const std::optional<double> s = moving.first_touch(compared, from * scale, t_max * scale);
-  if (!s) return;
+  std::optional<double> s;
+  Penetration at{};
+  if (wanted == Wanted::kContacts) {
+    const std::optional<Penetration> contact = moving.contact_at_rest(compared);
+    if (!contact) return;
+    at = *contact;
+    s = 0;
+  } else {
+    s = moving.first_touch(compared, from * scale, t_max * scale);
+    if (!s) return;
+  }
   CastCandidate found{true,
                       *s,
                       {kNoFaceId, face_index},
@@ -34,8 +43,9 @@ void CastQuery::test(const Triangle& triangle, std::uint32_t face_index,
                       compared,
                       triangle,
                       placed != nullptr && placed->is_mirror,
-                      placed != nullptr ? placed->inactive : InactiveEdges()};
-  if (wanted == Wanted::kAll) {
+                      placed != nullptr ? placed->inactive : InactiveEdges(),
+                      at};
+  if (visitor != nullptr) {
     error = faces.visit_wanted(tree, face_index, t_max, [&](const FaceRef& face) {
       found.face = face;
       return (*visitor)(*this, found) / scale;

@@ -42,6 +42,7 @@ struct CastCandidate {
   Triangle in_tree;        // the same in tree space
   bool is_mirror = false;  // whether its corners 1 and 2 have changed places there
   InactiveEdges inactive;  // of the instance, besides those of the tree
+  Penetration at;          // of kContacts
 };
 
 /// A cast on a tree that is placed by a pose: triangles are compared where it places them.
@@ -66,7 +67,7 @@ struct CastQuery : RayInTree {
   /// MovingShape that is still of interest, or a negative number to stop.
   using Visitor = FunctionRef<double(const CastQuery& query, const CastCandidate& found)>;
 
-  enum class Wanted : std::uint8_t { kClosest, kAny, kAll };
+  enum class Wanted : std::uint8_t { kClosest, kAny, kAll, kContacts };
 
   /// What of the shape and its way is in tree space.
   struct Path {
@@ -76,7 +77,7 @@ struct CastQuery : RayInTree {
     const PlacedCast* placed = nullptr;  // null: triangles are compared in tree space
   };
 
-  /// `all`: the visitor of kAll, or null. `face_options`: null: every face may be hit.
+  /// `all`: the visitor of kAll or kContacts, or null. `face_options`: null: every face may be hit.
   CastQuery(const BoundTree& queried, const Path& path, Wanted wanted_touches, const Visitor* all,
             WalkBound& bound, const FaceOptions* face_options = nullptr) noexcept
       : RayInTree(queried, path.line, exponent_of(largest_magnitude(path.line.direction)),

@@ -16,14 +16,11 @@
 namespace boxtree {
 Contact contact_of(const CastQuery& query, const CastCandidate& found,
                    const Frame& frame) noexcept {
-  const MovingShape& moving = query.moving;
-  const Eigen::Vector3d& center = moving.shape.center;
-  const Penetration at =
-      penetration(moving.shape, relative_to(center, found.triangle), moving.doubt);
+  const Penetration& at = found.at;
   Contact contact;
   contact.face = found.face;
   contact.triangle = found.half;
-  contact.point = frame.to_object(center + at.point);
+  contact.point = frame.to_object(query.moving.shape.center + at.point);
   contact.normal = at.normal;
   contact.depth = at.depth * frame.scale;
   set_feature(query.tree, found, at.feature, contact);
@@ -35,17 +32,18 @@ namespace {
 // `visit`: of visit_touched.
 template <class Visitor>
 Result<Visit> visit_touched_by(const BoundTree& tree, const ShapeInTree& shape,
-                               const QueryLimits& limits, const Visitor& visit) {
+                               const QueryLimits& limits, CastQuery::Wanted wanted,
+                               const Visitor& visit) {
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
-  return visit_touched(tree, {shape.shape, line_at(shape.center), false}, work, visit);
+  return visit_touched(tree, {shape.shape, line_at(shape.center), false}, wanted, work, visit);
 }
 
 }  // namespace
 
 Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
                                 ContactVisitor visitor, const QueryLimits& limits) {
-  return visit_touched_by(tree, shape, limits,
+  return visit_touched_by(tree, shape, limits, CastQuery::Wanted::kContacts,
                           [&](const CastQuery& query, const CastCandidate& found) {
                             return visitor(contact_of(query, found, tree.frame()));
                           });
@@ -54,9 +52,10 @@ Result<Visit> visit_contacts_in(const BoundTree& tree, const ShapeInTree& shape,
 Result<Visit> visit_touched_faces_in(const BoundTree& tree, const ShapeInTree& shape,
                                      FaceVisitor visitor, const QueryLimits& limits) {
   VisitedFaces visited;
-  return visit_touched_by(tree, shape, limits, [&](const CastQuery&, const CastCandidate& found) {
-    return !visited.is_new(found) || visitor(found.face);
-  });
+  return visit_touched_by(tree, shape, limits, CastQuery::Wanted::kAll,
+                          [&](const CastQuery&, const CastCandidate& found) {
+                            return !visited.is_new(found) || visitor(found.face);
+                          });
 }
 
 namespace {

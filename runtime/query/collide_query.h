@@ -15,15 +15,16 @@
 namespace boxtree {
 
 /// Calls visit(query, candidate) -> bool, whether to go on, with each triangle that is touched.
+/// `wanted`: kContacts, or kAll where the faces alone matter.
 template <class Visitor>
-Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path, QueryWork& work,
-                            const Visitor& visit) {
+Result<Visit> visit_touched(const BoundTree& tree, const CastQuery::Path& path,
+                            CastQuery::Wanted wanted, QueryWork& work, const Visitor& visit) {
   WalkBound nodes(tree.node_count(), &work);
   const auto touched = [&](const CastQuery& query, const CastCandidate& found) {
     return visit(query, found) ? 0.0 : -1.0;
   };
   const CastQuery::Visitor visitor(touched);
-  CastQuery query(tree, path, CastQuery::Wanted::kAll, &visitor, nodes);
+  CastQuery query(tree, path, wanted, &visitor, nodes);
   if (const Errc error = query.run(); error != Errc::kOk) return error;
   return query.faces.stopped ? Visit::kStopped : Visit::kComplete;
 }

@@ -18,11 +18,12 @@ template <class VisitTouch>
 struct SceneCollideQuery : BoxInFrame, InstanceOutcome {
   Admission admission;
   UnitCast cast;  // of no length
+  CastQuery::Wanted wanted;
   const VisitTouch& visit_touch;
 
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& placed) {
     const InstanceCast on_instance(cast, placed);
-    return note(visit_touched(*placed.tree, on_instance.path(), admission.work,
+    return note(visit_touched(*placed.tree, on_instance.path(), wanted, admission.work,
                               [&](const CastQuery& query, const CastCandidate& found) {
                                 return visit_touch(instance, query, found);
                               }));
@@ -43,14 +44,19 @@ Box<double> bounds_in_frame(const BoundScene& scene, const UnitCast& cast) noexc
 
 template <class VisitTouch>
 Result<Visit> visit_touched_in(const BoundScene& scene, const ShapeInTree& shape, LayerMask layers,
-                               const QueryLimits& limits, const VisitTouch& visit_touch) {
+                               const QueryLimits& limits, CastQuery::Wanted wanted,
+                               const VisitTouch& visit_touch) {
   if ((scene.query_kinds() & kBoxQueries) == 0) return Errc::kPartLeftOut;
   if (shape.invalid != nullptr) return invalid_query(shape.invalid);
   QueryWork work(limits);
   const Ray line = line_at(scene.to_units(shape.center));
   const UnitCast cast{shape.shape, line, false};
-  SceneCollideQuery<VisitTouch> query{
-      {bounds_in_frame(scene, cast)}, {}, {scene, kBoxQueries, layers, work}, cast, visit_touch};
+  SceneCollideQuery<VisitTouch> query{{bounds_in_frame(scene, cast)},
+                                      {},
+                                      {scene, kBoxQueries, layers, work},
+                                      cast,
+                                      wanted,
+                                      visit_touch};
   return outcome_of(visit_overlapping_instances(scene, query), query);
 }
 
@@ -61,7 +67,7 @@ Result<Visit> visit_contacts_in(const BoundScene& scene, const ShapeInTree& shap
                                 const QueryLimits& limits) {
   const Frame units = scene.units();
   return visit_touched_in(
-      scene, shape, layers, limits,
+      scene, shape, layers, limits, CastQuery::Wanted::kContacts,
       [&](std::uint32_t instance, const CastQuery& query, const CastCandidate& found) {
         return visitor({contact_of(query, found, units), instance});
       });
@@ -73,7 +79,7 @@ Result<Visit> visit_touched_faces_in(const BoundScene& scene, const ShapeInTree&
   VisitedFaces visited;
   std::uint32_t last = kNoInstance;
   return visit_touched_in(
-      scene, shape, layers, limits,
+      scene, shape, layers, limits, CastQuery::Wanted::kAll,
       [&](std::uint32_t instance, const CastQuery&, const CastCandidate& found) {
         if (instance != last) visited = {};
         last = instance;

@@ -272,8 +272,14 @@ void check(const Case& drawn, Draw& draw, Tally& tally) {
   tally.invented += beyond > allowed;
   if (*s > 0) return;
   ++tally.at_start;
-  const Corners relative = relative_to(drawn.shape.center, drawn.triangle);
-  const Penetration at = penetration(placed, relative, moving.doubt);
+  MovingShape at_rest = moving;
+  at_rest.direction = Eigen::Vector3d::Zero();
+  const std::optional<Penetration> touched = at_rest.contact_at_rest(drawn.triangle);
+  if (!touched) {
+    ++tally.parted;
+    return;
+  }
+  const Penetration& at = *touched;
   const LongVector normal = at.normal.cast<long double>();
   bool is_wrong = std::abs(normal.norm() - 1) > 1e-12L || !(at.depth >= 0) ||
                   depth_along(shape, normal, triangle) > at.depth + 8 * allowed;
