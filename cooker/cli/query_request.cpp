@@ -61,6 +61,10 @@ struct TreeKinds {
     cooker::add_face(tree, hit.face, json);
   }
   template <class Hit>
+  static const Tree& tree_of(const Tree& tree, const Hit&) {
+    return tree;
+  }
+  template <class Hit>
   static auto rank(const Tree&, const Hit& hit) {  // without ids all faces have the same
     return std::tuple(hit.face.id, hit.face.index, hit.triangle);
   }

@@ -53,6 +53,11 @@ struct SceneKinds {
   static void add_face(const Scene& scene, const Hit& hit, Json& json) {
     cooker::add_face(scene, {hit.instance, hit.face}, json);
   }
+  // Precondition: the scene has named its instance, so its bytes are sound.
+  template <class Hit>
+  static const Tree& tree_of(const Scene& scene, const Hit& hit) {
+    return scene.trees()[scene.info(hit.instance)->tree];
+  }
   template <class Hit>
   static auto rank(const Scene&, const Hit& hit) {
     return std::tuple(hit.instance, hit.face.id, hit.face.index, hit.triangle);

@@ -24,8 +24,8 @@ namespace boxtree::cooker {
 }
 
 /// Of a Kinds::Body, a Tree or a Scene, which answers by OfRay, OfCast and OfShape and takes
-/// Options. Kinds::add_face(body, hit, json) adds what was hit; Kinds::rank(body, hit) orders hits
-/// at the same place.
+/// Options. Kinds::add_face(body, hit, json) adds what was hit, Kinds::tree_of(body, hit) is the tree
+/// that it is of; Kinds::rank(body, hit) orders hits at the same place.
 template <class Kinds>
 class ShapeAnswers {
  public:
@@ -142,7 +142,7 @@ class ShapeAnswers {
       item["point"] = to_json(contact.point);
       item["normal"] = to_json(contact.normal);
       item["depth"] = contact.depth;
-      item["feature"] = name_of(contact.feature);
+      add_feature(item, contact);
     }
     return Json{{"count", json.size()}, {"contacts", json}};
   }
@@ -154,8 +154,17 @@ class ShapeAnswers {
     json["triangle"] = hit.triangle;
     json["point"] = to_json(hit.point);
     json["normal"] = to_json(hit.normal);
-    json["feature"] = name_of(hit.feature);
+    add_feature(json, hit);
     json["initially_touching"] = hit.initially_touching;
+  }
+
+  // And, where the cook has kept which edges are active, what resolved_normal() takes.
+  template <class Hit>
+  void add_feature(Json& json, const Hit& hit) const {
+    json["feature"] = name_of(hit.feature);
+    if (!Kinds::tree_of(body_, hit).has_active_edges()) return;
+    json["is_active"] = hit.is_active;
+    json["face_normal"] = to_json(hit.face_normal);
   }
 
   // By first(hit), then by what was hit.

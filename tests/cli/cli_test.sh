@@ -207,6 +207,16 @@ expect 0 "$boxtree" query cube.bxt collide --sphere 0.5 --at 0.5,0.5,1.25 --merg
 same "$(jq -c '[.count,(.contacts | map(.depth) | max)]' out)" '[1,0.25]'
 expect 0 "$boxtree" query cube.bxt collide --box 0.25,0.25,0.5 --at 0.5,0.5,1.375 --json
 same "$(jq -c '[.count,(.contacts | map([.normal,.depth]) | unique)]' out)" '[2,[[[0,0,1],0.125]]]'
+# Beside the face below it the ball touches the edge of the other one, across which the floor goes on flat.
+printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3\nf 1 3 4\n' >floor.obj
+expect 0 "$boxtree" cook floor.obj -o floor.bxt --active-edges 5 -q
+expect 0 "$boxtree" query floor.bxt collide --sphere 0.5 --at 0.75,0.5,0.25 --json
+same "$(jq -c '[.contacts[] | [.feature,.is_active,.face_normal]]' out)" '[["face",true,[0,0,1]],["edge",false,[0,0,1]]]'
+expect 0 "$boxtree" query floor.bxt cast --sphere 0.5 --at 0.75,0.5,2 --direction 0,0,-1 --json
+same "$(jq -c '[.feature,.is_active,.face_normal]' out)" '["face",true,[0,0,1]]'
+expect 0 "$boxtree" cook --scene floor.obj -o floors.bxt --active-edges 5 -q
+expect 0 "$boxtree" query floors.bxt collide --sphere 0.5 --at 0.75,0.5,0.25 --json
+same "$(jq -c '[.contacts[] | [.feature,.is_active]]' out)" '[["face",true],["edge",false]]'
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 2 4\n' >hull.obj
 expect 0 "$boxtree" query cube.bxt cast --hull hull.obj --at 0.25,0.25,3 --direction 0,0,-1 --json
 same "$(jq -c '[.hit,.feature,([.t,.normal[2]] | map(. * 1e9 | round / 1e9))]' out)" '[true,"face",[2,1]]'

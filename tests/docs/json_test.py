@@ -137,6 +137,7 @@ RUNS = {
         "query nameless.bxt ray --origin 0.5,10,-4.5 --direction 0,-1,0 --all",
     ],
     "query FILE collide": [
+        "query edges.bxt collide --sphere 0.25 --at 0.2,0.1,1.1",
         "query crate.bxt collide --sphere 2 --at 0.2,0.1,0.5",
         "query arrays.bxt collide --box 0.1,0.2,0.6 --at 0.2,0.1,0.1 --merge 0.1",
         "query zones.bxt collide --sphere 2 --at 0.2,0.1,0.5",
@@ -145,6 +146,8 @@ RUNS = {
     ],
     "query FILE cast": [
         "query crate.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
+        "query edges.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1",
+        "query edges.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
         "query arrays.bxt cast --sphere 0.25 --at 0.2,0.1,9 --direction 0,0,-1 --t-max 1",
         "query arrays.bxt cast --box 1,1,1 --at 0.2,0.1,9 --direction 0,0,-1 --any",
         "query crate.bxt cast --capsule 0,0,1,0.25 --at 0.2,0.1,9 --direction 0,0,-1 --all",
