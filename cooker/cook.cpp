@@ -584,11 +584,12 @@ class Cook {
       }
       summary.trees.push_back(std::move(tree));
     }
-    if (input_.has_top_level) {
-      const Result<FileLayout> layout = layout_of(file_.parts());
-      if (!layout) return layout.error();
-      summary.scene = scene_summary(*layout);
-    }
+    if (input_.has_top_level) summary.scene = scene_summary();
+    const Result<FileLayout> layout = layout_of(file_.parts());
+    if (!layout) return layout.error();
+    summary.why = account({input_.scene, profile_, plan_, mesh_of_tree_, file_.trees, contests_,
+                           chosen_, file_.scene ? &*file_.scene : nullptr, options_},
+                          *layout);
     for (std::size_t t = 0; t < tried_.size(); ++t) {
       summary.trees[t].contest = std::move(contests_[t]);
     }
@@ -596,7 +597,7 @@ class Cook {
     return {};
   }
 
-  [[nodiscard]] SceneSummary scene_summary(const FileLayout& layout) const {
+  [[nodiscard]] SceneSummary scene_summary() const {
     SceneSummary scene;
     const std::vector<PlacedTree>& instances = file_.scene->instances;
     for (const PlacedTree& instance : instances) {
@@ -608,9 +609,6 @@ class Cook {
         static_cast<std::uint32_t>(plan_.instances.size() - instances.size());
     scene.meshes = static_cast<std::uint32_t>(plan_.meshes.size());
     scene.notices = plan_.notices;
-    scene.why = account({input_.scene, profile_, plan_, mesh_of_tree_, file_.trees, contests_,
-                         chosen_, *file_.scene, options_},
-                        layout);
     return scene;
   }
 

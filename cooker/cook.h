@@ -46,7 +46,7 @@ struct CookedTree {
   SurfaceEdges edges;           // of the imported mesh, without hidden faces
   std::uint32_t collapsed = 0;  // triangles without area on the grid; they are kept
   Contest contest;
-  std::vector<LeftOut> left_out;  // without a top level; for a scene see SceneSummary::why
+  std::vector<LeftOut> left_out;  // without a top level; for a scene see Summary::why
 };
 
 /// One line of --why: a part of the file, or one that was left out.
@@ -66,7 +66,6 @@ struct SceneSummary {
   std::uint32_t instances_left_out = 0;
   std::uint32_t meshes = 0;  // of the source, before any is left out
   std::uint64_t placed_triangles = 0;
-  std::vector<WhyLine> why;  // the bytes of kept parts add up to the size of the file
   std::vector<std::string> notices;
 };
 
@@ -77,6 +76,7 @@ struct Summary {
   std::vector<std::filesystem::path> files_read;
   std::uint64_t file_bytes = 0;
   std::optional<SceneSummary> scene;  // empty without a top level
+  std::vector<WhyLine> why;           // the bytes of kept parts add up to the size of the file
 };
 
 /// A face of a tree: which corners it has of which source polygon. The fourth is kNoCorner for a

@@ -107,6 +107,10 @@ class Account {
     std::optional<Aspect> aspect;
     line.reason = purpose(entry, aspect);
     const Decision* decision = aspect ? decision_on(*aspect, mesh) : nullptr;
+    if (decision == nullptr && aspect && cooked_.parts == nullptr) {
+      const std::string decided = reason_of_option(*aspect, entry);
+      if (!decided.empty()) line.reason += line.reason.empty() ? decided : "; " + decided;
+    }
     if (decision != nullptr) {
       line.reason += line.reason.empty() ? decision->reason : "; " + decision->reason;
       line.line = cited(decision->line);
@@ -158,9 +162,9 @@ class Account {
       case SectionKind::kScene:
       case SectionKind::kSceneNodes:
       case SectionKind::kInstances:
-        return fmt::format("{} instances", cooked_.parts.instances.size());
+        return fmt::format("{} instances", cooked_.parts->instances.size());
       case SectionKind::kPoses:
-        return entry.size == cooked_.parts.instances.size() * kNumbersOfPose * sizeof(float)
+        return entry.size == cooked_.parts->instances.size() * kNumbersOfPose * sizeof(float)
                    ? "f32 holds every number"
                    : "some number needs f64";
       case SectionKind::kLayers:
@@ -180,6 +184,21 @@ class Account {
         return "the file, compressed whole";
     }
     return {};
+  }
+
+  // What decided on a part of a file without a top level.
+  [[nodiscard]] std::string reason_of_option(Aspect aspect, const SectionEntry& entry) const {
+    switch (aspect) {
+      case Aspect::kFaceIds:
+        return "numbers of the source's faces; --no-face-ids leaves them out";
+      case Aspect::kMaterials: {
+        if (entry.owner == kNoOwner) return "where their names are";
+        const std::optional<FaceNumberBytes>& forms = cooked_.trees[entry.owner].material_forms;
+        return forms ? "--materials; " + forms_text(*forms) : "--materials";
+      }
+      default:
+        return {};  // sections say why, and the contest of encodings does
+    }
   }
 
   static std::string geometry_reason(SectionKind kind, const EncodedTree& tree) {
@@ -317,10 +336,12 @@ class Account {
       if (saved == 0) continue;  // exact geometry was not tried
       const std::size_t mesh = cooked_.mesh_of_tree[t];
       const Decision* decision = decision_on(Aspect::kPrecision, mesh);
-      why_.push_back(
-          {"digits of positions", mesh_name(mesh), false, saved, false,
-           decision != nullptr ? decision->reason : "a grid keeps what the scene can tell apart",
-           decision != nullptr ? cited(decision->line) : std::string()});
+      why_.push_back({"digits of positions", mesh_name(mesh), false, saved, false,
+                      decision != nullptr ? decision->reason
+                      : cooked_.parts != nullptr
+                          ? "a grid keeps what the scene can tell apart"
+                          : "a grid was chosen or wanted; --exact keeps every bit",
+                      decision != nullptr ? cited(decision->line) : std::string()});
     }
   }
 

@@ -13,7 +13,7 @@
 
 namespace boxtree::cooker {
 
-/// The inputs and results of cooking a scene; one tree, contest and choice for each tree of the
+/// The inputs and results of a cook; one tree, contest and choice for each tree of the
 /// file.
 struct CookedParts {
   const SourceScene& scene;  // positions and faces of meshes may be gone
@@ -23,7 +23,7 @@ struct CookedParts {
   std::span<const EncodedTree> trees;
   std::span<const Contest> contests;
   std::span<const std::size_t> chosen;
-  const SceneParts& parts;
+  const SceneParts* parts;  // null without a top level; then the options decide, and no plan
   const CookOptions& options;
 };
 

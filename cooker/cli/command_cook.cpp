@@ -26,6 +26,7 @@
 #include "cooker/import/text_tokens.h"
 #include "cooker/shell/cook_job.h"
 #include "cooker/text/nearest_name.h"
+#include "cooker/write/outputs.h"
 #include "format/grid.h"
 
 namespace boxtree::cooker {
@@ -65,16 +66,12 @@ Json report_json(const Arguments& arguments, const Summary& summary, double seco
   return json;
 }
 
-constexpr const char* kNoWhyText =
-    "--why accounts for scenes, and this is none: --candidates prints why a tree is encoded as it "
-    "is, --scene or\n  --profile makes a scene of the input\n";
-
 // `output`: the name of what was written.
 std::string report_text(const Arguments& arguments, const std::string& output,
                         const Summary& summary, double seconds) {
   std::string text = summary.scene ? scene_text(summary, arguments.candidates)
                                    : trees_text(summary, arguments.candidates);
-  if (arguments.why) text += summary.scene ? why_text(*summary.scene) : kNoWhyText;
+  if (arguments.why) text += why_text(summary);
   if (!arguments.job.reordered.empty()) {
     text += fmt::format("wrote {}: face i of the tree is face i of it\n",
                         shown(arguments.job.reordered.string()));
@@ -210,8 +207,11 @@ int run(Arguments& arguments) {
   set_options(arguments);
   if (const std::string fault = stream_fault(arguments); !fault.empty())
     return usage("cook: " + fault);
-  if (const std::string fault = mesh_name_fault(arguments.job.output, ".bxt"); !fault.empty())
-    return usage("cook: " + fault);
+  for (const auto& [output, ending] :
+       {std::pair(&arguments.job.output, ".bxt"), std::pair(&arguments.job.depfile, ".d")}) {
+    if (const std::string fault = mesh_name_fault(*output, ending); !fault.empty())
+      return usage("cook: " + fault);
+  }
   const std::vector<std::filesystem::path>& inputs = arguments.job.inputs;
   const auto input = std::find_if(inputs.begin(), inputs.end(), is_standard_stream);
   if (input != inputs.end()) {
@@ -226,6 +226,10 @@ int run(Arguments& arguments) {
 
   if (Status status = check_job(arguments.job); !status)
     return usage("cook: " + status.error().detail);
+  if (!output->stream) {
+    if (Status status = check_replaced(output->path, OutputKind::kCooked); !status)
+      return usage("cook: " + status.error().detail);
+  }
   const Clock::time_point start = Clock::now();
   Result<Summary> cooked = Errc::kInternal;
   {
@@ -280,7 +284,7 @@ void add_cook_command(Command& program, int& status) {
       ->excludes(scene);
   command.add_flag(
       "--why", arguments->why,
-      "Of a scene: print each part, its bytes, and what decided that it is there, or not");
+      "Print each part of the file, its bytes, and what decided that it is there, or not");
   command.add_flag("--candidates", arguments->candidates,
                    "Print all that was tried for each tree, not only what was chosen");
   Option* codec = command.add_option("--codec", arguments->codec, "How nodes are stored")

@@ -268,6 +268,9 @@ int run(const Arguments& arguments) {
   if (!output->stream) {
     const Status status = check_outputs(std::span(&output->path, 1), inputs);
     if (!status) return usage("export: " + status.error().detail);
+    const Status replaced = check_replaced(
+        output->path, *is_glb_name(output->path) ? OutputKind::kShownGlb : OutputKind::kShownObj);
+    if (!replaced) return usage("export: " + replaced.error().detail);
   }
   const Result<OpenedFile> opened = open_file(arguments.file);
   if (!opened) return fail(opened.error());

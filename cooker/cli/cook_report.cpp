@@ -73,6 +73,7 @@ Json import_json(const ImportReport& report) {
   for (const std::filesystem::path& file : report.files_missing) {
     json["files_missing"].push_back(file.string());
   }
+  if (!report.groups.empty()) json["groups"] = report.groups;
   json["skipped"] = Json::array();
   for (const SkippedFace& face : report.skipped) {
     json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
@@ -134,11 +135,14 @@ void add_import(const ImportReport& import, std::string& text) {
 
 void add_grid(const CookedTree& cooked, std::string& text) {
   if (cooked.tree.geometry.geometry != GeometryId::kGrid) return;
-  text += fmt::format(
-      "  grid: step 2^{}, no vertex moved by more than {:.3g}; {} lost {} area and {} kept\n",
-      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error,
-      counted(cooked.collapsed, "triangle"), cooked.collapsed == 1 ? "its" : "their",
-      cooked.collapsed == 1 ? "is" : "are");
+  text += fmt::format("  grid: step 2^{}, no vertex moved by more than {:.3g}",
+                      cooked.tree.geometry.grid_exponent, cooked.tree.geometry.max_vertex_error);
+  if (cooked.collapsed > 0) {
+    text +=
+        fmt::format("; {} lost {} area and {} kept", counted(cooked.collapsed, "triangle"),
+                    cooked.collapsed == 1 ? "its" : "their", cooked.collapsed == 1 ? "is" : "are");
+  }
+  text += "\n";
 }
 
 // What was chosen for the only tree.
@@ -216,8 +220,8 @@ void add_choices(const Summary& summary, std::string& text) {
 }
 
 // The parts of one tree that were left out, for tools that look at trees alone.
-void add_left_out(const SceneSummary& scene, Json& trees) {
-  for (const WhyLine& line : scene.why) {
+void add_left_out(const Summary& summary, Json& trees) {
+  for (const WhyLine& line : summary.why) {
     if (line.kept) continue;
     for (Json& tree : trees) {
       if (line.owner != "mesh " + tree["name"].get<std::string>()) continue;
@@ -236,6 +240,20 @@ void add_forms(const char* what, const std::optional<FaceNumberBytes>& forms, Js
                 {"bytes", forms->kept()},
                 {"bytes_by_runs", forms->runs ? Json(*forms->runs) : Json(nullptr)},
                 {"bytes_by_face", forms->faces}};
+}
+
+// Which group has which number; of many the first ones.
+void add_groups(const ImportReport& import, std::string& text) {
+  constexpr std::size_t kMost = 12;
+  if (import.groups.empty()) return;
+  text += "  groups: ";
+  for (std::size_t i = 0; i < std::min(import.groups.size(), kMost); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, shown(import.groups[i]));
+  }
+  if (import.groups.size() > kMost) {
+    text += fmt::format(", and {} more, which --json names", import.groups.size() - kMost);
+  }
+  text += "\n";
 }
 
 // The same; several trees are told apart by their names.
@@ -297,13 +315,11 @@ Json imports_json(const std::vector<ImportReport>& imports) {
   return json;
 }
 
-Json summary_json(const Summary& summary) {
-  Json json;
-  json["trees"] = trees_json(summary);
-  json["warnings"] = warnings_of(summary);
-  if (!summary.scene) return json;
+namespace {
+
+void add_scene(const Summary& summary, Json& json) {
   const SceneSummary& scene = *summary.scene;
-  add_left_out(scene, json["trees"]);
+  add_left_out(summary, json["trees"]);
   json["imports"] = imports_json(summary.imports);
   json["scene"] = {{"instances", scene.instances},
                    {"moving", scene.moving},
@@ -311,17 +327,31 @@ Json summary_json(const Summary& summary) {
                    {"source_meshes", scene.meshes},
                    {"placed_triangles", scene.placed_triangles},
                    {"file_bytes", summary.file_bytes}};
-  json["why"] = Json::array();
-  for (const WhyLine& line : scene.why) {
-    json["why"].push_back({{"part", line.part},
-                           {"owner", line.owner},
-                           {"kept", line.kept},
-                           {"bytes", line.bytes},
-                           {"estimate", line.is_estimate},
-                           {"reason", line.reason},
-                           {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
-  }
   json["notices"] = scene.notices;
+}
+
+Json why_json(const std::vector<WhyLine>& why) {
+  Json json = Json::array();
+  for (const WhyLine& line : why) {
+    json.push_back({{"part", line.part},
+                    {"owner", line.owner},
+                    {"kept", line.kept},
+                    {"bytes", line.bytes},
+                    {"estimate", line.is_estimate},
+                    {"reason", line.reason},
+                    {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
+  }
+  return json;
+}
+
+}  // namespace
+
+Json summary_json(const Summary& summary) {
+  Json json;
+  json["trees"] = trees_json(summary);
+  json["warnings"] = warnings_of(summary);
+  if (summary.scene) add_scene(summary, json);
+  json["why"] = why_json(summary.why);
   return json;
 }
 
@@ -421,6 +451,7 @@ std::string trees_text(const Summary& summary, bool candidates) {
     add_choices(summary, text);
   }
   if (!summary.scene) add_forms(summary, text);
+  for (const ImportReport& import : summary.imports) add_groups(import, text);
   for (const ImportReport& import : summary.imports) add_import(import, text);
   return text;
 }
@@ -440,10 +471,10 @@ std::string scene_text(const Summary& summary, bool candidates) {
   return text;
 }
 
-std::string why_text(const SceneSummary& scene) {
+std::string why_text(const Summary& summary) {
   std::string text;
   std::size_t part_width = 4, owner_width = 5;
-  for (const WhyLine& line : scene.why) {
+  for (const WhyLine& line : summary.why) {
     part_width = std::max(part_width, line.part.size());
     owner_width = std::max(owner_width, line.owner.size());
   }
@@ -452,8 +483,8 @@ std::string why_text(const SceneSummary& scene) {
     text +=
         fmt::format("{}\n", wanted ? "kept:" : "left out (about how much it would have taken):");
     const auto is_here = [wanted](const WhyLine& line) { return line.kept == wanted; };
-    if (std::none_of(scene.why.begin(), scene.why.end(), is_here)) text += "  nothing\n";
-    for (const WhyLine& line : scene.why) {
+    if (std::none_of(summary.why.begin(), summary.why.end(), is_here)) text += "  nothing\n";
+    for (const WhyLine& line : summary.why) {
       if (!is_here(line)) continue;
       if (wanted) kept += line.bytes;
       const std::string bytes = wanted || !line.is_estimate ? fmt::format("{}", line.bytes)

@@ -14,7 +14,7 @@ namespace boxtree::cooker {
 /// to one, what import did.
 [[nodiscard]] Json trees_json(const Summary& summary);
 [[nodiscard]] Json imports_json(const std::vector<ImportReport>& imports);
-/// The trees and all warnings; of a scene its counts and every line of --why, too.
+/// The trees, all warnings and every line of --why; of a scene its counts, too.
 [[nodiscard]] Json summary_json(const Summary& summary);
 
 /// What is wrong with a source, though it could be read; each begins with its name.
@@ -28,6 +28,6 @@ namespace boxtree::cooker {
 /// The same, and what the scene has.
 [[nodiscard]] std::string scene_text(const Summary& summary, bool candidates);
 /// Each part, its bytes, and who decided.
-[[nodiscard]] std::string why_text(const SceneSummary& scene);
+[[nodiscard]] std::string why_text(const Summary& summary);
 
 }  // namespace boxtree::cooker

@@ -46,11 +46,12 @@ FaceNumberBytes keep_smaller(FaceNumbers& numbers, std::uint8_t width, bool has_
 
 std::string forms_text(const FaceNumberBytes& bytes) {
   if (bytes.keeps_runs()) {
-    return fmt::format("by runs of the source's faces; {} bytes of each face", bytes.faces);
+    return fmt::format("by runs of the source's faces; a number for each face would take {} bytes",
+                       bytes.faces);
   }
-  return bytes.runs
-             ? fmt::format("of each face; {} bytes by runs of the source's faces", *bytes.runs)
-             : "of each face; runs need face ids";
+  return bytes.runs ? fmt::format("of each face; runs of the source's faces would take {} bytes",
+                                  *bytes.runs)
+                    : "of each face; runs need face ids";
 }
 
 std::vector<std::uint32_t> numbers_of_faces(const SourceMesh& mesh, std::span<const FaceRun> runs) {

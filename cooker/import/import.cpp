@@ -101,6 +101,11 @@ Status read_mesh(const MeshReader& reader, const Request& request, ImportedFile&
   return {};
 }
 
+bool has_mesh_ending(const fs::path& path) {
+  const std::string ending = path.extension().string();
+  return !ending.empty() && is_mesh_ending(ending.substr(1));
+}
+
 // A file of another kind, or one whose ending no reader knows, in the place of a mesh. The error of
 // the reader that was chosen by the ending or the first bytes would be about a format that nobody
 // meant.
@@ -111,7 +116,7 @@ Error explained(const SourceFile& source, const Error& error) {
     return {error.code, fmt::format("{}: expected a mesh, found {}", title, what)};
   }
   const std::string ending = source.path().extension().string();
-  if (!ending.empty() && is_mesh_ending(ending.substr(1))) return error;
+  if (has_mesh_ending(source.path())) return error;
   const char* const remedy = ending == ".toml" ? "; cook --profile takes a profile" : "";
   return {
       error.code,
@@ -123,6 +128,9 @@ Error explained(const SourceFile& source, const Error& error) {
 Result<ImportedFile> import_checked(const Request& request) {
   const fs::path& path = request.source.path();
   if (Status status = check_source_file(request.source); !status.ok()) return status.error();
+  // Not by its first bytes, as assimp would: an OBJ without its ending became another mesh than
+  // with it.
+  if (!has_mesh_ending(path)) return explained(request.source, Error(Errc::kImportFailed));
   const MeshReader* const reader = find_extension(kMeshReaders, path);
   if (!request.options.user_data.empty() && (reader == nullptr || !reader->has_user_data)) {
     return Error{Errc::kMeshUnsupported,

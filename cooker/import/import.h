@@ -83,6 +83,7 @@ struct ImportReport {
   bool has_no_materials = false;     // with ImportOptions::materials: no face has one
   bool has_no_groups = false;        // with kGroups: all faces are in the group without a name
   bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
+  std::vector<std::string> groups;   // with kGroups: names, in the order of their numbers
   std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.
   std::vector<std::filesystem::path> files_read;

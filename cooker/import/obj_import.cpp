@@ -268,6 +268,7 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
   if (!options.user_data.empty()) {
     out.report.has_no_groups = groups.names == std::vector<std::string>{std::string(kDefaultGroup)};
     out.user_data = std::move(groups.runs);
+    out.report.groups = std::move(groups.names);
   }
   find_libraries(source, libraries, out.report);
   if (out.report.files_read.size() <= 1) return {};

@@ -103,7 +103,7 @@ class Job {
       if (Status status = reordered->commit(); !status) return status.error();
     }
     summary.file_bytes = *bytes;
-    if (options_.blob && summary.scene) summary.scene->why.front().bytes = *bytes;
+    if (options_.blob) summary.why.front().bytes = *bytes;
     for (std::size_t i = 0; i < cooked.trees.size(); ++i)
       release(cooked.trees[i], summary.trees[i]);
     return std::move(summary);

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Existing files are the same if device and inode are equal; new files, if their paths are.
+// Existing files are the same if device and inode are equal; new files, if their paths are. What a
+// file is, its first bytes tell: those that cooks and exports write alone.
 #include "cooker/write/outputs.h"
 
+#include <array>
+#include <fstream>
 #include <string>
 #include <system_error>
 
 #include <fmt/format.h>
 
 #include "cooker/write/atomic_file.h"
+#include "format/container.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -33,6 +37,36 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return !name.empty() && name == real_name(b);
 }
 
+// The exporters write it within so many bytes.
+constexpr std::size_t kStart = 256;
+
+// The first bytes of a regular file; empty if it has none or cannot be read.
+std::string start_of(const fs::path& path) {
+  std::error_code error;
+  if (!fs::is_regular_file(path, error)) return {};
+  std::array<char, kStart> start;
+  std::ifstream file(path, std::ios::binary);
+  file.read(start.data(), start.size());
+  return {start.data(), static_cast<std::size_t>(file.gcount())};
+}
+
+bool begins_as(OutputKind kind, std::string_view start) {
+  switch (kind) {
+    case OutputKind::kCooked:
+      return start.starts_with(
+          std::string_view(reinterpret_cast<const char*>(kMagic.data()), kMagic.size()));
+    case OutputKind::kShownObj:
+      return start.starts_with("# boxtree ");
+    case OutputKind::kShownGlb:
+      return start.find(R"("generator":"boxtree )") != std::string_view::npos;
+  }
+  return false;
+}
+
+const char* name_of(OutputKind kind) {
+  return kind == OutputKind::kCooked ? "a cooked file" : "what an export has written";
+}
+
 }  // namespace
 
 Status check_outputs(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
@@ -53,6 +87,16 @@ Status check_outputs(std::span<const fs::path> outputs, std::span<const fs::path
     }
   }
   return {};
+}
+
+Status check_replaced(const fs::path& output, OutputKind kind) {
+  const std::string start = start_of(output);
+  if (start.empty() || begins_as(kind, start)) return {};
+  return Error{
+      Errc::kWriteFailed,
+      fmt::format("{}: expected {} in the place of the output, or none, found another file; "
+                  "it would be lost: remove it, or name another output",
+                  output.string(), name_of(kind))};
 }
 
 }  // namespace boxtree::cooker

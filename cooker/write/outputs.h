@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Checks that no input is overwritten.
+// Checks that nothing is written over that is worth more than what is written.
 #pragma once
 
 #include <filesystem>
 #include <span>
+#include <string_view>
 
 #include <boxtree/error.h>
 
@@ -14,5 +15,13 @@ namespace boxtree::cooker {
 /// Error: kWriteFailed.
 Status check_outputs(std::span<const std::filesystem::path> outputs,
                      std::span<const std::filesystem::path> inputs);
+
+/// What a program writes: a new output of a kind takes the place of an old one, and of nothing
+/// else.
+enum class OutputKind { kCooked, kShownObj, kShownGlb };
+
+/// Checks that an output is new, empty, no regular file (a pipe, say), or begins as its kind does.
+/// Error: kWriteFailed.
+Status check_replaced(const std::filesystem::path& output, OutputKind kind);
 
 }  // namespace boxtree::cooker

@@ -27,7 +27,7 @@ int main(int argument_count, char** arguments) {
                 tree.tree.triangle_count, codec_name(tree.tree.nodes.codec).data(),
                 geometry_name(tree.tree.geometry.geometry).data());
   }
-  for (const cooker::WhyLine& line : cooked->scene->why) {
+  for (const cooker::WhyLine& line : cooked->why) {
     if (line.kept || line.bytes == 0) continue;
     std::printf("  left out: %s of %s, about %llu bytes: %s\n", line.part.c_str(),
                 line.owner.c_str(), static_cast<unsigned long long>(line.bytes),

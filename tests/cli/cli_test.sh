@@ -1387,18 +1387,42 @@ grep -qx 'materials \["grass", *"stone"\]' out
 grep -q '  materials: of each face, 1.00 bytes per triangle' out
 
 expect 0 "$boxtree" cook field.obj -o field.bxt --materials
-grep -qx '  materials: 2 bytes, of each face; 16 bytes by runs of the source.s faces' out
+grep -qx '  materials: 2 bytes, of each face; runs of the source.s faces would take 16 bytes' out
 expect 0 "$boxtree" cook cube.obj -o cube.bxt --materials -q
 same "$(cat err)" 'boxtree: warning: cube.obj: --materials finds no material: usemtl of OBJ files, glTF, FBX and others have some'
 
-# User data of faces: a property of a PLY file, groups of an OBJ file.
+# User data of faces: a property of a PLY file, groups of an OBJ file, whose names are told with their numbers.
+{
+  printf 'v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\ng floor\nf 1 2 3\n'
+  for ((i = 0; i < 13; ++i)); do printf 'g part%s\nf 1 3 4\n' $i; done
+} >groups.obj
+expect 0 "$boxtree" cook groups.obj -o groups.bxt --user-data groups
+grep -qx '  groups: 0 floor, 1 part0, 2 part1, .*, 11 part10, and 2 more, which --json names' out
+expect 0 "$boxtree" cook groups.obj -o groups.bxt --user-data groups --json
+same "$(jq -c '.trees[0].import.groups | [length, .[0], .[13]]' out)" '[14,"floor","part12"]'
+# What is no mesh by its name is none, whatever its first bytes are.
+cp groups.obj groups
+expect 3 "$boxtree" cook groups -o groups.bxt
+grep -q 'groups: expected a mesh by its ending: .*; found none$' err
+# Nothing takes the place of another kind of file.
+cp groups.obj shown.obj
+expect 1 "$boxtree" export groups.bxt -o shown.obj
+same "$(cat err)" 'boxtree: usage: export: shown.obj: expected what an export has written in the place of the output, or none, found another file; it would be lost: remove it, or name another output'
+cmp groups.obj shown.obj
+for _ in once again; do expect 0 "$boxtree" export groups.bxt -o shown2.obj; expect 0 "$boxtree" export groups.bxt -o shown.glb; done
+printf '[scene]\n' >kept.toml
+expect 1 "$boxtree" cook groups.obj -o kept.toml
+grep -q 'kept.toml: expected a cooked file in the place of the output, or none, found another file' err
+same "$(cat kept.toml)" '[scene]'
+expect 1 "$boxtree" cook groups.obj -o groups.bxt --depfile shown.obj
+grep -q 'shown.obj: expected another ending than .obj, which is that of a mesh, as shown.d' err
 {
   printf 'ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 2\n'
   printf 'property list uchar int vertex_indices\nproperty int zone\nproperty float heat\nend_header\n'
   printf '0 0 0\n1 0 0\n1 1 0\n0 1 0\n3 0 1 2 300 0\n3 0 2 3 -1 0\n'
 } >zones.ply
 expect 0 "$boxtree" cook zones.ply -o zones.bxt --user-data zone
-grep -qx '  user data: 8 bytes, of each face; 16 bytes by runs of the source.s faces' out
+grep -qx '  user data: 8 bytes, of each face; runs of the source.s faces would take 16 bytes' out
 expect 0 "$boxtree" verify zones.bxt
 expect 0 "$boxtree" query zones.bxt ray --origin 0.2,0.8,5 --direction 0,0,-1 --json
 same "$(jq -c '[.face, .user_data]' out)" '[1,4294967295]'
@@ -1417,7 +1441,7 @@ expect 0 "$boxtree" cook cube.obj -o cube.bxt --user-data groups -q
 same "$(cat err)" "boxtree: warning: cube.obj: no line 'g' begins a group: the user data of every face is 0"
 printf '[scene]\nsource = "zones.ply"\nuser_data = "zone"\n' >zones.toml
 expect 0 "$boxtree" cook --profile zones.toml -o zones.bxt --why
-grep -q "face_user_data .* 'zone' of the source; of each face; 16 bytes by runs of the source's faces  <- zones.toml:3: user_data = \"zone\"" out
+grep -q "face_user_data .* 'zone' of the source; of each face; runs of the source's faces would take 16 bytes  <- zones.toml:3: user_data = \"zone\"" out
 expect 0 "$boxtree" query zones.bxt ray --origin 0.8,0.2,5 --direction 0,0,-1 --json
 same "$(jq -c '[.instance, .face, .user_data]' out)" '[0,0,300]'
 expect 1 "$boxtree" cook --profile zones.toml -o zones.bxt --user-data zone

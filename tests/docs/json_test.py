@@ -99,6 +99,8 @@ RUNS = {
         "cook bad.obj -o bad.bxt --skip-bad",
         "cook crate.obj -o external.bxt --external",
         "cook crate.obj -o edges.bxt --active-edges 5",
+        "cook field.obj -o groups.bxt --user-data groups",
+        "cook --scene field.obj -o groups.bxt --user-data groups",
         "cook field.obj -o field.bxt --materials",
         "cook field.obj -o no_ids.bxt --materials --no-face-ids",
         "cook zones.ply -o zones.bxt --user-data zone",

@@ -162,7 +162,7 @@ void expect_brute_force(const fs::path& source, const Scene& scene, int queries,
 
 std::uint64_t kept_bytes(const Summary& summary) {
   std::uint64_t sum = 0;
-  for (const WhyLine& line : summary.scene->why) sum += line.kept ? line.bytes : 0;
+  for (const WhyLine& line : summary.why) sum += line.kept ? line.bytes : 0;
   return sum;
 }
 
@@ -352,7 +352,7 @@ leave_out = true
     }
   }
   const auto told = [&](const std::string& owner, const std::string& line) {
-    return std::any_of(cooked.summary.scene->why.begin(), cooked.summary.scene->why.end(),
+    return std::any_of(cooked.summary.why.begin(), cooked.summary.why.end(),
                        [&](const WhyLine& why) {
                          return why.owner == owner && why.line.find(line) != std::string::npos;
                        });
@@ -470,10 +470,10 @@ hidden_faces = "hidden.txt"
     for (std::uint32_t face = 0; face < 9; ++face) ids.insert(BoundTree::of(tree).face_id(face));
     EXPECT_EQ(ids, (std::set<std::uint32_t>{1, 2, 5, 6, 7, 8, 9, 10, 11}));
   }
-  const auto dropped = std::ranges::find_if(cooked.summary.scene->why, [](const WhyLine& line) {
+  const auto dropped = std::ranges::find_if(cooked.summary.why, [](const WhyLine& line) {
     return !line.kept && line.part == "hidden faces";
   });
-  ASSERT_NE(dropped, cooked.summary.scene->why.end());
+  ASSERT_NE(dropped, cooked.summary.why.end());
   EXPECT_NE(dropped->reason.find('3'), std::string::npos) << dropped->reason;
   folder.write("hidden.txt", "0-11\n");
   EXPECT_EQ(cook_job(scene_job({kLevel}, folder.path() / "out.bxt", text)).code(),

@@ -129,9 +129,9 @@ TEST(CookJob, ABlobOfASceneIsAccountedForAsAWhole) {
   job.options.blob = BlobMethod::kZstd;
   const Summary summary = require(cook_job(job));
   EXPECT_EQ(summary.file_bytes, fs::file_size(output));
-  ASSERT_FALSE(summary.scene->why.empty());
-  EXPECT_EQ(summary.scene->why.front().part, "blob");
-  EXPECT_EQ(summary.scene->why.front().bytes, summary.file_bytes);
+  ASSERT_FALSE(summary.why.empty());
+  EXPECT_EQ(summary.why.front().part, "blob");
+  EXPECT_EQ(summary.why.front().bytes, summary.file_bytes);
 }
 
 }  // namespace

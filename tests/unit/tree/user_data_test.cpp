@@ -295,9 +295,9 @@ TEST(UserData, OfASceneIsRequestedByItsProfile) {
     job.options.import.skip_bad = true;
     const cooker::Summary summary = require(cooker::cook_job(job));
     const auto line =
-        std::find_if(summary.scene->why.begin(), summary.scene->why.end(),
+        std::find_if(summary.why.begin(), summary.why.end(),
                      [](const auto& each) { return each.part.find("user_data") < 6; });
-    ASSERT_NE(line, summary.scene->why.end());
+    ASSERT_NE(line, summary.why.end());
     EXPECT_EQ(line->part, "face_user_data");
     EXPECT_EQ(line->bytes, 3u);
     EXPECT_EQ(line->line, "scene.toml:3: user_data = \"groups\"");

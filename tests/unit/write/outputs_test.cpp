@@ -34,5 +34,29 @@ TEST(Outputs, AreFilesOfTheirOwn) {
   EXPECT_EQ(code("out", folder.path() / "new"), Errc::kOk);
 }
 
+// An export over the mesh of the cook, a cook over a profile.
+TEST(Outputs, TakeThePlaceOfTheirKindAlone) {
+  const test::TempFolder folder;
+  const std::string cooked =
+      "\x89"
+      "BXT\r\n\x1a\n and more";
+  const std::string obj = "# boxtree 0.1.0\no m\n";
+  const std::string glb =
+      std::string("glTF\2\0\0\0", 8) + R"(JSON{"asset":{"generator":"boxtree 0.1.0"}})";
+  const std::string other = "v 0 0 0\n# boxtree 0.1.0\n";
+  for (const auto& [kind, content] : {std::pair(OutputKind::kCooked, cooked),
+                                      {OutputKind::kShownObj, obj},
+                                      {OutputKind::kShownGlb, glb}}) {
+    for (const std::string& found : {cooked, obj, glb, other, std::string("\x89"), std::string()}) {
+      const fs::path output = folder.write("out", found);
+      const bool is_fine = found.empty() || found == content;
+      EXPECT_EQ(check_replaced(output, kind).code(), is_fine ? Errc::kOk : Errc::kWriteFailed)
+          << found;
+    }
+    EXPECT_TRUE(check_replaced(folder.path() / "new", kind).ok());
+    EXPECT_TRUE(check_replaced("/dev/null", kind).ok());
+  }
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
