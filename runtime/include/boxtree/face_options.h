@@ -18,8 +18,8 @@ enum class BackFaces : std::uint8_t {
 
 /// Whether a face may be hit; called with each candidate, named as in answers. It must answer alike
 /// whenever it is called, and may not throw. Borrowed, like all callables: a lambda that is stored
-/// in FaceOptions needs a name of its own.
-using FaceFilter = FunctionRef<bool(const FaceRef&)>;
+/// in FaceOptions needs a name of its own, and one without does not compile.
+using FaceFilter = NamedFunctionRef<bool(const FaceRef&)>;
 
 /// Which faces a ray or a cast may hit, and what it may cost.
 struct FaceOptions {

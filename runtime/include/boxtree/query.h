@@ -105,6 +105,21 @@ class FunctionRef<R(Args...)> {
   R (*call_)(Target, Args...);
 };
 
+/// The same for what keeps it beyond a call, options say: a callable that has a name. A temporary
+/// one would be gone before the query, so it does not compile.
+template <class Signature>
+class NamedFunctionRef : public FunctionRef<Signature> {
+ public:
+  /// Borrows a lambda, function object or function.
+  template <class F, class = std::enable_if_t<std::is_convertible_v<F&, FunctionRef<Signature>> &&
+                                              !std::is_base_of_v<FunctionRef<Signature>, F>>>
+  NamedFunctionRef(F& callable) noexcept : FunctionRef<Signature>(callable) {}
+  /// No temporary.
+  template <class F, class = std::enable_if_t<!std::is_lvalue_reference_v<F> &&
+                                              !std::is_base_of_v<FunctionRef<Signature>, F>>>
+  NamedFunctionRef(F&& callable) = delete;
+};
+
 /// Receives one face after the other; returns whether to go on.
 using FaceVisitor = FunctionRef<bool(const FaceRef&)>;
 

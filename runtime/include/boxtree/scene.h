@@ -167,9 +167,9 @@ using SceneFaceVisitor = FunctionRef<bool(const SceneFace&)>;
 
 /// Whether a face of an instance may be hit; see FaceFilter. By material: a lambda that looks at
 /// Scene::material().
-using SceneFaceFilter = FunctionRef<bool(const SceneFace&)>;
+using SceneFaceFilter = NamedFunctionRef<bool(const SceneFace&)>;
 /// Whether an instance may be hit; called once for each that a query comes near.
-using InstanceFilter = FunctionRef<bool(std::uint32_t)>;
+using InstanceFilter = NamedFunctionRef<bool(std::uint32_t)>;
 
 /// Which faces a ray or a cast may hit, and what it may cost.
 struct SceneFaceOptions {

@@ -4,9 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <set>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -23,6 +25,18 @@ namespace {
 
 using cooker::SourceMesh;
 using LongVector = Eigen::Matrix<long double, 3, 1>;
+
+// Options keep what they borrow beyond the statement: returning some with a lambda was a crash.
+template <class Filter, class Callable>
+constexpr bool kTakes = std::is_assignable_v<std::optional<Filter>&, Callable>;
+using OfFace = decltype([](const FaceRef&) { return true; });
+using OfSceneFace = decltype([](const SceneFace&) { return true; });
+using OfInstance = decltype([](std::uint32_t) { return true; });
+static_assert(kTakes<FaceFilter, OfFace&> && kTakes<FaceFilter, const OfFace&> &&
+              kTakes<FaceFilter, bool (&)(const FaceRef&)>);
+static_assert(!kTakes<FaceFilter, OfFace> && !kTakes<SceneFaceFilter, OfSceneFace> &&
+              !kTakes<InstanceFilter, OfInstance>);
+static_assert(kTakes<FaceFilter, FaceFilter> && !kTakes<FaceFilter, OfInstance&>);
 
 struct TrueHit {
   std::uint32_t face;  // index
