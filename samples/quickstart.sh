@@ -38,7 +38,7 @@ run info "$out/bunny.bxt"
 say "a ray"
 run query "$out/bunny.bxt" ray --origin 0,0,10 --direction 0,0,-1
 say "a box"
-run query "$out/horse.bxt" box --min=-0.05,-0.05,-0.05 --max 0.05,0.05,0.05
+run query "$out/horse.bxt" box --min=-0.1,0.3,-0.9 --max 0.1,0.4,0.9
 say "the closest point"
 run query "$out/cat.bxt" point --at 1,2,3
 say "two meshes against each other"
