@@ -11,7 +11,7 @@
 
 #include "cooker/build/splitter.h"
 #include "cooker/encode/encoders.h"
-#include "runtime/tree/frame.h"
+#include "runtime/scene/scene_frame.h"
 #include "runtime/tree/root_box.h"
 
 namespace boxtree::cooker {
@@ -20,9 +20,6 @@ namespace {
 // From this depth of binary splits on, sets are halved. 28 more levels suffice for kMaxInstances,
 // and nodes with eight children are never deeper than the splits they come from.
 constexpr std::uint32_t kSplitDepth = kMaxWideDepth - 32;
-
-// The largest extent of a tree is below 2^kExtentExponent, as for every tree (TreeRecord).
-constexpr int kExtentExponent = 15;
 
 // Instances of one subtree. FaceBox::face is the number of an instance.
 struct Set {
@@ -143,32 +140,13 @@ class TopLevelBuilder {
   std::vector<double> areas_;
 };
 
-// A centre and a power of two that scale the boxes to the range of all trees.
-Frame choose_frame(std::span<const Box<double>> boxes, int& exponent) {
-  exponent = 0;
-  if (boxes.empty()) return {};
-  Box<double> bounds = empty_box<double>();
-  for (const Box<double>& box : boxes) expand(bounds, box);
-  std::array<double, 3> middle;
-  double largest = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    middle[k] = bounds.low[k] / 2 + bounds.high[k] / 2;
-    largest = std::max(largest, bounds.high[k] / 2 - bounds.low[k] / 2);
-  }
-  if (largest > 0) {
-    static_cast<void>(std::frexp(largest, &exponent));  // largest < 2^exponent; half an extent
-    exponent = std::clamp(exponent + 1 - kExtentExponent, -kMaxScaleExponent, kMaxScaleExponent);
-  }
-  return {middle, exponent};
-}
-
 }  // namespace
 
 EncodedTopLevel build_top_level(std::span<const Box<double>> world_boxes,
                                 std::span<const Box<double>> moving_boxes) {
   EncodedTopLevel top;
   const Frame frame =
-      choose_frame(world_boxes.empty() ? moving_boxes : world_boxes, top.scale_exponent);
+      frame_around(world_boxes.empty() ? moving_boxes : world_boxes, top.scale_exponent);
   top.origin = {frame.origin[0], frame.origin[1], frame.origin[2]};
   if (world_boxes.empty()) {
     top.nodes.codec = CodecId::kWide8;

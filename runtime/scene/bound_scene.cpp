@@ -43,21 +43,19 @@ Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
     return index_error(Errc::kInstanceIndex, "instance", instance, instance_count());
   }
   const Moving* found = find_moving(instance);
-  if (found == nullptr) {
+  if (found == nullptr || found->placed.at_rest) {
     return error_with(Errc::kInstanceStatic, {},
                       "instance # was bound as static; make_movable() lets it move", {instance});
   }
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
-  const std::optional<Placement> placement = place_in_units(*moving.placed.tree, pose);
-  if (!placement) return Errc::kInvalidPose;
-  const auto bounds = placement->bounds(root_box<double>(*moving.placed.tree));
-  if (!bounds || !(to_world(bounds->magnitude) <= kMaxCoordinate)) return Errc::kInvalidPose;
+  const std::optional<Posed> there = posed(*moving.placed.tree, pose);
+  if (!there) return Errc::kInvalidPose;
   moving.placed.pose = pose;
-  moving.placed.placement = *placement;
-  moving.bounds = *bounds;
+  moving.placed.placement = there->placement;
+  moving.bounds = there->bounds;
   const auto number = static_cast<std::uint32_t>(found - moving_.data());
-  conditions_.set(number, bounds->condition);
-  moving_tree_.refit(number, to_frame(bounds->world));
+  conditions_.set(number, moving.bounds.condition);
+  moving_tree_.refit(number, to_frame(moving.bounds.world));
   return {};
 }
 
@@ -85,8 +83,9 @@ Result<InstanceInfo> BoundScene::info(std::uint32_t number) const {
   }
   const std::optional<InstanceRecord> record = record_of(number);
   if (!record) return error_with(Errc::kRecordInvalid, {}, "instance #: its record", {number});
+  const Moving* const moving = find_moving(number);
   return InstanceInfo{text(record->name_offset, record->name_bytes), record->tree, record->id,
-                      record->layer, find_moving(number) != nullptr};
+                      record->layer, moving != nullptr && !moving->placed.at_rest};
 }
 
 Result<std::uint32_t> BoundScene::find_instance(std::string_view name) const {
@@ -113,7 +112,17 @@ std::string_view BoundScene::layer_name(std::uint32_t number) const noexcept {
 std::uint32_t BoundScene::material(const SceneFace& of) const noexcept {
   if (of.instance >= instance_count()) return kNoMaterial;
   const std::uint32_t tree = instance(of.instance).tree;
-  return tree < trees_.size() ? trees_[tree].material(of.face) : kNoMaterial;
+  if (tree >= trees_.size()) return kNoMaterial;
+  const std::uint32_t number = trees_[tree].material(of.face);
+  if (first_materials_.empty()) return number;
+  return number < trees_[tree].material_count() ? first_materials_[tree] + number : kNoMaterial;
+}
+
+std::string_view BoundScene::material_name(std::uint32_t number) const noexcept {
+  if (number >= material_count() || first_materials_.empty()) return materials_[number];
+  const auto after = std::upper_bound(first_materials_.begin(), first_materials_.end(), number);
+  const auto tree = static_cast<std::size_t>(after - first_materials_.begin()) - 1;
+  return trees_[tree].material_name(number - first_materials_[tree]);
 }
 
 Result<Triangle> BoundScene::triangle(const SceneFace& face, std::uint32_t half) const {
@@ -170,6 +179,15 @@ std::optional<Placement> BoundScene::place_in_units(const BoundTree& tree,
   Pose scaled = pose;
   scaled.affine() *= frame_.inverse_scale;
   return is_within_range(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
+}
+
+std::optional<BoundScene::Posed> BoundScene::posed(const BoundTree& tree,
+                                                   const Pose& pose) const noexcept {
+  const std::optional<Placement> placement = place_in_units(tree, pose);
+  if (!placement) return std::nullopt;
+  const auto bounds = placement->bounds(root_box<double>(tree));
+  if (!bounds || !(to_world(bounds->magnitude) <= kMaxCoordinate)) return std::nullopt;
+  return Posed{*placement, *bounds};
 }
 
 Box<double> BoundScene::to_frame(const Box<double>& units) const noexcept {

@@ -25,16 +25,18 @@
 
 namespace boxtree {
 
-/// See Scene, which documents what both have. Move-only.
+/// See Scene, which documents what both have. Neither copied nor moved.
 class BoundScene {
  public:
   static Result<Scene> bind(const File& file, const SceneOptions& options);
+  static Result<Scene> assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
+                                std::span<const SceneLayer> layers);
 
   /// The inside of a Scene.
   [[nodiscard]] static const BoundScene& of(const Scene& scene) noexcept { return *scene.bound_; }
 
-  BoundScene(BoundScene&&) noexcept = default;
-  BoundScene& operator=(BoundScene&&) noexcept = default;
+  BoundScene(const BoundScene&) = delete;
+  BoundScene& operator=(const BoundScene&) = delete;
   ~BoundScene() = default;
 
   [[nodiscard]] std::uint32_t instance_count() const noexcept { return record().instance_count; }
@@ -49,10 +51,10 @@ class BoundScene {
   [[nodiscard]] Result<Triangle> triangle(const SceneFace& face, std::uint32_t half) const;
   [[nodiscard]] const InstanceEdgesView& edges() const noexcept { return edges_; }
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
-  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept {
-    return materials_[number];
+  [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
+  [[nodiscard]] std::uint32_t material_count() const noexcept {
+    return first_materials_.empty() ? materials_.count() : first_materials_.back();
   }
-  [[nodiscard]] std::uint32_t material_count() const noexcept { return materials_.count(); }
   Status set_enabled(std::uint32_t instance, bool enabled);
   [[nodiscard]] bool is_enabled(std::uint32_t instance) const noexcept {
     return disabled_.empty() ? instance < instance_count()
@@ -76,9 +78,15 @@ class BoundScene {
     std::uint32_t id;
     std::uint32_t layer;
     InactiveEdges inactive;  // besides those of the tree
+    bool at_rest = false;    // static, though it is among the moving ones; see assemble()
 
     /// Nothing when they are beyond kMaxCoordinate.
     [[nodiscard]] std::optional<PlacementBounds> bounds() const noexcept;
+  };
+  /// A tree in a pose, and where that is.
+  struct Posed {
+    Placement placement;
+    PlacementBounds bounds;
   };
   /// The record of an instance. Nothing if its tree or layer does not exist.
   [[nodiscard]] std::optional<InstanceRecord> record_of(std::uint32_t number) const noexcept;
@@ -136,6 +144,14 @@ class BoundScene {
   Status bind_trees(const File& file, const SceneOptions& options);
   Status check_parts(const SceneOptions& options) const;
   Status bind_moving(std::vector<std::uint32_t> numbers);
+  Status number_materials();
+  Status keep_records(std::span<const PlacedTree> instances, std::span<const SceneLayer> layers);
+  Status place_in_frame(std::span<const PlacedTree> instances);
+  Status place_each(std::span<const PlacedTree> instances);
+  void keep_user_data(std::span<const PlacedTree> instances);
+  void index_moving();
+  /// Nothing if the pose is not finite, is not invertible or leads beyond kMaxCoordinate.
+  [[nodiscard]] std::optional<Posed> posed(const BoundTree& tree, const Pose& pose) const noexcept;
   [[nodiscard]] bool has_names() const noexcept;
   [[nodiscard]] Error left_out(Part part, std::uint32_t owner, const std::string& what) const;
   [[nodiscard]] std::string_view text(std::uint32_t offset, std::uint32_t size) const noexcept;
@@ -153,6 +169,10 @@ class BoundScene {
   const std::byte* poses_ = nullptr;
   const std::byte* layers_ = nullptr;
   MaterialNames materials_;
+  // Of a scene that a program assembled: the bytes of its records, which the pointers above lead
+  // to, and of each tree the number of its file's first material, then how many there are.
+  std::vector<std::byte> records_;
+  std::vector<std::uint32_t> first_materials_;
   std::vector<Moving> moving_;  // by instance
   MovingTree moving_tree_;
   Largest conditions_;  // of moving instances

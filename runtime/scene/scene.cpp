@@ -11,6 +11,10 @@ namespace boxtree {
 Result<Scene> Scene::bind(const File& file, const SceneOptions& options) {
   return BoundScene::bind(file, options);
 }
+Result<Scene> Scene::assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
+                              std::span<const SceneLayer> layers) {
+  return BoundScene::assemble(trees, instances, layers);
+}
 
 Scene::Scene(std::unique_ptr<BoundScene> bound) noexcept : bound_(std::move(bound)) {}
 Scene::Scene(Scene&&) noexcept = default;

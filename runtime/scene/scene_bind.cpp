@@ -13,16 +13,16 @@ namespace boxtree {
 
 Result<Scene> BoundScene::bind(const File& file, const SceneOptions& options) {
   const DefaultFloatState state;
-  BoundScene scene;
-  if (Status status = scene.bind_sections(file); !status) return status.error();
-  if (Status status = scene.bind_trees(file, options); !status) return status.error();
-  if (Status status = scene.check_parts(options); !status) return status.error();
+  std::unique_ptr<BoundScene> scene(new BoundScene);
+  if (Status status = scene->bind_sections(file); !status) return status.error();
+  if (Status status = scene->bind_trees(file, options); !status) return status.error();
+  if (Status status = scene->check_parts(options); !status) return status.error();
   std::vector<std::uint32_t> moving(options.moving.begin(), options.moving.end());
-  for (std::uint32_t i = scene.record().static_count; i < scene.instance_count(); ++i) {
+  for (std::uint32_t i = scene->record().static_count; i < scene->instance_count(); ++i) {
     moving.push_back(i);
   }
-  if (Status status = scene.bind_moving(std::move(moving)); !status) return status.error();
-  return Scene(std::make_unique<BoundScene>(std::move(scene)));
+  if (Status status = scene->bind_moving(std::move(moving)); !status) return status.error();
+  return Scene(std::move(scene));
 }
 
 Status BoundScene::bind_sections(const File& opened) {
@@ -148,8 +148,10 @@ bool BoundScene::has_names() const noexcept {
 
 Status BoundScene::make_movable(std::uint32_t instance) {
   const DefaultFloatState state;
-  if (find_moving(instance) != nullptr) return {};
-  return bind_moving({instance});
+  const Moving* const known = find_moving(instance);
+  if (known == nullptr) return bind_moving({instance});
+  moving_[static_cast<std::size_t>(known - moving_.data())].placed.at_rest = false;
+  return {};
 }
 
 // Adds instances to those that move, all or none of them.
@@ -182,10 +184,14 @@ Status BoundScene::bind_moving(std::vector<std::uint32_t> numbers) {
   }
   moving_ = std::move(moving);
   has_detached_ = detaches;
+  index_moving();
+  return {};
+}
+
+void BoundScene::index_moving() {
   conditions_.reset(moving_.size());
   for (std::size_t i = 0; i < moving_.size(); ++i) conditions_.set(i, moving_[i].bounds.condition);
   rebuild();
-  return {};
 }
 
 }  // namespace boxtree

@@ -29,7 +29,8 @@ struct BodyInScene : BoxInFrame, InstanceOutcome {
   }
 };
 
-// A moving body against moving instances that come after it.
+// A moving body against those instances of the tree over moving ones with which it makes a pair
+// that has not been looked at: static ones, and moving ones that come after it.
 struct LaterMoving {
   BodyInScene& body;
   const Admission& admission;
@@ -41,7 +42,7 @@ struct LaterMoving {
     return body.overlaps(box);
   }
   [[nodiscard]] bool visit(std::uint32_t instance, const BoundScene::Placed& other) {
-    return instance <= body.own_instance || body.visit(instance, other);
+    return (instance <= body.own_instance && !other.at_rest) || body.visit(instance, other);
   }
 };
 
@@ -70,7 +71,9 @@ Result<Visit> visit_moving_pairs(const BoundScene& scene, BodyPairVisitor visito
   QueryWork work(limits);
   if ((scene.query_kinds() & kPairQueries) == 0) return Errc::kPartLeftOut;
   for (const BoundScene::Moving& moving : scene.moving()) {
-    if (!answers_contacts(scene, moving.instance, moving.placed.layer)) continue;
+    if (moving.placed.at_rest || !answers_contacts(scene, moving.instance, moving.placed.layer)) {
+      continue;
+    }
     BodyInScene body = body_of(scene, moving.instance, moving.placed, moving.bounds, visitor, work);
     Errc walked = walk_static(scene, body);
     if (walked == Errc::kOk && !body.is_done()) {

@@ -17,6 +17,10 @@ class MaterialNames {
   MaterialNames(Bytes records, Bytes names) noexcept;
 
   [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+  /// Whether both are those of one file.
+  [[nodiscard]] bool is_same_as(const MaterialNames& other) const noexcept {
+    return records_ == other.records_ && names_ == other.names_;
+  }
   /// Empty if there is no such material, it has no name, or bytes are corrupt.
   [[nodiscard]] std::string_view operator[](std::uint32_t number) const noexcept;
 

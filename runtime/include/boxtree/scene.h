@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene of an open file, placed trees under one top-level tree, and what it answers, in world
-// coordinates: rays, boxes, spheres, closest points, contacts.
+// A scene, placed trees of an open file or of several, and what it answers, in world coordinates:
+// rays, boxes, spheres, closest points, contacts.
 //
 // Each query answers for the instances of the given layers whose layer answers its kind. Errors, if
 // not said otherwise: those of the same query on a tree; kPartLeftOut when the scene was cooked
@@ -61,11 +61,29 @@ struct SceneOptions {
   std::span<const std::uint32_t> moving = {};
 };
 
-/// What the file says of one instance.
+/// One instance of a scene that Scene::assemble() makes.
+struct PlacedTree {
+  std::uint32_t tree = 0;        ///< The number of its tree among those given.
+  Pose pose = Pose::Identity();  ///< Object space to world.
+  std::uint32_t layer = 0;       ///< The number of its layer, 0 to 31.
+  bool moves = false;            ///< Whether Scene::update() may move it; see contacts(), too.
+  std::uint64_t user_data = 0;   ///< What Scene::user_data() answers.
+  std::string_view name = {};    ///< At most 65535 bytes, which the scene copies.
+};
+
+/// A layer of such a scene.
+struct SceneLayer {
+  std::string_view name = {};  ///< The scene copies it.
+  /// Layers with which there may be contacts; two layers collide if each allows the other.
+  LayerMask collides_with = kAllLayers;
+  QueryKinds queries = kAllQueries;  ///< The kinds of queries that its instances answer.
+};
+
+/// What is known of one instance.
 struct InstanceInfo {
   std::string_view name;    ///< Empty when it has none, or names were left out.
   std::uint32_t tree = 0;   ///< The number of its tree in the file, and in Scene::trees().
-  std::uint32_t id = 0;     ///< Its number in the source, depth first.
+  std::uint32_t id = 0;     ///< Its number in the source, depth first; assembled: its number.
   std::uint32_t layer = 0;  ///< The number of its layer: bit `1 << layer` of a LayerMask.
   bool moves = false;       ///< Whether Scene::update() may move it.
 };
@@ -79,11 +97,12 @@ struct SceneFace {
   FaceRef face;                          ///< A face of its tree.
 };
 
-/// One scene. Points into the bytes of its File. Instances are numbered from 0 in the order of the
-/// file. Queries on a scene that is not being updated are safe from many threads at once; update(),
-/// make_movable(), rebuild() and what is set need the scene for themselves. The file's bytes are
-/// never written: poses of moving instances, and the tree over them, live in the Scene. Move-only;
-/// a scene that was moved from may only be assigned to or destroyed.
+/// One scene. Points into the bytes of its File, or of the files of its trees. Instances are
+/// numbered from 0 in the order of the file, or as given. Queries on a scene that is not being
+/// updated are safe from many threads at once; update(), make_movable(), rebuild() and what is set
+/// need the scene for themselves. The bytes of files are never written: poses of moving instances,
+/// and the tree over them, live in the Scene. Move-only; a scene that was moved from may only be
+/// assigned to or destroyed.
 class BOXTREE_API Scene {
  public:
   /// Checks the records of the scene and of each tree, no instance but the moving ones; cost grows
@@ -94,6 +113,22 @@ class BOXTREE_API Scene {
   // A scene must not outlive its file.
   static Result<Scene> bind(const File&& file, const SceneOptions& options = {}) = delete;
 
+  /// Makes a scene of trees of any files, as of the tiles of a world that are near. It answers as
+  /// one file with these instances would, every kind of query, but no edge is known to be inactive
+  /// because the surface goes on in another instance. What BindOptions refuse is refused when the
+  /// trees are bound.
+  ///
+  /// The trees are copied and become trees(); their files, and arrays of external geometry, must
+  /// outlive the scene. Materials are numbered file after file, in the order of the trees; those of
+  /// one file once if its trees follow each other. There are as many layers as given, or as
+  /// instances name; those that are not given collide with all.
+  ///
+  /// Costs O(n log n), no tree is read; allocates 1 KB for each tree and each instance.
+  /// Errors, which name the instance: kTreeIndex, kInvalidPose, kInvalidQuery (a layer beyond 31, a
+  /// name too long), kMeshTooLarge (too many instances, materials or bytes of names).
+  static Result<Scene> assemble(std::span<const Tree> trees, std::span<const PlacedTree> instances,
+                                std::span<const SceneLayer> layers = {});
+
   /// Takes the scene over.
   Scene(Scene&&) noexcept;
   /// Takes the scene over, after freeing this one's moving instances.
@@ -103,23 +138,23 @@ class BOXTREE_API Scene {
 
   /// How many instances it has, numbered from 0.
   [[nodiscard]] std::uint32_t instance_count() const noexcept;
-  /// Its trees, in the order of the file.
+  /// Its trees, in the order of the file, or as given.
   [[nodiscard]] std::span<const Tree> trees() const noexcept;
-  /// The kinds of queries that it was cooked for.
+  /// The kinds of queries that it was cooked for; all if it was assembled.
   [[nodiscard]] QueryKinds query_kinds() const noexcept;
 
-  /// What the file says of an instance. Errors: kInstanceIndex; kRecordInvalid where the bytes of
+  /// What is known of an instance. Errors: kInstanceIndex; kRecordInvalid where the bytes of
   /// the instance are corrupt.
   [[nodiscard]] Result<InstanceInfo> info(std::uint32_t number) const;
   /// The number of the instance with that name, the first if several share it; O(instances).
   /// Error: kInstanceIndex when there is none.
   [[nodiscard]] Result<std::uint32_t> find_instance(std::string_view name) const;
-  /// Its pose, object space to world: as last given to update(), else as in the file. Errors as for
-  /// info().
+  /// Its pose, object space to world: as last given to update(), else as in the file, or
+  /// as given. Errors as for info().
   [[nodiscard]] Result<Pose> pose(std::uint32_t number) const;
   /// Name of a layer; empty when it has none.
   [[nodiscard]] std::string_view layer_name(std::uint32_t number) const noexcept;
-  /// How many layers have records in the file, numbered from 0.
+  /// How many layers it has, numbered from 0.
   [[nodiscard]] std::uint32_t layer_count() const noexcept;
 
   /// Whether queries see an instance [true]: one that is disabled is in no answer, as if it were
@@ -131,7 +166,7 @@ class BOXTREE_API Scene {
   /// Keeps a number of the application's for an instance: an entity, a pointer. The first call
   /// allocates one for each instance. Error: kInstanceIndex.
   Status set_user_data(std::uint32_t instance, std::uint64_t data);
-  /// As last given to set_user_data(), else 0.
+  /// As last given to set_user_data(), or in PlacedTree; else 0.
   [[nodiscard]] std::uint64_t user_data(std::uint32_t instance) const noexcept;
 
   /// A triangle of a face that an answer names, in world coordinates: each corner is brought there
@@ -142,7 +177,7 @@ class BOXTREE_API Scene {
   [[nodiscard]] std::uint32_t material(const SceneFace& face) const noexcept;
   /// Name of a material; empty when it has none.
   [[nodiscard]] std::string_view material_name(std::uint32_t number) const noexcept;
-  /// How many materials the file has, numbered from 0.
+  /// How many materials its files have, numbered from 0.
   [[nodiscard]] std::uint32_t material_count() const noexcept;
 
   /// Lets update() move a static instance from now on; nothing happens where it moves already.
