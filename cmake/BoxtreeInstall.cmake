@@ -56,13 +56,17 @@ set(BOXTREE_NEEDS_HIGHWAY OFF)
 if(BOXTREE_HIGHWAY AND NOT BUILD_SHARED_LIBS)
   set(BOXTREE_NEEDS_HIGHWAY ON)
 endif()
+# With a build folder on the PATH, find_package looks into it and its cmake/ before /usr/local. What lies
+# there is of use only where it is installed, so it is in another folder; earlier versions left it in the way.
+set(BOXTREE_GENERATED_CONFIG_DIR ${PROJECT_BINARY_DIR}/for_install)
+file(REMOVE ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake ${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake)
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/boxtreeConfig.cmake.in
-                              ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
+                              ${BOXTREE_GENERATED_CONFIG_DIR}/boxtreeConfig.cmake
                               INSTALL_DESTINATION ${BOXTREE_CONFIG_DIR})
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
+write_basic_package_version_file(${BOXTREE_GENERATED_CONFIG_DIR}/boxtreeConfigVersion.cmake
                                  COMPATIBILITY SameMinorVersion)
-install(FILES ${PROJECT_BINARY_DIR}/boxtreeConfig.cmake
-              ${PROJECT_BINARY_DIR}/boxtreeConfigVersion.cmake
+install(FILES ${BOXTREE_GENERATED_CONFIG_DIR}/boxtreeConfig.cmake
+              ${BOXTREE_GENERATED_CONFIG_DIR}/boxtreeConfigVersion.cmake
               ${PROJECT_SOURCE_DIR}/cmake/BoxtreeCookedAssets.cmake
         DESTINATION ${BOXTREE_CONFIG_DIR} COMPONENT boxtree_development)
 

@@ -303,6 +303,16 @@ for wanted in "${minor%.*}.$((${minor#*.} + 1))" 1.0 "$minor.$((${version##*.} +
   refused "compatible with requested version \"$wanted\"" <<<"find_package(boxtree $wanted CONFIG REQUIRED)"
 done
 
+# The build folder on the PATH, for its program, is searched before the usual places, and does not stand in
+# for an installation.
+project program_on_path NONE <<'CMAKE'
+find_package(boxtree CONFIG REQUIRED COMPONENTS cli)
+message("boxtree is in ${boxtree_DIR}")
+CMAKE
+PATH=$build:$PATH configured program_on_path -DCMAKE_PREFIX_PATH= -DCMAKE_INSTALL_PREFIX="$work/prefix"
+grep -qxF "boxtree is in ${config%/*}" "$work/log" ||
+  { cat "$work/log"; fail "with the build folder on the PATH, another boxtree is found"; }
+
 # Components that are not wanted add no dependencies; one whose dependencies are missing is not found, and
 # says so. Of a static build: the shared library brings its own.
 mkdir "$work/pc"
@@ -325,7 +335,7 @@ fi
 quiet cmake -S "$source" -B "$work/less" -G Ninja -DCMAKE_CXX_COMPILER="$compiler" -DBOXTREE_BUILD_COOKER=OFF \
   -DBOXTREE_CODECS=wide4 -DBOXTREE_QUERIES=ray -DBOXTREE_BLOB=OFF
 while read -r component why; do
-  refused "$component: $why" -DCMAKE_PREFIX_PATH="$work/less" \
+  refused "$component: $why" -DCMAKE_PREFIX_PATH="$work/less/for_install" \
     <<<"find_package(boxtree CONFIG REQUIRED COMPONENTS $component)"
 done <<'CASES'
 pair BOXTREE_QUERIES left it out of this build, which has ray
