@@ -14,11 +14,16 @@ using Bytes = std::span<const std::byte>;
 
 /// Kinds of queries, as bits: what a scene is queried for, what its instances answer.
 using QueryKinds = std::uint8_t;
-inline constexpr QueryKinds kRayQueries = 1;    ///< Closest and any hits of rays.
-inline constexpr QueryKinds kBoxQueries = 2;    ///< Overlaps of boxes and spheres.
-inline constexpr QueryKinds kPointQueries = 4;  ///< Closest points.
-inline constexpr QueryKinds kPairQueries = 8;   ///< Contacts.
-inline constexpr QueryKinds kAllQueries = 15;   ///< All of them.
+/// Lines: all queries of rays, and casts of shapes.
+inline constexpr QueryKinds kRayQueries = 1;
+/// What touches a shape at rest: overlaps of boxes and all other shapes, collide(), frustums.
+inline constexpr QueryKinds kBoxQueries = 2;
+/// Closest points.
+inline constexpr QueryKinds kPointQueries = 4;
+/// Two trees: contacts of instances, and of a tree with a scene.
+inline constexpr QueryKinds kPairQueries = 8;
+/// All of them.
+inline constexpr QueryKinds kAllQueries = 15;
 
 /// The id of a face in trees that were cooked without ids, and of no face.
 inline constexpr std::uint32_t kNoFaceId = 0xffffffffu;
