@@ -57,6 +57,20 @@ for header in $installed; do
   fi
 done
 
+# A visitor that returns nothing is told what to return, by a message and not by all overloads.
+refused_visitor() {
+  printf '#include <boxtree/boxtree.h>\nvoid look(const boxtree::Tree& tree) { (void)boxtree::%s; }\n' "$2" >"$work/visitor.cpp"
+  if "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/visitor.cpp" 2>"$work/log"; then
+    fail "compiles: $2"
+  fi
+  grep -qF "$1" "$work/log" || { cat "$work/log"; fail "unclear, without: $1"; }
+  if grep -q 'no matching function' "$work/log"; then fail "no matching function: $2"; fi
+}
+refused_visitor 'must return bool: a visitor true to go on' \
+  'overlap_sphere(tree, {0, 0, 0}, 1, [](const boxtree::FaceRef&) {})'
+refused_visitor 'the largest t that is still of interest' \
+  'all_hits(tree, {{0, 0, 9}, {0, 0, -1}}, [](const boxtree::RayHit&) {})'
+
 # The component blob is found apart.
 mkdir "$work/blob"
 cat >"$work/blob/CMakeLists.txt" <<'CMAKE'

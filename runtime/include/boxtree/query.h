@@ -93,6 +93,18 @@ class FunctionRef<R(Args...)> {
       };
     }
   }
+  /// Of a callable that takes the arguments and returns nothing, or something else: says what it
+  /// must return.
+  template <class F, std::enable_if_t<std::is_invocable_v<F&, Args...> &&
+                                          !std::is_invocable_r_v<R, F&, Args...>,
+                                      int> = 0>
+  FunctionRef(F&&) noexcept {
+    constexpr bool fits = std::is_invocable_r_v<R, F&, Args...>;
+    static_assert(fits || !std::is_same_v<R, bool>,
+                  "must return bool: a visitor true to go on, a filter true for what may be hit");
+    static_assert(fits || std::is_same_v<R, bool>,
+                  "must return R; where that is double, the largest t that is still of interest");
+  }
   /// Calls it.
   R operator()(Args... args) const { return call_(target_, std::forward<Args>(args)...); }
 
