@@ -75,7 +75,8 @@ Status BoundScene::bind_sections(const File& opened) {
 Status BoundScene::bind_trees(const File& file, const SceneOptions& options) {
   trees_.reserve(file.tree_count());
   for (std::uint32_t i = 0; i < file.tree_count(); ++i) {
-    BindOptions bind;
+    BindOptions bind{.require_active_edges = options.require_active_edges,
+                     .require_user_data = options.require_user_data};
     for (const SceneMeshArrays& mesh : options.meshes) {
       if (mesh.tree == i) bind.mesh = mesh.arrays;
     }

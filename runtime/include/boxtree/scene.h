@@ -49,8 +49,14 @@ struct SceneOptions {
   /// Refuse a scene of which a tree has no face ids [default false] rather than answer kNoFaceId
   /// later.
   bool require_face_ids = false;
+  /// Refuse a scene of which a tree has no active edges [default false] rather than call every edge
+  /// active later.
+  bool require_active_edges = false;
   /// Refuse a scene without any material [default false] rather than answer kNoMaterial later.
   bool require_materials = false;
+  /// Refuse a scene of which a tree has no user data [default false] rather than answer nothing
+  /// later.
+  bool require_user_data = false;
   /// Refuse a scene of which no instance has a name [default false] rather than answer an empty
   /// name later.
   bool require_names = false;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "cooker/encode/face_numbers.h"
 #include "cooker/proof/proof.h"
 #include "format/container.h"
 #include "runtime/file/open_file.h"
@@ -200,6 +201,37 @@ TEST(SceneBind, NamesTheLineThatLeftFaceIdsOfATreeOut) {
   EXPECT_EQ(refusal({of_other, of_scene}), ids + "line 8");
   EXPECT_EQ(refusal({of_scene, of_other}), ids + "line 8");
   EXPECT_EQ(refusal({of_other}), ids + "line 9");
+}
+
+// Of the last tree as of the first: each must have them.
+TEST(SceneBind, EveryTreeHasTheActiveEdgesAndUserDataThatAreRequired) {
+  const auto tree_with = [](bool edges, bool numbers) {
+    cooker::CookOptions options;
+    options.codec = CodecId::kWide8;
+    if (edges) options.active_edges = 5;
+    cooker::EncodedTree tree = require(cooker::cook_mesh(test::sphere(6, 8), options)).tree;
+    if (numbers) tree.user_data = cooker::encode_face_numbers({{{0, 7}}, {}}, 1);
+    return tree;
+  };
+  for (const std::size_t lacking : {0u, 1u}) {
+    std::vector<cooker::EncodedTree> trees(2);
+    const cooker::SceneParts parts = random_parts();
+    const auto refusal = [&](bool edges, bool numbers) {
+      trees[1 - lacking] = tree_with(true, true);
+      trees[lacking] = tree_with(edges, numbers);
+      const std::vector<std::byte> bytes = require(cooker::serialize({trees, {}, &parts}));
+      const File file = require(File::open(bytes));
+      EXPECT_TRUE(Scene::bind(file).ok());
+      const Result<Scene> bound =
+          Scene::bind(file, {.require_active_edges = true, .require_user_data = true});
+      return bound.ok() ? "bound" : bound.error().message();
+    };
+    const std::string without =
+        "part_left_out: tree " + std::to_string(lacking) + ": it was cooked without ";
+    EXPECT_EQ(refusal(true, true), "bound");
+    EXPECT_EQ(refusal(false, true), without + "--active-edges, or active_edges of a profile");
+    EXPECT_EQ(refusal(true, false), without + "--user-data, or user_data of a profile");
+  }
 }
 
 // One name is enough; a scene of nobody has all the names that there are.
