@@ -63,6 +63,13 @@ struct CloseDirectory {
   void operator()(DIR* directory) const { ::closedir(directory); }
 };
 
+// NFS locks exclusively only what is open for writing; others may have files that only can be read.
+int open_to_lock(int folder, const char* name) {
+  constexpr int kFlags = O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC;
+  const int file = ::openat(folder, name, O_RDWR | kFlags);
+  return file >= 0 ? file : ::openat(folder, name, O_RDONLY | kFlags);
+}
+
 // Uses readdir(), because std::filesystem aborts if memory runs out and throws if a folder cannot
 // be read to its end. Files that cannot be removed stay. Locks work across containers.
 void sweep(const fs::path& folder, std::string_view name) {
@@ -73,7 +80,7 @@ void sweep(const fs::path& folder, std::string_view name) {
   // NOLINTNEXTLINE(concurrency-mt-unsafe): the folder is read by nobody else
   while (const dirent* entry = ::readdir(entries.get())) {
     if (!is_temporary(entry->d_name, prefix)) continue;
-    const int file = ::openat(at, entry->d_name, O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    const int file = open_to_lock(at, entry->d_name);
     if (file < 0) continue;
     if (::flock(file, LOCK_EX | LOCK_NB) == 0) ::unlinkat(at, entry->d_name, 0);
     ::close(file);
