@@ -25,6 +25,7 @@
 #include "cooker/import/import.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/report/paper_tables.h"
+#include "cooker/report/tradeoff_advice.h"
 #include "cooker/report/tradeoff_page.h"
 #include "cooker/write/atomic_file.h"
 #include "cooker/write/outputs.h"
@@ -305,6 +306,10 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
 int run_tradeoff(const Arguments& arguments) {
   const Result<TradeoffReport> report = measure_all(arguments);
   if (!report) return fail(report.error());
+  for (const MeshTradeoff& mesh : report->meshes) {
+    const std::string disturbance = disturbance_in_words(mesh);
+    if (!disturbance.empty()) warn(mesh.name + ": " + disturbance);
+  }
   std::vector<Written> written;
   if (Status status = write_text(arguments.csv, to_csv(*report), written); !status)
     return fail(status.error());

@@ -334,7 +334,8 @@ class Measurement {
     if (!pages) return pages.error();
     point.pages = *pages;
     if (options_.times) {
-      const auto times = time_kinds(*tree, timed_, effort_.runs);
+      const auto times =
+          out_.timed_work.add([&] { return time_kinds(*tree, timed_, effort_.runs); });
       if (!times) return times.error();
       point.times = *times;
     }

@@ -15,6 +15,7 @@
 #include "cooker/proof/gates.h"
 #include "cooker/report/approximate.h"
 #include "cooker/report/pages.h"
+#include "cooker/report/timed_work.h"
 
 namespace boxtree::cooker {
 
@@ -90,6 +91,7 @@ struct MeshTradeoff {
   ByteParts source;                 // positions and 32-bit corners, as in an application
   std::vector<TradePoint> points;
   bool timed = false;
+  TimedWork timed_work;  // all queries of `times`
 
   [[nodiscard]] double per_triangle(std::uint64_t bytes) const {
     return static_cast<double>(bytes) / static_cast<double>(triangles);

@@ -240,6 +240,16 @@ std::string time_in_words(double nanoseconds) {
   return fmt::format("{:.3g} ms", nanoseconds / 1e6);
 }
 
+std::string disturbance_in_words(const MeshTradeoff& mesh) {
+  const double share = mesh.timed_work.processor_share();
+  if (!mesh.timed || !is_disturbed(share)) return {};
+  return fmt::format(
+      "other programs had the processor for {:.0f} % of the time in which queries were timed, so "
+      "times, and encodings that are recommended by them, may be wrong. Measure again when the "
+      "machine does nothing else, or without times (--no-times)",
+      100 * (1 - share));
+}
+
 std::string move_in_words(const MeshTradeoff& mesh, double share) {
   return share == 0 ? "0"
                     : fmt::format("{:.2g} of the diagonal ({:.2g} units of the mesh)", share,

@@ -51,6 +51,9 @@ struct Advice {
 /// A paragraph for each recommendation.
 [[nodiscard]] std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh);
 
+/// What to say of times that other programs disturbed; empty for others, and without times.
+[[nodiscard]] std::string disturbance_in_words(const MeshTradeoff& mesh);
+
 /// The options of `boxtree cook` that produce a file of a point's bytes: the first input is one
 /// tree, and no record of the cook follows.
 [[nodiscard]] std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point);

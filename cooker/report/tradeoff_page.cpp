@@ -215,6 +215,10 @@ PageSection advice_section(const MeshTradeoff& mesh) {
              "are from there, a tolerance is of both together, and --f64 keeps all digits.",
              move_in_words(mesh, mesh.moved_by_f32 / mesh.diagonal))});
   }
+  if (std::string disturbance = disturbance_in_words(mesh); !disturbance.empty()) {
+    section.conclusions.insert(section.conclusions.begin(),
+                               {"Times were disturbed:", std::move(disturbance) + "."});
+  }
   const auto advice = advise(mesh);
   if (!advice) return section;
   PageTable table{{"choice", "encoding", "bytes / triangle", "without face ids", "of source",

@@ -345,6 +345,22 @@ MeshTradeoff three_points() {
   return made;
 }
 
+TEST(Advice, SaysThatOtherProgramsDisturbedTheTimes) {
+  const auto page = [](double processor_seconds, bool timed) {
+    MeshTradeoff made = three_points();
+    made.timed = timed;
+    made.timed_work = {processor_seconds, 10};
+    TradeoffReport report;
+    report.meshes = {made};
+    return to_text(tradeoff_page(report));
+  };
+  EXPECT_EQ(page(10, true).find("disturbed"), std::string::npos);
+  EXPECT_EQ(page(4, false).find("disturbed"), std::string::npos);
+  EXPECT_NE(page(4, true).find("Times were disturbed: other programs had the processor for 60 % of "
+                               "the time in which queries were timed"),
+            std::string::npos);
+}
+
 TEST(Advice, IsTheMinimumWithinEachLimit) {
   MeshTradeoff made = three_points();
   const auto advice = advise(made);
