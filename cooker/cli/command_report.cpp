@@ -210,6 +210,7 @@ int write_report(const Arguments& arguments, const Page& page, const Json& figur
     for (const Written& file : written) {
       fmt::print("wrote {}, {} bytes\n", shown(file.path.string()), file.bytes);
     }
+    if (written.empty()) fmt::print("no page was written; -o FILE.html writes one\n");
   }
   return 0;
 }
@@ -240,26 +241,43 @@ Result<SourceMesh> read_mesh(const std::filesystem::path& path, const Arguments&
   return std::move(imported->mesh);
 }
 
-int run_paper(const Arguments& arguments) {
+Result<PaperReport> measure_paper(const Arguments& arguments) {
   PaperReport report;
   report.command = command_of(arguments);
-  for (const std::filesystem::path& path : arguments.meshes) {
-    const Result<SourceMesh> mesh = read_mesh(path, arguments);
-    if (!mesh) return fail(mesh.error());
+  const bool has_peers = !arguments.no_times && !arguments.peers.empty();
+  const std::size_t parts = arguments.meshes.size() + (has_peers ? 2u : 1u);
+  StepPrinter steps(!arguments.quiet);
+  const auto step = [&](const std::string& what, std::size_t part) {
+    steps(what, static_cast<double>(part) / static_cast<double>(parts));
+  };
+  for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
+    const std::string name = arguments.meshes[i].filename().string();
+    step("import " + name, i);
+    const Result<SourceMesh> mesh = read_mesh(arguments.meshes[i], arguments);
+    if (!mesh) return mesh.error();
+    step("encode and query " + name, i);
     Result<PaperFigures> figures = paper_figures(*mesh);
-    if (!figures) return fail(figures.error());
+    if (!figures) return figures.error();
     report.meshes.push_back(std::move(*figures));
   }
+  step("query stairs", arguments.meshes.size());
   Result<std::vector<StairFigures>> stairs = stair_contact();
-  if (!stairs) return fail(stairs.error());
+  if (!stairs) return stairs.error();
   report.stairs = std::move(*stairs);
-  if (!arguments.no_times && !arguments.peers.empty()) {
+  if (has_peers) {
+    step("query other libraries", arguments.meshes.size() + 1);
     Result<std::vector<PeerRow>> rows = measure_paper_peers(arguments);
-    if (!rows) return fail(rows.error());
+    if (!rows) return rows.error();
     report.peers = std::move(*rows);
   }
-  const Page page = paper_page(report);
-  return write_report(arguments, page, to_json(report), page);
+  return report;
+}
+
+int run_paper(const Arguments& arguments) {
+  const Result<PaperReport> report = measure_paper(arguments);
+  if (!report) return fail(report.error());
+  const Page page = paper_page(*report);
+  return write_report(arguments, page, to_json(*report), page);
 }
 
 // Why other libraries are not in the report; empty when they are.
@@ -379,7 +397,7 @@ void add_report_command(Command& program, int& status) {
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,
-                   "Write an HTML page; - is standard output");
+                   "Write an HTML page; - is standard output [none: a summary]");
   command.add_option("-j,--jobs", arguments->jobs, "Threads that cook; times are of one [all]")
       ->type_name("N")
       ->between(1, 1024);

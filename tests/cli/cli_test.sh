@@ -1132,6 +1132,8 @@ grep -q '<td class="word">cube</td>' paper.html
 same "$(jq -c '[.meshes[] | .original_nodes == .merged_nodes + .faces] | unique' paper.json)" '[true]'
 same "$(jq -c '[.meshes[].codecs | length] | unique' paper.json)" '[8]'
 same "$(jq -c '[.stairs[] | .missed_outward] | unique' paper.json)" '[0]'
+expect 0 "$boxtree" report --paper cube.obj --no-times
+same "$(tail -1 out)" "no page was written; -o FILE.html writes one"
 expect 2 "$boxtree" report --paper missing.obj
 expect 1 "$boxtree" report --paper cube.obj --csv paper.csv
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Cook shows its steps on a terminal and only there, and only once it has worked half a second. It writes no
-file to a terminal.
+"""Cook and report show their steps on a terminal and only there, and only once they have worked half a second.
+Cook writes no file to a terminal.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
 silence is required only of runs that took less than half a second from start to end.
@@ -20,6 +20,7 @@ SHOWN_AFTER = 0.5  # seconds, as in step_printer.h
 GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOWN_AFTER
 ERASE = "\r\x1b[K"  # to the start of the line, and clear it
 STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")
+SHARES = re.compile(rf"(?:{re.escape(ERASE)}\[#*\.*\] [\w .:,-]+ \.\.\.)+")
 
 
 def write_grid(path, cells):
@@ -64,15 +65,18 @@ def cook(boxtree, count, *options):
     return [boxtree, "cook", *names, "-o", "grid.bxt", *options]
 
 
-def find_long_work(boxtree):
+def report(boxtree, count, *options):
+    return [boxtree, "report", *["grid.obj"] * count, "--quick", "--no-times", *options]
+
+
+def find_long_work(command_of, pattern):
     """Returns how many inputs it takes until steps are shown."""
     count = 1
     while True:
-        seconds, sent = run_on_terminal(cook(boxtree, count), ["stderr"],
-                                        stdout=subprocess.DEVNULL)
+        seconds, sent = run_on_terminal(command_of(count), ["stderr"], stdout=subprocess.DEVNULL)
         if sent:
             assert seconds >= SHOWN_AFTER, f"steps shown in a run of {seconds:.3f} s: {sent!r}"
-            assert STEPS.fullmatch(sent.removesuffix(ERASE)), f"not a list of steps: {sent!r}"
+            assert pattern.fullmatch(sent.removesuffix(ERASE)), f"not a list of steps: {sent!r}"
             assert sent.endswith(ERASE), f"the last step stays on the terminal: {sent!r}"
             return count
         assert seconds < GIVE_UP_AFTER, f"nothing shown in {seconds:.3f} s"
@@ -91,7 +95,7 @@ def main(boxtree):
         write_grid("grid.obj", 40)
         # Twice what was just long enough: the runs below are long even if the machine is now less
         # busy than it was.
-        count = 2 * find_long_work(boxtree)
+        count = 2 * find_long_work(lambda count: cook(boxtree, count), STEPS)
         with open("errors", "w+", encoding="ascii") as errors:
             _, sent = run_on_terminal(cook(boxtree, count), ["stdin", "stdout"], stderr=errors)
             errors.seek(0)
@@ -100,6 +104,8 @@ def main(boxtree):
             assert "wrote grid.bxt" in sent, f"no report: {sent!r}"
         _, sent = run_on_terminal(cook(boxtree, count, "--quiet"), ["stdout", "stderr"])
         assert sent == "", f"not quiet: {sent!r}"
+        for options in ([], ["--paper"]):
+            find_long_work(lambda count, options=options: report(boxtree, count, *options), SHARES)
         for command in (["cook", "grid.obj", "-o", "-"], ["export", "grid.bxt", "-o", "-"]):
             _, sent = run_on_terminal([boxtree, *command], ["stdout", "stderr"], expected=1)
             wanted = (f"boxtree: usage: {command[0]}: --output: expected a file or a pipe, and standard output is a "
