@@ -57,6 +57,17 @@ for header in $installed; do
   fi
 done
 
+# Options of which a program names a few give no warning of those that it leaves out.
+cat >"$work/options.cpp" <<'CODE'
+#include <boxtree/boxtree.h>
+boxtree::BindOptions of_tree() { return {.require_face_ids = true, .require_user_data = true}; }
+boxtree::SceneOptions of_scene() { return {.require_active_edges = true}; }
+boxtree::FaceOptions of_faces() { return {.limits = {.nodes = 10000}}; }
+boxtree::SceneFaceOptions of_scene_faces() { return {.layers = 1}; }
+CODE
+"$compiler" -std=c++20 -Wall -Wextra -Werror -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/options.cpp" ||
+  fail "options give warnings"
+
 # A visitor that returns nothing is told what to return, by a message and not by all overloads.
 refused_visitor() {
   printf '#include <boxtree/boxtree.h>\nvoid look(const boxtree::Tree& tree) { (void)boxtree::%s; }\n' "$2" >"$work/visitor.cpp"

@@ -24,8 +24,8 @@ using FaceFilter = NamedFunctionRef<bool(const FaceRef&)>;
 /// Which faces a ray or a cast may hit, and what it may cost.
 struct FaceOptions {
   BackFaces back_faces = BackFaces::kHit;  ///< [kHit]
-  std::optional<FaceFilter> filter;        ///< [every face]
-  QueryLimits limits;                      ///< [none]
+  std::optional<FaceFilter> filter = {};   ///< [every face]
+  QueryLimits limits = {};                 ///< [none]
 };
 
 }  // namespace boxtree

@@ -216,10 +216,10 @@ using InstanceFilter = NamedFunctionRef<bool(std::uint32_t)>;
 struct SceneFaceOptions {
   /// Which side counts as seen from the instance: a pose that mirrors turns nothing over. [kHit]
   BackFaces back_faces = BackFaces::kHit;
-  std::optional<SceneFaceFilter> filter;          ///< [every face]
-  std::optional<InstanceFilter> instance_filter;  ///< [every instance]
-  LayerMask layers = kAllLayers;                  ///< [every layer]
-  QueryLimits limits;                             ///< [none]
+  std::optional<SceneFaceFilter> filter = {};          ///< [every face]
+  std::optional<InstanceFilter> instance_filter = {};  ///< [every instance]
+  LayerMask layers = kAllLayers;                       ///< [every layer]
+  QueryLimits limits = {};                             ///< [none]
 };
 
 /// A hit of an instance. `t` counts in units of the ray's direction; point and normal are in world

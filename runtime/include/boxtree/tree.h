@@ -69,7 +69,7 @@ template <class Scalar, class Corner>
 /// How a tree is bound.
 struct BindOptions {
   /// The application's arrays, for trees with external geometry; ignored otherwise.
-  std::optional<MeshArrays> mesh;
+  std::optional<MeshArrays> mesh = {};
   /// Compare the arrays' content with the hash in the file [default false]: reads all of them.
   bool verify_mesh = false;
   /// Refuse a tree without face ids [default false] rather than report kNoFaceId later.
