@@ -80,8 +80,10 @@ class Writer:
         self.new = {}           # name -> bytes, after a run that nothing disturbs
 
     def old(self, name):
-        """Longer than what replaces it, so that writing over it in place leaves a mixture."""
-        return f"old {name}\n".encode() * (len(self.new.get(name, b"")) // 8 + 100)
+        """Longer than what replaces it, so that writing over it in place leaves a mixture. It begins like
+        it, since a program may refuse to replace another kind of file."""
+        new = self.new.get(name, b"")
+        return new[:256] + f"old {name}\n".encode() * (len(new) // 8 + 100)
 
     def learn(self, folders):
         """Runs it undisturbed to learn what it writes."""
