@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Makes lines of kept bytes from sections, and lines of parts left out from decisions.
-#include "cooker/scene_account.h"
+#include "cooker/account.h"
 
 #include <algorithm>
 #include <cstring>

@@ -10,6 +10,7 @@
 
 #include <fmt/format.h>
 
+#include "cooker/account.h"
 #include "cooker/cook_record.h"
 #include "cooker/encode/instance_edges.h"
 #include "cooker/import/f32_digits.h"
@@ -18,7 +19,6 @@
 #include "cooker/scene/plan.h"
 #include "cooker/scene/precision.h"
 #include "cooker/scene/scene_grid.h"
-#include "cooker/scene_account.h"
 #include "format/container.h"
 #include "format/face_ids.h"
 #include "format/face_numbers.h"

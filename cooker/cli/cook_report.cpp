@@ -242,6 +242,19 @@ void add_forms(const char* what, const std::optional<FaceNumberBytes>& forms, Js
                 {"bytes_by_face", forms->faces}};
 }
 
+// The same; several trees are told apart by their names.
+void add_forms(const Summary& summary, std::string& text) {
+  for (const CookedTree& cooked : summary.trees) {
+    const std::string owner = summary.trees.size() == 1 ? "" : shown(cooked.tree.name) + ": ";
+    for (const auto& [what, forms] : {std::pair("materials", &cooked.tree.material_forms),
+                                      std::pair("user data", &cooked.tree.user_data_forms)}) {
+      if (!*forms) continue;
+      text +=
+          fmt::format("  {}{}: {} bytes, {}\n", owner, what, (*forms)->kept(), forms_text(**forms));
+    }
+  }
+}
+
 // Which group has which number; of many the first ones.
 void add_groups(const ImportReport& import, std::string& text) {
   constexpr std::size_t kMost = 12;
@@ -256,17 +269,31 @@ void add_groups(const ImportReport& import, std::string& text) {
   text += "\n";
 }
 
-// The same; several trees are told apart by their names.
-void add_forms(const Summary& summary, std::string& text) {
-  for (const CookedTree& cooked : summary.trees) {
-    const std::string owner = summary.trees.size() == 1 ? "" : shown(cooked.tree.name) + ": ";
-    for (const auto& [what, forms] : {std::pair("materials", &cooked.tree.material_forms),
-                                      std::pair("user data", &cooked.tree.user_data_forms)}) {
-      if (!*forms) continue;
-      text +=
-          fmt::format("  {}{}: {} bytes, {}\n", owner, what, (*forms)->kept(), forms_text(**forms));
-    }
+void add_scene(const Summary& summary, Json& json) {
+  const SceneSummary& scene = *summary.scene;
+  add_left_out(summary, json["trees"]);
+  json["imports"] = imports_json(summary.imports);
+  json["scene"] = {{"instances", scene.instances},
+                   {"moving", scene.moving},
+                   {"instances_left_out", scene.instances_left_out},
+                   {"source_meshes", scene.meshes},
+                   {"placed_triangles", scene.placed_triangles},
+                   {"file_bytes", summary.file_bytes}};
+  json["notices"] = scene.notices;
+}
+
+Json why_json(const std::vector<WhyLine>& why) {
+  Json json = Json::array();
+  for (const WhyLine& line : why) {
+    json.push_back({{"part", line.part},
+                    {"owner", line.owner},
+                    {"kept", line.kept},
+                    {"bytes", line.bytes},
+                    {"estimate", line.is_estimate},
+                    {"reason", line.reason},
+                    {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
   }
+  return json;
 }
 
 }  // namespace
@@ -314,37 +341,6 @@ Json imports_json(const std::vector<ImportReport>& imports) {
   for (const ImportReport& import : imports) json.push_back(import_json(import));
   return json;
 }
-
-namespace {
-
-void add_scene(const Summary& summary, Json& json) {
-  const SceneSummary& scene = *summary.scene;
-  add_left_out(summary, json["trees"]);
-  json["imports"] = imports_json(summary.imports);
-  json["scene"] = {{"instances", scene.instances},
-                   {"moving", scene.moving},
-                   {"instances_left_out", scene.instances_left_out},
-                   {"source_meshes", scene.meshes},
-                   {"placed_triangles", scene.placed_triangles},
-                   {"file_bytes", summary.file_bytes}};
-  json["notices"] = scene.notices;
-}
-
-Json why_json(const std::vector<WhyLine>& why) {
-  Json json = Json::array();
-  for (const WhyLine& line : why) {
-    json.push_back({{"part", line.part},
-                    {"owner", line.owner},
-                    {"kept", line.kept},
-                    {"bytes", line.bytes},
-                    {"estimate", line.is_estimate},
-                    {"reason", line.reason},
-                    {"line", line.line.empty() ? Json(nullptr) : Json(line.line)}});
-  }
-  return json;
-}
-
-}  // namespace
 
 Json summary_json(const Summary& summary) {
   Json json;

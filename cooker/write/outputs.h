@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <span>
-#include <string_view>
 
 #include <boxtree/error.h>
 
