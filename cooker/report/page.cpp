@@ -23,10 +23,10 @@ margin:0 auto;padding:1rem;overflow-wrap:break-word}
 h1{font-size:1.6rem;line-height:1.25}h2{font-size:1.2rem;margin-top:2.5rem}
 p{max-width:46rem}.faint{color:var(--faint)}
 .conclusion{background:var(--well);border-left:4px solid var(--c0);padding:.5rem .9rem;margin:.6rem 0}
-.scroll{overflow-x:auto}
+.scroll{overflow-x:auto}code{font:.9rem ui-monospace,monospace}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem;margin:1rem 0}
 th,td{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
-th{color:var(--faint);font-weight:600;vertical-align:bottom}
+th{color:var(--faint);font-weight:600;vertical-align:bottom;white-space:normal}
 th.word,td.word{text-align:left}
 .plots{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,30rem),1fr));gap:1.2rem}
 figure{margin:0;min-width:0}figcaption{font-weight:600}
@@ -36,7 +36,7 @@ svg .band{fill:var(--well)}svg .grid{stroke:var(--line);fill:none}
 svg .line{fill:none;stroke-width:1.6}svg .front{stroke-width:2.5;stroke-dasharray:6 4;opacity:.55}
 @media print{body{max-width:none;font-size:11px}h1{font-size:20px}h2{font-size:15px;break-after:avoid}
 p{max-width:none}.conclusion,figure,tr{break-inside:avoid}.scroll{overflow:visible}svg{min-width:0}
-.plots{grid-template-columns:1fr 1fr}table{font-size:8px}th,td{padding:1px 3px}th{white-space:normal}}
+.plots{grid-template-columns:1fr 1fr}table{font-size:8px}th,td{padding:1px 3px}}
 )";
 
 void add_html(const PageTable& table, std::string& out) {
@@ -91,6 +91,7 @@ std::string to_text(const Page& page) {
     if (section.tables.empty() && !section.text.empty()) out += "  " + section.text + "\n";
     for (const PageConclusion& conclusion : section.conclusions) {
       out += "  " + conclusion.lead + " " + conclusion.text + "\n";
+      if (!conclusion.command.empty()) out += "    Make it with: " + conclusion.command + "\n";
     }
     for (const PageTable& table : section.tables) add_text(table, out);
   }
@@ -109,7 +110,11 @@ std::string to_html(const Page& page) {
     if (!section.text.empty()) out += "<p>" + escaped(section.text) + "</p>\n";
     for (const PageConclusion& conclusion : section.conclusions) {
       out += "<p class=\"conclusion\"><strong>" + escaped(conclusion.lead) + "</strong> " +
-             escaped(conclusion.text) + "</p>\n";
+             escaped(conclusion.text);
+      if (!conclusion.command.empty()) {
+        out += "<br>Make it with: <code>" + escaped(conclusion.command) + "</code>";
+      }
+      out += "</p>\n";
     }
     for (const PageTable& table : section.tables) add_html(table, out);
     if (!section.plots.empty() || !section.bars.empty()) {

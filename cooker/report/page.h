@@ -22,6 +22,7 @@ struct PageTable {
 struct PageConclusion {
   std::string lead;
   std::string text;
+  std::string command = {};  // that makes what it speaks of; empty if none does
 };
 
 struct PageSection {

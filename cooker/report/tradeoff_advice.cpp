@@ -85,11 +85,11 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
       role + ": " + point.name() + ".",
       fmt::format("{:.2f} bytes per triangle, a file of {} bytes: {:.0f} % of the source arrays, "
                   "tree included; {:.2f} with geometry and without face ids, as cook counts. {} {} "
-                  "Slowdown: {:.2f}. Make it with: boxtree cook MESH -o FILE.bxt {}",
+                  "Slowdown: {:.2f}.",
                   mesh.per_triangle(bytes), bytes,
                   100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
-                  mesh.per_triangle(point.bytes.queried()), surface, times, slowdown,
-                  cook_options(mesh, point))};
+                  mesh.per_triangle(point.bytes.queried()), surface, times, slowdown),
+      "boxtree cook MESH -o FILE.bxt " + cook_options(mesh, point)};
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ CONCLUSION = re.compile(
     r"([^.>]*): (wide8|wide4), (arrays|exact|grid)(?: (\d+))?\..{0,40}?"
     r"([\d.]+) bytes per triangle, a file of (\d+) bytes:.*?"
     r"(No position changes by a single bit|No point of the surface moves by more than).*?"
-    r"Make it with: boxtree (cook MESH -o FILE\.bxt [^<]*?)\s*<", re.DOTALL)
+    r"Make it with: <code>boxtree (cook MESH -o FILE\.bxt [^<]*?)\s*<", re.DOTALL)
 
 
 def write_strip(path, cells):
