@@ -316,6 +316,46 @@ class FieldTexts {
   std::vector<Field> fields_;
 };
 
+// What an argument that the library does not take has to be, "t_max: expected 0 or more".
+std::string expected_of(std::string_view kind, std::string_view argument) {
+  constexpr const char* kInRange = "a finite point, at most 2^185 mesh extents away";
+  constexpr const char* kFinite = "finite and 0 or more";
+  constexpr const char* kUnsigned = "0 or more";
+  struct Expectation {
+    std::string_view argument;
+    const char* expected;
+  };
+  constexpr Expectation kExpectations[] = {
+      {"origin", kInRange},
+      {"center", kInRange},
+      {"start", kInRange},
+      {"end", kInRange},
+      {"position", kInRange},
+      {"point", kInRange},
+      {"points", "finite points, none farther than 2^185 mesh extents away"},
+      {"radius", kFinite},
+      {"half_extents", kFinite},
+      {"rotation", "four finite numbers, not all 0"},
+      {"t_max", kUnsigned},
+      {"max_distance", kUnsigned},
+      {"relative_error", kUnsigned},
+      {"absolute_error", kUnsigned},
+      {"box", "finite corners, min not above max on any axis"},
+      {"planes", "a matrix of finite numbers, and of rows whose sums are finite"},
+  };
+  if (argument == "direction") {
+    return fmt::format("direction: expected finite{}",
+                       kind == RayRequest::kKind ? " and not zero" : "");
+  }
+  if (argument == "distance") return fmt::format("within: expected {}", kUnsigned);
+  for (const Expectation& each : kExpectations) {
+    if (each.argument != argument) continue;
+    const std::string of = argument == kind ? std::string() : std::string(argument) + ": ";
+    return of + "expected " + each.expected;
+  }
+  return fmt::format("{} is not valid", argument);
+}
+
 }  // namespace
 
 Json contact_json(const PairContact& contact) {
@@ -522,26 +562,19 @@ Error explained(const Error& error, const QueryRequest& request) {
   const bool is_name =
       error.code == Errc::kInvalidQuery && error.detail.find(' ') == std::string::npos;
   if (!error.detail.empty() && !is_name) return error;
-  if (error.code == Errc::kInvalidPose) {
-    return std::visit(
-        [&]<class Kind>(const Kind& q) -> Error {
-          if constexpr (requires { q.second; }) {
-            return explained_pose(std::string(Kind::kKind) + ": the second tree's", q.second.pose);
-          } else {
-            return error;
-          }
-        },
-        request);
-  }
-  if (error.code != Errc::kInvalidQuery) return error;
   return std::visit(
       [&]<class Kind>(const Kind& q) -> Error {
-        if constexpr (requires { Kind::kExpected; }) {
-          return {Errc::kInvalidQuery, fmt::format("{}: expected {}, found {}", Kind::kKind,
-                                                   Kind::kExpected, FieldTexts::line_of(q))};
-        } else {
-          return error;
+        if (error.code == Errc::kInvalidQuery) {
+          return {error.code,
+                  fmt::format("{}: {}, found {}", Kind::kKind,
+                              expected_of(Kind::kKind, error.detail), FieldTexts::line_of(q))};
         }
+        if constexpr (requires { q.second; }) {
+          if (error.code == Errc::kInvalidPose) {
+            return explained_pose(std::string(Kind::kKind) + ": the second tree's", q.second.pose);
+          }
+        }
+        return error;
       },
       request);
 }

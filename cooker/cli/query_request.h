@@ -28,9 +28,9 @@ struct KindExample {
   const char* line;
 };
 
-// A kind of request states its name, a line of help, examples, what its numbers have to be, unless
-// any will do, and what it is made of: describe() tells a reader of options each of them once. Such
-// readers are those for lines of a batch and for the command line, where key "t_max" is option
+// A kind of request states its name, a line of help, examples, and what it is made of: describe()
+// tells a reader of options each of them once. Such readers are those for lines of a batch and for
+// the command line, where key "t_max" is option
 // --t-max, and one that shows what was given. They have
 //   required(key, value, help)           a Vector3d or a double
 //   optional(key, value, help, given)    a double, an uint64_t or a bool; sets *given if there
@@ -42,10 +42,6 @@ struct KindExample {
 struct RayRequest {
   static constexpr const char* kKind = "ray";
   static constexpr const char* kHelp = "Closest hit of a ray, or all";
-  static constexpr const char* kExpected =
-      "a finite origin, at most 2^185 mesh extents away, a finite direction that is not zero, and "
-      "t_max "
-      "of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"What a ray from above hits first",
        "boxtree query bunny.bxt ray --origin 0,9,0 --direction 0,-1,0"},
@@ -85,10 +81,6 @@ struct CastRequest {
   static constexpr const char* kKind = "cast";
   static constexpr const char* kHelp =
       "First touch of a sphere, a capsule, a box or a convex hull that moves along a line";
-  static constexpr const char* kExpected =
-      "finite ends or a finite center, at most 2^185 mesh extents away, a finite direction, a "
-      "finite radius or half extents of 0 or more, a rotation that is not 0, and t_max of 0 or "
-      "more";
   static constexpr KindExample kExamples[] = {
       {"How far a ball falls",
        "boxtree query bunny.bxt cast --sphere 0.1 --at 0,0,9 --direction 0,0,-1"},
@@ -123,9 +115,6 @@ struct CollideRequest {
   static constexpr const char* kKind = "collide";
   static constexpr const char* kHelp =
       "Triangles that a sphere, a capsule, a box or a convex hull touches, and how it leaves them";
-  static constexpr const char* kExpected =
-      "finite ends or a finite center, at most 2^185 mesh extents away, a finite radius or half "
-      "extents of 0 or more, a rotation that is not 0, and merge of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"What a ball touches, and how deep",
        "boxtree query bunny.bxt collide --sphere 0.5 --at 0,0,1"},
@@ -173,8 +162,6 @@ struct BoxRequest {
   static constexpr const char* kKind = "box";
   static constexpr const char* kHelp =
       "Faces that touch an axis-aligned box, or with --within or --budget whether any does";
-  static constexpr const char* kExpected =
-      "finite corners, min not above max on any axis, and within of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The faces in a box", "boxtree query bunny.bxt box --min -1,-1,-1 --max 1,1,1"},
       {"Whether anything touches it, gaps of less than 0.1 left undecided",
@@ -195,8 +182,6 @@ struct BoxRequest {
 struct SphereRequest {
   static constexpr const char* kKind = "sphere";
   static constexpr const char* kHelp = "Faces within a radius of a point";
-  static constexpr const char* kExpected =
-      "a finite center, at most 2^185 mesh extents away, and a finite radius of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The faces within a radius", "boxtree query bunny.bxt sphere --center 0,0,0 --radius 2"}};
 
@@ -213,7 +198,6 @@ struct SphereRequest {
 struct FrustumRequest {
   static constexpr const char* kKind = "frustum";
   static constexpr const char* kHelp = "Faces that touch what a camera sees";
-  static constexpr const char* kExpected = "finite numbers, and finite sums of the rows";
   static constexpr KindExample kExamples[] = {
       {"The faces in a box from -1 to 1 along x and y and from 0 to 2 along z",
        "boxtree query bunny.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,0.5,0,0,0,0,1"}};
@@ -250,8 +234,6 @@ void describe_approximation(Fields& fields, Approximation& options, bool* given 
 struct PointRequest {
   static constexpr const char* kKind = "point";
   static constexpr const char* kHelp = "Closest point of the surface";
-  static constexpr const char* kExpected =
-      "a finite point, at most 2^185 mesh extents away, and a max_distance and errors of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"The closest point, at most 1 % farther than the closest of all",
        "boxtree query bunny.bxt point --at 1,2,3 --relative-error 0.01"}};
@@ -299,7 +281,6 @@ struct PairRequest {
 struct DistanceRequest {
   static constexpr const char* kKind = "distance";
   static constexpr const char* kHelp = "Distance of two trees";
-  static constexpr const char* kExpected = "a max_distance and errors of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"How far two trees are apart", "boxtree query bunny.bxt distance bunny.bxt --pose 5,0,0"},
       {"Whether they are closer than 0.1: found says it",
@@ -318,7 +299,6 @@ struct DistanceRequest {
 struct OverlapRequest {
   static constexpr const char* kKind = "overlap";
   static constexpr const char* kHelp = "Whether two trees overlap";
-  static constexpr const char* kExpected = "within of 0 or more";
   static constexpr KindExample kExamples[] = {
       {"Whether two trees overlap, within 200 nodes",
        "boxtree query bunny.bxt overlap bunny.bxt --pose 5,0,0 --budget 200"}};

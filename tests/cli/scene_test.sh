@@ -109,7 +109,7 @@ expect 1 "$boxtree" query level.bxt distance flat.bxt
 grep -q -- '--tree' err
 
 expect 1 "$boxtree" query level.bxt sphere --center 0,0,0 --radius=-1
-grep -q 'invalid_query: level.bxt: sphere: expected .* found center \[0,0,0\], radius -1$' err
+grep -q 'invalid_query: level.bxt: sphere: radius: expected finite and 0 or more, found center \[0,0,0\], radius -1$' err
 
 # A body that is no part of the scene.
 fall='cast --sphere 0.25 --at 0.1,0.2,9 --direction 0,0,-1'
