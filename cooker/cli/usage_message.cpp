@@ -165,6 +165,13 @@ std::string fault_behind_end(const Command& command, const std::vector<std::stri
                                         : missing + "; options come before --, which ends them";
 }
 
+// A word that no place is for; an option without its dashes is told by its name.
+std::string unexpected_word(const Command& command, const std::string& word) {
+  const std::string option = "--" + word;
+  return "'" + word + "' was not expected" +
+         (has_option(command, option) ? "; did you mean '" + option + "'?" : std::string());
+}
+
 // What was misspelt comes before what is missing because of it.
 std::string fault(const CLI::App& app, const Command& command, const CLI::Error& error) {
   const bool is_missing = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr;
@@ -181,7 +188,7 @@ std::string fault(const CLI::App& app, const Command& command, const CLI::Error&
   }
   const auto option = std::find_if(rest.begin(), rest.end(), is_option);
   if (option != rest.end()) return unknown_option(command, without_value(*option));
-  if (is_extra) return "'" + rest.front() + "' was not expected";
+  if (is_extra) return unexpected_word(command, rest.front());
   return app.get_subcommands().empty() ? "a command is required" : missing(command, rest, error);
 }
 

@@ -3,6 +3,7 @@
 #include "cooker/import/obj_import.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -18,6 +19,7 @@
 #include "cooker/import/obj_statements.h"
 #include "cooker/import/source_files.h"
 #include "cooker/import/text_tokens.h"
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -251,8 +253,9 @@ Status import_obj(const SourceFile& source, const ImportOptions& options, Import
                   FaceMaterials& materials) {
   if (!options.user_data.empty() && options.user_data != kGroups) {
     return Error{Errc::kMeshUnsupported,
-                 fmt::format("{}: user data of faces '{}': an OBJ file has '{}' alone",
-                             source.title(), options.user_data, kGroups)};
+                 fmt::format("{}: user data of faces '{}': an OBJ file has '{}' alone{}",
+                             source.title(), options.user_data, kGroups,
+                             suggestion(options.user_data, std::array{std::string(kGroups)}))};
   }
   std::vector<std::string> libraries;
   FaceMaterials groups;
