@@ -55,16 +55,18 @@ Errc walk_box(const BoundTree& tree, FaceWalk<BoxQuery>& faces) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_box);
+BOXTREE_EXPORT(walk_box);
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, FaceWalk<BoxQuery>& walk) {
   if (tree.has_float_nodes()) {
-    return HWY_DYNAMIC_DISPATCH(walk_box)(tree, walk);
+    return BOXTREE_DISPATCH(walk_box)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);
 }

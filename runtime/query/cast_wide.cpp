@@ -252,16 +252,18 @@ Errc walk_cast(const BoundTree& tree, CastQuery& query) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_cast);
+BOXTREE_EXPORT(walk_cast);
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, CastQuery& query) {
   if (tree.has_float_nodes() && CastFilter::is_near(query)) {
-    return HWY_DYNAMIC_DISPATCH(walk_cast)(tree, query);
+    return BOXTREE_DISPATCH(walk_cast)(tree, query);
   }
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }

@@ -280,10 +280,12 @@ Result<Visit> walk_pair(const BoundTree& first, const BoundTree& second, const R
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_pair);
+BOXTREE_EXPORT(walk_pair);
 
 }  // namespace
 
@@ -292,7 +294,7 @@ Result<Visit> walk_wide_pairs(const BoundTree& first, const BoundTree& second,
   if (first.has_float_nodes() && second.has_float_nodes()) {
     const PairFilter filter(first, second, pose);
     if (filter.is_in_range()) {
-      return HWY_DYNAMIC_DISPATCH(walk_pair)(first, second, pose, filter, visitor, bound);
+      return BOXTREE_DISPATCH(walk_pair)(first, second, pose, filter, visitor, bound);
     }
   }
   return PairWalk(first, ErasedCodec{&first}, second, ErasedCodec{&second}, pose, visitor, bound)

@@ -146,16 +146,18 @@ Errc walk_point(const BoundTree& tree, PointQuery& query) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_point);
+BOXTREE_EXPORT(walk_point);
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, PointQuery& query) {
   if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), query.point)) {
-    return HWY_DYNAMIC_DISPATCH(walk_point)(tree, query);
+    return BOXTREE_DISPATCH(walk_point)(tree, query);
   }
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }

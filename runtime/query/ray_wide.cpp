@@ -247,16 +247,18 @@ Errc walk_ray(const BoundTree& tree, RayQuery& query) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_ray);
+BOXTREE_EXPORT(walk_ray);
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, RayQuery& query) {
   if (tree.has_float_nodes() && RayFilter::is_near(query))
-    return HWY_DYNAMIC_DISPATCH(walk_ray)(tree, query);
+    return BOXTREE_DISPATCH(walk_ray)(tree, query);
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 

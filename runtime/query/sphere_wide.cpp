@@ -60,16 +60,18 @@ Errc walk_sphere(const BoundTree& tree, FaceWalk<SphereQuery>& faces) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_sphere);
+BOXTREE_EXPORT(walk_sphere);
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, FaceWalk<SphereQuery>& walk) {
   if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), walk.shape.center)) {
-    return HWY_DYNAMIC_DISPATCH(walk_sphere)(tree, walk);
+    return BOXTREE_DISPATCH(walk_sphere)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);
 }

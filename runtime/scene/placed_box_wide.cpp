@@ -102,10 +102,12 @@ Errc walk_placed_box(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& faces) {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_placed_box);
+BOXTREE_EXPORT(walk_placed_box);
 
 // Whether no product or sum of the filter overflows: coordinates are at most kFloatMaxAbs.
 bool is_in_range(const BoundTree& tree, const PlacedBoxQuery& query) {
@@ -123,7 +125,7 @@ bool is_in_range(const BoundTree& tree, const PlacedBoxQuery& query) {
 
 Errc walk_wide(const BoundTree& tree, FaceWalk<PlacedBoxQuery>& walk) {
   if (is_in_range(tree, walk.shape)) {
-    return HWY_DYNAMIC_DISPATCH(walk_placed_box)(tree, walk);
+    return BOXTREE_DISPATCH(walk_placed_box)(tree, walk);
   }
   return traverse_overlap(tree, ErasedCodec{&tree}, walk);
 }

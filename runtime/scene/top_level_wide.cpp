@@ -146,19 +146,21 @@ Errc walk_ray(const TopLevel& top, const TopLevelRay& ray, double enter, const d
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(walk_box);
-HWY_EXPORT(walk_point);
-HWY_EXPORT(walk_ray);
+BOXTREE_EXPORT(walk_box);
+BOXTREE_EXPORT(walk_point);
+BOXTREE_EXPORT(walk_ray);
 
 }  // namespace
 
 Errc walk_top_level_wide(const TopLevel& top, const Box<double>& box, InstanceVisitor visit) {
   if (!top.has_float_nodes()) return walk_top_level_scalar(top, box, visit);
   if (!boxes_overlap(root_box<float>(top), box)) return Errc::kOk;
-  return HWY_DYNAMIC_DISPATCH(walk_box)(top, box, visit);
+  return BOXTREE_DISPATCH(walk_box)(top, box, visit);
 }
 
 Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, const double& bound,
@@ -167,7 +169,7 @@ Errc walk_top_level_wide(const TopLevel& top, const Eigen::Vector3d& point, cons
     return walk_top_level_scalar(top, point, bound, visit);
   }
   if (squared_distance(point, root_box<float>(top)) > bound) return Errc::kOk;
-  return HWY_DYNAMIC_DISPATCH(walk_point)(top, point, bound, visit);
+  return BOXTREE_DISPATCH(walk_point)(top, point, bound, visit);
 }
 
 Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const double& bound,
@@ -181,7 +183,7 @@ Errc walk_top_level_wide(const TopLevel& top, const TopLevelRay& ray, const doub
   if (!top.has_float_nodes() || !is_near) return walk_top_level_scalar(top, ray, bound, visit);
   const double enter = ray.slab.key(root_box<float>(top), ray.s_min);
   if (!(enter <= bound) || enter == std::numeric_limits<double>::infinity()) return Errc::kOk;
-  return HWY_DYNAMIC_DISPATCH(walk_ray)(top, ray, enter, bound, visit);
+  return BOXTREE_DISPATCH(walk_ray)(top, ray, enter, bound, visit);
 }
 
 }  // namespace boxtree

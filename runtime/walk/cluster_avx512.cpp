@@ -243,15 +243,17 @@ Avx512LeafReader reader() {
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(reader);
+BOXTREE_EXPORT(reader);
 
 }  // namespace
 
 Avx512LeafReader avx512_leaf_reader() noexcept {
-  return HWY_DYNAMIC_DISPATCH(reader)();
+  return BOXTREE_DISPATCH(reader)();
 }
 
 }  // namespace boxtree

@@ -81,16 +81,18 @@ void read(const FaceIdView& ids, std::uint32_t leaf, std::span<std::uint32_t, kL
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
 namespace boxtree {
 namespace {
 
-HWY_EXPORT(read);
+BOXTREE_EXPORT(read);
 
 }  // namespace
 
 void read_leaf_ids_wide(const FaceIdView& ids, std::uint32_t leaf,
                         std::span<std::uint32_t, kLeafFaces> out) noexcept {
-  HWY_DYNAMIC_DISPATCH(read)(ids, leaf, out);
+  BOXTREE_DISPATCH(read)(ids, leaf, out);
 }
 
 }  // namespace boxtree

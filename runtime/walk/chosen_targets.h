@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// Which instruction sets walks may use.
+#pragma once
+
+#include <cstdint>
+
+namespace boxtree {
+
+/// Those that the machine has, as bits of Highway (HWY_AVX2), without those that
+/// hwy::DisableTargets() or hwy::SetSupportedTargetsForTest() took away. Asks the processor once,
+/// and again after these. Safe from any thread.
+[[nodiscard]] std::int64_t chosen_targets() noexcept;
+
+}  // namespace boxtree
