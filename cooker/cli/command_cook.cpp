@@ -347,8 +347,9 @@ void add_cook_command(Command& program, int& status) {
       command
           .add_option("--user-data", arguments->job.options.import.user_data,
                       "Keep a number for each face: an integer property of the faces of a PLY "
-                      "file, or 'groups' of an OBJ file, numbered by their first faces [else "
-                      "left out]")
+                      "file; 'groups' of an OBJ file, numbered by their first faces; "
+                      "'primitives' of a glTF file, numbered in its order, or an integer in their "
+                      "extras or those of their materials or meshes [else left out]")
           ->type_name("PROPERTY");
   Option* active_edges = command.add_option(
       "--active-edges", arguments->job.options.active_edges,

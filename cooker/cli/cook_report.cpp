@@ -74,6 +74,7 @@ Json import_json(const ImportReport& report) {
     json["files_missing"].push_back(file.string());
   }
   if (!report.groups.empty()) json["groups"] = report.groups;
+  if (!report.primitives.empty()) json["primitives"] = report.primitives;
   json["skipped"] = Json::array();
   for (const SkippedFace& face : report.skipped) {
     json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
@@ -255,16 +256,16 @@ void add_forms(const Summary& summary, std::string& text) {
   }
 }
 
-// Which group has which number; of many the first ones.
-void add_groups(const ImportReport& import, std::string& text) {
+// Which group or primitive has which number; of many the first ones.
+void add_numbered(const char* what, const std::vector<std::string>& names, std::string& text) {
   constexpr std::size_t kMost = 12;
-  if (import.groups.empty()) return;
-  text += "  groups: ";
-  for (std::size_t i = 0; i < std::min(import.groups.size(), kMost); ++i) {
-    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, shown(import.groups[i]));
+  if (names.empty()) return;
+  text += fmt::format("  {}: ", what);
+  for (std::size_t i = 0; i < std::min(names.size(), kMost); ++i) {
+    text += fmt::format("{}{} {}", i == 0 ? "" : ", ", i, shown(names[i]));
   }
-  if (import.groups.size() > kMost) {
-    text += fmt::format(", and {} more, which --json names", import.groups.size() - kMost);
+  if (names.size() > kMost) {
+    text += fmt::format(", and {} more, which --json names", names.size() - kMost);
   }
   text += "\n";
 }
@@ -447,7 +448,10 @@ std::string trees_text(const Summary& summary, bool candidates) {
     add_choices(summary, text);
   }
   if (!summary.scene) add_forms(summary, text);
-  for (const ImportReport& import : summary.imports) add_groups(import, text);
+  for (const ImportReport& import : summary.imports) {
+    add_numbered("groups", import.groups, text);
+    add_numbered("primitives", import.primitives, text);
+  }
   for (const ImportReport& import : summary.imports) add_import(import, text);
   return text;
 }

@@ -19,10 +19,12 @@
 #include <assimp/scene.h>
 #include <assimp/version.h>
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "cooker/import/file_error.h"
 #include "cooker/import/flatten.h"
 #include "cooker/import/gltf_faces.h"
+#include "cooker/import/gltf_user_data.h"
 #include "cooker/import/node_graph.h"
 #include "cooker/import/scene_intake.h"
 #include "cooker/import/source_files.h"
@@ -32,6 +34,8 @@
 
 namespace boxtree::cooker {
 namespace {
+
+using Json = nlohmann::json;
 
 enum class FaceOrder : std::uint8_t { kOfFile, kByMaterial };
 
@@ -92,9 +96,7 @@ Result<std::unique_ptr<aiScene>> read_scene(const SourceFile& source, FaceOrder 
     }
     // Its reader of glTF opens buffers alone, without which there is no mesh; others try files that
     // need not be there.
-    const bool is_gltf =
-        has_extension(source.path(), "gltf") || has_extension(source.path(), "glb");
-    if (is_gltf && use.failure) {
+    if (is_gltf(source.path()) && use.failure) {
       return Error{use.failure->code, "it refers to " + use.failure->detail};
     }
     if (std::string fault = gltf_fault(source); !fault.empty()) {
@@ -155,6 +157,28 @@ Status try_reading(const SourceFile& source) {
   });
 }
 
+Result<StatedFaces> read_stated_faces(const SourceFile& source) {
+  const Result<Json> document = read_gltf(source);
+  if (!document.ok()) return document.error();
+  return stated_faces(*document);
+}
+
+// Of each mesh of a glTF file, its user data. Read anew, so that the document is not kept while the
+// scene is read.
+Result<std::vector<std::uint32_t>> read_user_data(const SourceFile& source,
+                                                  const ImportOptions& options,
+                                                  const aiScene& scene, ImportReport& report) {
+  if (options.user_data.empty()) return std::vector<std::uint32_t>();
+  const Result<Json> document = read_gltf(source);
+  if (!document.ok()) return document.error();
+  const Result<PrimitiveNumbers> numbers = numbers_of_primitives(*document, options.user_data);
+  if (!numbers.ok()) return in_file(source.title(), numbers.error());
+  Result<std::vector<std::uint32_t>> of_meshes = numbers_of_meshes(*document, *numbers, scene);
+  if (!of_meshes.ok()) return in_file(source.title(), of_meshes.error());
+  if (options.user_data == kPrimitives) report.primitives = names_of_primitives(*document);
+  return of_meshes;
+}
+
 // Whether the last line has no end, in formats in which a truncated file is otherwise valid.
 Result<bool> check_text(const SourceFile& source) {
   const TextFormat* const format = find_extension(kTextFormats, source.path());
@@ -188,8 +212,11 @@ Status import_with_assimp(const SourceFile& source, const ImportOptions& options
     return in_file(source.title(), status.error());
   }
   report.files_read = use.files;
-  Status status =
-      take_over(source, wanted, *scene.value(), {options, source.title()}, std::move(report), out);
+  const Result<std::vector<std::uint32_t>> user_data =
+      read_user_data(source, options, *scene.value(), report);
+  if (!user_data.ok()) return user_data.error();
+  Status status = take_over(source, wanted, *scene.value(),
+                            {options, source.title(), {}, *user_data}, std::move(report), out);
   if (!status.ok()) return status;
   // Hashed last, so that a refused file is not read twice.
   const Result<std::uint64_t> hash = source.bytes()

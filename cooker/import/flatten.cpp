@@ -12,6 +12,7 @@
 #include <assimp/scene.h>
 #include <fmt/format.h>
 
+#include "cooker/import/face_runs.h"
 #include "cooker/import/weld.h"
 
 namespace boxtree::cooker {
@@ -242,7 +243,7 @@ std::uint64_t count_faces(const aiScene& scene, std::span<const MeshInstance> in
 template <class T>
 Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                const SourceContext& context, Flattener<T>& flattener,
-               std::vector<FaceRun>& materials) {
+               std::vector<FaceRun>& materials, std::vector<FaceRun>& user_data) {
   for (const MeshInstance& instance : instances) {
     aiMesh*& mesh = scene.mMeshes[instance.mesh];
     const std::uint32_t first_face = flattener.next_face_id();
@@ -254,6 +255,9 @@ Status flatten(aiScene& scene, std::span<const MeshInstance> instances, MeshUses
       }
     } else if (has_faces) {
       materials.push_back({first_face, mesh->mMaterialIndex});
+    }
+    if (has_faces && !context.user_data.empty()) {
+      add_face_to(user_data, first_face, context.user_data[instance.mesh]);
     }
     if (--uses[instance.mesh] > 0) continue;
     delete mesh;
@@ -281,10 +285,10 @@ Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances
   Status status;
   if (positions.precision == Precision::kF32) {
     Flattener<float> flattener(context, positions.f32, out);
-    status = flatten(scene, instances, uses, context, flattener, materials);
+    status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
   } else {
     Flattener<double> flattener(context, positions.f64, out);
-    status = flatten(scene, instances, uses, context, flattener, materials);
+    status = flatten(scene, instances, uses, context, flattener, materials, out.user_data);
   }
   if (!status.ok()) return status;
   return check_split_count(out.mesh.faces.size(), context.file);

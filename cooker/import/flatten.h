@@ -23,6 +23,8 @@ struct SourceContext {
   std::string file;  // the name of the file in errors
   /// Per mesh of aiScene::mMeshes; empty if each has the one material that assimp states.
   std::span<const MeshMaterials> materials = {};
+  /// Likewise, the user data of all faces of each mesh; empty if none is wanted.
+  std::span<const std::uint32_t> user_data = {};
 };
 
 /// A mesh of aiScene::mMeshes and its transform.
@@ -40,7 +42,8 @@ void free_attributes(aiScene& scene);
 /// Adds `instances`, one after another, to `out.mesh` and counts them in `out.report`, as specified
 /// in import.h; the result may be empty. Frees each mesh of the scene after its last use according
 /// to `uses`, so that source and result never coexist whole. `materials` gets the runs of each
-/// instance with faces; a material is an index into aiScene::mMaterials or kNoMaterial.
+/// instance with faces; a material is an index into aiScene::mMaterials or kNoMaterial. Adds to
+/// `out.user_data`, if it is wanted.
 Status flatten_instances(aiScene& scene, std::span<const MeshInstance> instances, MeshUses& uses,
                          const SourceContext& context, Imported& out,
                          std::vector<FaceRun>& materials);

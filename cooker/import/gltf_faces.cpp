@@ -20,18 +20,6 @@ namespace {
 
 using Json = nlohmann::json;
 
-std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
-  const auto found = object.find(key);
-  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>()
-                                                              : otherwise;
-}
-
-const Json& array_at(const Json& object, const char* key) {
-  static const Json kEmpty = Json::array();
-  const auto found = object.find(key);
-  return found != object.end() && found->is_array() ? *found : kEmpty;
-}
-
 StatedFaces::value_type counts_of(const Json& primitive, const Json& accessors) {
   const auto count_at = [&accessors](const Json& object, const char* key) -> std::uint64_t {
     const std::uint64_t accessor = number_at(object, key, accessors.size());
@@ -55,6 +43,32 @@ StatedFaces::value_type counts_of(const Json& primitive, const Json& accessors) 
 
 }  // namespace
 
+bool is_gltf(const std::filesystem::path& path) {
+  return has_extension(path, "gltf") || has_extension(path, "glb");
+}
+
+Result<Json> read_gltf(const SourceFile& source) {
+  if (!is_gltf(source.path())) return Json();
+  const Result<std::string> file = source.read();
+  if (!file.ok()) return file.error();
+  const bool is_binary = has_extension(source.path(), "glb");
+  Result<Json> document = parse_gltf(is_binary ? glb_json(*file) : std::string_view(*file));
+  if (!document.ok()) return in_file(source.title(), document.error());
+  return document;
+}
+
+std::uint64_t number_at(const Json& object, const char* key, std::uint64_t otherwise) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number_unsigned() ? found->get<std::uint64_t>()
+                                                              : otherwise;
+}
+
+const Json& array_at(const Json& object, const char* key) {
+  static const Json kEmpty = Json::array();
+  const auto found = object.find(key);
+  return found != object.end() && found->is_array() ? *found : kEmpty;
+}
+
 StatedFaces stated_faces(const Json& document) {
   StatedFaces stated;
   for (const Json& mesh : array_at(document, "meshes")) {
@@ -69,8 +83,8 @@ StatedFaces stated_faces(const Json& document) {
 }
 
 std::string gltf_fault(const SourceFile& source) {
+  if (!is_gltf(source.path())) return {};
   const bool is_binary = has_extension(source.path(), "glb");
-  if (!is_binary && !has_extension(source.path(), "gltf")) return {};
   const Result<std::string> file = source.read();
   if (!file.ok()) return {};
   if (!is_binary) {
@@ -85,16 +99,6 @@ std::string gltf_fault(const SourceFile& source) {
                        kAsIfCut);
   }
   return json_fault(glb_json(*file));
-}
-
-Result<StatedFaces> read_stated_faces(const SourceFile& source) {
-  const bool is_binary = has_extension(source.path(), "glb");
-  if (!is_binary && !has_extension(source.path(), "gltf")) return StatedFaces();
-  const Result<std::string> file = source.read();
-  if (!file.ok()) return file.error();
-  const Result<Json> document = parse_gltf(is_binary ? glb_json(*file) : std::string_view(*file));
-  if (!document.ok()) return in_file(source.title(), document.error());
-  return stated_faces(*document);
 }
 
 Status check_stated_faces(const StatedFaces& stated, const aiScene& scene) {

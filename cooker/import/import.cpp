@@ -15,6 +15,7 @@
 #include "cooker/import/face_materials.h"
 #include "cooker/import/file_error.h"
 #include "cooker/import/foreign_file.h"
+#include "cooker/import/gltf_faces.h"
 #include "cooker/import/obj_import.h"
 #include "cooker/import/off_import.h"
 #include "cooker/import/ply_import.h"
@@ -132,11 +133,14 @@ Result<ImportedFile> import_checked(const Request& request) {
   // with it.
   if (!has_mesh_ending(path)) return explained(request.source, Error(Errc::kImportFailed));
   const MeshReader* const reader = find_extension(kMeshReaders, path);
-  if (!request.options.user_data.empty() && (reader == nullptr || !reader->has_user_data)) {
-    return Error{Errc::kMeshUnsupported,
-                 fmt::format("{}: user data of faces '{}': expected a PLY file, whose faces have "
-                             "properties, or an OBJ file, which has {}",
-                             request.source.title(), request.options.user_data, kGroups)};
+  const bool has_user_data = reader != nullptr ? reader->has_user_data : is_gltf(path);
+  if (!request.options.user_data.empty() && !has_user_data) {
+    return Error{
+        Errc::kMeshUnsupported,
+        fmt::format("{}: user data of faces '{}': expected a PLY file, whose faces have "
+                    "properties, an OBJ file, which has {}, or a glTF file, which has {} "
+                    "and extras",
+                    request.source.title(), request.options.user_data, kGroups, kPrimitives)};
   }
   ImportedFile out;
   const Status status =

@@ -41,7 +41,10 @@ struct ImportOptions {
   /// reading of FBX files.
   bool materials = false;
   /// [none] Fill in Imported::user_data: from the property of faces with this name in a PLY file,
-  /// from the groups of an OBJ file if it is kGroups. kMeshUnsupported if the file has none such.
+  /// from the groups of an OBJ file if it is kGroups, from the primitives of a glTF 2 file if it is
+  /// kPrimitives, else from the number with this name in the extras of each primitive, of its
+  /// material or of its mesh, the first that has it; 0 if none has. kMeshUnsupported if the file
+  /// has none such.
   std::string user_data;
   /// [none] An input that is not a file. It can refer to no other.
   std::optional<SourceBytes> bytes;
@@ -50,6 +53,9 @@ struct ImportOptions {
 /// ImportOptions::user_data: groups of an OBJ file, numbered in the order in which they first have
 /// a face.
 inline constexpr std::string_view kGroups = "groups";
+/// Likewise primitives of a glTF file, numbered in the order of its meshes and of theirs, whatever
+/// nodes place them.
+inline constexpr std::string_view kPrimitives = "primitives";
 
 /// SkippedFace::mesh: no face of the mesh is left.
 inline constexpr std::uint32_t kNoMesh = 0xffffffffu;
@@ -80,11 +86,12 @@ struct ImportReport {
   /// OBJ, OFF and PLY read as f32: how far a vertex was moved by that, at most; 0 if no farther
   /// than unnoticed_move (f32_digits.h). The mesh has it, too.
   double moved_by_f32 = 0;
-  bool has_no_materials = false;     // with ImportOptions::materials: no face has one
-  bool has_no_groups = false;        // with kGroups: all faces are in the group without a name
-  bool has_half_face = false;        // OBJ: that line is a face of two corners or fewer, left out
-  std::vector<std::string> groups;   // with kGroups: names, in the order of their numbers
-  std::vector<SkippedFace> skipped;  // only with ImportOptions::skip_bad
+  bool has_no_materials = false;    // with ImportOptions::materials: no face has one
+  bool has_no_groups = false;       // with kGroups: all faces are in the group without a name
+  bool has_half_face = false;       // OBJ: that line is a face of two corners or fewer, left out
+  std::vector<std::string> groups;  // with kGroups: names, in the order of their numbers
+  std::vector<std::string> primitives;  // with kPrimitives: likewise; those of a mesh are numbered
+  std::vector<SkippedFace> skipped;     // only with ImportOptions::skip_bad
   /// The file itself and every file it refers to; none for ImportOptions::bytes.
   std::vector<std::filesystem::path> files_read;
   /// Material libraries that the source names and that cannot be read; it is imported without them.

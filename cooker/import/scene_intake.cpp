@@ -162,7 +162,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   const std::size_t skipped_before = imported.report.skipped.size();
   const SourceContext context{context_.options,
                               fmt::format("{}: mesh of '{}'", context_.file, placement.name),
-                              context_.materials};
+                              context_.materials, context_.user_data};
   std::vector<MeshInstance> parts;
   for (const unsigned part : placement.meshes) parts.push_back({part, Transform()});
   std::vector<FaceRun> runs;
@@ -170,6 +170,7 @@ Result<std::uint32_t> SceneIntake::take_meshes(const Placement& placement) {
   out_.report = std::move(imported.report);
   if (!status.ok()) return status.error();
   mesh.mesh = std::move(imported.mesh);
+  mesh.user_data = std::move(imported.user_data);
   mesh.source_faces = static_cast<std::uint32_t>(out_.report.source_faces - faces_before);
   std::uint32_t number = kNoMesh;
   if (!mesh.mesh.faces.empty()) {

@@ -1445,7 +1445,7 @@ expect 5 "$boxtree" cook zones.ply -o zones.bxt --user-data heat
 grep -q 'expected an integer, found a floating-point number' err
 printf 'solid\nendsolid\n' >zones.stl
 expect 5 "$boxtree" cook zones.stl -o zones.bxt --user-data zone
-grep -q 'zones.stl: .*expected a PLY file, whose faces have properties, or an OBJ file, which has groups' err
+grep -q 'zones.stl: .*expected a PLY file, whose faces have properties, an OBJ file, which has groups, or a glTF file, which has primitives and extras' err
 expect 0 "$boxtree" cook cube.obj -o cube.bxt --user-data groups -q
 same "$(cat err)" "boxtree: warning: cube.obj: no line 'g' begins a group: the user data of every face is 0"
 printf '[scene]\nsource = "zones.ply"\nuser_data = "zone"\n' >zones.toml
@@ -1454,6 +1454,27 @@ grep -q "face_user_data .* 'zone' of the source; of each face; runs of the sourc
 expect 0 "$boxtree" query zones.bxt ray --origin 0.8,0.2,5 --direction 0,0,-1 --json
 same "$(jq -c '[.instance, .face, .user_data]' out)" '[0,0,300]'
 expect 1 "$boxtree" cook --profile zones.toml -o zones.bxt --user-data zone
+
+# Of a glTF file the number of each primitive, or an integer in the extras of what it is made of.
+{
+  printf '{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],"materials":[{"extras":{"zone":-1}}],"meshes":[{"name":"ground",'
+  printf '"extras":{"zone":300},"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":0},"indices":1,"material":0}]}],"accessors":['
+  printf '{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3"},{"bufferView":1,"componentType":5121,"count":3,"type":"SCALAR"}],"bufferViews":['
+  printf '{"buffer":0,"byteLength":36},{"buffer":0,"byteOffset":36,"byteLength":3}],"buffers":[{"byteLength":39,"uri":"data:application/octet-stream;base64,'
+  { printf '\0%.0s' {1..14}; printf '\200\77'; printf '\0%.0s' {1..14}; printf '\200\77'; printf '\0%.0s' {1..4}; printf '\0\2\1'; } | base64 -w 0
+  printf '"}]}'
+} >ground.gltf
+expect 0 "$boxtree" cook ground.gltf -o ground.bxt --user-data primitives
+grep -qx '  primitives: 0 ground-0, 1 ground-1' out
+expect 0 "$boxtree" query ground.bxt sphere --center 0.2,0.2,0 --radius 0.1 --json
+same "$(jq -c '.faces | sort_by(.face)' out)" '[{"face":0,"user_data":0},{"face":1,"user_data":1}]'
+expect 0 "$boxtree" cook ground.gltf -o ground.bxt --user-data zone
+expect 0 "$boxtree" query ground.bxt sphere --center 0.2,0.2,0 --radius 0.1 --json
+same "$(jq -c '.faces | sort_by(.face)' out)" '[{"face":0,"user_data":300},{"face":1,"user_data":4294967295}]'
+expect 5 "$boxtree" cook ground.gltf -o ground.bxt --user-data zones
+grep -q "ground.gltf: user data of faces 'zones': no primitive has it in its extras, nor has its material or mesh; integers of theirs are: zone, and 'primitives' numbers them; did you mean 'zone'?" err
+expect 5 "$boxtree" cook groups.obj -o groups.bxt --user-data group
+grep -q "an OBJ file has 'groups' alone; did you mean 'groups'?" err
 
 # Help: common options, all options. Output to a file or a pipe shows no progress.
 expect 0 "$boxtree" cook --help

@@ -108,6 +108,8 @@ RUNS = {
         "cook crate.obj -o blob.bxt --codec blob-zstd",
         "cook crate.obj crate.obj -o small.bxt --tolerance 0.001 --for memory --max-slowdown 9",
         "cook --scene bad.obj -o scene.bxt --skip-bad",
+        "cook level.gltf -o level.bxt --user-data primitives",
+        "cook level.gltf level.gltf -o levels.bxt --user-data primitives",
         "cook level.gltf -o level.bxt",
         "cook --profile parts.toml -o parts.bxt",
         "cook --profile nameless.toml -o nameless.bxt",

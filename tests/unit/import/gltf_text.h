@@ -14,7 +14,8 @@ namespace boxtree::cooker {
 struct GltfPrimitive {
   std::vector<float> positions;  // nine to a triangle
   int material = -1;
-  int mode = 4;  // triangles; 0: points
+  int mode = 4;        // triangles; 0: points
+  std::string extras;  // JSON
 };
 
 inline std::string base64(std::string_view bytes) {
@@ -37,8 +38,9 @@ inline std::string base64(std::string_view bytes) {
 /// others.
 class GltfText {
  public:
-  /// An empty name is left out.
-  void add_mesh(const std::string& name, const std::vector<GltfPrimitive>& primitives) {
+  /// An empty name and empty extras (JSON) are left out.
+  void add_mesh(const std::string& name, const std::vector<GltfPrimitive>& primitives,
+                const std::string& extras = "") {
     std::string list;
     for (const GltfPrimitive& primitive : primitives) {
       const std::size_t bytes = sizeof(float) * primitive.positions.size();
@@ -51,14 +53,16 @@ class GltfText {
       append(accessor_list_,
              fmt::format(R"({{"bufferView":{},"componentType":5126,"count":{},"type":"VEC3"}})",
                          accessors_, primitive.positions.size() / 3));
-      append(list, fmt::format(R"({{"attributes":{{"POSITION":{}}},"mode":{}{}}})", accessors_++,
+      append(list, fmt::format(R"({{"attributes":{{"POSITION":{}}},"mode":{}{}{}}})", accessors_++,
                                primitive.mode,
                                primitive.material < 0
                                    ? std::string()
-                                   : fmt::format(R"(,"material":{})", primitive.material)));
+                                   : fmt::format(R"(,"material":{})", primitive.material),
+                               with_extras(primitive.extras)));
     }
-    append(meshes_, fmt::format(R"({{{}"primitives":[{}]}})",
-                                name.empty() ? "" : fmt::format(R"("name":"{}",)", name), list));
+    append(meshes_, fmt::format(R"({{{}"primitives":[{}]{}}})",
+                                name.empty() ? "" : fmt::format(R"("name":"{}",)", name), list,
+                                with_extras(extras)));
   }
   /// `nodes` and `materials` are lists in JSON; node 0 is the root.
   [[nodiscard]] std::string text(const std::string& nodes,
@@ -71,6 +75,9 @@ class GltfText {
   }
 
  private:
+  static std::string with_extras(const std::string& extras) {
+    return extras.empty() ? extras : R"(,"extras":)" + extras;
+  }
   static void append(std::string& list, const std::string& element) {
     if (!list.empty()) list += ',';
     list += element;

@@ -100,6 +100,34 @@ TEST(ImportSceneModelsTest, MaterialsOfFbx) {
             (std::vector<std::string>{"BeinTex", "Skin", "Augentex", "HLeibTex"}));
 }
 
+// Each glTF 2 file: the primitives that the numbers name are those of the mesh that has them.
+TEST(ImportSceneModelsTest, PrimitivesOfEveryFile) {
+  const fs::path folder = fs::path(ASSIMP_MODELS) / "glTF2";
+  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is not there (package assimp-testmodels)";
+  std::size_t files = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    const fs::path ending = entry.path().extension();
+    if (ending != ".gltf" && ending != ".glb") continue;
+    SCOPED_TRACE(entry.path());
+    if (!import_scene(entry.path()).ok()) continue;
+    ImportOptions options;
+    options.user_data = kPrimitives;
+    const Result<SourceScene> scene = import_scene(entry.path(), options);
+    ASSERT_TRUE(scene.ok()) << scene.error().message();
+    for (const SceneMesh& mesh : scene->meshes) {
+      ASSERT_FALSE(mesh.user_data.empty());
+      for (const FaceRun& run : mesh.user_data) {
+        ASSERT_LT(run.number, scene->report.primitives.size());
+        const std::string& name = scene->report.primitives[run.number];
+        EXPECT_TRUE(name.starts_with(mesh.mesh.name) || name.starts_with("mesh "))
+            << name << " of " << mesh.mesh.name;
+      }
+    }
+    ++files;
+  }
+  EXPECT_GT(files, 20u);
+}
+
 // Each file: import_scene has what import_mesh has, or says no with the same words.
 TEST(ImportSceneModelsTest, EveryFile) {
   const fs::path folder = ASSIMP_MODELS;

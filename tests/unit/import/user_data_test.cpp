@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Numbers of faces from properties of PLY files in each form and type, and from groups of OBJ
-// files.
+// Numbers of faces from properties of PLY files in each form and type, from groups of OBJ files,
+// and from primitives of glTF files and their extras.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "cooker/import/source_scene.h"
+#include "gltf_text.h"
 #include "temp_files.h"
 
 namespace boxtree::cooker {
@@ -15,6 +16,9 @@ namespace {
 
 using UserDataTest = ImportTest;
 using Numbers = std::vector<std::uint32_t>;
+
+const std::vector<float> kTriangle = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+const std::vector<float> kTwo = {0, 0, 0, 2, 0, 0, 0, 2, 0, 0, 0, 1, 2, 0, 1, 0, 2, 1};
 
 ImportOptions with(const std::string& property) {
   ImportOptions options;
@@ -163,9 +167,12 @@ TEST_F(UserDataTest, ThatAFileDoesNotHaveIsRefused) {
             "properties of their own");
   EXPECT_EQ(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "zone"),
             "a.obj: user data of faces 'zone': an OBJ file has 'groups' alone");
+  EXPECT_EQ(refusal("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "group"),
+            "a.obj: user data of faces 'group': an OBJ file has 'groups' alone; did you mean "
+            "'groups'?");
   const std::string others =
-      ": user data of faces 'zone': expected a PLY file, whose faces have properties, or an OBJ "
-      "file, which has groups";
+      ": user data of faces 'zone': expected a PLY file, whose faces have properties, an OBJ file, "
+      "which has groups, or a glTF file, which has primitives and extras";
   EXPECT_EQ(refusal("a.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", "zone"),
             "a.off" + others);
   EXPECT_EQ(refusal("a.stl", "solid\nendsolid\n", "zone"), "a.stl" + others);
@@ -186,6 +193,91 @@ TEST_F(UserDataTest, OfGroupsIsTheirNumberByFirstFace) {
   const Imported none = load("a.obj", points + "f 1 2 3\nf 1 3 4\n", with("groups"));
   EXPECT_EQ(numbers_of(none), (Numbers{0, 0}));
   EXPECT_TRUE(none.report.has_no_groups);
+}
+
+// Nodes place meshes in another order than the file lists them, one twice and one not at all.
+constexpr const char* kNodes =
+    R"({"children":[1,2,3]},{"mesh":2},{"mesh":0,"children":[4]},{"mesh":2,"translation":[0,0,9]},)"
+    R"({"mesh":3})";
+
+TEST_F(UserDataTest, OfPrimitivesIsTheirNumberInTheFile) {
+  GltfText gltf;
+  gltf.add_mesh("car", {{kTwo}, {kTriangle, -1, 0}, {kTriangle}});
+  gltf.add_mesh("nowhere", {{kTriangle}});
+  gltf.add_mesh("", {{kTwo}});
+  gltf.add_mesh("lamp", {{kTriangle}, {kTriangle}});
+  const std::string text = gltf.text(kNodes);
+  const Imported imported = load("a.gltf", text, with("primitives"));
+  EXPECT_EQ(numbers_of(imported), (Numbers{4, 4, 0, 0, 2, 5, 6, 4, 4}));
+  EXPECT_EQ(imported.report.primitives,
+            (std::vector<std::string>{"car-0", "car-1", "car-2", "nowhere", "mesh 2", "lamp-0",
+                                      "lamp-1"}));
+  EXPECT_TRUE(load("a.gltf", text).report.primitives.empty());
+  EXPECT_TRUE(load("a.gltf", text).user_data.empty());
+  // Of one root, and of several.
+  EXPECT_EQ(numbers_of(load("b.gltf", gltf.text(R"({"mesh":0})"), with("primitives"))),
+            (Numbers{0, 0, 2}));
+  std::string roots = gltf.text(R"({"mesh":3},{"mesh":0})");
+  roots.replace(roots.find("[0]"), 3, "[0,1]");
+  EXPECT_EQ(numbers_of(load("c.gltf", roots, with("primitives"))), (Numbers{5, 6, 0, 0, 2}));
+}
+
+TEST_F(UserDataTest, OfPrimitivesInAScene) {
+  GltfText gltf;
+  gltf.add_mesh("car", {{kTwo}, {kTriangle}});
+  gltf.add_mesh("box", {{kTriangle}});
+  gltf.add_mesh("box of the same shape", {{kTriangle}});
+  gltf.add_mesh("lamp", {{kTwo}});
+  const auto path = write("a.gltf", gltf.text(kNodes));
+  const Result<SourceScene> scene = import_scene(path, with("primitives"));
+  ASSERT_TRUE(scene.ok()) << scene.error().message();
+  ASSERT_EQ(scene->instances.size(), 4u);
+  const auto of = [&](std::size_t instance) {
+    return scene->meshes[scene->instances[instance].mesh].user_data;
+  };
+  EXPECT_EQ(of(0), (std::vector<FaceRun>{{0, 3}}));
+  EXPECT_EQ(of(1), (std::vector<FaceRun>{{0, 0}, {2, 1}}));
+  EXPECT_EQ(of(2), (std::vector<FaceRun>{{0, 4}}));
+  EXPECT_EQ(scene->instances[0].mesh, scene->instances[3].mesh) << "instances share the numbers";
+}
+
+TEST_F(UserDataTest, OfExtrasIsThatOfThePrimitiveOrItsMaterialOrItsMesh) {
+  GltfText gltf;
+  gltf.add_mesh("a",
+                {{kTwo, 0, 4, R"({"zone":7})"},
+                 {kTriangle, 0},
+                 {kTriangle, 1, 4, R"({"other":1})"},
+                 {kTriangle}},
+                R"({"zone":-1,"depth":2.5,"text":"x"})");
+  gltf.add_mesh("b", {{kTriangle, 1, 4, "[3]"}, {kTriangle, 0, 4, R"({"zone":4294967295.0})"}});
+  const std::string text = gltf.text(R"({"children":[1,2]},{"mesh":1},{"mesh":0})",
+                                     R"({"extras":{"zone":70000}},{"extras":{"zones":[1]}})");
+  EXPECT_EQ(numbers_of(load("a.gltf", text, with("zone"))),
+            (Numbers{0, 0xffffffffu, 7, 7, 70000, 0xffffffffu, 0xffffffffu}));
+  const auto refusal = [&](const std::string& name) {
+    const Error error = fail("a.gltf", text, with(name));
+    EXPECT_EQ(error.code, Errc::kMeshUnsupported);
+    return error.detail.substr(error.detail.find("a.gltf"));
+  };
+  EXPECT_EQ(refusal("zome"),
+            "a.gltf: user data of faces 'zome': no primitive has it in its extras, nor has its "
+            "material or mesh; integers of theirs are: other or zone, and 'primitives' numbers "
+            "them; did you mean 'zone'?");
+  EXPECT_TRUE(has(refusal("primitive"), "did you mean 'primitives'?"));
+  for (const auto& [name, found] : {std::pair("depth", "2.5"), std::pair("text", "\"x\"")}) {
+    const Error error = fail("a.gltf", text, with(name));
+    EXPECT_EQ(error.code, Errc::kImportFailed);
+    EXPECT_TRUE(has(error.detail, "a.gltf: primitive 0 of mesh 'a': user data of faces '" +
+                                      std::string(name) +
+                                      "': expected an integer of 32 bits, found " + found +
+                                      " in the extras of its mesh"));
+  }
+}
+
+TEST_F(UserDataTest, OfGltfWithoutMeshesIsNotTheFault) {
+  EXPECT_EQ(fail("a.gltf", GltfText().text(R"({"name":"empty"})"), with("zone")).code,
+            Errc::kNoFaces);
+  EXPECT_EQ(fail("a.gltf", "{", with("zone")).code, Errc::kImportFailed);
 }
 
 TEST_F(UserDataTest, TellsMeshesOfOneShapeApart) {
