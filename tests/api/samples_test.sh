@@ -51,6 +51,11 @@ walks 2.800 to face 1, pushed back -0.8 along x and 0.6 up
 the bullet passes
 the crate meets 5 triangles
 END
+# The gem is 1 high below its middle and lands on the plate at height 0.25 with its tip. On its side it is 0.5 high.
+prints hull level.bxt <<'END'
+lands on face 1 after 2.750, its middle at height 1.250
+face 1: out by 0.125 along (0.0, 0.0, 1.0)
+END
 prints box level.bxt <<'END'
 face 0
 face 1
@@ -103,6 +108,17 @@ Step 6 at height 1.080
 meets Step 5
 meets Step 6
 meets Step 7
+END
+# Both triangles of its top, whose middle is 0.5 from that of the view, and whose diagonal passes the latter at 0.05.
+prints frustum courtyard.bxt <<'END'
+draws Step 6
+sees 2 faces
+END
+# The crate is 1 high; the eastern tile begins at x = 4.
+prints assemble level.bxt crate.bxt <<'END'
+height 1.0: Chest, user data 42
+below it: West
+Crate touches East
 END
 "$programs/errors" level.bxt >errors.out
 tested+="errors "
