@@ -1,0 +1,14 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: MIT
+# Prints what each program takes, code and data once stripped, less what an empty one takes.
+#   parts.sh EMPTY PROGRAM...
+set -euo pipefail
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+bytes() { strip -o "$work/stripped" "$1" && size "$work/stripped" | awk 'NR == 2 {print $4}'; }
+less=$(bytes "$1")
+shift
+for program in "$@"; do
+  name=$(basename "$program")
+  printf '%-40s %7d bytes\n' "${name#boxtree_size_}" $(($(bytes "$program") - less))
+done
