@@ -92,6 +92,16 @@ struct Listener {
   }
 };
 
+// Calls use(shape) with the shape in our terms.
+template <class Use>
+void with_shape(const PlacedShape& placed, const Use& use) {
+  const auto& [center, radius, kind] = placed;
+  const Eigen::Vector3d up(0, 0, radius);
+  if (kind == ShapeKind::kSphere) return use(Sphere{center, radius});
+  if (kind == ShapeKind::kCapsule) return use(Capsule{center - up, center + up, radius});
+  use(OrientedBox{center, {radius, radius, radius}, kCubeRotation});
+}
+
 class BoxtreeSubject : public Subject {
  public:
   BoxtreeSubject(const TriangleMesh& mesh, CodecId codec, const cooker::CookOptions& options)
@@ -116,12 +126,40 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
-  bool sphere_casts(std::span<const SphereCast> casts, std::span<double> out) override {
+  bool casts(std::span<const ShapeCast> casts, std::span<double> out) override {
     for (std::size_t i = 0; i < casts.size(); ++i) {
-      const auto& [ray, radius] = casts[i];
-      const auto hit =
-          require(cast_closest(tree_, Sphere{ray.origin, radius}, Motion{ray.direction}));
-      out[i] = hit ? hit->t : std::numeric_limits<double>::infinity();
+      const ShapeCast& cast = casts[i];
+      const Motion motion{cast.ray.direction};
+      with_shape({cast.ray.origin, cast.radius, cast.kind}, [&](const auto& shape) {
+        const auto hit = require(cast_closest(tree_, shape, motion));
+        out[i] = hit ? hit->t : std::numeric_limits<double>::infinity();
+      });
+    }
+    return true;
+  }
+  bool overlaps(std::span<const PlacedShape> shapes, std::span<double> out) override {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      out[i] = 0;
+      const auto count = [&](const FaceRef&) { return ++out[i], true; };
+      with_shape(shapes[i], [&]<class Shape>(const Shape& shape) {
+        if constexpr (std::is_same_v<Shape, Sphere>) {
+          static_cast<void>(require(overlap_sphere(tree_, shape.center, shape.radius, count)));
+        } else if constexpr (std::is_same_v<Shape, Capsule>) {
+          static_cast<void>(require(overlap_capsule(tree_, shape, count)));
+        } else {
+          static_cast<void>(require(overlap_oriented_box(tree_, shape, count)));
+        }
+      });
+    }
+    return true;
+  }
+  bool contacts(std::span<const PlacedShape> shapes, std::span<double> out) override {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      out[i] = 0;
+      with_shape(shapes[i], [&](const auto& shape) {
+        static_cast<void>(
+            require(collide(tree_, shape, [&](const Contact&) { return ++out[i], true; })));
+      });
     }
     return true;
   }

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Bullet: its quantised triangle mesh tree for rays, casts and boxes, GImpact for pairs.
+// Bullet: its quantised triangle mesh tree for rays, casts, contacts and boxes, GImpact for pairs.
+#include <BulletCollision/BroadphaseCollision/btDbvtBroadphase.h>
+#include <BulletCollision/CollisionDispatch/btCollisionDispatcher.h>
 #include <BulletCollision/CollisionDispatch/btCollisionObject.h>
 #include <BulletCollision/CollisionDispatch/btCollisionWorld.h>
+#include <BulletCollision/CollisionDispatch/btDefaultCollisionConfiguration.h>
+#include <BulletCollision/CollisionShapes/btBoxShape.h>
 #include <BulletCollision/CollisionShapes/btBvhTriangleMeshShape.h>
+#include <BulletCollision/CollisionShapes/btCapsuleShape.h>
 #include <BulletCollision/CollisionShapes/btSphereShape.h>
 #include <BulletCollision/CollisionShapes/btTriangleIndexVertexArray.h>
 #include <BulletCollision/Gimpact/btGImpactShape.h>
@@ -47,6 +52,33 @@ struct CountInBox : btTriangleCallback {
     const Triangle triangle{{corner(0), corner(1), corner(2)}};
     count += triangle_intersects_box(triangle, box->min(), box->max()) ? 1 : 0;
   }
+};
+
+// Points that touch; those that are merely near are reported, too.
+struct CountContacts : btCollisionWorld::ContactResultCallback {
+  double count = 0;
+  btScalar addSingleResult(btManifoldPoint& point, const btCollisionObjectWrapper*, int, int,
+                           const btCollisionObjectWrapper*, int, int) override {
+    count += point.getDistance() <= 0 ? 1 : 0;
+    return 0;
+  }
+};
+
+struct MovingShape {
+  MovingShape(double size, ShapeKind kind) {
+    const auto radius = static_cast<btScalar>(size);
+    if (kind == ShapeKind::kSphere) {
+      shape = std::make_unique<btSphereShape>(radius);
+    } else if (kind == ShapeKind::kCapsule) {
+      shape = std::make_unique<btCapsuleShapeZ>(radius, 2 * radius);
+    } else {
+      shape = std::make_unique<btBoxShape>(btVector3(radius, radius, radius));
+      const Eigen::Quaternion<btScalar> q = kCubeRotation.cast<btScalar>();
+      rotation = btMatrix3x3(btQuaternion(q.x(), q.y(), q.z(), q.w()));
+    }
+  }
+  std::unique_ptr<btConvexShape> shape;
+  btMatrix3x3 rotation = btMatrix3x3::getIdentity();
 };
 
 // The mesh in the forms that both shapes refer to.
@@ -95,17 +127,29 @@ class BulletSubject : public Subject {
     return true;
   }
   // The sweep of its collision world against one object, without a broad phase.
-  bool sphere_casts(std::span<const SphereCast> casts, std::span<double> out) override {
-    const btTransform here = btTransform::getIdentity();
+  bool casts(std::span<const ShapeCast> casts, std::span<double> out) override {
     for (std::size_t i = 0; i < casts.size(); ++i) {
-      const btSphereShape sphere(static_cast<btScalar>(casts[i].radius));
+      const MovingShape moving(casts[i].radius, casts[i].kind);
       const auto [from, to, t] = segment_of(casts[i].ray);
       btCollisionWorld::ClosestConvexResultCallback callback(from, to);
-      btCollisionWorld::objectQuerySingle(&sphere, btTransform(here.getBasis(), from),
-                                          btTransform(here.getBasis(), to), &object_, shape_.get(),
-                                          here, callback, 0);
+      btCollisionWorld::objectQuerySingle(moving.shape.get(), btTransform(moving.rotation, from),
+                                          btTransform(moving.rotation, to), &object_, shape_.get(),
+                                          btTransform::getIdentity(), callback, 0);
       out[i] = callback.hasHit() ? double{callback.m_closestHitFraction} * t
                                  : std::numeric_limits<double>::infinity();
+    }
+    return true;
+  }
+  // Between two objects, likewise without a broad phase.
+  bool contacts(std::span<const PlacedShape> shapes, std::span<double> out) override {
+    for (std::size_t i = 0; i < shapes.size(); ++i) {
+      const MovingShape moving(shapes[i].radius, shapes[i].kind);
+      btCollisionObject body;
+      body.setCollisionShape(moving.shape.get());
+      body.setWorldTransform(btTransform(moving.rotation, to_bullet(shapes[i].center)));
+      CountContacts callback;
+      world_.contactPairTest(&body, &object_, callback);
+      out[i] = callback.count;
     }
     return true;
   }
@@ -135,6 +179,10 @@ class BulletSubject : public Subject {
   BulletMesh bullet_;
   std::unique_ptr<btBvhTriangleMeshShape> shape_;
   btCollisionObject object_;
+  btDefaultCollisionConfiguration configuration_;
+  btCollisionDispatcher dispatcher_{&configuration_};
+  btDbvtBroadphase broadphase_;
+  btCollisionWorld world_{&dispatcher_, &broadphase_, &configuration_};
 };
 
 // GImpact finds pairs of boxes and decides them by its own, inexact triangle test.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <random>
 #include <span>
 
 #include "runtime/primitive/predicates.h"
@@ -41,8 +42,9 @@ double least_root(double a, double b, double c) {
 }
 
 // When the center meets the faces, edges and corners of a triangle that is thickened by the radius.
-double touching_t(const SphereCast& cast, const Triangle& triangle) {
-  const auto& [ray, radius] = cast;
+double touching_t(const ShapeCast& cast, const Triangle& triangle) {
+  const Ray& ray = cast.ray;
+  const double radius = cast.radius;
   const Eigen::Vector3d& direction = ray.direction;
   if ((closest_point_on_triangle(ray.origin, triangle) - ray.origin).norm() <= radius) return 0;
   double best = std::numeric_limits<double>::infinity();
@@ -70,7 +72,7 @@ double touching_t(const SphereCast& cast, const Triangle& triangle) {
   return best;
 }
 
-double first_touch(const std::vector<Triangle>& triangles, const SphereCast& cast) {
+double first_touch(const std::vector<Triangle>& triangles, const ShapeCast& cast) {
   double best = std::numeric_limits<double>::infinity();
   for (const Triangle& triangle : triangles) best = std::min(best, touching_t(cast, triangle));
   return best;
@@ -205,13 +207,31 @@ double distance_of_copy(const TriangleMesh& mesh, const std::vector<Triangle>& t
 
 }  // namespace
 
-std::vector<SphereCast> sphere_casts(const cooker::Workload& workload) {
-  std::vector<SphereCast> casts;
-  for (const Ray& ray : workload.rays) casts.push_back({ray, workload.cast_radius});
+std::vector<ShapeCast> casts_of(const cooker::Workload& workload, ShapeKind kind) {
+  std::vector<ShapeCast> casts;
+  for (const Ray& ray : workload.rays) casts.push_back({ray, workload.cast_radius, kind});
   return casts;
 }
 
-ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& workload) {
+std::vector<PlacedShape> shapes_on(const TriangleMesh& mesh, const cooker::Workload& workload,
+                                   std::size_t count, ShapeKind kind) {
+  std::mt19937_64 engine(1);
+  std::uniform_int_distribution<std::size_t> any(0, mesh.triangles.size() - 1);
+  std::uniform_real_distribution<double> share(0, 1), off(-1, 1);
+  std::vector<PlacedShape> shapes;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto& [a, b, c] = mesh.triangle(any(engine)).corner;
+    const double u = std::sqrt(share(engine)), v = share(engine);
+    const Eigen::Vector3d point = (1 - u) * a + u * (1 - v) * b + u * v * c;
+    const Eigen::Vector3d normal = (b - a).cross(c - a).normalized();  // 0 without area
+    shapes.push_back(
+        {point + off(engine) * workload.cast_radius * normal, workload.cast_radius, kind});
+  }
+  return shapes;
+}
+
+ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& workload,
+                           std::size_t shapes) {
   std::vector<Triangle> triangles;
   std::vector<Eigen::AlignedBox3d> bounds;
   for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
@@ -225,9 +245,20 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
     answers.rays.push_back(closest_t(triangles, workload.rays[i]));
   }
   constexpr double kCastWork = 8;
-  const std::vector<SphereCast> casts = sphere_casts(workload);
+  const std::vector<ShapeCast> casts = casts_of(workload, ShapeKind::kSphere);
   for (std::size_t i = 0; i < affordable(casts.size(), kCastWork * size); ++i) {
     answers.sphere_casts.push_back(first_touch(triangles, casts[i]));
+  }
+  const std::vector<PlacedShape> spheres =
+      shapes_on(mesh, workload, affordable(shapes, size), ShapeKind::kSphere);
+  for (const auto& [center, radius, kind] : spheres) {
+    double count = 0;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (bounds[t].squaredExteriorDistance(center) > radius * radius) continue;
+      const Eigen::Vector3d closest = closest_point_on_triangle(center, triangles[t]);
+      count += (closest - center).squaredNorm() <= radius * radius ? 1 : 0;
+    }
+    answers.spheres.push_back(count);
   }
   for (std::size_t i = 0; i < affordable(workload.boxes.size(), size); ++i) {
     const Eigen::AlignedBox3d& box = workload.boxes[i];

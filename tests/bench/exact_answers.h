@@ -11,15 +11,24 @@ namespace boxtree::bench {
 struct ExactAnswers {
   std::vector<double> rays;
   std::vector<double> sphere_casts;
+  std::vector<double> spheres;  // numbers of triangles that touch
   std::vector<double> boxes;
   std::vector<double> points;
   std::vector<double> pairs;      // numbers of pairs; non-zero means contact
   std::vector<double> distances;  // in the poses apart
 };
 
-[[nodiscard]] std::vector<SphereCast> sphere_casts(const cooker::Workload& workload);
+/// Shapes of 1 % of the diagonal that move along the rays of a workload.
+[[nodiscard]] std::vector<ShapeCast> casts_of(const cooker::Workload& workload, ShapeKind kind);
 
-[[nodiscard]] ExactAnswers exact_answers(const TriangleMesh& mesh,
-                                         const cooker::Workload& workload);
+/// As many such shapes, each around a random point of a random triangle, off it by half the radius
+/// in the mean.
+[[nodiscard]] std::vector<PlacedShape> shapes_on(const TriangleMesh& mesh,
+                                                 const cooker::Workload& workload,
+                                                 std::size_t count, ShapeKind kind);
+
+/// `shapes`: the number of queries with each shape.
+[[nodiscard]] ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& workload,
+                                         std::size_t shapes);
 
 }  // namespace boxtree::bench

@@ -28,7 +28,7 @@ struct Arguments {
   std::size_t tumble_steps = 0;
   double longest_edge = 0;
   std::string builder = "sah";
-  std::vector<std::string> queries = {"single", "pairs", "distances", "tumble"};
+  std::vector<std::string> queries = {"single", "shapes", "pairs", "distances", "tumble"};
   bool quick = false;
   bool json = false;
 };
@@ -179,7 +179,7 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
     rows.add("ray_error", largest_error(*found, exact.rays) / scene, "of the scene");
   }
   if (const auto found =
-          run_query(subject, &Subject::sphere_casts, sphere_casts(workload),
+          run_query(subject, &Subject::casts, casts_of(workload, ShapeKind::kSphere),
                     {"cast_sphere", "ns", "cast_sphere_hits", "hits", count_finite}, runs, rows)) {
     rows.add("cast_sphere_checked", checked(*found, exact.sphere_casts), "queries");
     rows.add("cast_sphere_wrong", count_wrong(*found, exact.sphere_casts, slack), "queries");
@@ -196,6 +196,35 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
     rows.add("point_checked", checked(*found, exact.points), "queries");
     rows.add("point_wrong", count_wrong(*found, exact.points, slack), "queries");
     rows.add("point_error", largest_error(*found, exact.points) / scene, "of the scene");
+  }
+}
+
+// Other casts, and shapes at rest near the surface.
+void measure_shapes(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
+                    std::size_t count, const ExactAnswers& exact, std::size_t runs, Rows& rows) {
+  struct Shape {
+    ShapeKind kind;
+    std::string name;
+  };
+  for (const auto& [kind, shape] :
+       {Shape{ShapeKind::kSphere, "sphere"}, Shape{ShapeKind::kCapsule, "capsule"},
+        Shape{ShapeKind::kCube, "cube"}}) {
+    if (kind != ShapeKind::kSphere) {  // those are among the single queries
+      static_cast<void>(run_query(
+          subject, &Subject::casts, casts_of(workload, kind),
+          {"cast_" + shape, "ns", "cast_" + shape + "_hits", "hits", count_finite}, runs, rows));
+    }
+    const std::vector<PlacedShape> placed = shapes_on(mesh, workload, count, kind);
+    const auto found = run_query(
+        subject, &Subject::overlaps, placed,
+        {"overlap_" + shape, "ns", "overlap_" + shape + "_tris", "triangles"}, runs, rows);
+    if (found && kind == ShapeKind::kSphere) {
+      rows.add("overlap_sphere_checked", checked(*found, exact.spheres), "queries");
+      rows.add("overlap_sphere_wrong", count_wrong(*found, exact.spheres, 0), "queries");
+    }
+    static_cast<void>(run_query(
+        subject, &Subject::contacts, placed,
+        {"collide_" + shape, "ns", "collide_" + shape + "_contacts", "contacts"}, runs, rows));
   }
 }
 
@@ -294,6 +323,26 @@ void measure_tumble(Subject& subject, const std::vector<Pose>& poses, std::size_
   measure(false);
 }
 
+// Kinds of queries that are not selected get a count of zero.
+bool is_selected(const Arguments& arguments, const char* kind) {
+  const auto& kinds = arguments.queries;
+  return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
+}
+
+std::size_t shape_count(const Arguments& arguments) {
+  if (!is_selected(arguments, "shapes")) return 0;
+  return (arguments.quick ? kQuick : kFull).boxes;
+}
+
+cooker::WorkloadSize workload_size(const Arguments& arguments) {
+  cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
+  if (!is_selected(arguments, "single")) size.boxes = size.points = 0;
+  if (!is_selected(arguments, "single") && !is_selected(arguments, "shapes")) size.rays = 0;
+  if (!is_selected(arguments, "pairs")) size.poses = 0;
+  if (!is_selected(arguments, "distances")) size.apart = 0;
+  return size;
+}
+
 void measure_library(const TriangleMesh& mesh, const Library& library,
                      const cooker::Workload& workload, const ExactAnswers& exact,
                      const std::vector<Pose>& tumble, const Arguments& arguments,
@@ -314,22 +363,12 @@ void measure_library(const TriangleMesh& mesh, const Library& library,
     rows.add("resident_bytes_per_tri", open->resident_bytes / triangles, "bytes");
   }
   measure_single(mesh, *subject, workload, exact, arguments.runs, rows);
+  if (const std::size_t count = shape_count(arguments)) {
+    measure_shapes(mesh, *subject, workload, count, exact, arguments.runs, rows);
+  }
   measure_pairs(*subject, workload, exact, arguments.runs, rows);
   measure_distances(mesh, *subject, workload, exact, arguments.runs, rows);
   measure_tumble(*subject, tumble, arguments.runs, rows);
-}
-
-// Kinds of queries that are not selected get a count of zero.
-cooker::WorkloadSize workload_size(const Arguments& arguments) {
-  cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
-  const auto wanted = [&](const char* kind) {
-    const auto& kinds = arguments.queries;
-    return std::find(kinds.begin(), kinds.end(), kind) != kinds.end();
-  };
-  if (!wanted("single")) size.rays = size.boxes = size.points = 0;
-  if (!wanted("pairs")) size.poses = 0;
-  if (!wanted("distances")) size.apart = 0;
-  return size;
 }
 
 bool is_wanted(const Library& library, const std::vector<std::string>& only) {
@@ -353,7 +392,7 @@ int run(const Arguments& arguments) {
     const TriangleMesh mesh =
         make_triangle_mesh(imported->mesh, path.stem().string(), arguments.longest_edge);
     const cooker::Workload workload = cooker::make_workload(mesh.bounds, workload_size(arguments));
-    const ExactAnswers exact = exact_answers(mesh, workload);
+    const ExactAnswers exact = exact_answers(mesh, workload, shape_count(arguments));
     const std::vector<Pose> tumble = all_tumble_poses(mesh, arguments.tumble_steps);
     for (const Library& library : all_libraries(builder)) {
       if (!is_wanted(library, arguments.only)) continue;
@@ -384,11 +423,12 @@ int main(int argc, char** argv) {
   app.add_option("--runs", arguments.runs, "Runs whose median counts; one more goes before")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  app.add_option(
-         "--queries", arguments.queries,
-         "single (rays, casts, boxes, points), pairs, distances or tumble; may be repeated [all]")
+  app.add_option("--queries", arguments.queries,
+                 "single (rays, casts of spheres, boxes, points), shapes (other casts, overlaps "
+                 "and contacts "
+                 "of shapes), pairs, distances or tumble; may be repeated [all]")
       ->allow_extra_args(false)
-      ->check(CLI::IsMember({"single", "pairs", "distances", "tumble"}));
+      ->check(CLI::IsMember({"single", "shapes", "pairs", "distances", "tumble"}));
   app.add_option("--tumble", arguments.tumble_steps,
                  "Protocol P1 with so many turns at each of 20 distances [none]");
   app.add_option("--longest-edge", arguments.longest_edge, "Scale the bounds of meshes to this");

@@ -38,10 +38,24 @@ struct PairWork {
   std::uint64_t leaf_tests = 0;  // pairs of leaves whose polygons were compared
 };
 
-/// A sphere that moves along the ray.
-struct SphereCast {
+/// A sphere; an upright capsule twice as long as wide; a turned cube, whose half edge is the
+/// radius.
+enum class ShapeKind : std::uint8_t { kSphere, kCapsule, kCube };
+
+/// The rotation of cubes.
+inline const Eigen::Quaterniond kCubeRotation = Eigen::Quaterniond(0.9, 0.1, 0.3, 0.2).normalized();
+
+/// A shape whose center moves along the ray.
+struct ShapeCast {
   Ray ray;
   double radius = 0;
+  ShapeKind kind = ShapeKind::kSphere;
+};
+
+struct PlacedShape {
+  Eigen::Vector3d center;
+  double radius = 0;
+  ShapeKind kind = ShapeKind::kSphere;
 };
 
 /// The mesh and its copy in that pose.
@@ -61,8 +75,12 @@ class Subject {
 
   /// Distance along the ray to the closest hit; infinity without one.
   virtual bool rays(std::span<const Ray>, std::span<double>) { return false; }
-  /// How far along the ray the sphere is when it first touches; infinity if it does not.
-  virtual bool sphere_casts(std::span<const SphereCast>, std::span<double>) { return false; }
+  /// How far along the ray the shape is when it first touches; infinity if it does not.
+  virtual bool casts(std::span<const ShapeCast>, std::span<double>) { return false; }
+  /// Number of triangles that touch the shape.
+  virtual bool overlaps(std::span<const PlacedShape>, std::span<double>) { return false; }
+  /// Number of contacts, each with point, normal and depth.
+  virtual bool contacts(std::span<const PlacedShape>, std::span<double>) { return false; }
   /// Number of triangles that touch the box.
   virtual bool boxes(std::span<const Eigen::AlignedBox3d>, std::span<double>) { return false; }
   /// Distance to the closest point.
