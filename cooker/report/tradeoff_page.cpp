@@ -341,23 +341,25 @@ PageSection work_section(const MeshTradeoff& mesh) {
       "possible, too: rays and closest points go to the nearest box first, and a grid changes the "
       "mesh that the tree is built on.",
       kShallowMeaning);
-  PageTable table{{"encoding", "reference"}, {}, 2};
+  PageTable node_table{{"encoding", "reference"}, {}, 2}, leaf_table = node_table;
   for (const char* kind : kQueryNames) {
-    for (const char* what : {"nodes", "extra", "leaves", "false"}) {
-      table.columns.push_back(fmt::format("{}: {}", kind, what));
-    }
+    node_table.columns.insert(node_table.columns.end(),
+                              {fmt::format("{}: nodes", kind), fmt::format("{}: extra", kind)});
+    leaf_table.columns.insert(leaf_table.columns.end(),
+                              {fmt::format("{}: leaves", kind), fmt::format("{}: false", kind)});
   }
   for (const TradePoint& point : mesh.points) {
-    Row row = {point.name(), std::string(codec_name(point.reference))};
+    const Row name = {point.name(), std::string(codec_name(point.reference))};
+    Row& of_nodes = node_table.rows.emplace_back(name);
+    Row& of_leaves = leaf_table.rows.emplace_back(name);
     for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
-      row.push_back(fmt::format("{:.1f}", point.work[kind].nodes));
-      row.push_back(percent(point.extra_nodes[kind]));
-      row.push_back(fmt::format("{:.2f}", point.work[kind].leaves));
-      row.push_back(percent(point.false_leaf_tests[kind]));
+      of_nodes.push_back(fmt::format("{:.1f}", point.work[kind].nodes));
+      of_nodes.push_back(percent(point.extra_nodes[kind]));
+      of_leaves.push_back(fmt::format("{:.2f}", point.work[kind].leaves));
+      of_leaves.push_back(percent(point.false_leaf_tests[kind]));
     }
-    table.rows.push_back(std::move(row));
   }
-  section.tables = {table};
+  section.tables = {node_table, leaf_table};
   for (std::size_t kind = 0; kind < kQueryKinds; ++kind) {
     for (const bool leaves : {false, true}) {
       PagePlot plot;
@@ -415,22 +417,18 @@ PageSection times_section(const TradeoffReport& report, const MeshTradeoff& mesh
       "Of one query: median, 99th percentile and mean over all queries, each query's time "
       "the least of several runs, on one thread, in memory that is already mapped. Clocks tick in "
       "steps of about 10 ns; the median box touches nothing and ends early.";
-  PageTable table{{"encoding"}, {}};
-  for (const KindWords& kind : kKinds) {
-    for (const char* what : {"median", "p99", "mean"}) {
-      table.columns.push_back(fmt::format("{}: {}", kind.title, what));
+  // One table for each, which fits into a window.
+  for (const auto& [what, part] :
+       {std::pair("median", &KindTimes::median_ns),
+        std::pair("99th percentile", &KindTimes::p99_ns), std::pair("mean", &KindTimes::mean_ns)}) {
+    PageTable table{{fmt::format("{} by encoding", what)}, {}};
+    for (const KindWords& kind : kKinds) table.columns.emplace_back(kind.title);
+    for (const TradePoint& point : mesh.points) {
+      Row& row = table.rows.emplace_back(Row{point.name()});
+      for (const KindTimes& times : point.times) row.push_back(time_in_words(times.*part));
     }
+    section.tables.push_back(std::move(table));
   }
-  for (const TradePoint& point : mesh.points) {
-    Row row = {point.name()};
-    for (const KindTimes& times : point.times) {
-      row.push_back(time_in_words(times.median_ns));
-      row.push_back(time_in_words(times.p99_ns));
-      row.push_back(time_in_words(times.mean_ns));
-    }
-    table.rows.push_back(std::move(row));
-  }
-  section.tables = {table};
   PageTable peers{{"other library", "variant", "bytes / triangle", "ray", "box", "point",
                    "all contacts", "first contact", "cast", "contacts of a sphere"},
                   {},
