@@ -26,12 +26,20 @@ namespace {
 // as the bounds that are computed in any case say.
 constexpr int kMostSteps = 64;
 
-// A point of the difference: a corner of the triangle less a point of the hull.
-struct Difference {
-  Eigen::Vector3d at;
-  std::uint32_t corner, point;
-};
-using Differences = std::array<Difference, 3>;
+using Differences = std::array<DifferencePoint, 3>;
+
+std::uint32_t farthest_point(std::span<const Eigen::Vector3d> point,
+                             const Eigen::Vector3d& direction) noexcept {
+  std::uint32_t best = 0;
+  double most = dot(direction, point[0]);
+  for (std::uint32_t i = 1; i < point.size(); ++i) {
+    const double along = dot(direction, point[i]);
+    if (!(along > most)) continue;
+    most = along;
+    best = i;
+  }
+  return best;
+}
 
 struct Search {
   Search(std::span<const Eigen::Vector3d> points, const Corners& of_triangle) noexcept
@@ -39,26 +47,8 @@ struct Search {
     for (const Eigen::Vector3d& p : point) largest = std::max(largest, largest_magnitude(p));
   }
 
-  [[nodiscard]] std::uint32_t farthest_point(const Eigen::Vector3d& direction) const noexcept {
-    std::uint32_t best = 0;
-    double most = dot(direction, point[0]);
-    for (std::uint32_t i = 1; i < point.size(); ++i) {
-      const double along = dot(direction, point[i]);
-      if (!(along > most)) continue;
-      most = along;
-      best = i;
-    }
-    return best;
-  }
-
-  // The difference that is least along a direction.
-  [[nodiscard]] Difference least(const Eigen::Vector3d& direction) const noexcept {
-    std::uint32_t low = 0;
-    for (std::uint32_t i = 1; i < 3; ++i) {
-      if (dot(direction, corner[i]) < dot(direction, corner[low])) low = i;
-    }
-    const std::uint32_t high = farthest_point(direction);
-    return {corner[low] - point[high], low, high};
+  [[nodiscard]] DifferencePoint least(const Eigen::Vector3d& direction) const noexcept {
+    return least_difference(point, corner, direction);
   }
 
   [[nodiscard]] double separation(const Eigen::Vector3d& direction) const noexcept {
@@ -87,7 +77,7 @@ double volume(const Eigen::Vector3d& a, const Eigen::Vector3d& b,
 
 // The weights of a tetrahedron's corners whose mean the origin is, if it is inside by more than
 // `error`, a volume; the last one is that of `apex`.
-bool holds_origin(const Differences& d, const Difference& apex, double error,
+bool holds_origin(const Differences& d, const DifferencePoint& apex, double error,
                   std::array<double, 4>& weight) noexcept {
   weight = {volume(d[1].at, d[2].at, apex.at), -volume(d[0].at, d[2].at, apex.at),
             volume(d[0].at, d[1].at, apex.at), -volume(d[0].at, d[1].at, d[2].at)};
@@ -115,7 +105,7 @@ CoreDistance distance_of_triangle(const Search& search, Corners hull) noexcept {
     lower = separation_near(found.first, found.second, search.point, corner, search.largest,
                             found.upper - error);
     if (lower >= found.upper - error) break;
-    const Eigen::Vector3d& other = search.point[search.farthest_point(between)];
+    const Eigen::Vector3d& other = search.point[farthest_point(search.point, between)];
     TriangleDistance best = found;
     Corners best_hull = hull;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -145,6 +135,16 @@ CoreDistance distance_of_triangle(const Search& search, Corners hull) noexcept {
 }
 
 }  // namespace
+
+DifferencePoint least_difference(std::span<const Eigen::Vector3d> points, const Corners& corner,
+                                 const Eigen::Vector3d& direction) noexcept {
+  std::uint32_t low = 0;
+  for (std::uint32_t i = 1; i < 3; ++i) {
+    if (dot(direction, corner[i]) < dot(direction, corner[low])) low = i;
+  }
+  const std::uint32_t high = farthest_point(points, direction);
+  return {corner[low] - points[high], low, high};
+}
 
 Eigen::Vector3d weights_in(const Corners& triangle, const Eigen::Vector3d& point) noexcept {
   const Eigen::Vector3d at = closest_point_on_triangle(point, {triangle});
@@ -179,12 +179,12 @@ CoreDistance hull_distance(std::span<const Eigen::Vector3d> points,
   const double volume_error = kError * (size * size * size);
   Eigen::Vector3d way = (corner[0] + corner[1]) + corner[2];
   if (way.isZero(0)) way = Eigen::Vector3d::UnitX();
-  const Difference first = search.least(way);
+  const DifferencePoint first = search.least(way);
   Differences difference{first, first, first};
   way = first.at;
   double squared = squared_length(way);
   for (int step = 0; step < kMostSteps && squared > kError * kError * size * size; ++step) {
-    const Difference next = search.least(way);
+    const DifferencePoint next = search.least(way);
     if (!(dot(way, next.at) < squared * (1 - 16 * kRoundoffF64))) break;
     std::array<double, 4> weight;
     if (holds_origin(difference, next, volume_error, weight)) {

@@ -121,18 +121,8 @@ class Difference {
   }
 
   [[nodiscard]] Vertex farthest(const Eigen::Vector3d& n) const noexcept {
-    std::size_t high = 0, low = 0;
-    for (std::size_t i = 1; i < 3; ++i) {
-      if (dot(n, corner_[i]) > dot(n, corner_[high])) high = i;
-    }
-    double least = dot(n, points_[0]);
-    for (std::size_t i = 1; i < points_.size(); ++i) {
-      const double along = dot(n, points_[i]);
-      if (!(along < least)) continue;
-      least = along;
-      low = i;
-    }
-    Vertex found{corner_[high] - points_[low], static_cast<std::uint16_t>(high)};
+    const DifferencePoint most = least_difference(points_, corner_, -n);
+    Vertex found{most.at, static_cast<std::uint16_t>(most.corner)};
     for (std::uint32_t k = 0; k < thin_; ++k) {
       found.at += (dot(n, thin_axis_[k]) < 0 ? -thickness_ : thickness_) * thin_axis_[k];
     }

@@ -315,53 +315,63 @@ MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& t
   return contact;
 }
 
+// What is known of how near a core and a triangle are.
+struct Nearness {
+  Eigen::Vector3d between;
+  double lower, upper;
+};
+
+Nearness nearness(const MovingShape& moving, const Corners& corner) noexcept {
+  if (moving.shape.hull != nullptr) {
+    const CoreDistance at = core_distance(moving.shape, corner);
+    return {at.between, at.lower, at.upper};
+  }
+  const ClosestPoints at = contact_points(moving.shape, corner);
+  return {at.between, 0, at.upper};
+}
+
+// From s on, where they are `at`: when it is certain that they touch, or when the distance does not
+// fall any more.
+double certain_by(const MovingShape& moving, const Triangle& triangle, double s, Nearness at,
+                  const Eigen::Vector3d& normal) noexcept {
+  const double doubt = moving.doubt;
+  double by = s, step = 0;
+  for (int n = 0; n < kMostSteps; ++n) {
+    const double missing = at.upper + doubt - moving.shape.radius;
+    const double length = std::sqrt(squared_length(at.between));
+    // Rounding tilts the line between points of a hull that are near each other, but no normal.
+    const bool is_last = moving.shape.hull != nullptr && length <= 8 * doubt;
+    const double speed =
+        is_last ? -dot(normal, moving.direction) : dot(at.between, moving.direction);
+    if (!(missing > 0) || !(speed > 0)) break;
+    step = is_last ? step + (length + 2 * doubt) / speed
+                   : std::max(2 * step, 2 * missing * length / speed);
+    at = nearness(moving, placed(moving, triangle, s + step));
+    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
+    by = s + step;
+    if (is_last) break;
+  }
+  return by;
+}
+
 MovingShape::Contact contact_of_hull(const MovingShape& moving, const Triangle& triangle,
                                      double s) noexcept {
   const ConvexShape& shape = moving.shape;
-  const double doubt = moving.doubt;
   const Corners corner = placed(moving, triangle, s);
   const Penetration found =
-      s > 0 ? shape.hull->penetration(shape.hull->point, corner, doubt, &moving.direction)
-            : penetration(shape, corner, doubt);
-  MovingShape::Contact contact{moving.center_at(s) + found.point, found.normal, found.feature, s};
-  // Until it is certain that they touch, or the distance does not fall any more.
-  CoreDistance at = core_distance(shape, corner);
-  double step = 0;
-  for (int n = 0; n < kMostSteps; ++n) {
-    const double missing = at.upper + doubt;
-    // Rounding tilts the line between points that are near each other, but no normal.
-    const bool is_last = at.length <= 8 * doubt;
-    const double speed =
-        is_last ? -dot(found.normal, moving.direction) : dot(at.between, moving.direction);
-    if (!(missing > 0) || !(speed > 0)) break;
-    step = is_last ? step + (at.length + 2 * doubt) / speed
-                   : std::max(2 * step, 2 * missing * at.length / speed);
-    at = core_distance(shape, placed(moving, triangle, s + step));
-    if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
-    contact.by = s + step;
-    if (is_last) break;
-  }
-  return contact;
+      s > 0 ? shape.hull->penetration(shape.hull->point, corner, moving.doubt, &moving.direction)
+            : penetration(shape, corner, moving.doubt);
+  return {moving.center_at(s) + found.point, found.normal, found.feature,
+          certain_by(moving, triangle, s, nearness(moving, corner), found.normal)};
 }
 
 MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& triangle,
                                      double s) noexcept {
   const Corners corner = placed(moving, triangle, s);
-  ClosestPoints at = contact_points(moving.shape, corner);
+  const ClosestPoints at = contact_points(moving.shape, corner);
   const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at);
-  MovingShape::Contact contact{moving.center_at(s) + found.point, found.normal, found.feature, s};
-  // Until it is certain that they touch, or the distance does not fall any more.
-  double step = 0;
-  for (int n = 0; n < kMostSteps; ++n) {
-    const double missing = at.upper + moving.doubt - moving.shape.radius;
-    const double speed = dot(at.between, moving.direction);
-    if (!(missing > 0) || !(speed > 0)) break;
-    const double length = std::sqrt(squared_length(at.between));
-    step = std::max(2 * step, 2 * missing * length / speed);
-    at = contact_points(moving.shape, placed(moving, triangle, s + step));
-    contact.by = s + step;
-  }
-  return contact;
+  return {moving.center_at(s) + found.point, found.normal, found.feature,
+          certain_by(moving, triangle, s, {at.between, 0, at.upper}, found.normal)};
 }
 
 }  // namespace
