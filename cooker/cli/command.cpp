@@ -36,6 +36,18 @@ std::string shown_name(const CLI::Option& option) {
   return option.get_positional() ? option.get_name(true) : option.get_name();
 }
 
+bool names_files(Values values) {
+  return values != Values::kOther && values != Values::kMeshEndings && values != Values::kCommands;
+}
+
+// What is wrong with the value of an option that names files. CLI11 takes whatever follows it,
+// which is the next option where a script has no name.
+std::string file_fault(const CLI::Option& option, const std::string& file) {
+  if (!file.starts_with('-') || file == "-") return {};
+  return fmt::format("expected {0}, found the option {1}; a file of that name is ./{1}",
+                     option.get_type_name(), file);
+}
+
 // The program and the commands that were parsed, from the outermost to the innermost.
 std::vector<const Command*> parsed_commands(const Command& program) {
   std::vector<const Command*> chain{&program};
@@ -82,6 +94,10 @@ Option* Option::shows_default() {
 
 Option* Option::takes(Values values) {
   facts_.values = values;
+  if (names_files(values) && !parsed_->get_positional()) {
+    parsed_->check(
+        [parsed = parsed_](const std::string& file) { return file_fault(*parsed, file); }, "");
+  }
   return this;
 }
 

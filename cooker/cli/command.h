@@ -63,7 +63,7 @@ class Option {
   Option* group(const std::string& name);
   /// Help shows the value that it has now as the default.
   Option* shows_default();
-  /// Says what the value is.
+  /// Says what the value is. That of an option that names files is not the next option.
   Option* takes(Values values);
   Option* required();
   /// Checked by CLI11 after all was parsed, whose required positionals swallow the names of kinds.

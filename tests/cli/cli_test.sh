@@ -636,6 +636,25 @@ refused_words 'verify: FILE is required' verify --
 # The value of a short option is not joined to it by =.
 refused_words 'cook: --output: expected -o d.bxt or --output=d.bxt, found -o=d.bxt' cook cube.obj -o=d.bxt
 [ ! -e =d.bxt ]
+# Where a script has no name, the next option is none.
+for next in --exact -q -j1 --; do
+  refused_words "cook: --output: expected FILE, found the option $next; a file of that name is ./$next" \
+    cook cube.obj -o $next
+  refused_words "cook: --depfile: expected FILE, found the option $next; a file of that name is ./$next" \
+    cook cube.obj -o d.bxt --depfile $next
+  [ ! -e ./$next ]
+done
+refused_words "cook: --output: expected FILE, found the option --exact; a file of that name is ./--exact" \
+  cook cube.obj --output=--exact
+refused_words "report: --csv: expected FILE, found the option -q; a file of that name is ./-q" report cube.obj --csv -q
+refused_words "query point: --mesh: expected FILE, found the option --tree; a file of that name is ./--tree" \
+  query cube.bxt --mesh --tree 0 point --at 0,0,0
+refused_words "query cast: --hull: expected MESH, found the option --at; a file of that name is ./--at" \
+  query cube.bxt cast --hull --at 0,0,0 --direction 0,0,1
+refused_words "help: --man-pages: expected FOLDER, found the option --man; a file of that name is ./--man" \
+  help --man-pages --man
+expect 0 "$boxtree" cook cube.obj -o ./--exact --quiet
+[ -e ./--exact ]
 # Nor has a long option one dash: -output would be -o utput.
 refused_words "cook: '-output' is no option; did you mean '--output'?" cook cube.obj -output d.bxt
 refused_words "cook: '-output=d.bxt' is no option; did you mean '--output'?" cook cube.obj -output=d.bxt
