@@ -205,6 +205,11 @@ Error explained(const Error& error, const Arguments& arguments, const std::strin
 
 int run(Arguments& arguments) {
   set_options(arguments);
+  if (arguments.external && arguments.no_face_ids) {
+    return usage(
+        "cook: --external excludes --no-face-ids: face ids lead into the application's arrays; "
+        "with --write-reordered FILE, whose faces are in the order of the tree, none are needed");
+  }
   if (const std::string fault = stream_fault(arguments); !fault.empty())
     return usage("cook: " + fault);
   for (const auto& [output, ending] :

@@ -277,6 +277,14 @@ void ProfileReader::read_object(const Header& header) {
         fmt::format("only kinds that [scene] states in line {}", profile_.scene.queries.line),
         "more");
   }
+  // Of [scene] both may stand: its objects differ.
+  const TomlEntry* const face_ids = fields.find("face_ids");
+  if (face_ids != nullptr && fields.find("external") != nullptr && object.needs.external.value &&
+      !object.needs.face_ids.value) {
+    complaints_.expected(face_ids->line, "face_ids",
+                         "true, since with external = true they lead into the application's arrays",
+                         "false");
+  }
   read_contact(fields, object.needs.contact, true);
   fields.finish();
   profile_.objects.push_back(std::move(object));

@@ -800,6 +800,8 @@ cat >queries.jsonl <<'BATCH'
 {"kind":"box","min":[0.9,0.4,0.4],"max":[1.5,0.6,0.6]}
 
 {"kind":"sphere","center":[0.5,0.5,1.5],"radius":0.5}
+expect 1 "$boxtree" cook cube.obj -o x.bxt --external --no-face-ids
+grep -q '^boxtree: usage: cook: --external excludes --no-face-ids: .*--write-reordered' err
 {"kind":"point","at":[0.5,0.5,3]}
 {"kind":"pair","file":"cube.bxt","pose":"1,0.25,0.25","first":true}
 {"kind":"distance","file":"cube.bxt","pose":"3,0,0","relative_error":0.1}

@@ -373,6 +373,9 @@ INSTANTIATE_TEST_SUITE_P(Names, ProfileFaultTest, ::testing::ValuesIn(kNames));
 constexpr ProfileFault kContradictions[] = {
     {"[scene]\nexact = true\ntolerance = 1\n",
      "scene.toml:3: tolerance: expected either \"tolerance\" or \"exact\", found both"},
+    {"[[object]]\nname = \"a\"\nexternal = true\nface_ids = false\n",
+     "scene.toml:4: face_ids: expected true, since with external = true they lead into the "
+     "application's arrays, found false"},
     {"[contact]\nstiffness = 1\nmass = 1\njump = 1\ninvisible = true\n",
      "scene.toml:5: invisible: expected either \"jump\" or \"invisible\", found both"},
     {"[contact]\nstiffness = 1\n",
