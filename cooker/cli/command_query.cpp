@@ -274,7 +274,7 @@ Option* add_vector_option(Command& command, const std::string& option, Eigen::Ve
           option,
           [&out](const std::string& text) {
             const std::optional<Eigen::Vector3d> vector = parse_vector(text);
-            if (!vector) return "expected X,Y,Z, found \"" + text + "\"";
+            if (!vector) return "expected X,Y,Z, " + found_instead(text);
             out = *vector;
             return std::string();
           },
@@ -295,7 +295,7 @@ class OptionFields {
     const auto parse = [&out](const std::string& text) {
       std::array<double, 16> numbers{};
       const auto matrix = matrix_of(std::span(numbers).first(parse_numbers(text, numbers)));
-      if (!matrix) return "expected 16 numbers between commas, found \"" + text + "\"";
+      if (!matrix) return "expected 16 numbers between commas, " + found_instead(text);
       out = *matrix;
       return std::string();
     };
@@ -323,7 +323,7 @@ class OptionFields {
             "--pose",
             [&tree](const std::string& text) {
               const std::optional<Pose> pose = parse_pose(text);
-              if (!pose) return "expected X,Y,Z or 12 numbers, found \"" + text + "\"";
+              if (!pose) return "expected X,Y,Z or 12 numbers, " + found_instead(text);
               tree.pose = *pose;
               return std::string();
             },
@@ -395,7 +395,7 @@ class OptionFields {
             name,
             [&out, form](const std::string& text) {
               const bool is_list = parse_numbers(text, out.emplace()) == kCount;
-              return is_list ? std::string() : "expected " + form + ", found \"" + text + "\"";
+              return is_list ? std::string() : "expected " + form + ", " + found_instead(text);
             },
             help)
         ->type_name(form);

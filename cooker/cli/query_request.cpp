@@ -514,6 +514,24 @@ std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
   return 0;
 }
 
+// A shell gives what stands before a space alone, which then ends with a comma.
+std::string found_instead(std::string_view text) {
+  const std::string found = fmt::format("found \"{}\"", text);
+  if (text.find(' ') != std::string_view::npos || text.ends_with(',')) {
+    return found + "; write it without spaces";
+  }
+  for (std::size_t at = 0; at < text.size();) {
+    const std::string_view word = text.substr(at, text.find(',', at) - at);
+    double number = 0;
+    const auto [next, error] = std::from_chars(word.data(), word.data() + word.size(), number);
+    if (error == std::errc::result_out_of_range) {
+      return found + fmt::format("; {} is beyond the range of double", word);
+    }
+    at += word.size() + 1;
+  }
+  return found;
+}
+
 std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {
   std::array<double, 3> numbers{};
   if (parse_numbers(text, numbers) != numbers.size()) return std::nullopt;

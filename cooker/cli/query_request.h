@@ -393,6 +393,10 @@ Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& me
 /// How many numbers stand between commas, in any locale; 0 if it is not that, or too many.
 std::size_t parse_numbers(std::string_view text, std::span<double> numbers);
 
+/// What to say of a text that is no list of as many numbers, and why: `found "1, 2"; write it
+/// without spaces`.
+[[nodiscard]] std::string found_instead(std::string_view text);
+
 /// Of 16 numbers, row by row. Nothing for another count.
 [[nodiscard]] std::optional<Frustum::ViewProjection> matrix_of(std::span<const double> numbers);
 

@@ -117,9 +117,16 @@ std::string unknown_option(const Command& command, const std::string& word) {
 }
 
 // What CLI11 says of an option that has too few values or is there too often, by counts: "--at: 1
-// required X,Y,Z missing", "--at: At Most 1 required but received 2".
+// required X,Y,Z missing", "--at: At Most 1 required but received 2"; and of a flag with a value.
 std::string mismatch(const std::string& said) {
   constexpr std::string_view kMissing = ": 1 required ";
+  constexpr std::string_view kOfFlag = "Could not convert: ";  // "... --exact = maybe"
+  if (said.starts_with(kOfFlag)) {
+    const std::string flag = said.substr(kOfFlag.size());
+    const std::size_t equals = flag.find(" = ");
+    return flag.substr(0, equals) + ": expected no value, found \"" + flag.substr(equals + 3) +
+           "\"";
+  }
   constexpr std::string_view kRepeated = ": At Most 1 required but received ";
   if (const std::size_t at = said.find(kMissing); at != std::string::npos) {
     const std::size_t type = at + kMissing.size();

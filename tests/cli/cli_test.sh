@@ -586,6 +586,13 @@ misvalued 'usage: query point: --at: expected X,Y,Z, found no value' query cube.
 misvalued 'usage: cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
 misvalued 'usage: query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
 misvalued 'usage: query cast: --capsule: expected X,Y,Z,R, found "0,0,1"' query cube.bxt cast --capsule 0,0,1
+misvalued 'usage: query point: --at: expected X,Y,Z, found "1, 2, 3"; write it without spaces' query cube.bxt point --at "1, 2, 3"
+misvalued 'usage: query point: --at: expected X,Y,Z, found "1,"; write it without spaces' query cube.bxt point --at 1, 2, 3
+misvalued 'usage: query point: --at: expected X,Y,Z, found "0,1e400,0"; 1e400 is beyond the range of double' \
+  query cube.bxt point --at 0,1e400,0
+misvalued 'usage: query cast: --capsule: expected X,Y,Z,R, found "0,0,1,-1e999"; -1e999 is beyond the range of double' \
+  query cube.bxt cast --capsule 0,0,1,-1e999
+misvalued 'usage: cook: --exact: expected no value, found "maybe"' cook cube.obj -o x.bxt --exact=maybe
 misvalued 'usage: query cast: --box: expected HX,HY,HZ, found "1"' query cube.bxt cast --box 1
 misvalued 'usage: query cast: --rotation: expected X,Y,Z,W, found "0,0,0,1,2"' query cube.bxt cast --rotation 0,0,0,1,2
 misvalued 'usage: query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
