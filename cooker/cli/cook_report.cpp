@@ -250,8 +250,8 @@ void add_forms(const Summary& summary, std::string& text) {
     for (const auto& [what, forms] : {std::pair("materials", &cooked.tree.material_forms),
                                       std::pair("user data", &cooked.tree.user_data_forms)}) {
       if (!*forms) continue;
-      text +=
-          fmt::format("  {}{}: {} bytes, {}\n", owner, what, (*forms)->kept(), forms_text(**forms));
+      text += fmt::format("  {}{}: {}, {}\n", owner, what, counted((*forms)->kept(), "byte"),
+                          forms_text(**forms));
     }
   }
 }

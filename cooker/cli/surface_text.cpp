@@ -11,6 +11,7 @@ namespace boxtree::cooker {
 
 std::string surface_text(const SurfaceEdges& edges) {
   if (edges.is_closed()) return "closed";
+  if (edges.is_empty) return "no edges";
   std::vector<std::string> kinds;
   std::uint64_t last = 0;
   for (const auto& [count, kind] :
@@ -35,8 +36,11 @@ Json surface_json(const SurfaceEdges& edges) {
 }
 
 SurfaceEdges surface_of(const Json& json) {
-  return {json["open_edges"].get<std::uint64_t>(), json["non_manifold_edges"].get<std::uint64_t>(),
-          json["inconsistent_edges"].get<std::uint64_t>()};
+  SurfaceEdges edges{json["open_edges"].get<std::uint64_t>(),
+                     json["non_manifold_edges"].get<std::uint64_t>(),
+                     json["inconsistent_edges"].get<std::uint64_t>()};
+  edges.is_empty = edges.is_closed() && !json["closed"].get<bool>();
+  return edges;
 }
 
 }  // namespace boxtree::cooker

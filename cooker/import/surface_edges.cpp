@@ -68,6 +68,7 @@ SurfaceEdges count_surface_edges(const MeshArrays& mesh) {
     sides[end[std::min(a, b)]++] = std::max(a, b) << 1 | (a > b ? 1u : 0u);
   });
   SurfaceEdges edges;
+  edges.is_empty = sides.empty();
   std::size_t first = 0;
   for (std::uint32_t v = 0; v < mesh.vertex_count; first = end[v++]) {
     const auto begin = sides.begin() + static_cast<std::ptrdiff_t>(first);

@@ -15,9 +15,12 @@ struct SurfaceEdges {
   std::uint64_t open = 0;          // one face
   std::uint64_t non_manifold = 0;  // three faces or more
   std::uint64_t inconsistent = 0;  // two faces whose windings traverse it in the same direction
+  bool is_empty = false;           // no face has sides, so there is no edge
 
   /// Whether the surface separates inside from outside where it does not cross itself.
-  [[nodiscard]] bool is_closed() const { return open + non_manifold + inconsistent == 0; }
+  [[nodiscard]] bool is_closed() const {
+    return !is_empty && open + non_manifold + inconsistent == 0;
+  }
   bool operator==(const SurfaceEdges&) const = default;
 };
 

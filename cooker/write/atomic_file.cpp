@@ -80,6 +80,9 @@ Result<AtomicFile> AtomicFile::create(const OutputTarget& to) {
   struct stat old {};
   const bool exists = ::stat(target->c_str(), &old) == 0;
   if (!exists && errno != ENOENT) return write_failure(given, "cannot tell whether it exists");
+  if (exists && S_ISDIR(old.st_mode)) {
+    return Error{Errc::kWriteFailed, given.string() + ": is a folder; expected the name of a file"};
+  }
   if (exists && !S_ISREG(old.st_mode)) {
     return Error{Errc::kWriteFailed, given.string() + ": exists and is not a regular file"};
   }

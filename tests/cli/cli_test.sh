@@ -622,6 +622,23 @@ for kind in ray cast collide point box sphere frustum pair distance overlap cont
   grep -q "^Usage: boxtree query FILE $kind " help
 done
 
+# A folder is none of the things that an output replaces.
+mkdir folder.bxt
+expect 2 "$boxtree" cook cube.obj -o folder.bxt
+same "$(cat err)" 'boxtree: write_failed: folder.bxt: is a folder; expected the name of a file'
+# Faces that name a vertex twice have no edges, so nothing is closed.
+printf 'v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 2\nf 1 1 3\n' >points.obj
+expect 0 "$boxtree" cook points.obj -o points.bxt
+grep -qx 'points: 2 triangles, no edges' out
+expect 0 "$boxtree" info points.bxt
+grep -qx '  surface: no edges' out
+expect 0 "$boxtree" info points.bxt --json
+same "$(jq -c '.trees[0].surface | [.closed, .open_edges]' out)" '[false,0]'
+# Material of a single face: one byte is no bytes.
+printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl wood\nf 1 2 3\n' >one.obj
+expect 0 "$boxtree" cook one.obj -o one.bxt --materials
+grep -q '  materials: 1 byte, ' out
+
 # -- ends options: what stands behind it is a file, and neither an option nor a kind of query.
 cp cube.obj ./-cube.obj
 expect 0 "$boxtree" cook -o dashed.bxt --quiet -- -cube.obj
@@ -783,6 +800,8 @@ done
 expect 0 "$boxtree" cook cube.obj -o external.bxt --external
 expect 0 "$boxtree" verify external.bxt
 grep -q 'not looked at' out
+expect 1 "$boxtree" cook cube.obj -o x.bxt --external --no-face-ids
+grep -q '^boxtree: usage: cook: --external excludes --no-face-ids: .*--write-reordered' err
 expect 0 "$boxtree" verify external.bxt --mesh cube.obj
 grep -q 'every triangle inside' out
 expect 1 "$boxtree" query external.bxt point --at 0,0,0
@@ -807,8 +826,6 @@ cat >queries.jsonl <<'BATCH'
 {"kind":"box","min":[0.9,0.4,0.4],"max":[1.5,0.6,0.6]}
 
 {"kind":"sphere","center":[0.5,0.5,1.5],"radius":0.5}
-expect 1 "$boxtree" cook cube.obj -o x.bxt --external --no-face-ids
-grep -q '^boxtree: usage: cook: --external excludes --no-face-ids: .*--write-reordered' err
 {"kind":"point","at":[0.5,0.5,3]}
 {"kind":"pair","file":"cube.bxt","pose":"1,0.25,0.25","first":true}
 {"kind":"distance","file":"cube.bxt","pose":"3,0,0","relative_error":0.1}

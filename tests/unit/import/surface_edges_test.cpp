@@ -38,6 +38,7 @@ SurfaceEdges counted_by_map(const SourceMesh& mesh) {
     }
   }
   SurfaceEdges edges;
+  edges.is_empty = directions.empty();
   for (const auto& [edge, runs] : directions) {
     if (runs.size() == 1) ++edges.open;
     if (runs.size() > 2) ++edges.non_manifold;
@@ -125,7 +126,11 @@ TEST(SurfaceEdges, QuadsHaveFourEdges) {
 }
 
 TEST(SurfaceEdges, OfNothingThereAreNone) {
-  EXPECT_TRUE(count(SourceMesh{}).is_closed());
+  EXPECT_TRUE(count(SourceMesh{}).is_empty);
+  SourceMesh points = tetrahedron();
+  points.faces = {{{0, 1, 1, kNoCorner}}, {{2, 2, 2, kNoCorner}}};
+  EXPECT_TRUE(count(points).is_empty);
+  EXPECT_FALSE(count(points).is_closed());
 }
 
 TEST(SurfaceEdges, EqualACountByPositions) {
