@@ -217,7 +217,8 @@ struct SceneFaceOptions {
   /// Which side counts as seen from the instance: a pose that mirrors turns nothing over. [kHit]
   BackFaces back_faces = BackFaces::kHit;
   std::optional<SceneFaceFilter> filter = {};          ///< [every face]
-  std::optional<InstanceFilter> instance_filter = {};  ///< [every instance]
+  /// Takes the number of an instance and says whether it may be hit. [every instance]
+  std::optional<InstanceFilter> instance_filter = {};
   LayerMask layers = kAllLayers;                       ///< [every layer]
   QueryLimits limits = {};                             ///< [none]
 };
