@@ -81,6 +81,26 @@ refused_visitor 'must return bool: a visitor true to go on' \
   'overlap_sphere(tree, {0, 0, 0}, 1, [](const boxtree::FaceRef&) {})'
 refused_visitor 'the largest t that is still of interest' \
   'all_hits(tree, {{0, 0, 9}, {0, 0, -1}}, [](const boxtree::RayHit&) {})'
+# Nor is a filter that is temporary, or that is shown something else, an operator= that is missing.
+refused_filter() {
+  printf '#include <boxtree/boxtree.h>\nvoid set(boxtree::FaceOptions& tree, boxtree::SceneFaceOptions& scene) { (void)tree, (void)scene; %s; }\n' \
+    "$2" >"$work/filter.cpp"
+  if "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/filter.cpp" 2>"$work/log"; then
+    fail "compiles: $2"
+  fi
+  grep -qF "$1" "$work/log" || { cat "$work/log"; fail "unclear, without: $1"; }
+  if grep -qE 'no match for|no viable' "$work/log"; then fail "no operator=: $2"; fi
+}
+refused_filter 'a temporary callable would be gone before the query' \
+  'tree.filter = [](const boxtree::FaceRef&) { return true; }'
+refused_filter 'a temporary callable would be gone before the query' \
+  'scene.instance_filter = [](std::uint32_t) { return true; }'
+for filter in tree.filter scene.filter scene.instance_filter; do
+  refused_filter 'must be a callable that takes what a filter is shown' \
+    "const auto wrong = [](const char*) { return true; }; $filter = wrong"
+done
+refused_filter 'a filter true for what may be hit' \
+  'const auto mute = [](const boxtree::FaceRef&) {}; tree.filter = mute'
 
 # The component blob is found apart.
 mkdir "$work/blob"

@@ -108,6 +108,10 @@ class FunctionRef<R(Args...)> {
   /// Calls it.
   R operator()(Args... args) const { return call_(target_, std::forward<Args>(args)...); }
 
+ protected:
+  /// For what does not compile.
+  FunctionRef() noexcept = default;
+
  private:
   union Target {
     void* object;
@@ -121,15 +125,31 @@ class FunctionRef<R(Args...)> {
 /// one would be gone before the query, so it does not compile.
 template <class Signature>
 class NamedFunctionRef : public FunctionRef<Signature> {
+  template <class F>
+  static constexpr bool kIsRefused =
+      !std::is_base_of_v<FunctionRef<Signature>, std::remove_cvref_t<F>> &&
+      !std::is_same_v<std::remove_cvref_t<F>, std::nullopt_t> &&
+      !(std::is_lvalue_reference_v<F> && std::is_convertible_v<F, FunctionRef<Signature>>);
+
  public:
   /// Borrows a lambda, function object or function.
   template <class F, class = std::enable_if_t<std::is_convertible_v<F&, FunctionRef<Signature>> &&
                                               !std::is_base_of_v<FunctionRef<Signature>, F>>>
   NamedFunctionRef(F& callable) noexcept : FunctionRef<Signature>(callable) {}
-  /// No temporary.
-  template <class F, class = std::enable_if_t<!std::is_lvalue_reference_v<F> &&
-                                              !std::is_base_of_v<FunctionRef<Signature>, F>>>
-  NamedFunctionRef(F&& callable) = delete;
+  /// Of a temporary, or of what is called otherwise: says what is expected.
+  template <class F, std::enable_if_t<kIsRefused<F>, int> = 0>
+  NamedFunctionRef(F&&) noexcept {
+    constexpr bool fits =
+        std::is_convertible_v<std::remove_reference_t<F>&, FunctionRef<Signature>>;
+    static_assert(fits || !kIsRefused<F>,
+                  "must be a callable that takes what a filter is shown and returns bool: a filter "
+                  "of FaceOptions takes a const FaceRef&, one of SceneFaceOptions a const "
+                  "SceneFace&, an instance_filter a std::uint32_t");
+    static_assert(!fits || !kIsRefused<F>,
+                  "a temporary callable would be gone before the query: give it a name, as in "
+                  "const auto is_wanted = [](const FaceRef& face) { ... }; options.filter = "
+                  "is_wanted;");
+  }
 };
 
 /// Receives one face after the other; returns whether to go on.
