@@ -18,7 +18,7 @@ constexpr double kStride = 0.05;  // metres per frame
 constexpr double kRadius = 0.35;
 constexpr double kHeight = 1.8;
 constexpr double kStepHeight = 0.3;  // the largest step that it climbs without a jump
-constexpr double kSkin = 0.01;       // how far it stays away from everything
+constexpr double kSkin = 0.01;       // kept along its way; less from a face at a grazing angle
 constexpr double kSteepest = 0.7;    // the least height of a normal on which it stands
 
 class Character {
