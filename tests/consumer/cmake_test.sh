@@ -292,7 +292,7 @@ silent 1 'find_package(boxtree CONFIG QUIET COMPONENTS runtime paper blob cli wi
 silent 0 'find_package(boxtree CONFIG QUIET COMPONENTS wide5)'
 silent 0 'find_package(boxtree CONFIG QUIET)' -DCMAKE_PREFIX_PATH=/nothing
 
-refused 'wide5: there is no such component' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
+refused 'wide5: there is no such component: there are runtime, paper, blob, cli, codecs (plain-f32, plain-f16, ' <<<'find_package(boxtree CONFIG REQUIRED COMPONENTS ray wide5)'
 # Versions 0.x are compatible within x.
 minor=${version%.*}
 for wanted in "$minor" "$version"; do
