@@ -112,7 +112,7 @@ std::string to_html(const Page& page) {
       out += "<p class=\"conclusion\"><strong>" + escaped(conclusion.lead) + "</strong> " +
              escaped(conclusion.text);
       if (!conclusion.command.empty()) {
-        out += "<br>Make it with: <code>" + escaped(conclusion.command) + "</code>";
+        out += "<br/>Make it with: <code>" + escaped(conclusion.command) + "</code>";
       }
       out += "</p>\n";
     }
