@@ -7,7 +7,7 @@
 namespace boxtree {
 namespace {
 
-std::atomic<std::int64_t> known_targets = 0;  // 0: not asked yet
+std::atomic<std::int64_t> known_targets = 0;  // 0: not known yet
 
 }  // namespace
 

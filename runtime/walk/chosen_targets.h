@@ -7,7 +7,7 @@
 namespace boxtree {
 
 /// Those that the machine has, as bits of Highway (HWY_AVX2), without those that
-/// hwy::DisableTargets() or hwy::SetSupportedTargetsForTest() took away. Asks the processor once,
+/// hwy::DisableTargets() or hwy::SetSupportedTargetsForTest() took away. Detects them once,
 /// and again after these. Safe from any thread.
 [[nodiscard]] std::int64_t chosen_targets() noexcept;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Calls the version of a function for the best instruction set that the machine has, as
 // HWY_EXPORT and HWY_DYNAMIC_DISPATCH of Highway do, but for one thing: an index into their tables
-// depends on the instruction sets of the source that asks for it, yet is computed by an inline
+// depends on the instruction sets of the source that uses it, yet is computed by an inline
 // function of one name. Builds that inline nothing (without -O) keep one of these functions for all
 // sources of a program, those of other libraries included, and call null pointers. The one here is
 // each source's own.
