@@ -162,7 +162,7 @@ void add_choice(const CookedTree& cooked, std::uint64_t file_bytes, std::string&
         codec_name(candidate.codec), geometry_name(candidate.geometry),
         per_triangle(candidate.tree_bytes, cooked.tree),
         per_triangle(candidate.bytes(), cooked.tree), per_triangle(file_bytes, cooked.tree),
-        slower[i], kSlowdownMeaning, counted(candidates.size(), "encoding"));
+        slower[i], kSlowdownMeaning, candidates.size());
   }
   add_grid(cooked, text);
 }
