@@ -318,16 +318,20 @@ MovingShape::Contact contact_of_box(const MovingShape& moving, const Triangle& t
 // What is known of how near a core and a triangle are.
 struct Nearness {
   Eigen::Vector3d between;
+  double length;  // of `between`
   double lower, upper;
 };
+
+Nearness nearness_of(const ClosestPoints& at) noexcept {
+  return {at.between, std::sqrt(squared_length(at.between)), 0, at.upper};
+}
 
 Nearness nearness(const MovingShape& moving, const Corners& corner) noexcept {
   if (moving.shape.hull != nullptr) {
     const CoreDistance at = core_distance(moving.shape, corner);
-    return {at.between, at.lower, at.upper};
+    return {at.between, at.length, at.lower, at.upper};
   }
-  const ClosestPoints at = contact_points(moving.shape, corner);
-  return {at.between, 0, at.upper};
+  return nearness_of(contact_points(moving.shape, corner));
 }
 
 // From s on, where they are `at`: when it is certain that they touch, or when the distance does not
@@ -338,14 +342,13 @@ double certain_by(const MovingShape& moving, const Triangle& triangle, double s,
   double by = s, step = 0;
   for (int n = 0; n < kMostSteps; ++n) {
     const double missing = at.upper + doubt - moving.shape.radius;
-    const double length = std::sqrt(squared_length(at.between));
     // Rounding tilts the line between points of a hull that are near each other, but no normal.
-    const bool is_last = moving.shape.hull != nullptr && length <= 8 * doubt;
+    const bool is_last = moving.shape.hull != nullptr && at.length <= 8 * doubt;
     const double speed =
         is_last ? -dot(normal, moving.direction) : dot(at.between, moving.direction);
     if (!(missing > 0) || !(speed > 0)) break;
-    step = is_last ? step + (length + 2 * doubt) / speed
-                   : std::max(2 * step, 2 * missing * length / speed);
+    step = is_last ? step + (at.length + 2 * doubt) / speed
+                   : std::max(2 * step, 2 * missing * at.length / speed);
     at = nearness(moving, placed(moving, triangle, s + step));
     if (is_last && at.lower > 6 * doubt) break;  // it has passed a corner
     by = s + step;
@@ -371,7 +374,7 @@ MovingShape::Contact contact_of_core(const MovingShape& moving, const Triangle& 
   const ClosestPoints at = contact_points(moving.shape, corner);
   const Penetration found = penetration_of_core(moving.shape, corner, moving.doubt, at);
   return {moving.center_at(s) + found.point, found.normal, found.feature,
-          certain_by(moving, triangle, s, {at.between, 0, at.upper}, found.normal)};
+          certain_by(moving, triangle, s, nearness_of(at), found.normal)};
 }
 
 }  // namespace
