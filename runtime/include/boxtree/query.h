@@ -141,11 +141,11 @@ class NamedFunctionRef : public FunctionRef<Signature> {
   NamedFunctionRef(F&&) noexcept {
     constexpr bool fits =
         std::is_convertible_v<std::remove_reference_t<F>&, FunctionRef<Signature>>;
-    static_assert(fits || !kIsRefused<F>,
+    static_assert(fits,
                   "must be a callable that takes what a filter is shown and returns bool: a filter "
                   "of FaceOptions takes a const FaceRef&, one of SceneFaceOptions a const "
                   "SceneFace&, an instance_filter a std::uint32_t");
-    static_assert(!fits || !kIsRefused<F>,
+    static_assert(!fits,
                   "a temporary callable would be gone before the query: give it a name, as in "
                   "const auto is_wanted = [](const FaceRef& face) { ... }; options.filter = "
                   "is_wanted;");
