@@ -9,8 +9,8 @@ build=$1 source=$2
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "cmake: $*"; exit 1; }
-# quiet COMMAND...: runs it; its output is shown if it fails.
-quiet() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log"; fail "$* failed"; }; }
+# shellcheck source=tests/consumer/quiet.sh
+. "$source/tests/consumer/quiet.sh"
 cache() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt"; }
 compiler=$(cache CMAKE_CXX_COMPILER)
 version=$(cache CMAKE_PROJECT_VERSION)

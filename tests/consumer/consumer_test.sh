@@ -68,14 +68,18 @@ CODE
 "$compiler" -std=c++20 -Wall -Wextra -Werror -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/options.cpp" ||
   fail "options give warnings"
 
-# A visitor that returns nothing is told what to return, by a message and not by all overloads.
-refused_visitor() {
-  printf '#include <boxtree/boxtree.h>\nvoid look(const boxtree::Tree& tree) { (void)boxtree::%s; }\n' "$2" >"$work/visitor.cpp"
-  if "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/visitor.cpp" 2>"$work/log"; then
-    fail "compiles: $2"
+# refused MESSAGE OVERLOADS CODE: the compiler says MESSAGE of it, and nothing that matches OVERLOADS.
+refused() {
+  printf '#include <boxtree/boxtree.h>\n%s\n' "$3" >"$work/refused.cpp"
+  if "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/refused.cpp" 2>"$work/log"; then
+    fail "compiles: $3"
   fi
   grep -qF "$1" "$work/log" || { cat "$work/log"; fail "unclear, without: $1"; }
-  if grep -q 'no matching function' "$work/log"; then fail "no matching function: $2"; fi
+  if grep -E "$2" "$work/log"; then fail "of all overloads: $3"; fi
+}
+# A visitor that returns nothing is told what to return, by a message and not by all overloads.
+refused_visitor() {
+  refused "$1" 'no matching function' "void look(const boxtree::Tree& tree) { (void)boxtree::$2; }"
 }
 refused_visitor 'must return bool: a visitor true to go on' \
   'overlap_sphere(tree, {0, 0, 0}, 1, [](const boxtree::FaceRef&) {})'
@@ -83,13 +87,8 @@ refused_visitor 'the largest t that is still of interest' \
   'all_hits(tree, {{0, 0, 9}, {0, 0, -1}}, [](const boxtree::RayHit&) {})'
 # Nor is a filter that is temporary, or that is shown something else, an operator= that is missing.
 refused_filter() {
-  printf '#include <boxtree/boxtree.h>\nvoid set(boxtree::FaceOptions& tree, boxtree::SceneFaceOptions& scene) { (void)tree, (void)scene; %s; }\n' \
-    "$2" >"$work/filter.cpp"
-  if "$compiler" -std=c++20 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/filter.cpp" 2>"$work/log"; then
-    fail "compiles: $2"
-  fi
-  grep -qF "$1" "$work/log" || { cat "$work/log"; fail "unclear, without: $1"; }
-  if grep -qE 'no match for|no viable' "$work/log"; then fail "no operator=: $2"; fi
+  refused "$1" 'no match for|no viable' \
+    "void set(boxtree::FaceOptions& tree, boxtree::SceneFaceOptions& scene) { (void)tree, (void)scene; $2; }"
 }
 refused_filter 'a temporary callable would be gone before the query' \
   'tree.filter = [](const boxtree::FaceRef&) { return true; }'

@@ -9,8 +9,8 @@ source=$1 compiler=$2 boxtree=$3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 fail() { echo "unoptimised: $*"; exit 1; }
-# quiet COMMAND...: runs it; its output is shown if it fails.
-quiet() { "$@" >"$work/log" 2>&1 || { tail -40 "$work/log"; fail "$* failed"; }; }
+# shellcheck source=tests/consumer/quiet.sh
+. "$source/tests/consumer/quiet.sh"
 
 cat >"$work/CMakeLists.txt" <<CMAKE
 cmake_minimum_required(VERSION 3.25)
