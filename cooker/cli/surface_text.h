@@ -9,7 +9,8 @@
 
 namespace boxtree::cooker {
 
-/// "closed", "no edges", or "223 open edges", "2 open, 1 non-manifold and 3 inconsistently oriented edges".
+/// "closed", "no edges", or "223 open edges", "2 open, 1 non-manifold and 3 inconsistently oriented
+/// edges".
 [[nodiscard]] std::string surface_text(const SurfaceEdges& edges);
 
 [[nodiscard]] Json surface_json(const SurfaceEdges& edges);

@@ -216,11 +216,11 @@ using InstanceFilter = NamedFunctionRef<bool(std::uint32_t)>;
 struct SceneFaceOptions {
   /// Which side counts as seen from the instance: a pose that mirrors turns nothing over. [kHit]
   BackFaces back_faces = BackFaces::kHit;
-  std::optional<SceneFaceFilter> filter = {};          ///< [every face]
+  std::optional<SceneFaceFilter> filter = {};  ///< [every face]
   /// Takes the number of an instance and says whether it may be hit. [every instance]
   std::optional<InstanceFilter> instance_filter = {};
-  LayerMask layers = kAllLayers;                       ///< [every layer]
-  QueryLimits limits = {};                             ///< [none]
+  LayerMask layers = kAllLayers;  ///< [every layer]
+  QueryLimits limits = {};        ///< [none]
 };
 
 /// A hit of an instance. `t` counts in units of the ray's direction; point and normal are in world

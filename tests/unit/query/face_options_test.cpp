@@ -26,8 +26,8 @@ namespace {
 using cooker::SourceMesh;
 using LongVector = Eigen::Matrix<long double, 3, 1>;
 
-// Options keep what they borrow beyond the statement: returning some with a lambda was a crash. What
-// they refuse compiles up to a message, which tests/consumer sees.
+// Options keep what they borrow beyond the statement: returning some with a lambda was a crash.
+// What they refuse compiles up to a message, which tests/consumer sees.
 template <class Filter, class Callable>
 constexpr bool kTakes = std::is_assignable_v<std::optional<Filter>&, Callable>;
 using OfFace = decltype([](const FaceRef&) { return true; });
