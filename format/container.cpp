@@ -53,7 +53,8 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
                       {header.version_major, header.version_minor, kVersionMajor, kVersionMinor});
   }
   if ((header.incompatible_features & ~known_features) != 0) {
-    return error_with(Errc::kFeatureUnsupported, {}, "incompatible feature bits #",
+    return error_with(Errc::kFeatureUnsupported, {},
+                      "incompatible feature bits # (1: a blob, for open_blob())",
                       {header.incompatible_features});
   }
   if (header.section_count > kMaxSections) {
