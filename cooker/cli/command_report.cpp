@@ -25,6 +25,7 @@
 #include "cooker/import/import.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/report/paper_tables.h"
+#include "cooker/report/shell_word.h"
 #include "cooker/report/tradeoff_advice.h"
 #include "cooker/report/tradeoff_page.h"
 #include "cooker/write/atomic_file.h"
@@ -222,7 +223,7 @@ std::string command_of(const Arguments& arguments) {
   if (arguments.no_times && !arguments.paper) command += " --no-times";
   if (arguments.f64) command += " --f64";
   if (arguments.tolerance) command += fmt::format(" --tolerance {}", *arguments.tolerance);
-  for (const auto& mesh : arguments.meshes) command += " " + mesh.filename().string();
+  for (const auto& mesh : arguments.meshes) command += " " + shell_word(mesh.filename().string());
   return command;
 }
 
@@ -310,6 +311,7 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
         *mesh, {arguments.quick, !arguments.no_times, arguments.tolerance},
         [&](const std::string& step, double share) { steps(step, part(before + share)); });
     if (!figures) return figures.error();
+    figures->file_name = arguments.meshes[i].filename().string();
     report.meshes.push_back(std::move(*figures));
   }
   if (report.no_peers.empty()) {

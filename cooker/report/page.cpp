@@ -24,6 +24,7 @@ h1{font-size:1.6rem;line-height:1.25}h2{font-size:1.2rem;margin-top:2.5rem}
 p{max-width:46rem}.faint{color:var(--faint)}
 .conclusion{background:var(--well);border-left:4px solid var(--c0);padding:.5rem .9rem;margin:.6rem 0}
 .scroll{overflow-x:auto}code{font:.9rem ui-monospace,monospace}
+code span{display:inline-block;max-width:100%}
 table{border-collapse:collapse;font-variant-numeric:tabular-nums;font-size:.9rem;margin:1rem 0}
 th,td{padding:.25rem .6rem;border-bottom:1px solid var(--line);text-align:right;white-space:nowrap}
 th{color:var(--faint);font-weight:600;vertical-align:bottom;white-space:normal}
@@ -82,6 +83,19 @@ void add_text(const PageTable& table, std::string& out) {
   for (const auto& row : table.rows) add_row(row);
 }
 
+// Its words are broken into lines between them alone: browsers also break after hyphens, and
+// "--grid-bits" is not found again if it is pasted in two parts.
+std::string words_of(const std::string& command) {
+  std::string out = "<span>";
+  for (const char c : escaped(command)) {
+    if (c == ' ')
+      out += "</span> <span>";
+    else
+      out += c;
+  }
+  return out + "</span>";
+}
+
 }  // namespace
 
 std::string to_text(const Page& page) {
@@ -112,7 +126,7 @@ std::string to_html(const Page& page) {
       out += "<p class=\"conclusion\"><strong>" + escaped(conclusion.lead) + "</strong> " +
              escaped(conclusion.text);
       if (!conclusion.command.empty()) {
-        out += "<br/>Make it with: <code>" + escaped(conclusion.command) + "</code>";
+        out += "<br/>Make it with: <code>" + words_of(conclusion.command) + "</code>";
       }
       out += "</p>\n";
     }

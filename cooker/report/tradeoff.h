@@ -81,6 +81,7 @@ struct TradePoint {
 
 struct MeshTradeoff {
   std::string name;
+  std::string file_name = {};  // of its source, without folders; empty if it has none
   std::uint64_t triangles = 0;
   std::uint64_t vertices = 0;
   double diagonal = 0;              // of the bounds, object space

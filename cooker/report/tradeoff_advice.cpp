@@ -4,12 +4,14 @@
 
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <functional>
 #include <limits>
 
 #include <fmt/format.h>
 
 #include "cooker/quantise/grid.h"
+#include "cooker/report/shell_word.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -89,7 +91,7 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
                   mesh.per_triangle(bytes), bytes,
                   100.0 * static_cast<double>(bytes) / static_cast<double>(mesh.source.total()),
                   mesh.per_triangle(point.bytes.queried()), surface, times, slowdown),
-      "boxtree cook MESH -o FILE.bxt " + cook_options(mesh, point)};
+      cook_command(mesh, point)};
 }
 
 }  // namespace
@@ -212,6 +214,16 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
     words.push_back(told(mesh, role.place, role.name, slower[role.place]));
   }
   return words;
+}
+
+std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point) {
+  std::string source = "MESH";
+  std::string output = "FILE.bxt";
+  if (!mesh.file_name.empty()) {
+    source = shell_word(mesh.file_name);
+    output = shell_word(std::filesystem::path(mesh.file_name).stem().string() + ".bxt");
+  }
+  return fmt::format("boxtree cook {} -o {} {}", source, output, cook_options(mesh, point));
 }
 
 std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point) {

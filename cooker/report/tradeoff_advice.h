@@ -54,6 +54,10 @@ struct Advice {
 /// What to say of times that other programs disturbed; empty for others, and without times.
 [[nodiscard]] std::string disturbance_in_words(const MeshTradeoff& mesh);
 
+/// The command that cooks a point, run where the source of the mesh is; MESH and FILE.bxt stand for
+/// the names of one without a source.
+[[nodiscard]] std::string cook_command(const MeshTradeoff& mesh, const TradePoint& point);
+
 /// The options of `boxtree cook` that produce a file of a point's bytes: the first input is one
 /// tree, and no record of the cook follows.
 [[nodiscard]] std::string cook_options(const MeshTradeoff& mesh, const TradePoint& point);

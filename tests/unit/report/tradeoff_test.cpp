@@ -384,6 +384,11 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
       "240 ns). Slowdown: 1.20.");
   EXPECT_EQ(words[0].command,
             "boxtree cook MESH -o FILE.bxt --codec wide8 --grid-bits 24 --flatten --strip");
+  EXPECT_EQ(made.file_name, "");
+  made.file_name = "my mesh.obj";
+  EXPECT_EQ(advice_in_words(made)[0].command,
+            "boxtree cook 'my mesh.obj' -o 'my mesh.bxt' --codec wide8 --grid-bits 24 --flatten "
+            "--strip");
   EXPECT_NE(words[3].text.find("No position changes by a single bit."), std::string::npos);
   EXPECT_NE(words[3].command.find("--codec wide4 --exact"), std::string::npos);
   // Two stores keep every bit; the goal says which.
