@@ -4,6 +4,7 @@
 
 #include <cstddef>
 
+#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -16,7 +17,7 @@ Errc LeafReading::read(NodeRef first_leaf, NodeRef second_leaf) noexcept {
 Errc LeafReading::read_first(NodeRef leaf) noexcept {
   if (leaf == first_read_) return Errc::kOk;
   first_read_ = kNone;
-  const Errc error = first_tree_.leaves().read(leaf.first, leaf.second, first);
+  const Errc error = read_leaf(first_tree_, leaf, first);
   if (error != Errc::kOk) return error;
   for (std::uint32_t i = 0; i < first.count; ++i) first_bounds[i] = bounds_of(first.triangle(i));
   first_read_ = leaf;
@@ -26,7 +27,7 @@ Errc LeafReading::read_first(NodeRef leaf) noexcept {
 Errc LeafReading::read_second(NodeRef leaf) noexcept {
   if (leaf == second_read_) return Errc::kOk;
   second_read_ = kNone;
-  const Errc error = second_tree_.leaves().read(leaf.first, leaf.second, second);
+  const Errc error = read_leaf(second_tree_, leaf, second);
   if (error != Errc::kOk) return error;
   all_moved_bounds = empty_box<double>();
   for (std::uint32_t j = 0; j < second.count; ++j) {

@@ -18,6 +18,7 @@
 #include "runtime/query/shape_query.h"
 #include "runtime/query/world_metric.h"
 #include "runtime/walk/erased_codec.h"
+#include "runtime/walk/read_leaf.h"
 
 namespace boxtree {
 namespace {
@@ -119,7 +120,7 @@ struct BoxSearch {
   }
 
   [[nodiscard]] Errc leaf(NodeRef ref) noexcept {
-    const Errc error = tree.leaves().read(ref.first, ref.second, batch);
+    const Errc error = read_leaf(tree, ref, batch);
     if (error != Errc::kOk) return error;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       const Triangle triangle = batch.triangle(i);

@@ -19,6 +19,7 @@
 #include "runtime/query/relative_pose.h"
 #include "runtime/query/scaled_length.h"
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 #include "runtime/walk/work.h"
 
@@ -67,7 +68,7 @@ struct PointQuery {
 
   [[nodiscard]] bool leaf(NodeRef ref) noexcept {
     ++nodes_expanded;
-    error = tree.leaves().read(ref.first, ref.second, batch);
+    error = read_leaf(tree, ref, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
       test(batch.triangle(i), batch.face[i], half_of_face(batch, i));

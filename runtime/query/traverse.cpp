@@ -4,6 +4,7 @@
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/walk/erased_codec.h"
+#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 
 namespace boxtree {
@@ -24,7 +25,7 @@ struct OwnTraversal {
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) {
-    error = tree.leaves().read(ref.first, ref.second, batch);
+    error = read_leaf(tree, ref, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count && !stopped; ++i) {
       LeafTriangle found{batch.triangle(i), face_ref(tree, batch.face[i]), half_of_face(batch, i)};

@@ -77,6 +77,36 @@ class ClusterReader {
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
+  /// The numbers of all corners of 8 triangles, [corner][axis][triangle], in the order of the
+  /// source. False where there are too many vertices for it, more than leaves usually have.
+  /// Precondition: there are no quads among them.
+  static HWY_INLINE bool find_numbers(const LeafTriangles& triangles,
+                                      std::uint32_t (&out)[3][3][kMaxLeafTriangles]) {
+    // The corner of the source that the first one is here: StripStep, see LeafTriangles.
+    HWY_ALIGN static constexpr std::uint32_t kTurn[kWideChildren] = {0, 1, 2, 0, 1, 2, 0, 0};
+    const auto turn = permute(hn::Load(Words(), kTurn), hn::Load(Words(), triangles.step));
+    const auto by_one = hn::Eq(turn, small(1)), by_two = hn::Eq(turn, small(2));
+    const auto first = hn::Load(Words(), triangles.corner[0]);
+    const auto second = hn::Load(Words(), triangles.corner[1]);
+    const auto third = iota();
+    if (bits_of_words(is_less(small(2 * kWideChildren - 1), hn::Max(first, second))) != 0)
+      return false;
+    const TwoVectorLanes corner[3] = {
+        TwoVectorLanes(hn::IfThenElse(by_one, third, hn::IfThenElse(by_two, second, first))),
+        TwoVectorLanes(hn::IfThenElse(by_one, first, hn::IfThenElse(by_two, third, second))),
+        TwoVectorLanes(hn::IfThenElse(by_one, second, hn::IfThenElse(by_two, first, third)))};
+    const Floats d;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto* const numbers = reinterpret_cast<const float*>(triangles.number[k]);
+      const auto low = hn::Load(d, numbers), high = hn::Load(d, numbers + kWideChildren);
+      HWY_UNROLL(3)
+      for (std::size_t c = 0; c < 3; ++c) {
+        hn::Store(corner[c].look_up(low, high), d, reinterpret_cast<float*>(out[c][k]));
+      }
+    }
+    return true;
+  }
+
   [[nodiscard]] HWY_INLINE bool has_avx512() const { return read_by_avx512_ != nullptr; }
   /// The same where the machine has AVX-512. False also where read() has to do it.
   HWY_INLINE bool read_by_avx512(std::uint32_t leaf, float scale, LeafTriangles& triangles,

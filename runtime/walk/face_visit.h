@@ -3,6 +3,7 @@
 #pragma once
 
 #include "runtime/tree/bound_tree.h"
+#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 #include "runtime/walk/work.h"
 
@@ -31,7 +32,7 @@ struct FaceWalk {
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) {
-    error = tree.leaves().read(ref.first, ref.second, batch);
+    error = read_leaf(tree, ref, batch);
     if (error != Errc::kOk) return false;
     std::uint32_t reported = kNoFaceId;
     for (std::uint32_t i = 0; i < batch.count; ++i) {

@@ -7,6 +7,7 @@
 #define BOXTREE_RUNTIME_WALK_LEAF_INL_H
 #endif
 
+#include <algorithm>
 #include <utility>
 
 #include "runtime/primitive/rounding.h"
@@ -130,6 +131,43 @@ class LeafFloats {
     return true;
   }
 
+#if BOXTREE_HAS_EIGHT_LANES
+  /// The exact triangles of all lanes, as LeafReader::read() gives them. False where that has to
+  /// read them: the leaf is in no cluster, or a coordinate is out of range.
+  [[nodiscard]] HWY_INLINE bool exact_triangles(TriangleBatch& out) const {
+    if (!is_direct_ || !reader_.has_clusters()) return false;
+    const LeafTriangles& leaf = leaf_->triangles;
+    HWY_ALIGN std::uint32_t number[3][3][kMaxLeafTriangles];
+    if (HWY_LIKELY(count_ == kLeafFaces && ClusterReader::find_numbers(leaf, number))) {
+      for (std::uint32_t lane = 0; lane < kLeafFaces; ++lane) out.face[lane] = first_ + lane;
+    } else {
+      find_any_numbers(number, out.face);
+    }
+    const hn::CappedTag<double, 4> doubles;
+    const hn::Rebind<std::int32_t, decltype(doubles)> integers;
+    const hn::Rebind<float, decltype(doubles)> floats;
+    const auto scale = hn::Set(doubles, reader_.stored_scale());
+    const bool is_grid = reader_.is_grid();
+    auto is_within = hn::Eq(scale, scale);
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t lane = 0; lane < count_; lane += hn::MaxLanes(doubles)) {
+          const auto bits =
+              hn::Load(integers, reinterpret_cast<const std::int32_t*>(&number[c][k][lane]));
+          const auto stored = is_grid ? hn::PromoteTo(doubles, bits)
+                                      : hn::PromoteTo(doubles, hn::BitCast(floats, bits));
+          const auto position = hn::Mul(stored, scale);
+          hn::StoreU(position, doubles, &out.coordinate[c][k][lane]);
+          is_within =
+              hn::And(is_within, hn::Le(hn::Abs(position), hn::Set(doubles, kMaxCoordinate)));
+        }
+      }
+    }
+    out.count = count_;
+    return hn::AllTrue(doubles, is_within);
+  }
+#endif
+
   [[nodiscard]] Errc error() const {
     return error_;
   }
@@ -198,6 +236,22 @@ class LeafFloats {
   }
 
 #if BOXTREE_HAS_EIGHT_LANES
+  // Rarer: for size.
+  [[gnu::cold]] HWY_NOINLINE void find_any_numbers(
+      std::uint32_t (&out)[3][3][kMaxLeafTriangles],
+      std::array<std::uint32_t, kMaxLeafTriangles>& face) const {
+    const LeafTriangles& leaf = leaf_->triangles;
+    for (std::uint32_t lane = 0; lane < kMaxLeafTriangles; ++lane) {
+      const std::uint32_t triangle = std::min(lane, count_ - 1);  // lanes of none have the last
+      std::uint32_t references[3];
+      leaf.find_corners(triangle, references);
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t k = 0; k < 3; ++k) out[c][k][lane] = leaf.number[k][references[c]];
+      }
+      face[lane] = first_ + leaf.face(triangle);
+    }
+  }
+
   HWY_INLINE bool gather_cluster() {
     if (!clusters_.read(first_ / kLeafFaces, floats_.scale, leaf_->triangles, leaf_->coordinate)) {
       return false;

@@ -137,29 +137,33 @@ struct LeafTriangles {
     return count == kLeafFaces ? 0 : of_quads[lane].half;
   }
 
+  /// The references of the corners of lane `lane`, in the order of the source.
+  BOXTREE_ALWAYS_INLINE void find_corners(std::uint32_t lane, std::uint32_t (&out)[3]) const {
+    if (count != kLeafFaces) {
+      for (std::size_t c = 0; c < 3; ++c) out[c] = of_quads[lane].reference[c];
+      return;
+    }
+    // The corner of the source that the first of the lane's is.
+    static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
+    static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+    static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
+    const std::uint8_t* const place = kNext + kTurn[step[lane]];
+    out[place[0]] = corner[0][lane];
+    out[place[1]] = corner[1][lane];
+    out[place[2]] = lane;
+  }
+
   /// The corners of lane `lane`, [corner][axis]: steps of the grid, or the floats of the source.
   BOXTREE_ALWAYS_INLINE void read_corners(std::uint32_t lane, ClusterNumbers numbers,
                                           double (&out)[3][3]) const {
-    // Its references, and the corner of the source that the first of them is.
-    std::uint32_t references[3] = {0, 0, lane};
-    std::uint32_t turn = 0;
-    if (count == kLeafFaces) {
-      references[0] = corner[0][lane];
-      references[1] = corner[1][lane];
-      static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
-      static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
-      turn = kTurn[step[lane]];
-    } else {
-      for (std::size_t c = 0; c < 3; ++c) references[c] = of_quads[lane].reference[c];
-    }
-    static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
-    const std::uint8_t* const place = kNext + turn;
+    std::uint32_t references[3];
+    find_corners(lane, references);
     const bool is_grid = numbers == ClusterNumbers::kGrid;
-    for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
       for (std::size_t k = 0; k < 3; ++k) {
-        const std::uint32_t n = number[k][references[i]];
-        out[place[i]][k] = is_grid ? static_cast<double>(static_cast<std::int32_t>(n))
-                                   : static_cast<double>(std::bit_cast<float>(n));
+        const std::uint32_t n = number[k][references[c]];
+        out[c][k] = is_grid ? static_cast<double>(static_cast<std::int32_t>(n))
+                            : static_cast<double>(std::bit_cast<float>(n));
       }
     }
   }

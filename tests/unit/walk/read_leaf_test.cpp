@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: MIT
+// Whole leaves by vectors, in every instruction set, against LeafReader, which reads them number by
+// number: the same triangles to the bit, of every store, and the same errors of corrupt bytes.
+#include "runtime/walk/read_leaf.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/cooked.h"
+#include "tests/support/meshes.h"
+#include "tests/unit/walk/targets.h"
+
+namespace boxtree {
+namespace {
+
+using cooker::SourceMesh;
+
+// What a batch holds, with the bits of its coordinates: -0 is not 0.
+std::vector<std::uint64_t> content_of(const TriangleBatch& batch) {
+  std::vector<std::uint64_t> content;
+  for (std::uint32_t i = 0; i < batch.count; ++i) {
+    content.push_back(batch.face[i]);
+    for (const auto& axes : batch.coordinate) {
+      for (const auto& lanes : axes) content.push_back(std::bit_cast<std::uint64_t>(lanes[i]));
+    }
+  }
+  return content;
+}
+
+// Reads every leaf both ways. Returns how many were read without an error.
+std::uint32_t compare_leaves(const Tree& bound, const char* name) {
+  const BoundTree& tree = BoundTree::of(bound);
+  const std::uint32_t faces = tree.leaves().mesh().face_count;
+  std::uint32_t read = 0;
+  TriangleBatch expected, actual;
+  for (std::uint32_t first = 0; first < faces; first += kLeafFaces) {
+    const NodeRef leaf{first, std::min(kLeafFaces, faces - first)};
+    const Errc error = tree.leaves().read(leaf.first, leaf.second, expected);
+    EXPECT_EQ(read_leaf(tree, leaf, actual), error) << name << ", leaf at " << first;
+    if (error != Errc::kOk) continue;
+    EXPECT_EQ(content_of(actual), content_of(expected)) << name << ", leaf at " << first;
+    ++read;
+  }
+  return read;
+}
+
+// Coordinates of every magnitude, of both signs and zeros.
+SourceMesh any_numbers() {
+  SourceMesh mesh = test::soup(500, 3);
+  std::mt19937 random(4);
+  for (float& x : mesh.positions.f32) {
+    x = std::ldexp(x, static_cast<int>(random() % 60) - 30);
+    if (random() % 7 == 0) x = random() % 2 == 0 ? 0.0f : -0.0f;
+  }
+  return mesh;
+}
+
+std::vector<SourceMesh> meshes() {
+  std::vector<SourceMesh> all = test::all_kinds();
+  all.push_back(any_numbers());
+  SourceMesh doubles = any_numbers();
+  doubles.positions.f64.assign(doubles.positions.f32.begin(), doubles.positions.f32.end());
+  doubles.positions.f32.clear();
+  doubles.positions.precision = cooker::Precision::kF64;
+  all.push_back(doubles);
+  return all;
+}
+
+TEST(ReadLeaf, GivesTheTrianglesOfLeafReader) {
+  for (const SourceMesh& mesh : meshes()) {
+    for (const test::Encoding& encoding : test::all_encodings()) {
+      const test::CookedTree cooked = test::cook_tree(mesh, encoding);
+      for_each_target([&](const char* target) {
+        EXPECT_GT(compare_leaves(cooked.tree, target), 0u) << mesh.name;
+      });
+    }
+  }
+}
+
+// Otherwise the tests here compare LeafReader with itself.
+TEST(ReadLeaf, IsByVectorsWhereTheMachineHasEightLanes) {
+  for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+    const test::CookedTree cooked =
+        test::cook_tree(test::torus(24, 16), {CodecId::kWide8, geometry});
+    for_each_target([&](const char* target) {
+      const bool has_eight_lanes = std::string_view(target).starts_with("AVX");
+      TriangleBatch batch;
+      EXPECT_EQ(read_leaf_wide(BoundTree::of(cooked.tree), {0, kLeafFaces}, batch),
+                has_eight_lanes);
+    });
+  }
+}
+
+// The file lies alone on the heap, where the address sanitizer and valgrind see every read outside.
+TEST(ReadLeaf, OfCorruptClustersHasTheSameErrors) {
+  for (const GeometryId geometry : {GeometryId::kExact, GeometryId::kGrid}) {
+    for (const SourceMesh& mesh : {test::torus(24, 16), test::city(6, 1), any_numbers()}) {
+      const test::CookedTree whole = test::cook_tree(mesh, {CodecId::kWide8, geometry});
+      std::mt19937 random(5);
+      std::uint32_t refused = 0, read = 0;
+      for (int round = 0; round < 200; ++round) {
+        std::vector<std::byte> bytes = whole.bytes;
+        const std::span<std::byte> clusters = test::section_of(bytes, SectionKind::kVertices);
+        for (int change = 0; change < 1 + round / 8; ++change) {
+          clusters[random() % clusters.size()] ^= std::byte{1} << (random() % 8);
+        }
+        test::repair_checksums(bytes);
+        const Result<File> file = File::open(Bytes(bytes));
+        ASSERT_TRUE(file.ok());
+        const Result<Tree> tree = Tree::bind(*file);
+        if (!tree) continue;
+        const std::uint32_t leaves = (tree->face_count() + kLeafFaces - 1) / kLeafFaces;
+        for_each_target([&](const char* target) {
+          const std::uint32_t good = compare_leaves(*tree, target);
+          read += good;
+          refused += leaves - good;
+        });
+      }
+      EXPECT_GT(read, 0u) << mesh.name;
+      EXPECT_GT(refused, 0u) << mesh.name;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace boxtree
