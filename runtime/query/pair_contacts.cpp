@@ -20,6 +20,7 @@
 #include "runtime/primitive/vector3.h"
 #include "runtime/query/pair_query.h"
 #include "runtime/query/relative_pose.h"
+#include "runtime/walk/read_leaf.h"
 
 namespace boxtree {
 namespace {
@@ -165,27 +166,64 @@ class TouchingTriangles {
   std::size_t count_ = 0;
 };
 
+// The triangles of a face. Pairs are found leaf by leaf, so the leaf that was read last is kept.
+class FaceTriangles {
+ public:
+  explicit FaceTriangles(const BoundTree& tree) noexcept : tree_(tree) {}
+
+  /// Errors: those of corrupt leaves.
+  [[nodiscard]] Errc read(std::uint32_t face) noexcept {
+    const std::uint32_t original = tree_.original_of(face);
+    if (const std::uint32_t first = original / kLeafFaces * kLeafFaces; first != first_read_) {
+      first_read_ = kNoFaceId;
+      const std::uint32_t faces = tree_.leaves().mesh().face_count;
+      const Errc error = read_leaf(tree_, {first, std::min(kLeafFaces, faces - first)}, leaf_);
+      if (error != Errc::kOk) return error;
+      first_read_ = first;
+    }
+    begin_ = 0;
+    while (begin_ < leaf_.count && leaf_.face[begin_] != original) ++begin_;
+    count_ = 0;
+    while (begin_ + count_ < leaf_.count && leaf_.face[begin_ + count_] == original) ++count_;
+    return count_ == 0 ? Errc::kFaceOutOfRange : Errc::kOk;
+  }
+
+  [[nodiscard]] std::uint32_t count() const noexcept { return count_; }
+  [[nodiscard]] Triangle operator[](std::uint32_t half) const noexcept {
+    return leaf_.triangle(begin_ + half);
+  }
+
+ private:
+  const BoundTree& tree_;
+  std::uint32_t first_read_ = kNoFaceId;  // of the faces of leaf_
+  TriangleBatch leaf_;
+  std::uint32_t begin_ = 0, count_ = 0;  // of its triangles
+};
+
 // The contacts of pairs of faces.
 class PairContacts {
  public:
   PairContacts(const BoundTree& first, const Pose& first_pose, const BoundTree& second,
                const RelativePose& pose, PairContactVisitor visitor) noexcept
-      : first_(first), second_(second), first_pose_(first_pose), pose_(pose), visitor_(visitor) {}
+      : first_(first),
+        first_pose_(first_pose),
+        pose_(pose),
+        visitor_(visitor),
+        of_first_(first),
+        of_second_(second) {}
 
   /// kOk, or why a face could not be read.
   [[nodiscard]] Errc error() const noexcept { return error_; }
 
   // Returns whether to go on.
   [[nodiscard]] bool visit(const FacePair& faces) {
-    // Not by triangle(), whose error for the second half of a triangle has a text.
-    TriangleBatch of_first, of_second;
-    if (!read(first_, faces.first, of_first) || !read(second_, faces.second, of_second)) {
-      return false;
-    }
-    for (std::uint32_t i = 0; i < of_first.count; ++i) {
-      const Triangle fixed = of_first.triangle(i);
-      for (std::uint32_t j = 0; j < of_second.count; ++j) {
-        const Triangle moved = pose_.to_first().apply(of_second.triangle(j));
+    error_ = of_first_.read(faces.first.index);
+    if (error_ == Errc::kOk) error_ = of_second_.read(faces.second.index);
+    if (error_ != Errc::kOk) return false;
+    for (std::uint32_t i = 0; i < of_first_.count(); ++i) {
+      const Triangle fixed = of_first_[i];
+      for (std::uint32_t j = 0; j < of_second_.count(); ++j) {
+        const Triangle moved = pose_.to_first().apply(of_second_[j]);
         if (!triangles_intersect(fixed, moved)) continue;
         PairContact contact = contact_of(fixed, moved);
         contact.faces = faces;
@@ -198,11 +236,6 @@ class PairContacts {
   }
 
  private:
-  [[nodiscard]] bool read(const BoundTree& tree, const FaceRef& face, TriangleBatch& out) noexcept {
-    error_ = tree.leaves().read(tree.original_of(face.index), 1, out);
-    return error_ == Errc::kOk;
-  }
-
   // Both in the first tree's space.
   [[nodiscard]] PairContact contact_of(const Triangle& first, const Triangle& second) const {
     const Frame& frame = first_.frame();
@@ -229,10 +262,10 @@ class PairContacts {
   }
 
   const BoundTree& first_;
-  const BoundTree& second_;
   const Pose& first_pose_;
   const RelativePose& pose_;
   PairContactVisitor visitor_;
+  FaceTriangles of_first_, of_second_;
   Errc error_ = Errc::kOk;
 };
 
