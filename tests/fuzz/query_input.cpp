@@ -79,16 +79,24 @@ Input::Input(Bytes bytes) : query(tail(bytes)), shift(query.option(15) % 8u) {
   std::copy(file.begin(), file.end(), memory.begin() + static_cast<std::ptrdiff_t>(shift));
 }
 
-void check_error(const File& file, Errc code) {
+bool Check::is_file_valid() const {
+  return cooker::verify_file(file_, mesh_).empty();
+}
+
+void Check::error(Errc code) const {
   const auto number = static_cast<unsigned>(code);
   const bool is_of_corrupt_bytes = 10 <= number && number < 50;
   const bool is_our_bug = code == Errc::kInternal;
   if (is_our_bug) finding("a query ends with kInternal");
   if (is_of_corrupt_bytes && code != Errc::kCodecUnsupported &&
-      code != Errc::kGeometryUnsupported && cooker::verify_file(file).empty()) {
+      code != Errc::kGeometryUnsupported && is_file_valid()) {
     finding(std::string("verify accepts a file on which a query ends with ") +
             std::string(error_info(code).name));
   }
+}
+
+void Check::holds(bool is_true, const char* otherwise) const {
+  if (!is_true && is_file_valid()) finding(otherwise);
 }
 
 }  // namespace boxtree::fuzz

@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -47,8 +48,29 @@ struct Input {
   std::vector<std::byte> memory;
 };
 
-/// Call with the error of a query on a file: one of corrupt bytes is a finding when `verify`
-/// accepts the file.
-void check_error(const File& file, Errc code);
+/// Holds what queries on a file say against what `verify` says of it.
+class Check {
+ public:
+  /// `mesh`: of trees with external geometry. `file` outlives the check.
+  explicit Check(const File& file, const std::optional<MeshArrays>& mesh = {})
+      : file_(file), mesh_(mesh) {}
+
+  /// Takes each Result of a query: an error of corrupt bytes is a finding when `verify` accepts the
+  /// file.
+  template <class R>
+  void operator()(const R& result) const {
+    if (!result.ok()) error(result.code());
+  }
+  /// The same of an error.
+  void error(Errc code) const;
+  /// Takes what answers promise of a file that `verify` accepts.
+  void holds(bool is_true, const char* otherwise) const;
+
+ private:
+  [[nodiscard]] bool is_file_valid() const;
+
+  const File& file_;
+  std::optional<MeshArrays> mesh_;
+};
 
 }  // namespace boxtree::fuzz

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Contacts in the scene of any file: of what moves, of one instance, of a tree that is no part.
+#include "tests/fuzz/answers.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
@@ -7,7 +8,10 @@ namespace boxtree::fuzz {
 void run(Bytes input) {
   query_scene(input, [](const Scene& scene, const QueryInput& query, const auto& check) {
     const auto all = [](const ScenePair&) { return true; };
-    const auto with_points = [](const ScenePairContact&) { return true; };
+    const auto with_points = [&](const ScenePairContact& contact) {
+      check_contact(contact, check);
+      return true;
+    };
     switch (query.option(2) % 6) {
       case 3:
         check(pair_contacts(scene, with_points, query.limits()));

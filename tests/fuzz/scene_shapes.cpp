@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Boxes, spheres, frustums and points in the scene of any file.
+#include "tests/fuzz/frustum_input.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
@@ -18,10 +19,7 @@ void run(Bytes input) {
         check(overlap_sphere(scene, at, query.number(3), all, layers, query.limits()));
         break;
       case 3: {
-        Frustum frustum;
-        for (std::size_t i = 0; i < frustum.planes.size(); ++i) {
-          frustum.planes[i] << query.vector(i), query.number(6 + i);
-        }
+        const Frustum frustum = frustum_of(query);
         const bool of_faces = query.option(3) % 2 == 0;
         check(of_faces ? overlap_frustum(scene, frustum, all, layers, query.limits())
                        : instances_in_frustum(

@@ -1,21 +1,57 @@
 // SPDX-License-Identifier: MIT
-// Rays and segments against the tree of any file.
+// Rays and segments against the tree of any file: the closest hit, any, all, and the nearest.
+#include <array>
+
+#include "tests/fuzz/answers.h"
 #include "tests/fuzz/tree_target.h"
 
 namespace boxtree::fuzz {
+namespace {
+
+void hit_all(const Tree& tree, const Ray& ray, const QueryInput& query, const Check& check) {
+  const Filters filters(query);
+  const FaceOptions options = face_options(query, filters);
+  const auto closest = closest_hit(tree, ray, options);
+  const auto any = any_hit(tree, ray, options);
+  std::uint32_t hits = 0;
+  const auto visit = all_hits(
+      tree, ray,
+      [&](const RayHit& hit) {
+        check_hit(hit, check);
+        ++hits;
+        return ray.t_max;
+      },
+      options);
+  std::array<RayHit, 4> nearest;
+  const auto count =
+      nearest_hits(tree, ray, std::span(nearest).first(1 + query.option(2) % 4u), options);
+  check(closest);
+  check(any);
+  check(visit);
+  check(count);
+  if (!closest.ok() || !any.ok() || !visit.ok() || !count.ok()) return;
+  if (closest.has_value() != any.has_value() || closest.has_value() != (hits > 0) ||
+      closest.has_value() != (*count > 0)) {
+    finding("closest_hit, any_hit, all_hits and nearest_hits differ");
+  }
+  if (*count > 0 && nearest[0].t != closest->t) finding("the nearest hit is not the closest");
+}
+
+}  // namespace
 
 void run(Bytes input) {
   query_tree(input, [](const Tree& tree, const QueryInput& query, const auto& check) {
     Ray ray{query.vector(0), query.vector(3)};
     if (query.option(1) % 2 == 1) ray.t_min = query.number(6);
     if (query.option(1) % 4 >= 2) ray.t_max = query.number(7);
+    if (query.option(1) % 8 >= 4) return hit_all(tree, ray, query, check);
     const auto closest = closest_hit(tree, ray, query.limits());
     const auto any = any_hit(tree, ray, query.limits());
     check(closest);
     check(any);
     if (closest.ok() && closest.has_value()) {
-      static_cast<void>(tree.material_name(tree.material(closest->face)));
-      static_cast<void>(tree.user_data(closest->face));
+      check_hit(*closest, check);
+      read_face(tree, closest->face, closest->triangle, check);
     }
     // Nothing is missed: both know whether there is a hit.
     if (closest.ok() && any.ok() && closest.has_value() != any.has_value()) {
