@@ -7,6 +7,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -101,6 +102,64 @@ bool write_materials(const fs::path& folder) {
   return good;
 }
 
+// The same positions in f64, moved so that f32 does not hold them.
+cooker::SourceMesh in_f64(cooker::SourceMesh mesh, double scale) {
+  mesh.positions.precision = cooker::Precision::kF64;
+  for (const float x : mesh.positions.f32) mesh.positions.f64.push_back(scale * (1.1 * x + 0.7));
+  mesh.positions.f32.clear();
+  return mesh;
+}
+
+// Stores, precisions and parts that not every codec needs a seed of.
+bool write_stores(const fs::path& folder) {
+  struct Store {
+    const char* name;
+    GeometryId geometry;
+    double scale;  // of f64; 0: f32
+    std::optional<double> active_edges;
+  };
+  bool good = true;
+  unsigned seed = 100;
+  for (const Store& store : {Store{"exact-f64", GeometryId::kExact, 1, {}},
+                             Store{"exact-f64-huge", GeometryId::kExact, 0x1p1018, {}},
+                             Store{"exact-f64-tiny", GeometryId::kExact, 0x1p-1060, {}},
+                             Store{"arrays-f64", GeometryId::kArrays, 1, {}},
+                             Store{"grid-f64", GeometryId::kGrid, 0x1p300, 1.0},
+                             Store{"external", GeometryId::kExternal, 0, {}},
+                             Store{"edges-exact", GeometryId::kExact, 0, 1.0},
+                             Store{"edges-arrays", GeometryId::kArrays, 0, 1.0},
+                             Store{"edges-external", GeometryId::kExternal, 0, 1.0}}) {
+    for (const CodecId codec : {CodecId::kWide8, CodecId::kWide4}) {
+      cooker::CookOptions options;
+      options.geometry = store.geometry;
+      options.grid.bits = 16;
+      options.active_edges = store.active_edges;
+      const cooker::SourceMesh mesh = test::city(2, 1);
+      const std::vector<std::byte> bytes =
+          test::cook_bytes(store.scale == 0 ? mesh : in_f64(mesh, store.scale), codec, options);
+      good = write(folder / "tree", std::string(store.name) + "-" + std::string(codec_name(codec)),
+                   bytes, ++seed) &&
+             good;
+    }
+  }
+  return good;
+}
+
+bool write_scenes_with_edges(const fs::path& folder) {
+  bool good = true;
+  for (const std::uint32_t moving : {0u, 2u}) {
+    const cooker::SceneParts parts = test::random_parts(4, 2, moving, 2, 50 + moving);
+    cooker::CookOptions options;
+    options.active_edges = 1;
+    const test::CookedScene cooked =
+        test::cook_scene({test::city(1, 1), test::city(2, 3)}, parts, {CodecId::kWide8}, options);
+    good = write(folder / "scene", "edges-" + std::to_string(moving) + "-moving", cooked.bytes,
+                 50 + moving) &&
+           good;
+  }
+  return good;
+}
+
 bool write_scenes(const fs::path& folder) {
   bool good = true;
   unsigned seed = 0;
@@ -131,7 +190,8 @@ int main(int argc, char** argv) {
     return 1;
   }
   return boxtree::write_trees(argv[1]) && boxtree::write_materials(argv[1]) &&
-                 boxtree::write_scenes(argv[1])
+                 boxtree::write_stores(argv[1]) && boxtree::write_scenes(argv[1]) &&
+                 boxtree::write_scenes_with_edges(argv[1])
              ? 0
              : 1;
 }
