@@ -170,8 +170,8 @@ std::vector<std::string> names_of_primitives(const Json& document) {
 Result<std::vector<std::uint32_t>> numbers_of_meshes(const Json& document,
                                                      const PrimitiveNumbers& numbers,
                                                      const aiScene& scene) {
-  const Error other_nodes(Errc::kImportFailed,
-                          "user data of faces: assimp has read other nodes than the file has");
+  const Error other_nodes{Errc::kImportFailed,
+                          "user data of faces: assimp has read other nodes than the file has"};
   const Json& nodes = array_at(document, "nodes");
   const Json& scenes = array_at(document, "scenes");
   const Json& roots = array_at(element_at(scenes, number_at(document, "scene", 0)), "nodes");

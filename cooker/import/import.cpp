@@ -131,7 +131,7 @@ Result<ImportedFile> import_checked(const Request& request) {
   if (Status status = check_source_file(request.source); !status.ok()) return status.error();
   // Not by its first bytes, as assimp would: an OBJ without its ending became another mesh than
   // with it.
-  if (!has_mesh_ending(path)) return explained(request.source, Error(Errc::kImportFailed));
+  if (!has_mesh_ending(path)) return explained(request.source, Error{Errc::kImportFailed, {}});
   const MeshReader* const reader = find_extension(kMeshReaders, path);
   const bool has_user_data = reader != nullptr ? reader->has_user_data : is_gltf(path);
   if (!request.options.user_data.empty() && !has_user_data) {
