@@ -3,6 +3,7 @@
 // touch at rest, against the exact distances of what they sweep.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <variant>
@@ -217,6 +218,7 @@ double doubt_of(const Setting& s, const ExactShape& shape, double of_start) {
 void check_cast(const Setting& s, const Shape& tested, const Motion& motion, Tally& tally) {
   const ExactShape shape = exact_shape(tested);
   const double doubt = doubt_of(s, shape, 0.125);
+  if (4 * doubt > std::numeric_limits<double>::max()) return;  // a shape too large to be compared
   const ExactNumber radius(shape.radius);
   std::optional<CastResult> first;
   for (std::size_t i = 0; i < s.group.trees.size(); ++i) {
@@ -290,6 +292,7 @@ using Key = std::pair<std::uint32_t, std::uint32_t>;
 void check_contacts(const Setting& s, const Shape& tested, Tally& tally) {
   const ExactShape shape = exact_shape(tested);
   const double doubt = doubt_of(s, shape, 1);
+  if (4 * doubt > std::numeric_limits<double>::max()) return;
   const ExactNumber radius(shape.radius);
   const Eigen::Vector3d still = Eigen::Vector3d::Zero();
   std::optional<std::vector<Key>> first;
