@@ -39,8 +39,6 @@ static void touch(const boxtree::ScenePair&) {}
 """
 FREE = """
 extern boxtree::Result<boxtree::File> file;
-extern std::uint32_t crate;
-extern boxtree::Pose pose;
 """
 
 # What a rule must do after a change, and that it does it once. `is_fresh` and `cook` are the tool's.
