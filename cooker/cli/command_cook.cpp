@@ -235,6 +235,8 @@ int run(Arguments& arguments) {
     if (Status status = check_replaced(output->path, OutputKind::kCooked); !status)
       return usage("cook: " + status.error().detail);
   }
+  if (Status status = check_replaced(arguments.job.depfile, OutputKind::kDepfile); !status)
+    return usage("cook: " + status.error().detail);
   const Clock::time_point start = Clock::now();
   Result<Summary> cooked = Errc::kInternal;
   {

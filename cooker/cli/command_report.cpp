@@ -367,11 +367,21 @@ int run(const Arguments& arguments) {
   if (Status status = check_outputs(outputs_of(arguments), inputs); !status) {
     return usage("report: " + status.error().detail);
   }
-  for (const auto& [output, ending] :
-       {std::pair(arguments.output, ".html"), std::pair(arguments.json_out, ".json"),
-        std::pair(arguments.csv, ".csv"), std::pair(arguments.approximate_csv, ".csv")}) {
+  struct Kind {
+    const std::filesystem::path& output;
+    const char* ending;
+    OutputKind kind;
+  };
+  for (const auto& [output, ending, kind] :
+       {Kind{arguments.output, ".html", OutputKind::kReportPage},
+        Kind{arguments.json_out, ".json", OutputKind::kReportJson},
+        Kind{arguments.csv, ".csv", OutputKind::kReportCsv},
+        Kind{arguments.approximate_csv, ".csv", OutputKind::kReportCsv}}) {
     if (const std::string fault = mesh_name_fault(output, ending); !fault.empty())
       return usage("report: " + fault);
+    if (is_standard_stream(output)) continue;
+    if (Status status = check_replaced(output, kind); !status)
+      return usage("report: " + status.error().detail);
   }
   const std::string page = in_lower_case(arguments.output.extension().string());
   if (!page.empty() && page != ".html" && page != ".htm") {

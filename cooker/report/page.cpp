@@ -115,6 +115,7 @@ std::string to_text(const Page& page) {
 std::string to_html(const Page& page) {
   std::string out = fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"generator\" content=\"boxtree report\">\n"  // see check_replaced()
       "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n"
       "<title>{0}</title><style>{1}</style></head><body>\n<h1>{0}</h1>\n<p "
       "class=\"faint\">{2}</p>\n",

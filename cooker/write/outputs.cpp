@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Existing files are the same if device and inode are equal; new files, if their paths are. What a
-// file is, its first bytes tell: those that cooks and exports write alone.
+// file is, its first bytes tell: those that boxtree writes alone.
 #include "cooker/write/outputs.h"
 
-#include <array>
+#include <algorithm>
+#include <cstdint>
 #include <fstream>
 #include <string>
 #include <string_view>
@@ -38,17 +39,54 @@ bool is_same_file(const fs::path& a, const fs::path& b) {
   return !name.empty() && name == real_name(b);
 }
 
-// The exporters write it within so many bytes.
+// Exporters and reports write what tells them within so many bytes; make has no other mark than
+// the form of all lines, of which there are few.
 constexpr std::size_t kStart = 256;
+constexpr std::size_t kMostOfDepfile = std::size_t{1} << 24;
 
 // The first bytes of a regular file; empty if it has none or cannot be read.
-std::string start_of(const fs::path& path) {
+std::string start_of(const fs::path& path, std::size_t most) {
   std::error_code error;
   if (!fs::is_regular_file(path, error)) return {};
-  std::array<char, kStart> start;
+  const std::uintmax_t bytes = fs::file_size(path, error);
+  if (error) return {};
+  std::string start(static_cast<std::size_t>(std::min<std::uintmax_t>(bytes, most)), '\0');
   std::ifstream file(path, std::ios::binary);
-  file.read(start.data(), start.size());
-  return {start.data(), static_cast<std::size_t>(file.gcount())};
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return start;
+}
+
+// One rule, whose inputs have a line each, then rules without anything, as write_depfile has them
+// (versions before the first release had none of these).
+bool is_depfile(std::string_view text) {
+  constexpr std::string_view kGoesOn = " \\";
+  bool is_first = true;
+  bool is_input = false;  // the line is one of the rule
+  while (!text.empty()) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return false;
+    std::string_view line = text.substr(0, end);
+    text.remove_prefix(end + 1);
+    const bool goes_on = line.ends_with(kGoesOn);
+    if (goes_on) line.remove_suffix(kGoesOn.size());
+    const bool fits = is_input ? line.starts_with("  ") && line.size() > 2 && line[2] != ' '
+                               : line.size() > 1 && line.ends_with(':') && goes_on == is_first;
+    if (!fits) return false;
+    is_input = goes_on;
+    is_first = false;
+  }
+  return !is_input;
+}
+
+bool is_page(std::string_view start) {
+  if (!start.starts_with("<!DOCTYPE html>")) return false;
+  for (const std::string_view mark :
+       {R"(<meta name="generator" content="boxtree report">)", "<title>Which encoding for ",
+        "<title>Compression of the BoxTree data structure"}) {  // titles: before the first release
+    if (start.find(mark) != std::string_view::npos) return true;
+  }
+  return false;
 }
 
 bool begins_as(OutputKind kind, std::string_view start) {
@@ -60,12 +98,36 @@ bool begins_as(OutputKind kind, std::string_view start) {
       return start.starts_with("# boxtree ");
     case OutputKind::kShownGlb:
       return start.find(R"("generator":"boxtree )") != std::string_view::npos;
+    case OutputKind::kReportPage:
+      return is_page(start);
+    case OutputKind::kReportCsv:
+      return start.starts_with("mesh,triangles,codec,");
+    case OutputKind::kReportJson:
+      return start.starts_with('{') &&
+             start.find(R"("command": "boxtree report)") != std::string_view::npos;
+    case OutputKind::kDepfile:
+      return is_depfile(start);
   }
   return false;
 }
 
 const char* name_of(OutputKind kind) {
-  return kind == OutputKind::kCooked ? "a cooked file" : "what an export has written";
+  switch (kind) {
+    case OutputKind::kCooked:
+      return "a cooked file";
+    case OutputKind::kShownObj:
+    case OutputKind::kShownGlb:
+      return "what an export has written";
+    case OutputKind::kReportPage:
+      return "a report's page";
+    case OutputKind::kReportCsv:
+      return "CSV of a report";
+    case OutputKind::kReportJson:
+      return "JSON of a report";
+    case OutputKind::kDepfile:
+      return "a depfile of a cook";
+  }
+  return "";
 }
 
 }  // namespace
@@ -91,7 +153,8 @@ Status check_outputs(std::span<const fs::path> outputs, std::span<const fs::path
 }
 
 Status check_replaced(const fs::path& output, OutputKind kind) {
-  const std::string start = start_of(output);
+  const std::string start =
+      start_of(output, kind == OutputKind::kDepfile ? kMostOfDepfile : kStart);
   if (start.empty() || begins_as(kind, start)) return {};
   return Error{
       Errc::kWriteFailed,

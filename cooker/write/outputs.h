@@ -17,9 +17,19 @@ Status check_outputs(std::span<const std::filesystem::path> outputs,
 
 /// What a program writes: a new output of a kind takes the place of an old one, and of nothing
 /// else.
-enum class OutputKind { kCooked, kShownObj, kShownGlb };
+enum class OutputKind {
+  kCooked,
+  kShownObj,
+  kShownGlb,
+  kReportPage,
+  kReportCsv,
+  kReportJson,
+  kDepfile,
+};
 
-/// Checks that an output is new, empty, no regular file (a pipe, say), or begins as its kind does.
+/// Checks that an output is new, empty, no regular file (a pipe, say), or begins as its kind does,
+/// of whatever version; a depfile is looked at as a whole. An empty path is an output that was not
+/// given.
 /// Error: kWriteFailed.
 Status check_replaced(const std::filesystem::path& output, OutputKind kind);
 

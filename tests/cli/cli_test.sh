@@ -784,6 +784,29 @@ expect 0 "$boxtree" report cube.obj --quick --no-times --quiet -o page.pdf
 same "$(cat err)" 'boxtree: warning: page.pdf: the page is HTML, whatever its ending: expected .html'
 expect 0 "$boxtree" report cube.obj --quick --no-times --quiet -o page.html
 same "$(wc -c <err)" 0
+# Found by a newcomer: what boxtree has not written is not lost by its outputs. What it has, and what is empty, is.
+echo 'my own words' >notes.txt
+refuses() {
+  expect 1 "$boxtree" "$@"
+  tr -s ' \n' ' ' <err | grep -qE "^boxtree: usage: $1: notes.txt: expected $kind in the place of the output, or none, found another file; it would be lost"
+  same "$(cat notes.txt)" 'my own words'
+}
+kind="a report's page" refuses report cube.obj --quick --no-times -o notes.txt
+kind="a report's page" refuses report --paper cube.obj --no-times -o notes.txt
+kind='CSV of a report' refuses report cube.obj --quick --no-times --csv notes.txt
+kind='CSV of a report' refuses report cube.obj --quick --no-times --csv-approximate notes.txt
+kind='JSON of a report' refuses report cube.obj --quick --no-times --json-out notes.txt
+kind='a depfile of a cook' refuses cook cube.obj -o depends.bxt --depfile notes.txt
+expect 1 "$boxtree" report cube.obj --quick --no-times -o cube.bxt
+[ ! -e depends.bxt ]
+for number in 1 2; do
+  : >empty.html
+  expect 0 "$boxtree" report cube.obj --quick --no-times -o empty.html --csv told.csv --csv-approximate near.csv \
+    --json-out told.json -q
+  expect 0 "$boxtree" report --paper cube.obj --no-times -o thesis.html --json-out thesis.json -q
+  expect 0 "$boxtree" cook cube.obj -o "depends$number.bxt" --depfile depends.d -q
+done
+rm told.csv told.json near.csv thesis.html thesis.json empty.html
 # What has to have a name is no stream.
 expect 1 "$boxtree" cook cube.obj -o x.bxt --profile - </dev/null
 grep -q '^boxtree: usage: cook: --profile needs the name of a file' err

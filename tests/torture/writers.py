@@ -81,9 +81,9 @@ class Writer:
 
     def old(self, name):
         """Longer than what replaces it, so that writing over it in place leaves a mixture. It begins like
-        it, since a program may refuse to replace another kind of file."""
+        it, and goes on as rules of a depfile do, since a program may refuse to replace another kind of file."""
         new = self.new.get(name, b"")
-        return new[:256] + f"old {name}\n".encode() * (len(new) // 8 + 100)
+        return new[:256] + f"old {name}:\n".encode() * (len(new) // 8 + 100)
 
     def learn(self, folders):
         """Runs it undisturbed to learn what it writes."""

@@ -4,10 +4,13 @@
 
 #include <array>
 #include <filesystem>
+#include <initializer_list>
 #include <string>
+#include <utility>
 
 #include <gtest/gtest.h>
 
+#include "cooker/report/page.h"
 #include "tests/support/temp_folder.h"
 
 namespace boxtree::cooker {
@@ -43,11 +46,22 @@ TEST(Outputs, TakeThePlaceOfTheirKindAlone) {
   const std::string obj = "# boxtree 0.1.0\no m\n";
   const std::string glb =
       std::string("glTF\2\0\0\0", 8) + R"(JSON{"asset":{"generator":"boxtree 0.1.0"}})";
+  const std::string page = to_html({"Which encoding?", "", {}});
+  const std::string csv = "mesh,triangles,codec,geometry,grid_bits\n";
+  const std::string json =
+      "{\n  \"schema\": 1,\n  \"command\": \"boxtree report --quick m.obj\",\n";
+  const std::string depfile = "m.bxt: \\\n  m.obj \\\n  a\\ b.mtl\nm.obj:\na\\ b.mtl:\n";
   const std::string other = "v 0 0 0\n# boxtree 0.1.0\n";
-  for (const auto& [kind, content] : {std::pair(OutputKind::kCooked, cooked),
-                                      {OutputKind::kShownObj, obj},
-                                      {OutputKind::kShownGlb, glb}}) {
-    for (const std::string& found : {cooked, obj, glb, other, std::string("\x89"), std::string()}) {
+  for (const auto& [kind, content] :
+       std::initializer_list<std::pair<OutputKind, std::string>>{{OutputKind::kCooked, cooked},
+                                                                 {OutputKind::kShownObj, obj},
+                                                                 {OutputKind::kShownGlb, glb},
+                                                                 {OutputKind::kReportPage, page},
+                                                                 {OutputKind::kReportCsv, csv},
+                                                                 {OutputKind::kReportJson, json},
+                                                                 {OutputKind::kDepfile, depfile}}) {
+    for (const std::string& found :
+         {cooked, obj, glb, page, csv, json, depfile, other, std::string("\x89"), std::string()}) {
       const fs::path output = folder.write("out", found);
       const bool is_fine = found.empty() || found == content;
       EXPECT_EQ(check_replaced(output, kind).code(), is_fine ? Errc::kOk : Errc::kWriteFailed)
@@ -55,6 +69,35 @@ TEST(Outputs, TakeThePlaceOfTheirKindAlone) {
     }
     EXPECT_TRUE(check_replaced(folder.path() / "new", kind).ok());
     EXPECT_TRUE(check_replaced("/dev/null", kind).ok());
+  }
+}
+
+// Found by a newcomer: a report and a depfile took the place of whatever was there.
+TEST(Outputs, OfEarlierVersionsAreReplaced) {
+  const test::TempFolder folder;
+  const auto code = [&](OutputKind kind, const std::string& found) {
+    return check_replaced(folder.write("out", found), kind).code();
+  };
+  const std::string head =
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n"
+      "<meta name=\"viewport\" content=\"width=device-width,initial-scale=1\">\n<title>";
+  EXPECT_EQ(code(OutputKind::kReportPage, head + "Which encoding for m?</title>"), Errc::kOk);
+  EXPECT_EQ(code(OutputKind::kReportPage,
+                 head + "Compression of the BoxTree data structure: its tables, redrawn</title>"),
+            Errc::kOk);
+  EXPECT_EQ(code(OutputKind::kReportPage, head + "My holidays</title>"), Errc::kWriteFailed);
+  EXPECT_EQ(code(OutputKind::kDepfile, "m.bxt: \\\n  m.obj\n"), Errc::kOk);
+}
+
+TEST(Outputs, AreDepfilesAsAWhole) {
+  const test::TempFolder folder;
+  for (const char* found :
+       {"all: m.bxt\n", "all: \\\n  m.bxt\n\tboxtree cook m.obj\n", "m.o: m.cpp \\\n m.h\n",
+        "m.bxt: \\\n  m.obj\nm.obj: m.blend\n", "m.bxt: \\\n  m.obj \\\n", "m.bxt: \\\n  m.obj",
+        "my notes\n", "\n", "m.obj:\n"}) {
+    EXPECT_EQ(check_replaced(folder.write("out", found), OutputKind::kDepfile).code(),
+              Errc::kWriteFailed)
+        << found;
   }
 }
 
