@@ -24,6 +24,7 @@
 #include "cooker/cli/open_file.h"
 #include "cooker/cli/output.h"
 #include "cooker/cli/query_request.h"
+#include "cooker/cli/scene_info.h"
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/import/file_error.h"
@@ -187,21 +188,30 @@ class StillSceneWarning {
 
   // Once for all lines of a batch.
   void warn_of(const Scene& scene, const QueryRequest& request) {
-    if (is_told_ || !std::holds_alternative<ContactsRequest>(request) || has_moving(scene)) return;
+    if (is_told_ || !std::holds_alternative<ContactsRequest>(request)) return;
+    const Moving moving = moving_of(scene);
+    if (moving == Moving::kAnswersPairs) return;
     is_told_ = true;
-    warn(
-        fmt::format("{}: no instance moves, so that contacts has none to look at: use --move "
-                    "INSTANCE=POSE, or a profile with motion = \"moving\"",
-                    input_name(arguments_.file)));
+    warn(input_name(arguments_.file) +
+         (moving == Moving::kNothing
+              ? ": no instance moves, so that contacts has none to look at: use --move "
+                "INSTANCE=POSE, or a profile with motion = \"moving\""
+              : ": no instance that moves is in a layer that answers pairs, so that contacts has "
+                "none to look at: its object of the profile needs \"pair\" among its queries"));
   }
 
  private:
-  static bool has_moving(const Scene& scene) {
+  enum class Moving { kNothing, kAnswersNoPairs, kAnswersPairs };
+
+  static Moving moving_of(const Scene& scene) {
+    Moving moving = Moving::kNothing;
     for (std::uint32_t i = 0; i < scene.instance_count(); ++i) {
       const Result<InstanceInfo> info = scene.info(i);
-      if (info && info->moves) return true;
+      if (!info || !info->moves) continue;
+      if ((layer_queries(scene, info->layer) & kPairQueries) != 0) return Moving::kAnswersPairs;
+      moving = Moving::kAnswersNoPairs;
     }
-    return false;
+    return moving;
   }
 
   const Arguments& arguments_;
@@ -250,6 +260,7 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
       moves.insert(moves.end(), line.moves.begin(), line.moves.end());
       const Result<Scene> moved = move_scene(scene->file, moves);
       if (!moved) return moved.error();
+      still.warn_of(*moved, line.request);
       return answer(scene->file, *moved, line.request, others);
     });
   }

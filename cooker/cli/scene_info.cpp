@@ -80,6 +80,10 @@ std::uint32_t instances_left_out(const Scene& scene) {
   return of_source - std::min(of_source, scene.instance_count());
 }
 
+QueryKinds layer_queries(const Scene& scene, std::uint32_t layer) {
+  return static_cast<QueryKinds>(BoundScene::of(scene).layer(layer).query_kinds);
+}
+
 Result<Json> scene_json(const File& file) {
   if (!file.has_scene()) return Json(nullptr);
   const Result<Scene> scene = bind_without_meshes(file);
@@ -100,7 +104,7 @@ Result<Json> scene_json(const File& file) {
       if (((layer.collides_with >> other) & 1u) != 0) collides_with.push_back(other);
     }
     layers.push_back({{"name", scene->layer_name(i)},
-                      {"queries", kinds_json(layer.query_kinds)},
+                      {"queries", kinds_json(layer_queries(*scene, i))},
                       {"collides_with", collides_with}});
   }
   Json materials = Json::array();

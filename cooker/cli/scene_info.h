@@ -19,6 +19,9 @@ Result<Json> scene_json(const File& file);
 /// source, so those before the last instance in the file leave gaps.
 [[nodiscard]] std::uint32_t instances_left_out(const Scene& scene);
 
+/// The kinds of queries that instances of a layer answer. Precondition: an instance is in it.
+[[nodiscard]] QueryKinds layer_queries(const Scene& scene, std::uint32_t layer);
+
 void print_scene(const Json& scene);
 
 }  // namespace boxtree::cooker

@@ -253,6 +253,17 @@ expect 5 "$boxtree" query profiled.bxt point --at 0,0,0
 grep -q 'part_left_out: .* left out by scene.toml:[0-9]*: queries' err # the line that did it
 expect 0 "$boxtree" info profiled.bxt
 grep -q 'left out: point queries, by scene.toml:[0-9]*: queries' out
+# Found by a newcomer: what moves answers rays alone, and contacts said "hit: false" and nothing else.
+printf '[scene]\nsource = "level.gltf"\n[[object]]\nname = "seen"\nmatch = ["Crate"]\nqueries = ["ray"]\n' >seen.toml
+expect 0 "$boxtree" cook --profile seen.toml -o seen.bxt -q
+no_pairs='boxtree: warning: seen.bxt: no instance that moves is in a layer that answers pairs, so that contacts has none to look at: its object of the profile needs "pair" among its queries'
+expect 0 "$boxtree" query seen.bxt contacts --move Crate=0.8,2.1,-6.8
+same "$(cat err)" "$no_pairs"
+printf '%s\n' '{"kind":"contacts","move":"Crate=0.8,2.1,-6.8"}' '{"kind":"contacts","move":"Crate=0.8,2.1,-6.8"}' >batch
+expect 0 "$boxtree" query seen.bxt --batch batch
+same "$(cat err)" "$no_pairs"
+expect 0 "$boxtree" query seen.bxt contacts --move Landing=0.8,2.1,-6.8
+same "$(wc -c <err)" 0
 # A tree that is queried by itself, or is the second one, lacks what the profile left out of its scene or its objects.
 cat >parts.toml <<'TOML'
 [scene]
