@@ -11,6 +11,7 @@
 #include <boxtree/configuration.h>
 #include <boxtree/export.h>
 #include <boxtree/query.h>
+#include <boxtree/shape.h>
 
 namespace boxtree {
 
@@ -34,6 +35,11 @@ BOXTREE_API Result<Visit> overlap_box(const Tree& tree, const Eigen::AlignedBox3
 BOXTREE_API Result<Visit> overlap_sphere(const Tree& tree, const Eigen::Vector3d& center,
                                          double radius, FaceVisitor visitor,
                                          const QueryLimits& limits = {});
+/// The same of a sphere as casts and collide() take it.
+inline Result<Visit> overlap_sphere(const Tree& tree, const Sphere& sphere, FaceVisitor visitor,
+                                    const QueryLimits& limits = {}) {
+  return overlap_sphere(tree, sphere.center, sphere.radius, visitor, limits);
+}
 #endif
 
 #if BOXTREE_HAS_FRUSTUM_QUERIES

@@ -22,6 +22,7 @@
 #include <boxtree/export.h>
 #include <boxtree/face_options.h>
 #include <boxtree/ray.h>
+#include <boxtree/shape.h>
 
 static_assert(BOXTREE_HAS_SCENE_QUERIES,
               "BOXTREE_QUERIES left scenes out of this build of boxtree");
@@ -276,6 +277,12 @@ BOXTREE_API Result<Visit> overlap_sphere(const Scene& scene, const Eigen::Vector
                                          double radius, SceneFaceVisitor visitor,
                                          LayerMask layers = kAllLayers,
                                          const QueryLimits& limits = {});
+/// The same of a sphere of the world as casts and collide() take it.
+inline Result<Visit> overlap_sphere(const Scene& scene, const Sphere& sphere,
+                                    SceneFaceVisitor visitor, LayerMask layers = kAllLayers,
+                                    const QueryLimits& limits = {}) {
+  return overlap_sphere(scene, sphere.center, sphere.radius, visitor, layers, limits);
+}
 
 /// A closest point on an instance. Point and distance are in world coordinates.
 struct SceneClosestPoint : ClosestPoint {

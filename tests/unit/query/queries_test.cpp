@@ -157,6 +157,12 @@ TEST_P(Queries, SphereAndClosestPointEqualBruteForce) {
                     return true;
                   }).ok());
       ASSERT_EQ(found, expected);
+      found.clear();
+      ASSERT_TRUE(overlap_sphere(tree, Sphere{p, radius}, [&](const FaceRef& face) {
+                    found.insert(face.id);
+                    return true;
+                  }).ok());
+      ASSERT_EQ(found, expected);
     }
   });
 }

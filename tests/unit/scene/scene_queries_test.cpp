@@ -139,6 +139,15 @@ TEST_P(SceneQueries, SphereEqualsBruteForce) {
       ASSERT_EQ(require(visit), Visit::kComplete);
       ASSERT_EQ(found, expected);
       touched += found.size();
+      found.clear();
+      const Sphere sphere{center, radius};
+      ASSERT_TRUE(overlap_sphere(scene_, sphere, [&](const SceneFace& face) {
+                    return found.insert({face.instance, face.face.id}).second;
+                  }).ok());
+      ASSERT_EQ(found, expected);
+      ASSERT_EQ(*overlap_sphere(
+                    scene_, sphere, [](const SceneFace&) { return false; }, 0),
+                Visit::kComplete);
     }
     EXPECT_GT(touched, 500u);
   });
