@@ -247,7 +247,7 @@ Result<PaperReport> measure_paper(const Arguments& arguments) {
   report.command = command_of(arguments);
   const bool has_peers = !arguments.no_times && !arguments.peers.empty();
   const std::size_t parts = arguments.meshes.size() + (has_peers ? 2u : 1u);
-  StepPrinter steps(!arguments.quiet);
+  StepPrinter steps(!arguments.quiet, StepPrinter::Elsewhere::kLines);
   const auto step = [&](const std::string& what, std::size_t part) {
     steps(what, static_cast<double>(part) / static_cast<double>(parts));
   };
@@ -301,7 +301,7 @@ Result<TradeoffReport> measure_all(const Arguments& arguments) {
   }
   const std::size_t parts = arguments.meshes.size() + (report.no_peers.empty() ? 1u : 0u);
   const auto part = [&](double done) { return done / static_cast<double>(parts); };
-  StepPrinter steps(!arguments.quiet);
+  StepPrinter steps(!arguments.quiet, StepPrinter::Elsewhere::kLines);
   for (std::size_t i = 0; i < arguments.meshes.size(); ++i) {
     const auto before = static_cast<double>(i);
     steps("import " + arguments.meshes[i].filename().string(), part(before));
@@ -405,7 +405,9 @@ void add_report_command(Command& program, int& status) {
       "report",
       "Show which encoding to use for meshes: bytes, times and errors\n"
       "Of meshes alone: what a profile leaves out, cook --profile FILE --why tells. The page has "
-      "grids of so many bits, and with --tolerance that of a tolerance of your own.");
+      "grids of so many bits, and with --tolerance that of a tolerance of your own.\n"
+      "Every encoding is measured: that takes half a minute for 500 triangles, a minute for 5000, "
+      "with --quick some seconds. Standard error tells the steps, but with --quiet.");
   command.add_file("MESH", arguments->meshes, Values::kMeshes, "Mesh files")->required();
   Option* paper = command.add_flag("--paper", arguments->paper, "The tables of the paper instead");
   command.add_file("-o,--output", arguments->output, Values::kFiles,

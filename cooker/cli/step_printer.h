@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a command is at: one line that overwrites itself, for people who wait.
+// What a command is at, for people who wait: on a terminal one line that overwrites itself.
 #pragma once
 
 #include <algorithm>
@@ -14,24 +14,32 @@
 
 namespace boxtree::cooker {
 
-/// Steps on a terminal only, and only once the work has taken half a second.
+/// Steps on a terminal, and only once the work has taken half a second. Elsewhere none, or for work
+/// of a minute a line for each that begins two seconds after the last line.
 class StepPrinter {
  public:
-  explicit StepPrinter(bool enabled) : enabled_(enabled && ::isatty(STDERR_FILENO) == 1) {}
+  enum class Elsewhere { kNothing, kLines };
+
+  explicit StepPrinter(bool enabled, Elsewhere elsewhere = Elsewhere::kNothing)
+      : is_terminal_(::isatty(STDERR_FILENO) == 1),
+        enabled_(enabled && (is_terminal_ || elsewhere == Elsewhere::kLines)) {}
   StepPrinter(const StepPrinter&) = delete;
   StepPrinter& operator=(const StepPrinter&) = delete;
   ~StepPrinter() {
     if (printed_) static_cast<void>(std::fputs("\r\033[K", stderr));
   }
   void operator()(const std::string& step) {
-    if (!enabled_ || Clock::now() - start_ < std::chrono::milliseconds(500)) return;
-    const std::string line = "\r\033[K" + shown(step) + " ...";
+    if (!enabled_ || Clock::now() - start_ < (is_terminal_ ? kSoon : kLineEvery)) return;
+    const std::string line =
+        is_terminal_ ? "\r\033[K" + shown(step) + " ..." : shown(step) + " ...\n";
     static_cast<void>(std::fputs(line.c_str(), stderr));
     static_cast<void>(std::fflush(stderr));
-    printed_ = true;
+    printed_ = is_terminal_;
+    if (!is_terminal_) start_ = Clock::now();
   }
-  /// The same behind a bar; `share` of the work is done, 0 to 1.
+  /// The same behind a bar, elsewhere a percentage; `share` of the work is done, 0 to 1.
   void operator()(const std::string& step, double share) {
+    if (!is_terminal_) return (*this)(fmt::format("[{:3.0f} %] {}", 100 * share, step));
     constexpr int kCells = 24;
     const int done = static_cast<int>(std::clamp(share, 0.0, 1.0) * kCells);
     (*this)(fmt::format("[{:#<{}}{:.<{}}] {}", "", done, "", kCells - done, step));
@@ -39,9 +47,12 @@ class StepPrinter {
 
  private:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::chrono::milliseconds kSoon{500}, kLineEvery{2000};
+
+  bool is_terminal_;
   bool enabled_;
-  bool printed_ = false;
-  Clock::time_point start_ = Clock::now();
+  bool printed_ = false;                    // there is a line to clear
+  Clock::time_point start_ = Clock::now();  // of the work, or the last line
 };
 
 }  // namespace boxtree::cooker

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: MIT
-"""Cook and report show their steps on a terminal and only there, and only once they have worked half a second.
-Cook writes no file to a terminal.
+"""Cook and report show their steps on a terminal, and only once they have worked half a second. Elsewhere report
+prints a line a step, and cook nothing. Cook writes no file to a terminal.
 
 No time here depends on the machine: the work is doubled until it is long enough to be shown, and
 silence is required only of runs that took less than half a second from start to end.
@@ -17,9 +17,11 @@ import tempfile
 import time
 
 SHOWN_AFTER = 0.5  # seconds, as in step_printer.h
+LINE_EVERY = 2.0
 GIVE_UP_AFTER = 20.0  # by then nearly all of a run's steps come later than SHOWN_AFTER
 ERASE = "\r\x1b[K"  # to the start of the line, and clear it
 STEPS = re.compile(rf"(?:{re.escape(ERASE)}(?:import|build|write) [\w.]+ \.\.\.)+")
+LINES = re.compile(r"(?:\[ *\d+ %\] [\w .:,-]+ \.\.\.\n)+")
 SHARES = re.compile(rf"(?:{re.escape(ERASE)}\[#*\.*\] [\w .:,-]+ \.\.\.)+")
 
 
@@ -83,6 +85,26 @@ def find_long_work(command_of, pattern):
         count *= 2
 
 
+def find_lines(boxtree):
+    """Found by a newcomer: a report of a minute is not silent in a pipe, unless that is requested."""
+    for options in ([], ["--paper"]):
+        count = 1
+        while True:
+            start = time.monotonic()
+            done = subprocess.run(report(boxtree, count, *options), stdout=subprocess.DEVNULL,
+                                  stderr=subprocess.PIPE, text=True, check=True)
+            seconds = time.monotonic() - start
+            if done.stderr:
+                assert LINES.fullmatch(done.stderr), f"not a line a step: {done.stderr!r}"
+                assert done.stderr.count("\n") * LINE_EVERY <= seconds, f"too many lines: {done.stderr!r}"
+                break
+            assert seconds < GIVE_UP_AFTER, f"nothing printed in {seconds:.3f} s"
+            count *= 2
+        done = subprocess.run(report(boxtree, count, "-q", *options), stdout=subprocess.DEVNULL,
+                              stderr=subprocess.PIPE, text=True, check=True)
+        assert done.stderr == "", f"not quiet: {done.stderr!r}"
+
+
 def main(boxtree):
     try:
         for end in pty.openpty():
@@ -106,6 +128,7 @@ def main(boxtree):
         assert sent == "", f"not quiet: {sent!r}"
         for options in ([], ["--paper"]):
             find_long_work(lambda count, options=options: report(boxtree, count, *options), SHARES)
+        find_lines(boxtree)
         for command in (["cook", "grid.obj", "-o", "-"], ["export", "grid.bxt", "-o", "-"]):
             _, sent = run_on_terminal([boxtree, *command], ["stdout", "stderr"], expected=1)
             wanted = (f"boxtree: usage: {command[0]}: --output: expected a file or a pipe, and standard output is a "
