@@ -138,6 +138,9 @@ std::string to_html(const Page& page) {
       for (const PageBars& bars : section.bars) add_figure(bars.title, to_svg(bars), out);
       out += "</div>\n";
     }
+    if (!section.notes.empty()) {
+      out += "<p class=\"faint\">" + escaped(section.notes) + "</p>\n";
+    }
   }
   return out + "</body></html>\n";
 }

@@ -32,6 +32,7 @@ struct PageSection {
   std::vector<PagePlot> plots;
   std::vector<PageBars> bars = {};
   std::vector<PageConclusion> conclusions = {};  // before the tables
+  std::string notes = {};                        // behind all, on the HTML page alone
 };
 
 struct Page {

@@ -197,14 +197,9 @@ PageSection kind_section(const TradeoffReport& report, const MeshTradeoff& mesh,
 PageSection advice_section(const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": what to use";
-  section.text = fmt::format(
-      "{} triangles, {} vertices, a diagonal of {:.4g} units. Every encoding below gives the same "
-      "answers as brute force over its own geometry; on a grid that geometry is rounded. Sizes are "
-      "those of whole files with face ids, as the commands make them; without --strip a file also "
-      "holds the record of its cook, some 0.3 KB. Without face ids, nodes and geometry alone, is "
-      "the figure \"with geometry\" of boxtree cook.",
-      mesh.triangles, mesh.vertices, mesh.diagonal);
-  if (mesh.is_f64) section.text += " Positions are f64.";
+  section.text =
+      fmt::format("{} triangles, {} vertices, a diagonal of {:.4g} units.{}", mesh.triangles,
+                  mesh.vertices, mesh.diagonal, mesh.is_f64 ? " Positions are f64." : "");
   section.conclusions = advice_in_words(mesh);
   if (mesh.moved_by_f32 > 0) {
     section.conclusions.insert(
@@ -253,10 +248,14 @@ PageSection advice_section(const MeshTradeoff& mesh) {
     cooks += fmt::format("{}{} for {}", cooks.empty() ? "" : ", ", mesh.points[*place].name(),
                          goal_name(goal));
   }
-  section.text += fmt::format(
-      " Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
+  section.notes = fmt::format(
+      "Every encoding gives the same answers as brute force over its own geometry; on a grid that "
+      "geometry is rounded. Sizes are those of whole files with face ids, as the commands make "
+      "them; without --strip a file also holds the record of its cook, some 0.3 KB. Without face "
+      "ids, nodes and geometry alone, is the figure \"with geometry\" of boxtree cook. "
+      "Unless told a codec, boxtree cook{}{} chooses by counted work, the same on every machine: "
       "{}. "
-      "The choices below go by the times on this page, by whole files, and by how far a surface "
+      "The choices above go by the times on this page, by whole files, and by how far a surface "
       "may move, so that they may differ. Only encodings with the same surface, bit for bit, "
       "compete for the fastest. Slowdown: {}, of the {} mean times of rays, boxes ({}), closest "
       "points and contacts ({}).",
@@ -264,9 +263,10 @@ PageSection advice_section(const MeshTradeoff& mesh) {
       mesh.tolerance ? fmt::format(" --tolerance {}", *mesh.tolerance) : "", cooks,
       kSlowdownMeaning, mesh.timed ? "measured" : "modelled", kBoxMeaning, contacts_meaning(mesh));
   if (mesh.timed) {
-    section.text += fmt::format(
-        " boxtree cook has the same kinds by modelled times, of fewer queries, and of contacts "
-        "shallow ones alone: {}.",
+    section.notes += fmt::format(
+        " The slowdown that boxtree cook prints is that of the same kinds of queries, but of fewer "
+        "of them; it computes times from the work that it counts, and has shallow contacts alone: "
+        "{}.",
         kShallowMeaning);
   }
   return section;

@@ -31,6 +31,20 @@ TEST(Page, HtmlEscapesAndHoldsEverything) {
   EXPECT_EQ(html.find("http"), std::string::npos) << "no network";
 }
 
+// Found by a newcomer: recommendations stood below fifteen lines that explain them.
+TEST(Page, NotesStandBehindConclusionsAndTables) {
+  Page page = sample();
+  page.sections.front().conclusions = {{"Take", "this"}};
+  page.sections.front().notes = "because <of> that";
+  const std::string html = to_html(page);
+  const std::size_t notes = html.find("because &lt;of&gt; that");
+  ASSERT_NE(notes, std::string::npos);
+  EXPECT_LT(html.find("explains"), html.find("Take"));
+  EXPECT_LT(html.find("Take"), html.find("</table>"));
+  EXPECT_LT(html.rfind("</table>"), notes);
+  EXPECT_EQ(to_text(page).find("because"), std::string::npos);
+}
+
 TEST(Page, MarksLieInsideTheFrame) {
   const std::string html = to_html(sample());
   const std::regex circle("<circle cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"");
