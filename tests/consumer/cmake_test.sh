@@ -261,11 +261,13 @@ $nowhere
 add_custom_target(all_assets)
 boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
 CMAKE
-refused "BOXTREE_TOOL is '/nothing'" -DBOXTREE_TOOL=/nothing <<'CMAKE'
+for tool in '/nothing, and no file is there' 'boxtree, which is no absolute path' '/usr, which is a folder'; do
+  refused "BOXTREE_TOOL is '${tool/,/\',}" -DBOXTREE_TOOL="${tool%%,*}" <<'CMAKE'
 find_package(boxtree CONFIG REQUIRED)
 add_custom_target(all_assets)
 boxtree_add_cooked_assets(TARGET all_assets MESHES ../meshes/level.obj)
 CMAKE
+done
 rm -rf "$work/tool/build"
 PATH="$work/prefix/bin:$PATH" configured tool -DCMAKE_SYSTEM_NAME=Linux
 grep -q "^BOXTREE_TOOL:FILEPATH=$work/prefix/bin/boxtree" "$work/tool/build/CMakeCache.txt" ||
