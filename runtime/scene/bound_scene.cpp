@@ -49,7 +49,7 @@ Status BoundScene::update(std::uint32_t instance, const Pose& pose) {
   }
   Moving& moving = moving_[static_cast<std::size_t>(found - moving_.data())];
   const std::optional<Posed> there = posed(*moving.placed.tree, pose);
-  if (!there) return Errc::kInvalidPose;
+  if (!there) return invalid_pose(instance);
   moving.placed.pose = pose;
   moving.placed.placement = there->placement;
   moving.bounds = there->bounds;
@@ -179,6 +179,12 @@ std::optional<Placement> BoundScene::place_in_units(const BoundTree& tree,
   Pose scaled = pose;
   scaled.affine() *= frame_.inverse_scale;
   return is_within_range(pose.translation()) ? Placement::make(tree, scaled) : std::nullopt;
+}
+
+Error BoundScene::invalid_pose(std::uint32_t instance) {
+  return error_with(Errc::kInvalidPose, {},
+                    "instance #: its pose is not finite, not invertible or leads beyond 2^200",
+                    {instance});
 }
 
 std::optional<BoundScene::Posed> BoundScene::posed(const BoundTree& tree,

@@ -152,6 +152,8 @@ class BoundScene {
   void index_moving();
   /// Nothing if the pose is not finite, is not invertible or leads beyond kMaxCoordinate.
   [[nodiscard]] std::optional<Posed> posed(const BoundTree& tree, const Pose& pose) const noexcept;
+  /// What is said then.
+  static Error invalid_pose(std::uint32_t instance);
   [[nodiscard]] bool has_names() const noexcept;
   [[nodiscard]] Error left_out(Part part, std::uint32_t owner, const std::string& what) const;
   [[nodiscard]] std::string_view text(std::uint32_t offset, std::uint32_t size) const noexcept;

@@ -189,10 +189,7 @@ Status BoundScene::place_each(std::span<const PlacedTree> instances) {
     const PlacedTree& given = instances[i];
     const BoundTree& tree = BoundTree::of(trees_[given.tree]);
     const std::optional<Posed> there = posed(tree, given.pose);
-    if (!there) {
-      return of_instance(
-          i, {Errc::kInvalidPose, "its pose is not finite, not invertible or leads beyond 2^200"});
-    }
+    if (!there) return invalid_pose(i);
     const Placed placed{&tree, given.pose, there->placement, i, given.layer, {}, !given.moves};
     moving_.push_back({i, placed, there->bounds});
   }
