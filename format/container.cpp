@@ -62,7 +62,7 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
                       {header.section_count, kMaxSections});
   }
   if (table_end(header.section_count) > file_size) {
-    return error_with(Errc::kTruncated, {}, "a table of # sections does not fit into # bytes",
+    return error_with(Errc::kTruncated, {}, "# sections do not fit into # bytes",
                       {header.section_count, file_size});
   }
   return {};
@@ -193,9 +193,12 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum,
     container.sections.push_back(entry);
     end = entry.end();
   }
-  if (file_end(end) != file.size()) {
-    return error_with(Errc::kTruncated, {}, "its sections end at byte #, the file has #",
-                      {file_end(end), file.size()});
+  if (const std::uint64_t whole = file_end(end); whole != file.size()) {
+    const bool is_longer = whole < file.size();
+    return error_with(
+        Errc::kTruncated, {},
+        is_longer ? "the file has # bytes after its end" : "the file lacks # bytes at its end",
+        {is_longer ? file.size() - whole : whole - file.size()});
   }
   return container;
 }

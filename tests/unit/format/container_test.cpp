@@ -187,9 +187,12 @@ TEST(Container, CutAtEveryByteAndPaddedItIsRefused) {
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     ASSERT_FALSE(File::open(Bytes(bytes).first(size)).ok()) << size;
   }
+  EXPECT_EQ(File::open(Bytes(bytes).first(bytes.size() - 8)).error().message(),
+            "truncated: the file lacks 8 bytes at its end");
   FileBytes longer = bytes;
   longer.resize(bytes.size() + 8);
-  EXPECT_EQ(File::open(Bytes(longer)).code(), Errc::kTruncated);
+  EXPECT_EQ(File::open(Bytes(longer)).error().message(),
+            "truncated: the file has 8 bytes after its end");
 }
 
 TEST(Container, PaddingMustBeZero) {
