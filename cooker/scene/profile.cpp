@@ -4,6 +4,7 @@
 #include "cooker/scene/profile.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 
 #include <fmt/format.h>
@@ -17,8 +18,9 @@
 namespace boxtree::cooker {
 namespace {
 
-constexpr std::size_t kLongestName = 0xffff;         // InstanceRecord::name_bytes
-constexpr std::size_t kMaxObjects = kMaxLayers - 1;  // and "other"
+constexpr std::size_t kLongestName = 0xffff;                     // InstanceRecord::name_bytes
+constexpr std::array kSeveral = {"mesh", "object", "instance"};  // tables in double brackets
+constexpr std::size_t kMaxObjects = kMaxLayers - 1;              // and "other"
 
 template <class T>
 void override_with(T& target, std::optional<T> value) {
@@ -435,6 +437,18 @@ std::string without_comment(const std::string& line) {
   return line;
 }
 
+// The parser refuses a second [object] before it is known that it may stand several times.
+Error explained(const Error& error) {
+  for (const char* table : kSeveral) {
+    if (error.detail.ends_with(fmt::format("existing table '{}'", table))) {
+      return {error.code,
+              fmt::format("{}; expected [[{}]] in double brackets, since there may be several",
+                          error.detail, table)};
+    }
+  }
+  return error;
+}
+
 }  // namespace
 
 Profile::Profile() {
@@ -457,7 +471,7 @@ Result<Profile> read_profile(const std::filesystem::path& path) {
   const Result<std::string> text = read_whole_file(path, kMaxProfileBytes);
   if (!text) return text.error();
   const Result<TomlTable> root = parse_toml(*text, path.string());
-  if (!root) return root.error();
+  if (!root) return explained(root.error());
   Profile profile;
   profile.path = path;
   profile.lines = lines_of(*text);

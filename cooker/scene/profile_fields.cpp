@@ -3,6 +3,7 @@
 #include "cooker/scene/profile_fields.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -178,12 +179,25 @@ bool Fields::knows(std::string_view key) const {
   return std::find(known_.begin(), known_.end(), key) != known_.end();
 }
 
+bool Fields::is_misspelt(std::string_view key) {
+  const std::array<std::string, 1> meant = {std::string(key)};
+  const auto found = std::find_if(table_.begin(), table_.end(), [&](const TomlEntry& entry) {
+    return !knows(entry.key) && !suggestion(entry.key, meant).empty();
+  });
+  if (found == table_.end()) return false;
+  refuse(*found, meant);
+  return true;
+}
+
 void Fields::finish() {
   for (const TomlEntry& entry : table_) {
-    if (knows(entry.key) || !complaints_.wants(entry.line)) continue;
-    complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known_),
-                         '"' + entry.key + '"');
+    if (!knows(entry.key) && complaints_.wants(entry.line)) refuse(entry, known_);
   }
+}
+
+void Fields::refuse(const TomlEntry& entry, std::span<const std::string> known) {
+  complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known),
+                       '"' + entry.key + '"');
 }
 
 }  // namespace boxtree::cooker

@@ -77,12 +77,16 @@ class Fields {
                                          std::string_view wording);
   /// Reports two keys that exclude each other, at the later one.
   void exclude(std::string_view first, std::string_view second);
+  /// Whether a key that was not requested is `key`, misspelt; reports it.
+  bool is_misspelt(std::string_view key);
   /// Whether the key was requested.
   [[nodiscard]] bool knows(std::string_view key) const;
   /// Reports all keys that were not requested.
   void finish();
 
  private:
+  void refuse(const TomlEntry& entry, std::span<const std::string> known);
+
   const TomlTable& table_;
   std::string where_;
   std::uint32_t line_;

@@ -94,7 +94,8 @@ std::optional<Eigen::Matrix3d> read_rotation(Fields& fields) {
   }
   const TomlEntry* axis_entry = fields.find("axis");
   const TomlEntry* degrees_entry = fields.find("degrees");
-  if ((axis_entry == nullptr) != (degrees_entry == nullptr)) {
+  const bool is_one = (axis_entry == nullptr) != (degrees_entry == nullptr);
+  if (is_one && !fields.is_misspelt(axis_entry == nullptr ? "axis" : "degrees")) {
     const TomlEntry& alone = axis_entry != nullptr ? *axis_entry : *degrees_entry;
     fields.complaints().expected(alone.line, alone.key, "\"axis\" and \"degrees\" together",
                                  "one of them");

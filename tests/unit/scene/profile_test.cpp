@@ -278,6 +278,11 @@ constexpr ProfileFault kTypes[] = {
     {"[object]\nname = 'a'\n",
      "scene.toml:1: object: expected [[object]] in double brackets, since there may be several, "
      "found [object]"},
+    {"[object]\nname = 'a'\n[object]\nname = 'b'\n",
+     "scene.toml:3: Error while parsing table header: cannot redefine existing table 'object'; "
+     "expected [[object]] in double brackets, since there may be several"},
+    {"[scene]\nexact = true\n[scene]\nqueries = ['ray']\n",
+     "scene.toml:3: Error while parsing table header: cannot redefine existing table 'scene'"},
     {"[[scene]]\nexact = true\n",
      "scene.toml:1: scene: expected one table, [scene] in single brackets, found [[scene]]"},
     {"scene = []\n", "scene.toml:1: scene: expected a table [scene], found an array of 0"},
@@ -345,6 +350,10 @@ constexpr ProfileFault kNames[] = {
      "scene.toml:3: [[mesh]]: expected a known key (nearest: \"file\"), found \"flie\""},
     {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\nscales=1\n",
      "scene.toml:6: [[instance]]: expected a known key (nearest: \"scale\"), found \"scales\""},
+    {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\naxis=[0,0,1]\ndegree=30\n",
+     "scene.toml:7: [[instance]]: expected a known key (nearest: \"degrees\"), found \"degree\""},
+    {"[[mesh]]\nname='m'\nfile='m'\n[[instance]]\nmesh='m'\naxes=[0,0,1]\ndegrees=30\n",
+     "scene.toml:6: [[instance]]: expected a known key (nearest: \"axis\"), found \"axes\""},
     {"[scene]\nqueries = ['rays']\n",
      "scene.toml:2: queries: expected ray, box, point or pair (nearest: \"ray\"), found \"rays\""},
     {"[scene]\ncodec = 'wide16'\n",
