@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Files that are mistaken for meshes, by their first bytes: PNG (W3C, 5.2), JPEG (ITU T.81,
 // B.1.1.3), GIF89a, TIFF 6.0, WebP (RFC 9649), PDF (ISO 32000, 7.5.2), gzip (RFC 1952), pointers of
-// Git LFS, web pages.
+// Git LFS, web pages; and meshes of another format than their names say.
 #include "cooker/import/foreign_file.h"
 
 #include <algorithm>
@@ -39,17 +39,36 @@ constexpr std::array kBeginnings = {
               "a pointer of Git LFS, in the place of which `git lfs pull` "
               "puts the file"},
 };
+// Of formats with a magic, in lower case, and the ending of their names.
+constexpr std::array kMeshes = {Beginning{"ply\n"sv, ".ply"},        Beginning{"ply\r"sv, ".ply"},
+                                Beginning{"gltf\2\0\0\0"sv, ".glb"}, Beginning{"off\n"sv, ".off"},
+                                Beginning{"off\r"sv, ".off"},        Beginning{"solid "sv, ".stl"}};
 constexpr std::size_t kLongest = 32;  // bytes of any of them, and more
+
+// Its first bytes; empty if it cannot be read.
+std::string start_of(const SourceFile& source) {
+  std::string start(kLongest, '\0');
+  const FileHandle file = source.open();
+  start.resize(file ? std::fread(start.data(), 1, start.size(), file.get()) : 0);
+  return start;
+}
 
 }  // namespace
 
+const char* misnamed_mesh(const SourceFile& source) {
+  const std::string lower = in_lower_case(start_of(source));
+  const auto* const found =
+      std::find_if(kMeshes.begin(), kMeshes.end(),
+                   [&lower](const Beginning& each) { return lower.starts_with(each.bytes); });
+  if (found == kMeshes.end()) return nullptr;
+  const bool is_named = in_lower_case(source.path().extension().string()) == found->what;
+  return is_named ? nullptr : found->what;
+}
+
 const char* foreign_file(const SourceFile& source) {
-  std::array<char, kLongest> bytes{};
-  const FileHandle file = source.open();
-  if (!file) return nullptr;
-  const std::size_t size = std::fread(bytes.data(), 1, bytes.size(), file.get());
-  const std::string_view start(bytes.data(), size);
-  if (size >= kMagic.size() && std::memcmp(bytes.data(), kMagic.data(), kMagic.size()) == 0) {
+  const std::string start = start_of(source);
+  const std::size_t size = start.size();
+  if (size >= kMagic.size() && std::memcmp(start.data(), kMagic.data(), kMagic.size()) == 0) {
     return "a cooked file, which info, verify, query, bench and export take";
   }
   const std::string lower = in_lower_case(start);

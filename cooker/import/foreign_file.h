@@ -10,4 +10,8 @@ namespace boxtree::cooker {
 /// be a mesh.
 [[nodiscard]] const char* foreign_file(const SourceFile& source);
 
+/// The ending, ".ply", of the meshes that begin as the file does, if its name has another one;
+/// nullptr if it may be what its name says.
+[[nodiscard]] const char* misnamed_mesh(const SourceFile& source);
+
 }  // namespace boxtree::cooker

@@ -117,6 +117,11 @@ Error explained(const SourceFile& source, const Error& error) {
     return {error.code, fmt::format("{}: expected a mesh, found {}", title, what)};
   }
   const std::string ending = source.path().extension().string();
+  if (const char* const meant = misnamed_mesh(source); meant != nullptr && !ending.empty()) {
+    return {error.code, fmt::format("{}: expected what a file in {} is, found one that begins as "
+                                    "those in {} do: it needs that ending",
+                                    title, ending, meant)};
+  }
   if (has_mesh_ending(source.path())) return error;
   const char* const remedy = ending == ".toml" ? "; cook --profile takes a profile" : "";
   return {

@@ -101,6 +101,27 @@ TEST_F(ImportErrorTest, WhatIsNoMeshIsToldSoWhateverItsEnding) {
   EXPECT_FALSE(has(fail("a.obj", "RIFF").detail, "picture"));
 }
 
+// Found by a newcomer: of a binary PLY that is called .obj a zero byte was told.
+TEST_F(ImportErrorTest, AMeshOfAnotherFormatIsToldByHowItBegins) {
+  const std::string nothing(4, '\0');
+  const std::pair<std::string, std::string> files[] = {
+      {"ply\nformat binary_little_endian 1.0\nend_header\n" + nothing, ".ply"},
+      {"glTF" + std::string("\2\0\0\0", 4) + nothing, ".glb"},
+      {"OFF\n3 1 0\n" + nothing, ".off"},
+      {"solid m\n" + nothing, ".stl"}};
+  for (const auto& [content, meant] : files) {
+    for (const std::string ending : {".obj", ".ply"}) {
+      if (ending == meant) continue;
+      const Error error = fail("a" + ending, content);
+      EXPECT_TRUE(has(error.detail, "expected what a file in " + ending +
+                                        " is, found one that begins as those in " + meant +
+                                        " do: it needs that ending"))
+          << error.detail;
+    }
+    EXPECT_FALSE(has(fail("a" + meant, content).detail, "needs that ending"));
+  }
+}
+
 std::string ply(std::string_view vertices, std::string_view faces, int vertex_count,
                 int face_count) {
   return "ply\nformat ascii 1.0\nelement vertex " + std::to_string(vertex_count) +
