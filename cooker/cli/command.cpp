@@ -112,6 +112,11 @@ Option* Option::needed(const Option* unless) {
   return this;
 }
 
+Option* Option::one_is_needed() {
+  facts_.one_is_needed = true;
+  return this;
+}
+
 Option* Option::excludes(Option* other) {
   parsed_->excludes(other->parsed_);
   return this;
@@ -420,13 +425,18 @@ std::string arguments_of(const Command& command) {
     line += positional.is_needed ? " " + one : " [" + one + "]";
   }
   bool has_others = false;
+  std::string one_of;
   for (const OptionText& option : options_of(command)) {
+    const std::string text = option.names.front() + " " + option.metavar;
     if (option.is_needed) {
-      line += " " + option.names.front() + " " + option.metavar;
+      line += " " + text;
+    } else if (option.facts.one_is_needed) {
+      one_of += (one_of.empty() ? "" : " | ") + text;
     } else {
       has_others = true;
     }
   }
+  if (!one_of.empty()) line += " (" + one_of + ")";
   if (has_others) line += " [OPTION...]";
   if (!command.commands().empty()) {
     line += command.parent() == nullptr ? " COMMAND ..." : " KIND ...";

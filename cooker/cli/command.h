@@ -50,6 +50,7 @@ struct OptionFacts {
   Values values = Values::kOther;
   bool is_needed = false;          // it has to be given ...
   const Option* unless = nullptr;  // ... but where this one is
+  bool one_is_needed = false;      // it, or another option of which this is true
 };
 
 /// An option or a positional. Functions without a result of their own return the option.
@@ -68,6 +69,9 @@ class Option {
   Option* required();
   /// Checked by CLI11 after all was parsed, whose required positionals swallow the names of kinds.
   Option* needed(const Option* unless = nullptr);
+  /// The usage line shows that one of such options of the command has to be given. The command
+  /// checks it.
+  Option* one_is_needed();
   Option* excludes(Option* other);
   Option* one_of(const std::vector<std::string>& values);
   /// Of a number, which is any of its type otherwise: what it has to be. `expected` is for

@@ -95,7 +95,7 @@ Result<std::vector<std::uint32_t>> chosen_trees(const Arguments& arguments, cons
     return numbers;
   }
   const Result<std::uint32_t> number = find_tree(file, arguments.tree);
-  if (!number) return number.error();
+  if (!number) return in_file(input_name(arguments.file), number.error());
   numbers.push_back(*number);
   return numbers;
 }
@@ -225,22 +225,25 @@ Json report_json(const Arguments& arguments, const ExportReport& report) {
 }
 
 // `output`: the name of what was written.
-std::string report_text(const std::string& output, const ExportReport& report) {
+std::string report_text(const std::string& output, const ExportReport& report,
+                        bool with_triangles) {
   std::string text = fmt::format("{}: {} bytes\n", shown(output), report.bytes);
   if (report.instances) {
-    text += fmt::format("scene: {}, {} placed\n", counted(*report.instances, "instance"),
-                        counted(report.placed_triangles, "triangle"));
+    text += "scene: " + counted(*report.instances, "instance");
+    if (with_triangles)
+      text += fmt::format(", {} placed", counted(report.placed_triangles, "triangle"));
+    text += "\n";
   }
   for (const ExportedTree& tree : report.trees) {
-    text += fmt::format("{}: {}", shown(tree.name), counted(tree.triangles, "triangle"));
+    std::vector<std::string> parts;
+    if (with_triangles) parts.push_back(counted(tree.triangles, "triangle"));
     for (const BoxGroup& group : tree.boxes) {
-      text += fmt::format(", {}: {}", group.name(),
-                          group.count == 1 ? "1 box" : fmt::format("{} boxes", group.count));
+      parts.push_back(
+          fmt::format("{}: {}", group.name(),
+                      group.count == 1 ? "1 box" : fmt::format("{} boxes", group.count)));
     }
-    if (report.instances) {
-      text += fmt::format(", {}", counted(tree.instances, "instance"));
-    }
-    text += fmt::format("\n");
+    if (report.instances) parts.push_back(counted(tree.instances, "instance"));
+    text += fmt::format("{}: {}\n", shown(tree.name), fmt::join(parts, ", "));
   }
   return text;
 }
@@ -287,7 +290,7 @@ int run(const Arguments& arguments) {
   if (arguments.json) {
     print(report_json(arguments, *exported));
   } else if (!arguments.quiet) {
-    tell(*output, report_text(output->title(), *exported));
+    tell(*output, report_text(output->title(), *exported, options->triangles));
   }
   return 0;
 }

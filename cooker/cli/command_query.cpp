@@ -28,6 +28,7 @@
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/import/file_error.h"
+#include "cooker/text/nearest_name.h"
 #include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
@@ -367,11 +368,14 @@ class OptionFields {
 
   void shape(CastShape& shape) {
     command_.add_option("--sphere", shape.sphere, "The shape: a ball of this radius,")
-        ->type_name("R");
+        ->type_name("R")
+        ->one_is_needed();
     add_numbers("--capsule", "X,Y,Z,R", shape.capsule,
-                "or all within R of the segment from --at to --at + X,Y,Z,");
+                "or all within R of the segment from --at to --at + X,Y,Z,")
+        ->one_is_needed();
     add_numbers("--box", "HX,HY,HZ", shape.box,
-                "or a box that reaches so far from --at along each of its axes,");
+                "or a box that reaches so far from --at along each of its axes,")
+        ->one_is_needed();
     command_
         .add_parsed_option(
             "--hull",
@@ -382,7 +386,8 @@ class OptionFields {
             fmt::format("or the convex hull of the points of a mesh, at most {} of them",
                         kMaxHullPoints))
         ->type_name("MESH")
-        ->takes(Values::kMeshes);
+        ->takes(Values::kMeshes)
+        ->one_is_needed();
     add_numbers("--rotation", "X,Y,Z,W", shape.rotation,
                 "Of the box or the hull, a quaternion of any length [0,0,0,1]");
   }
@@ -399,9 +404,9 @@ class OptionFields {
     return "--" + key;
   }
   template <std::size_t kCount>
-  void add_numbers(const char* name, const std::string& form,
-                   std::optional<std::array<double, kCount>>& out, const char* help) {
-    command_
+  Option* add_numbers(const char* name, const std::string& form,
+                      std::optional<std::array<double, kCount>>& out, const char* help) {
+    return command_
         .add_parsed_option(
             name,
             [&out, form](const std::string& text) {
@@ -492,8 +497,12 @@ void add_query_command(Command& program, int& status) {
                   "echo '{\"kind\":\"point\",\"at\":[1,2,3]}' | boxtree query bunny.bxt --batch -");
   command.callback([&command, arguments, &status] {
     if (command.has_parsed_command()) return;
-    status = arguments->batch.empty() ? usage("query: a kind of query or --batch is required")
-                                      : run(*arguments, RequestDefaults());
+    if (arguments->batch.empty()) {
+      std::vector<std::string> kinds;
+      for (const Command* kind : command.commands()) kinds.push_back(kind->name());
+      refuse_without("a kind of query, " + listed(kinds) + ", or --batch");
+    }
+    status = run(*arguments, RequestDefaults());
   });
 }
 

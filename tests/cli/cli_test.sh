@@ -717,6 +717,15 @@ expect 0 "$boxtree" query ray --help
 grep -q '^Usage: boxtree query FILE ray --origin X,Y,Z --direction X,Y,Z \[OPTION...\]$' out
 expect 0 "$boxtree" query --help
 grep -q '^Usage: boxtree query FILE \[OPTION...\] KIND ...$' out
+# Found by a newcomer: neither did the usage line say that a shape is needed, nor a query without a kind which kinds there are.
+for kind in 'cast --at X,Y,Z --direction X,Y,Z' 'collide --at X,Y,Z'; do
+  expect 0 "$boxtree" query "${kind%% *}" --help
+  sed '/^$/q' out | tr -s ' \n' ' ' |
+    grep -qF "Usage: boxtree query FILE $kind (--sphere R | --capsule X,Y,Z,R | --box HX,HY,HZ | --hull MESH) [OPTION...]"
+done
+expect 1 "$boxtree" query cube.bxt
+same "$(cat err)" "boxtree: usage: query: a kind of query, ray, cast, collide, box, sphere, frustum, point, pair, distance, overlap or contacts, or --batch is required
+See 'boxtree query --help'."
 cp cube.bxt ray
 expect 0 "$boxtree" query ./ray ray --origin 0.25,0.5,5 --direction 0,0,-1
 misspelt "boxtree: usage: query ray: FILE is required
@@ -1295,6 +1304,10 @@ same "$(head -1 err)" 'boxtree: usage: export: --output: shown.stl: expected a n
 expect 1 "$boxtree" export cube.bxt
 expect 1 "$boxtree" export both.bxt -o shown.obj --tree 2
 expect 1 "$boxtree" export both.bxt -o shown.obj --tree nobody
+grep -q '^boxtree: tree_index: both.bxt: no tree is called "nobody"' err
+# Boxes alone have no triangles to count.
+expect 0 "$boxtree" export cube.bxt -o boxes.obj --boxes --levels 0
+same "$(tail -1 out)" 'cube: level 0: 1 box'
 expect 2 "$boxtree" export missing.bxt -o shown.obj
 expect 2 "$boxtree" export cube.bxt -o no/such/folder/shown.obj
 expect 3 "$boxtree" export cube.obj -o shown.obj
