@@ -101,6 +101,17 @@ done
 refused_filter 'a filter true for what may be hit' \
   'const auto mute = [](const boxtree::FaceRef&) {}; tree.filter = mute'
 
+refused_visitor 'must return bool: a visitor true to go on' \
+  'overlap_sphere(tree, boxtree::Sphere{{0, 0, 0}, 1}, [](const boxtree::FaceRef&) {})'
+# Nor is older C++ a page of templates.
+for header in $(sed '/^shape.h$/d;/^triangle.h$/d;/^kinds.h$/d;/^configuration.h$/d' <<<"$installed"); do
+  echo "#include <boxtree/$header>" >"$work/alone.cpp"
+  if "$compiler" -std=c++17 -I "$work/prefix/include" -isystem "$eigen" -fsyntax-only "$work/alone.cpp" 2>"$work/log"; then
+    fail "$header compiles as C++17"
+  fi
+  grep -m 1 'error: ' "$work/log" | grep -q 'boxtree needs C++20' || { cat "$work/log"; fail "$header: another error comes first"; }
+done
+
 # The component blob is found apart.
 mkdir "$work/blob"
 cat >"$work/blob/CMakeLists.txt" <<'CMAKE'

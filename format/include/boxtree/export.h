@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a shared library of the runtime exports: BOXTREE_API marks it. Stands for nothing elsewhere,
-// in archives and in programs.
+// in archives and in programs. Other public headers include it before they declare anything, so it
+// is the one that refuses older C++.
 #pragma once
+
+#if __cplusplus < 201709L  // what g++ 10 says of C++20
+#error "boxtree needs C++20: compile with -std=c++20, or link boxtree::runtime in CMake"
+#endif
 
 #ifdef BOXTREE_BUILDS_SHARED
 #define BOXTREE_API __attribute__((visibility("default")))
