@@ -54,7 +54,7 @@ Status check_header(const FileHeader& header, std::uint64_t file_size,
   }
   if ((header.incompatible_features & ~known_features) != 0) {
     return error_with(Errc::kFeatureUnsupported, {},
-                      "incompatible feature bits # (1: a blob, for open_blob())",
+                      "incompatible feature bits # (1: use open_blob())",
                       {header.incompatible_features});
   }
   if (header.section_count > kMaxSections) {
@@ -195,10 +195,9 @@ Result<Container> check_container(Bytes file, ChecksumFunction checksum,
   }
   if (const std::uint64_t whole = file_end(end); whole != file.size()) {
     const bool is_longer = whole < file.size();
-    return error_with(
-        Errc::kTruncated, {},
-        is_longer ? "the file has # bytes after its end" : "the file lacks # bytes at its end",
-        {is_longer ? file.size() - whole : whole - file.size()});
+    return error_with(Errc::kTruncated, {},
+                      is_longer ? "the file has # bytes after its end" : "the file lacks # bytes",
+                      {is_longer ? file.size() - whole : whole - file.size()});
   }
   return container;
 }

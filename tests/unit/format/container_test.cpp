@@ -188,7 +188,7 @@ TEST(Container, CutAtEveryByteAndPaddedItIsRefused) {
     ASSERT_FALSE(File::open(Bytes(bytes).first(size)).ok()) << size;
   }
   EXPECT_EQ(File::open(Bytes(bytes).first(bytes.size() - 8)).error().message(),
-            "truncated: the file lacks 8 bytes at its end");
+            "truncated: the file lacks 8 bytes");
   FileBytes longer = bytes;
   longer.resize(bytes.size() + 8);
   EXPECT_EQ(File::open(Bytes(longer)).error().message(),
