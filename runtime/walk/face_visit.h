@@ -3,7 +3,6 @@
 #pragma once
 
 #include "runtime/tree/bound_tree.h"
-#include "runtime/walk/read_leaf.h"
 #include "runtime/walk/traversal.h"
 #include "runtime/walk/work.h"
 
@@ -32,7 +31,8 @@ struct FaceWalk {
   }
 
   [[nodiscard]] bool leaf(NodeRef ref) {
-    error = read_leaf(tree, ref, batch);
+    // Not by read_leaf(), whose 8 KB of stack frustums in scenes do not have.
+    error = tree.leaves().read(ref.first, ref.second, batch);
     if (error != Errc::kOk) return false;
     std::uint32_t reported = kNoFaceId;
     for (std::uint32_t i = 0; i < batch.count; ++i) {
