@@ -43,8 +43,8 @@ while read -r name _; do
   fi
   grep -qE "(^|[^A-Za-z_])${name##*::} ?\(" "$work/headers" || fail "exports $name, which no public header declares"
 done <"$work/names"
-# And every function is marked that a public header declares, templates excepted, and exported.
-awk '!after_template && /^[A-Za-z[][^#;=]* [&*]?[a-z_]+\(/ && !/BOXTREE_API/ {print} {after_template = /^template/}' \
+# And every function is marked that a public header declares, but templates and inline ones, and exported.
+awk '!after_template && /^[A-Za-z[][^#;=]* [&*]?[a-z_]+\(/ && !/^inline / && !/BOXTREE_API/ {print} {after_template = /^template/}' \
   "$work/headers" >"$work/unmarked"
 [ ! -s "$work/unmarked" ] || fail "not marked with BOXTREE_API: $(cat "$work/unmarked")"
 marked=$(sed -nE 's/.*BOXTREE_API [^(]*[ &]([a-z_]+)\(.*/\1/p' "$work/headers" | sort -u)
