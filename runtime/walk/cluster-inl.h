@@ -82,9 +82,8 @@ class ClusterReader {
   /// Precondition: there are no quads among them.
   static HWY_INLINE bool find_numbers(const LeafTriangles& triangles,
                                       std::uint32_t (&out)[3][3][kMaxLeafTriangles]) {
-    // The corner of the source that the first one is here: StripStep, see LeafTriangles.
-    HWY_ALIGN static constexpr std::uint32_t kTurn[kWideChildren] = {0, 1, 2, 0, 1, 2, 0, 0};
-    const auto turn = permute(hn::Load(Words(), kTurn), hn::Load(Words(), triangles.step));
+    const auto turn =
+        permute(hn::Load(Words(), LeafTriangles::kTurn), hn::Load(Words(), triangles.step));
     const auto by_one = hn::Eq(turn, small(1)), by_two = hn::Eq(turn, small(2));
     const auto first = hn::Load(Words(), triangles.corner[0]);
     const auto second = hn::Load(Words(), triangles.corner[1]);

@@ -133,9 +133,10 @@ class LeafFloats {
 
 #if BOXTREE_HAS_EIGHT_LANES
   /// The exact triangles of all lanes, as LeafReader::read() gives them. False where that has to
-  /// read them: the leaf is in no cluster, or a coordinate is out of range.
+  /// read them: the leaf was not gathered, or a coordinate is out of range. Precondition: the tree
+  /// has clusters.
   [[nodiscard]] HWY_INLINE bool exact_triangles(TriangleBatch& out) const {
-    if (!is_direct_ || !reader_.has_clusters()) return false;
+    if (!is_direct_) return false;
     const LeafTriangles& leaf = leaf_->triangles;
     HWY_ALIGN std::uint32_t number[3][3][kMaxLeafTriangles];
     if (HWY_LIKELY(count_ == kLeafFaces && ClusterReader::find_numbers(leaf, number))) {

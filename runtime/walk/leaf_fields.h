@@ -137,15 +137,16 @@ struct LeafTriangles {
     return count == kLeafFaces ? 0 : of_quads[lane].half;
   }
 
+  /// Of each step: the corner of the source that the first one of the lane is.
+  alignas(32) static constexpr std::uint32_t kTurn[kLeafFaces] = {0, 1, 2, 0, 1, 2, 0, 0};
+  static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
+
   /// The references of the corners of lane `lane`, in the order of the source.
   BOXTREE_ALWAYS_INLINE void find_corners(std::uint32_t lane, std::uint32_t (&out)[3]) const {
     if (count != kLeafFaces) {
       for (std::size_t c = 0; c < 3; ++c) out[c] = of_quads[lane].reference[c];
       return;
     }
-    // The corner of the source that the first of the lane's is.
-    static constexpr std::uint8_t kTurn[] = {0, 1, 2, 0, 1, 2, 0, 0};
-    static_assert(kTurn[StripStep::kApart] == 0 && kTurn[StripStep::code(1, 2)] == 2);
     static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
     const std::uint8_t* const place = kNext + kTurn[step[lane]];
     out[place[0]] = corner[0][lane];
