@@ -31,17 +31,14 @@ Errc cast_ray(const BoundTree& tree, const Ray& ray, bool stop_at_first, QueryWo
   const Errc walked = walk_nearest(tree, query);
   if (walked != Errc::kOk) return walked;
   if (query.error != Errc::kOk) return query.error;
-  if (hit.is_hit) {
-    hit.t = parameter_of(ray, hit.t, query.parameter_exponent);
-    name(tree, hit.face);
-  }
+  query.finish(ray);
   return Errc::kOk;
 }
 
 namespace {
 
 // Whether the ray may hit a triangle that it meets, from the side that it meets.
-bool admits_side(const RayQuery& query, const Triangle& triangle) noexcept {
+bool admits_side(const RayTest& query, const Triangle& triangle) noexcept {
   const BackFaces back_faces = query.wishes->faces.options->back_faces;
   return back_faces == BackFaces::kHit ||
          meets_front(query.shear, triangle) == (back_faces == BackFaces::kIgnore);
@@ -49,7 +46,7 @@ bool admits_side(const RayQuery& query, const Triangle& triangle) noexcept {
 
 }  // namespace
 
-bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
+bool meet_wishes(RayTest& query, RayCandidate& candidate) noexcept {
   FaceWishes& faces = query.wishes->faces;
   if (faces.stopped || !admits_side(query, candidate.triangle)) return false;
   const std::uint32_t index = candidate.face.index;
@@ -63,9 +60,7 @@ bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept {
   return false;
 }
 
-namespace {
-
-RayHit described(const BoundTree& tree, const RayCandidate& hit) {
+RayHit described(const BoundTree& tree, const RayCandidate& hit) noexcept {
   return {hit.t,
           hit.face,
           hit.half,
@@ -74,6 +69,8 @@ RayHit described(const BoundTree& tree, const RayCandidate& hit) {
           tree.frame().to_object(hit.point()),
           unit_normal(hit.triangle)};
 }
+
+namespace {
 
 RayResult hit_on(const Tree& queried, const Ray& ray, bool stop_at_first, const QueryLimits& limits,
                  RayWishes* wishes = nullptr) {
@@ -116,7 +113,7 @@ Result<Visit> all_hits(const Tree& queried, const Ray& ray, RayVisitor visitor,
   const DefaultFloatState state;
   const BoundTree& tree = BoundTree::of(queried);
   QueryWork work(options.limits);
-  const auto visit = [&](const RayQuery& query, const RayCandidate& found) {
+  const auto visit = [&](const RayTest& query, const RayCandidate& found) {
     RayCandidate hit = found;
     hit.t = parameter_of(ray, found.t, query.parameter_exponent);
     return RayInTree::scaled(visitor(described(tree, hit)), query.parameter_exponent);

@@ -19,18 +19,22 @@ namespace boxtree {
 /// + s of the query. Boxes are widened by `error` on every side, which bounds, on every axis, how
 /// far a coordinate relative to the ray can be off.
 struct RayBoxFilter {
+  /// Of the reciprocals: not so large that a plane's parameter overflows, but large enough that a
+  /// ray parallel to a slab, and inside it by at least `error`, leaves it beyond the root box.
+  static constexpr double kLargestInverse = 0x1p60;
+  /// See given_away().
+  static constexpr double kGivenAway = 128 * kRoundoffF64;
+
+  RayBoxFilter() noexcept = default;  // unspecified
   /// `slab`: of the same ray; its direction is scaled as in RayQuery. `bound`: of the error.
   RayBoxFilter(const RaySlab& slab, const AxisLanes& query_origin, const AxisLanes& direction,
                double query_start, double bound) noexcept
       : start(query_start), error(float_above(bound)) {
-    // Not so large that a plane's parameter overflows, but large enough that a ray parallel to a
-    // slab, and inside it by at least `error`, leaves it beyond the root box.
-    constexpr double kLargest = 0x1p60;
     // One loop per operation, so that each is vectorised.
     AxisLanes from, within;
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       from[k] = query_origin[k] + start * direction[k];
-      within[k] = std::max(std::min(slab.inverse()[k], kLargest), -kLargest);
+      within[k] = std::max(std::min(slab.inverse()[k], kLargestInverse), -kLargestInverse);
     }
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) origin[k] = static_cast<float>(from[k]);
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) inverse[k] = static_cast<float>(within[k]);
@@ -62,7 +66,7 @@ struct RayBoxFilter {
   }
   /// By how much the query's own tests widen boxes, see RaySlab: eight times its margin.
   [[nodiscard]] static double given_away(double origin_max_abs, double max_abs) noexcept {
-    return 128 * kRoundoffF64 * (origin_max_abs + max_abs);
+    return kGivenAway * (origin_max_abs + max_abs);
   }
 
   /// The largest parameter of the filter that a hit not beyond `t` can have.
@@ -89,19 +93,24 @@ struct RayFilter : RayBoxFilter {
   /// Whether single precision resolves the parts of a tree for this ray: not from so far away that
   /// double precision hardly does. Elsewhere `error` is below a thousandth of max_abs, and no
   /// parameter overflows.
-  [[nodiscard]] static bool is_near(const RayQuery& query) noexcept {
-    return query.origin_max_abs <= 0x1p30 * query.tree.largest_abs();
+  [[nodiscard]] static bool is_near(const RayTest& query) noexcept {
+    return query.origin_max_abs <= farthest_origin(query.tree);
+  }
+  [[nodiscard]] static double farthest_origin(const BoundTree& tree) noexcept {
+    return 0x1p30 * tree.largest_abs();
   }
 
+  RayFilter() noexcept = default;  // unspecified
+
   /// Precondition: is_near(query), which enters the root box.
-  explicit RayFilter(const RayQuery& query) noexcept : RayFilter(query, query.tree.largest_abs()) {}
+  explicit RayFilter(const RayTest& query) noexcept : RayFilter(query, query.tree.largest_abs()) {}
 
   alignas(16) Lanes margins;  // of both planes of an axis
   std::size_t axis_x, axis_y, axis_z;
   float shear_x, shear_y, shear_z;
 
  private:
-  RayFilter(const RayQuery& query, double max_abs) noexcept
+  RayFilter(const RayTest& query, double max_abs) noexcept
       : RayBoxFilter(
             query.slab, query.origin, query.direction, std::max(query.enter, query.t_min),
             rounding(max_abs, query.tree.depth()) + given_away(query.origin_max_abs, max_abs)) {
@@ -114,5 +123,23 @@ struct RayFilter : RayBoxFilter {
     shear_z = static_cast<float>(query.shear.shear_z);  // at most 2: the direction was scaled
   }
 };
+
+/// A ray on a walk of its own, whose exact tests are prepared when the first triangle needs them.
+struct FilteredRay {
+  const RayFilter& filter;
+  double t_max;
+  WalkBound& nodes;
+  FunctionRef<RayTest&()> prepare;
+  RayTest* test = nullptr;  // once it is prepared
+
+  [[nodiscard]] RayTest& prepared() {
+    if (test == nullptr) test = &prepare();
+    return *test;
+  }
+};
+
+/// Walks a tree by vectors. Precondition: the tree has wide and float nodes; the ray enters its
+/// root box. Errors: those of a walk, and of leaves.
+Errc walk_wide(const BoundTree& tree, FilteredRay& ray);
 
 }  // namespace boxtree

@@ -101,30 +101,35 @@ struct RayInTree {
   }
 };
 
-struct RayQuery;
+/// Converts a parameter of the query to one of the ray. Clamped to the ray's own interval, as
+/// conversion may underflow, for example for a subnormal direction.
+[[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {
+  return std::clamp(RayInTree::scaled(scaled, -exponent), ray.t_min, ray.t_max);
+}
+
+struct RayTest;
 
 /// What a caller wants besides the closest or any hit of any face.
 struct RayWishes {
   /// Whether the candidate is to be kept, with a face that is wanted. Where all hits are, visits
   /// it. A pointer, so that programs that have no wishes do not link it.
-  using Meet = bool(RayQuery& query, RayCandidate& candidate) noexcept;
+  using Meet = bool(RayTest& ray, RayCandidate& candidate) noexcept;
   /// Receives every hit, named; returns the largest parameter that is still of interest, or a
   /// negative number to stop.
-  using Visitor = FunctionRef<double(const RayQuery& query, const RayCandidate& found)>;
+  using Visitor = FunctionRef<double(const RayTest& ray, const RayCandidate& found)>;
 
   FaceWishes faces;
   Meet* meet;
   const Visitor* all = nullptr;  // null: one hit is wanted
 };
 
-/// A query of traverse_nearest. `best` receives the answer, without the id of its face; it holds no
-/// hit yet.
-struct RayQuery : RayInTree {
-  RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
-           bool stop_at_first, RayCandidate& best, RayWishes* ray_wishes = nullptr) noexcept
+/// A ray that is tested against the triangles of one tree. `best` receives the answer, without the
+/// id of its face; it holds no hit yet.
+struct RayTest : RayInTree {
+  RayTest(const BoundTree& queried, const Ray& ray, int direction_exponent, bool stop_at_first,
+          RayCandidate& best, RayWishes* ray_wishes = nullptr) noexcept
       : RayInTree(queried, ray, direction_exponent),
         tree(queried),
-        nodes(bound),
         any(stop_at_first),
         hit(best),
         wishes(ray_wishes) {}
@@ -133,20 +138,11 @@ struct RayQuery : RayInTree {
   /// Call it before any walk.
   [[nodiscard]] bool enters_root() noexcept {
     if (!meets(tree.root_lanes())) return false;
-    shear = RayShear(origin, direction, slab.inverse());
+    prepare();
     return true;
   }
-
-  [[nodiscard]] double bound() const noexcept { return t_max; }
-
-  [[nodiscard]] bool leaf(NodeRef ref) noexcept {
-    error = tree.leaves().read(ref.first, ref.second, batch);
-    if (error != Errc::kOk) return false;
-    for (std::uint32_t i = 0; i < batch.count; ++i) {
-      test(batch.triangle(i), batch.face[i], half_of_face(batch, i));
-    }
-    return !is_done();
-  }
+  /// The same for a ray that is known to.
+  void prepare() noexcept { shear = RayShear(origin, direction, slab.inverse()); }
 
   /// Whether no other triangle can matter.
   [[nodiscard]] bool is_done() const noexcept {
@@ -174,13 +170,39 @@ struct RayQuery : RayInTree {
     t_max = t;
   }
 
+  /// Puts the hit, if there is one, in terms of the caller's ray.
+  void finish(const Ray& ray) noexcept {
+    if (!hit.is_hit) return;
+    hit.t = parameter_of(ray, hit.t, parameter_exponent);
+    name(tree, hit.face);
+  }
+
   const BoundTree& tree;
-  WalkBound& nodes;
   RayShear shear;
   bool any;
   RayCandidate& hit;
   RayWishes* wishes;
   Errc error = Errc::kOk;
+};
+
+/// A query of traverse_nearest.
+struct RayQuery : RayTest {
+  RayQuery(const BoundTree& queried, const Ray& ray, int direction_exponent, WalkBound& bound,
+           bool stop_at_first, RayCandidate& best, RayWishes* ray_wishes = nullptr) noexcept
+      : RayTest(queried, ray, direction_exponent, stop_at_first, best, ray_wishes), nodes(bound) {}
+
+  [[nodiscard]] double bound() const noexcept { return t_max; }
+
+  [[nodiscard]] bool leaf(NodeRef ref) noexcept {
+    error = tree.leaves().read(ref.first, ref.second, batch);
+    if (error != Errc::kOk) return false;
+    for (std::uint32_t i = 0; i < batch.count; ++i) {
+      test(batch.triangle(i), batch.face[i], half_of_face(batch, i));
+    }
+    return !is_done();
+  }
+
+  WalkBound& nodes;
   TriangleBatch batch;
 };
 
@@ -188,13 +210,7 @@ struct RayQuery : RayInTree {
 Errc walk_wide(const BoundTree& tree, RayQuery& query);
 
 /// The RayWishes::Meet of callers that have any.
-[[nodiscard]] bool meet_wishes(RayQuery& query, RayCandidate& candidate) noexcept;
-
-/// Converts a parameter of the query to one of the ray. Clamped to the ray's own interval, as
-/// conversion may underflow, for example for a subnormal direction.
-[[nodiscard]] inline double parameter_of(const Ray& ray, double scaled, int exponent) noexcept {
-  return std::clamp(RayQuery::scaled(scaled, -exponent), ray.t_min, ray.t_max);
-}
+[[nodiscard]] bool meet_wishes(RayTest& ray, RayCandidate& candidate) noexcept;
 
 /// The field of a ray that is not valid: the direction, whose largest component is `length`, unless
 /// it is finite and not zero, or an end of the interval; null if there is none. The origin is
@@ -219,6 +235,9 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query);
   static_cast<void>(std::frexp(length, &exponent));
   return exponent;
 }
+
+/// What a caller is told of a hit with t in the ray's own parameters.
+[[nodiscard]] RayHit described(const BoundTree& tree, const RayCandidate& hit) noexcept;
 
 /// closest_hit or any_hit for callers that have set the floating-point state. `hit`: the answer,
 /// with t in the ray's own parameters.

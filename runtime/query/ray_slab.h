@@ -39,13 +39,14 @@ struct SlabInterval {
 /// smaller parameter: no sign is needed.
 class RaySlab {
  public:
+  /// A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
+  /// zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
+  static constexpr double kHuge = 0x1p1000;
+
   /// `origin_max_abs` and `max_abs`: largest absolute coordinate of the origin and of any box,
   /// on all axes.
   RaySlab(const AxisLanes& origin, double origin_max_abs, const AxisLanes& direction,
           double max_abs) noexcept {
-    // A zero (or nearly zero) component gets a huge finite reciprocal instead of an infinite one:
-    // zero times it is zero, not NaN, so a ray inside or on a slab passes and one outside does not.
-    constexpr double kHuge = 0x1p1000;
     const double margin = 8 * kRoundoffF64 * (origin_max_abs + power_above(max_abs));
     for (std::size_t k = 0; k < AxisLanes::kCount; ++k) {
       inverse_[k] = std::max(-kHuge, std::min(kHuge, 1 / direction[k]));

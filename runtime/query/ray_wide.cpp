@@ -12,7 +12,7 @@
 // Highway's headers must come after foreach_target.h.
 #include <hwy/highway.h>
 
-#include "runtime/walk/leaf-inl.h"
+#include "runtime/query/ray_triangles-inl.h"
 #include "runtime/walk/prefetch-inl.h"
 #include "runtime/walk/traversal_stack-inl.h"
 
@@ -23,6 +23,10 @@ namespace {
 #if HWY_TARGET == HWY_SCALAR
 Errc walk_ray(const BoundTree& tree, RayQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+// Not called: without vectors no ray is filtered.
+Errc walk_filtered(const BoundTree&, FilteredRay&) {
+  return Errc::kInternal;
 }
 #else
 // The children of an open node along the ray: the parameters of their planes. They are computed
@@ -36,94 +40,46 @@ struct RayChildren {
 // The leaves that a ray intersects: the same for both codecs, and compiled once.
 class RayLeaves {
  public:
-  RayLeaves(const BoundTree& tree, RayQuery& query, const RayFilter& filter)
-      : query_(query), filter_(filter), leaf_(tree), bound_(filter.bound(query.t_max)) {}
+  RayLeaves(const BoundTree& tree, FilteredRay& ray)
+      : ray_(ray), leaf_(tree), bound_(ray.filter.bound(ray.t_max)) {}
 
   /// Parameters above it cannot improve the answer.
   [[nodiscard]] float bound() const { return bound_; }
 
-  /// Whether to go on.
+  /// Whether to go on; if not, because of error().
   HWY_NOINLINE bool visit(std::uint32_t first, std::uint32_t count) {
-    if (!leaf_.load(first, count)) {
-      query_.error = leaf_.error();
+    const auto test = [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+      ray_.prepared().test(triangle, face, half);
+    };
+    if (!leaf_.load(first, count) || !test_triangles(leaf_, ray_.filter, bound_, test)) {
+      error_ = leaf_.error();
       return false;
     }
-    for (std::size_t group = 0; group < leaf_.groups(); ++group) {
-      std::uint32_t near = 0;
-      for (std::size_t part = 0; part < kParts; ++part) {
-        near |= ~missed(group, part) << (part * kLanes);
-      }
-      near &= leaf_.lanes(group);
-      for (; near != 0; near &= near - 1) {
-        const auto lane = static_cast<std::uint32_t>(group * kWideChildren) +
-                          static_cast<std::uint32_t>(std::countr_zero(near));
-        if (!leaf_.with_triangle(
-                lane, [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
-                  query_.test(triangle, face, half);
-                })) {
-          query_.error = leaf_.error();
-          return false;
-        }
-      }
-    }
-    bound_ = filter_.bound(query_.t_max);
-    return !query_.is_done();
+    if (ray_.test == nullptr) return true;
+    bound_ = ray_.filter.bound(ray_.test->t_max);
+    return !ray_.test->is_done();
   }
+
+  /// Of the last leaf.
+  [[nodiscard]] Errc error() const { return error_; }
 
  private:
-  // Bit i: the ray misses triangle i provably. The test of triangle_ray.h in float: an area of
-  // corners at most `size` from the ray, each coordinate off by at most 3 error, is off by less
-  // than 8 (size + 3 error) 3 error.
-  HWY_INLINE std::uint32_t missed(std::size_t group, std::size_t part) const {
-    const Floats d;
-    FloatVector x[3], y[3];
-    FloatVector size = hn::Zero(d);
-    FloatVector first = hn::Zero(d), last = hn::Zero(d);
-    for (std::size_t c = 0; c < 3; ++c) {
-      const FloatVector z = hn::Sub(leaf_.at(c, filter_.axis_z, group, part),
-                                    hn::Set(d, filter_.origin[filter_.axis_z]));
-      x[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_x), z,
-                           hn::Sub(leaf_.at(c, filter_.axis_x, group, part),
-                                   hn::Set(d, filter_.origin[filter_.axis_x])));
-      y[c] = hn::NegMulAdd(hn::Set(d, filter_.shear_y), z,
-                           hn::Sub(leaf_.at(c, filter_.axis_y, group, part),
-                                   hn::Set(d, filter_.origin[filter_.axis_y])));
-      size = hn::Max(size, hn::Max(hn::Abs(x[c]), hn::Abs(y[c])));
-      const FloatVector depth = hn::Mul(z, hn::Set(d, filter_.shear_z));
-      first = c == 0 ? depth : hn::Min(first, depth);
-      last = c == 0 ? depth : hn::Max(last, depth);
-    }
-    const auto area = [&](std::size_t from, std::size_t to) {
-      return hn::MulSub(x[from], y[to], hn::Mul(y[from], x[to]));
-    };
-    const FloatVector a = area(2, 1), b = area(0, 2), c = area(1, 0);
-    const FloatVector error = hn::Set(d, 3 * filter_.error);
-    const FloatVector doubt = hn::Mul(hn::Mul(hn::Set(d, 8.0f), error), hn::Add(size, error));
-    const FloatVector smallest = hn::Min(a, hn::Min(b, c));
-    const FloatVector largest = hn::Max(a, hn::Max(b, c));
-    const auto apart = hn::And(hn::Gt(largest, doubt), hn::Lt(smallest, hn::Neg(doubt)));
-    const auto beyond = hn::Or(hn::Gt(first, hn::Add(hn::Set(d, bound_), error)),
-                               hn::Lt(last, hn::Neg(hn::Add(error, error))));
-    return bits_of(hn::Or(apart, beyond));
-  }
-
-  RayQuery& query_;
-  const RayFilter& filter_;
+  FilteredRay& ray_;
   LeafFloats leaf_;
   float bound_;
+  Errc error_ = Errc::kOk;
 };
 
 template <class Node>
 class RayWalk {
  public:
-  RayWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query,
-          const RayFilter& filter)
+  RayWalk(const BoundTree& tree, const WideCodec<Node>& codec, FilteredRay& ray)
       : codec_(codec),
-        query_(query),
-        filter_(filter),
+        ray_(ray),
+        filter_(ray.filter),
         prefetch_(tree, codec),
         is_large_(codec.node_count > kLargeTree),
-        leaves_(tree, query, filter) {}
+        leaves_(tree, ray) {}
 
   // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
   // child. Pending children belong to nodes on the path to the current one, each at another depth.
@@ -147,7 +103,7 @@ class RayWalk {
     for (;;) {
       const NodeView<Node> node(codec_, number);
       const WideLinks links = node.links();
-      const Errc error = query_.nodes.count(check_links(codec_, number, links));
+      const Errc error = ray_.nodes.count(check_links(codec_, number, links));
       if (error != Errc::kOk) return error;
       if (at.depth + 1 == open_.size()) return Errc::kDepthExceeded;
       RayChildren& children = open_[at.depth + 1];
@@ -162,7 +118,9 @@ class RayWalk {
         const std::uint32_t i = take_smallest(leaves, enter);
         if (enter[i] > leaves_.bound()) break;
         const std::uint32_t face = first_face(links, i);
-        if (!leaves_.visit(face, std::min(kLeafFaces, codec_.face_count - face))) return Errc::kOk;
+        if (!leaves_.visit(face, std::min(kLeafFaces, codec_.face_count - face))) {
+          return leaves_.error();
+        }
       }
       const std::uint32_t inner = passing & links.inner_mask;
       if (std::popcount(inner) > 2) {
@@ -219,7 +177,7 @@ class RayWalk {
   }
 
   const WideCodec<Node>& codec_;
-  RayQuery& query_;
+  FilteredRay& ray_;
   const RayFilter& filter_;
   // Smaller trees are in the caches: there, requesting what comes next costs mispredicted branches
   // and gains nothing. 4096 nodes are some 200 000 triangles.
@@ -233,12 +191,19 @@ class RayWalk {
 };
 
 template <class Node>
-Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, RayQuery& query) {
-  return RayWalk<Node>(tree, codec, query, RayFilter(query)).run(tree.root_lanes());
+Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, FilteredRay& ray) {
+  return RayWalk<Node>(tree, codec, ray).run(tree.root_lanes());
+}
+
+Errc walk_filtered(const BoundTree& tree, FilteredRay& ray) {
+  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, ray); });
 }
 
 Errc walk_ray(const BoundTree& tree, RayQuery& query) {
-  return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
+  const RayFilter filter(query);
+  const auto itself = [&]() -> RayTest& { return query; };
+  FilteredRay ray{filter, query.t_max, query.nodes, itself, &query};
+  return walk_filtered(tree, ray);
 }
 #endif
 
@@ -253,6 +218,7 @@ namespace boxtree {
 namespace {
 
 BOXTREE_EXPORT(walk_ray);
+BOXTREE_EXPORT(walk_filtered);
 
 }  // namespace
 
@@ -260,6 +226,10 @@ Errc walk_wide(const BoundTree& tree, RayQuery& query) {
   if (tree.has_float_nodes() && RayFilter::is_near(query))
     return BOXTREE_DISPATCH(walk_ray)(tree, query);
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+
+Errc walk_wide(const BoundTree& tree, FilteredRay& ray) {
+  return BOXTREE_DISPATCH(walk_filtered)(tree, ray);
 }
 
 }  // namespace boxtree

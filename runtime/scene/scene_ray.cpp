@@ -94,7 +94,7 @@ Errc cast_with_wishes(SceneRayQuery& query, std::uint32_t instance,
   const SceneRayWishes& wishes = *query.wishes;
   const OptionsOfInstance options(wishes.options, instance);
   RayWishes of_tree{{*placed.tree, &options.of_tree()}, &meet_wishes};
-  const auto visit = [&](const RayQuery& in_tree, const RayCandidate& hit) {
+  const auto visit = [&](const RayTest& in_tree, const RayCandidate& hit) {
     RayCandidate in_scene = hit;
     in_scene.t = parameter_of(ray, hit.t, in_tree.parameter_exponent);
     const double to = RayInTree::scaled(
