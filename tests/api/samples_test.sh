@@ -38,6 +38,19 @@ t 9.5, normal (0, 0, 1)
 goal at x 2.5: hidden
 goal at x -2: seen
 END
+# Columns at x = -4.5, -3.5, ...: the floor ends at 4; the lower plate is left free from x = 1 to 2 alone.
+prints ray_batch level.bxt <<'END'
+    -    -    -    -    -    -    -    -    -    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.25 0.50 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.25 0.50 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    - 0.00 0.00 0.00 0.00 0.00 0.00 0.00 0.00    -
+    -    -    -    -    -    -    -    -    -    -
+END
 # Both halves of the upper plate meet below the ball's center, 0.25 above it.
 prints collide level.bxt <<'END'
 2 triangles, of one point 1

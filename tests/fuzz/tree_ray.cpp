@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Rays and segments against the tree of any file: the closest hit, any, all, and the nearest.
+// Rays and segments against the tree of any file: the closest hit, any, all, the nearest, and those
+// of batches.
 #include <array>
 
 #include "tests/fuzz/answers.h"
@@ -37,6 +38,36 @@ void hit_all(const Tree& tree, const Ray& ray, const QueryInput& query, const Ch
   if (*count > 0 && nearest[0].t != closest->t) finding("the nearest hit is not the closest");
 }
 
+// The ray among others that go the same way.
+void hit_many(const Tree& tree, const Ray& ray, const QueryInput& query, const Check& check) {
+  std::array<Ray, 20> rays;
+  rays.fill(ray);
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i].origin[i % 3] += static_cast<double>(i / 3) * query.number(8);
+  }
+  std::array<RayResult, 20> results;
+  const std::size_t count = 1 + query.option(3) % rays.size();
+  const auto some = std::span(results).first(count);
+  for (const bool any : {false, true}) {
+    const auto asked = std::span(rays).first(count);
+    const Status cast = any ? any_hits(tree, asked, some, query.limits())
+                            : closest_hits(tree, asked, some, query.limits());
+    if (!cast.ok()) {
+      finding("a batch with as many results as rays was refused");
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      check(some[i]);
+      if (some[i]) check_hit(*some[i], check);
+      const RayResult alone =
+          any ? any_hit(tree, rays[i], query.limits()) : closest_hit(tree, rays[i], query.limits());
+      check.holds(alone.code() == some[i].code() && alone.has_value() == some[i].has_value() &&
+                      alone->t == some[i]->t && alone->face.index == some[i]->face.index &&
+                      alone->triangle == some[i]->triangle,
+                  "a ray of a batch is answered unlike the same ray alone");
+    }
+  }
+}
+
 }  // namespace
 
 void run(Bytes input) {
@@ -45,6 +76,7 @@ void run(Bytes input) {
     if (query.option(1) % 2 == 1) ray.t_min = query.number(6);
     if (query.option(1) % 4 >= 2) ray.t_max = query.number(7);
     if (query.option(1) % 8 >= 4) return hit_all(tree, ray, query, check);
+    if (query.option(1) % 16 >= 8) hit_many(tree, ray, query, check);
     const auto closest = closest_hit(tree, ray, query.limits());
     const auto any = any_hit(tree, ray, query.limits());
     check(closest);

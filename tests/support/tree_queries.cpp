@@ -27,6 +27,19 @@ Outcome outcome_of_visit(const RunQuery& run_query) {
 double distance_of(const RayHit& hit) {
   return hit.t;
 }
+// The ray several times, beside others; of the last.
+template <class Batch>
+Outcome outcome_of_batch(const Batch& batch, const Tree& tree, const Ray& ray,
+                         const QueryLimits& limits) {
+  std::array<Ray, 20> rays;
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    rays[i] = ray;
+    rays[i].origin[0] += 0.01 * static_cast<double>(rays.size() - 1 - i);
+  }
+  std::array<RayResult, 20> results;
+  const Status status = batch(tree, rays, results, limits);
+  return status.ok() ? outcome(results.back(), distance_of) : Outcome{status.error().code, 0};
+}
 double t_of(const CastHit& hit) {
   return hit.t;
 }
@@ -58,6 +71,16 @@ std::vector<TreeQuery> tree_queries(const QuerySet& q) {
       {"any_hit", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
          return outcome(any_hit(tree, q.ray, limits), distance_of);
+       }},
+      {"closest_hits", 96, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_batch([](auto&... a) { return closest_hits(a...); }, tree, q.ray,
+                                 limits);
+       }},
+      {"any_hits", 96, false, true,
+       [=](const Tree& tree, const Tree&, const QueryLimits& limits) {
+         return outcome_of_batch([](auto&... a) { return any_hits(a...); }, tree, q.ray,
+                                 limits);
        }},
       {"all_hits", 64, false, true,
        [=](const Tree& tree, const Tree&, const QueryLimits& limits) {

@@ -7,6 +7,7 @@
 #include <boxtree/file.h>
 #if BOXTREE_HAS_RAY_QUERIES
 #include <boxtree/ray.h>
+#include <boxtree/ray_batch.h>
 #endif
 #if BOXTREE_HAS_CAST_QUERIES
 #include <boxtree/cast.h>

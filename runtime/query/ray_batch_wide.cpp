@@ -1,0 +1,396 @@
+// SPDX-License-Identifier: MIT
+// Batches of rays over the wide codecs. Rays go through a tree in packets: a node or leaf is
+// decoded once for all rays of a packet that reach it; each ray then meets eight boxes or triangles
+// side by side, as a ray alone does. The closest hit of a ray does not depend on the order of a
+// walk, so answers are those of rays alone; any hit does, so those rays are walked one by one.
+#include <bit>
+#include <optional>
+
+#include "runtime/query/ray_batch_query.h"
+#include "runtime/query/ray_filter.h"
+#include "runtime/walk/targets.h"
+#include "runtime/walk/walk_tree.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "runtime/query/ray_batch_wide.cpp"
+#include <hwy/foreach_target.h>
+// Highway's headers must come after foreach_target.h.
+#include <hwy/highway.h>
+
+#include "runtime/query/ray_set_up-inl.h"
+#include "runtime/query/ray_triangles-inl.h"
+#include "runtime/walk/prefetch-inl.h"
+#include "runtime/walk/traversal_stack-inl.h"
+
+HWY_BEFORE_NAMESPACE();
+namespace boxtree::HWY_NAMESPACE {
+namespace {
+
+#if HWY_TARGET == HWY_SCALAR
+void walk_batch(RayBatch& batch) {
+  for (std::size_t i = 0; i < batch.rays.size(); ++i) batch.answer_alone(i);
+}
+#else
+// A set of rays of a packet: bit r is ray r.
+using RaySet = std::uint32_t;
+constexpr std::uint32_t kMostRays = 16;
+static_assert(kMostRays % kWideChildren == 0 && kMostRays < 32);
+
+// The rays of a packet that go to a child. Bit c of byte r: ray r goes to child c.
+HWY_INLINE RaySet rays_through(const std::uint8_t* children_of_ray, std::uint32_t child) {
+  RaySet rays = 0;
+  for (std::uint32_t first = 0; first < kMostRays; first += 8) {
+    constexpr std::uint64_t kLowest = 0x0101010101010101u;
+    // Moves bit 8 j to bit 56 + j; no two bits of the product meet.
+    constexpr std::uint64_t kGather = 0x0102040810204080u;
+    const auto bytes =
+        load<std::uint64_t>(reinterpret_cast<const std::byte*>(children_of_ray + first));
+    rays |= static_cast<RaySet>((((bytes >> child) & kLowest) * kGather) >> 56) << first;
+  }
+  return rays;
+}
+
+// What a ray needs to meet boxes. It meets plane p of an axis at p * inverse + offset; the near and
+// the far plane of a box each have an offset that widens the box.
+struct PacketRay {
+  float inverse[3];
+  float near_offset[3];
+  float far_offset[3];
+  std::uint32_t near_high[3];  // 1: the high plane is near
+};
+
+// The rays that are in flight, and what of them does not depend on the codec.
+class RayPacket {
+ public:
+  explicit RayPacket(RayBatch& batch) : batch_(batch), leaf_(batch.tree) {}
+
+  [[nodiscard]] bool is_full() const { return count_ == kMostRays; }
+  [[nodiscard]] RaySet all() const { return (1u << count_) - 1; }
+
+  // Adds ray i of the batch, which is ray `lane` of those that were set up and enters the root.
+  void add(std::size_t i, const RaySetUp& set_up, std::uint32_t lane) {
+    const std::uint32_t r = count_++;
+    index_[r] = i;
+    RayFilter& filter = filters_[r];
+    set_up.get(lane, filter);
+    PacketRay& ray = rays_[r];
+    for (std::size_t k = 0; k < 3; ++k) {
+      const float offset = -filter.origin[k] * filter.inverse[k];
+      ray.inverse[k] = filter.inverse[k];
+      ray.near_offset[k] = offset - filter.margin[k];
+      ray.far_offset[k] = offset + filter.margin[k];
+      ray.near_high[k] = filter.near_high[k];
+    }
+    t_max_[r] = set_up.t_max(lane);
+    bound_[r] = filter.bound(t_max_[r]);
+    hits_[r].is_hit = false;
+  }
+
+  // Walks the tree with each ray by itself.
+  void walk_alone() {
+    for (std::uint32_t r = 0; r < count_; ++r) {
+      WalkBound nodes(batch_.tree.node_count());
+      const auto prepare = [&]() -> RayTest& { return prepared(r); };
+      FilteredRay ray{filters_[r], t_max_[r], nodes, prepare};
+      answer(r, walk_wide(batch_.tree, ray));
+    }
+    count_ = 0;
+  }
+
+  // Every ray's answer, once the walk is over. `walked`: its error, which any of them may have come
+  // upon.
+  void answer(Errc walked) {
+    for (std::uint32_t r = 0; r < count_; ++r) answer(r, walked);
+    count_ = 0;
+  }
+
+  // Those of the rays whose bound is not below `key`.
+  HWY_INLINE RaySet before_bound(RaySet rays, float key) const {
+    const Floats d;
+    RaySet left = 0;
+    for (std::size_t r = 0; r < kMostRays; r += kLanes) {
+      left |= bits_of(hn::Ge(hn::Load(d, bound_ + r), hn::Set(d, key))) << r;
+    }
+    return rays & left;
+  }
+
+  // Bit c: one of `rays` meets child c before its bound; at the earliest at least[c].
+  HWY_INLINE std::uint32_t meet(const ChildBoxes& boxes, RaySet rays, std::uint8_t* children_of_ray,
+                                float* least) {
+    const Floats d;
+    FloatVector key[kParts];
+    for (std::size_t part = 0; part < kParts; ++part) {
+      key[part] = hn::Set(d, std::numeric_limits<float>::infinity());
+    }
+    std::uint32_t passing = 0;
+    const float* const planes = &boxes.low[0][0];
+    constexpr std::size_t kSide = sizeof(boxes.low) / sizeof(float);
+    static_assert(offsetof(ChildBoxes, high) == sizeof(boxes.low));
+    for (; rays != 0; rays &= rays - 1) {
+      const auto r = static_cast<std::uint32_t>(std::countr_zero(rays));
+      const PacketRay& ray = rays_[r];
+      std::uint32_t bits = 0;
+      for (std::size_t part = 0; part < kParts; ++part) {
+        FloatVector enter = hn::Zero(d);
+        FloatVector leave = hn::Set(d, bound_[r]);
+        for (std::size_t k = 0; k < 3; ++k) {
+          const float* const axis = planes + k * kWideChildren + part * kLanes;
+          const FloatVector inverse = hn::Set(d, ray.inverse[k]);
+          enter = hn::Max(enter, hn::MulAdd(hn::Load(d, axis + ray.near_high[k] * kSide), inverse,
+                                            hn::Set(d, ray.near_offset[k])));
+          leave = hn::Min(leave, hn::MulAdd(hn::Load(d, axis + (1 - ray.near_high[k]) * kSide),
+                                            inverse, hn::Set(d, ray.far_offset[k])));
+        }
+        const auto meets = hn::Le(enter, leave);
+        key[part] = hn::Min(key[part], hn::IfThenElse(meets, enter, key[part]));
+        hn::Store(enter, d, enter_[r] + part * kLanes);
+        bits |= bits_of(meets) << (part * kLanes);
+      }
+      children_of_ray[r] = static_cast<std::uint8_t>(bits);
+      passing |= bits;
+    }
+    for (std::size_t part = 0; part < kParts; ++part) {
+      hn::Store(key[part], d, least + part * kLanes);
+    }
+    return passing;
+  }
+
+  // The leaf that is child `child` of the node that `rays` met last.
+  HWY_NOINLINE Errc visit_leaf(std::uint32_t first, std::uint32_t count, RaySet rays,
+                               std::uint32_t child) {
+    if (!leaf_.load(first, count)) return leaf_.error();
+    for (; rays != 0; rays &= rays - 1) {
+      const auto r = static_cast<std::uint32_t>(std::countr_zero(rays));
+      if (enter_[r][child] > bound_[r]) continue;
+      if (!test_triangles(leaf_, filters_[r], bound_[r],
+                          [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+                            prepared(r).test(triangle, face, half);
+                          })) {
+        return leaf_.error();
+      }
+      if (hits_[r].is_hit) bound_[r] = filters_[r].bound(tests_[r]->t_max);
+    }
+    return Errc::kOk;
+  }
+
+ private:
+  // The exact tests of a ray, which some rays never need.
+  HWY_INLINE RayTest& prepared(std::uint32_t r) {
+    if (!tests_[r].has_value()) prepare(r);
+    return *tests_[r];
+  }
+  HWY_NOINLINE void prepare(std::uint32_t r) {
+    const Ray& ray = batch_.rays[index_[r]];
+    tests_[r]
+        .emplace(batch_.tree, ray, exponent_of(largest_magnitude(ray.direction)), batch_.any,
+                 hits_[r])
+        .prepare();
+  }
+
+  void answer(std::uint32_t r, Errc walked) {
+    if (walked != Errc::kOk) {
+      batch_.answer_alone(index_[r]);
+    } else if (tests_[r].has_value()) {
+      batch_.answer(index_[r], *tests_[r]);
+    } else {
+      batch_.answer_nothing(index_[r]);
+    }
+    tests_[r].reset();
+  }
+
+  RayBatch& batch_;
+  std::uint32_t count_ = 0;
+  std::size_t index_[kMostRays];  // in the batch
+  double t_max_[kMostRays];
+  HWY_ALIGN float bound_[kMostRays] = {};  // parameters above it cannot improve the answer
+  HWY_ALIGN float enter_[kMostRays][kWideChildren];  // children of the node that was met last
+  PacketRay rays_[kMostRays];
+  RayFilter filters_[kMostRays];
+  RayCandidate hits_[kMostRays];
+  std::optional<RayTest> tests_[kMostRays];
+  LeafFloats leaf_;
+};
+
+template <class Node>
+class PacketWalk {
+ public:
+  PacketWalk(const BoundTree& tree, const WideCodec<Node>& codec, RayPacket& packet)
+      : codec_(codec),
+        packet_(packet),
+        prefetch_(tree, codec),
+        is_large_(codec.node_count > kLargeTree),
+        root_(tree.root_f32()) {}
+
+  // Whether a walk together pays: it does from some 1.9 rays a node on (docs/MEASUREMENTS.md).
+  [[nodiscard]] bool was_shared() const { return meets_ >= 2 * nodes_; }
+
+  // The children of a node at depth n are in open_[n]. Pending children belong to nodes on the path
+  // to the current one, each at another depth.
+  Errc run() {
+    WalkBound nodes(codec_.node_count);
+    Box<float> box = root_;
+    std::size_t depth = 0;
+    std::uint32_t number = 0;
+    RaySet rays = packet_.all();
+    stack_ = {};
+    meets_ = nodes_ = 0;
+    for (;;) {
+      const NodeView<Node> node(codec_, number);
+      const WideLinks links = node.links();
+      const Errc error = nodes.count(check_links(codec_, number, links));
+      if (error != Errc::kOk) return error;
+      if (depth == open_.size()) return Errc::kDepthExceeded;
+      meets_ += static_cast<std::uint64_t>(std::popcount(rays));
+      ++nodes_;
+      Children& children = open_[depth];
+      children.links = links;
+      for (std::size_t part = 0; part < kParts; ++part) decode(node, box, part, children.boxes);
+      HWY_ALIGN std::uint8_t children_of_ray[kMostRays] = {};
+      const std::uint32_t passing =
+          packet_.meet(children.boxes, rays, children_of_ray, children.key) &
+          ((1u << links.child_count) - 1);
+      if (is_large_) {
+        prefetch_.leaves(links, passing & ~links.inner_mask);
+        prefetch_.nodes(links, passing & links.inner_mask);
+      }
+      for (std::uint32_t leaves = passing & ~links.inner_mask; leaves != 0;) {
+        const std::uint32_t i = take_smallest(leaves, children.key);
+        const RaySet through =
+            packet_.before_bound(rays_through(children_of_ray, i), children.key[i]);
+        if (through == 0) continue;
+        const std::uint32_t face = first_face(links, i);
+        const Errc failed =
+            packet_.visit_leaf(face, std::min(kLeafFaces, codec_.face_count - face), through, i);
+        if (failed != Errc::kOk) return failed;
+      }
+      const std::uint32_t inner = passing & links.inner_mask;
+      for (std::uint32_t rest = inner; rest != 0; rest &= rest - 1) {
+        const auto i = static_cast<std::uint32_t>(std::countr_zero(rest));
+        children.rays[i] = rays_through(children_of_ray, i);
+      }
+      typename decltype(stack_)::Child at{depth,
+                                          static_cast<std::uint32_t>(std::countr_zero(inner))};
+      const bool is_alone = inner != 0 && (inner & (inner - 1)) == 0;
+      if (!is_alone) stack_.push(inner, children.key, depth);
+      if (!is_alone && !pop(at)) return Errc::kOk;
+      for (;;) {
+        const Children& of = open_[at.depth];
+        rays = packet_.before_bound(of.rays[at.number], of.key[at.number]);
+        if (rays != 0) {
+          box = of.boxes.box(at.number);
+          number = node_number(of.links, at.number);
+          depth = at.depth + 1;
+          break;
+        }
+        if (!pop(at)) return Errc::kOk;
+      }
+    }
+  }
+
+ private:
+  struct Children {
+    ChildBoxes boxes;
+    HWY_ALIGN float key[kWideChildren];  // the least of any ray
+    RaySet rays[kWideChildren];
+    WideLinks links;
+  };
+  using Stack = TraversalStack<WideCodec<Node>::kDepthLimit>;
+
+  HWY_INLINE bool pop(typename Stack::Child& at) {
+    return stack_.pop(std::numeric_limits<float>::infinity(), at);
+  }
+
+  static constexpr std::uint32_t kLargeTree = 4096;  // see RayWalk
+
+  const WideCodec<Node>& codec_;
+  RayPacket& packet_;
+  const Prefetch<Node> prefetch_;
+  const bool is_large_;
+  const Box<float> root_;
+  std::uint64_t meets_ = 0, nodes_ = 0;  // of rays and nodes, and nodes, by the last walk
+  Stack stack_;
+  std::array<Children, WideCodec<Node>::kDepthLimit> open_;
+};
+
+// How the packets of a batch are walked: together, or each ray by itself as long as they share too
+// little. That is tried again, the more rarely the more often it failed, since rays of one kind
+// follow each other.
+template <class Node>
+class PacketWalks {
+ public:
+  PacketWalks(const WideCodec<Node>& codec, const RayBatch& batch, RayPacket& packet)
+      : walk_(batch.tree, codec, packet), always_alone_(batch.any) {}
+
+  void answer(RayPacket& packet) {
+    if (always_alone_ || alone_ != 0) {
+      if (alone_ != 0) --alone_;
+      return packet.walk_alone();
+    }
+    packet.answer(walk_.run());
+    pause_ = walk_.was_shared() ? kFirstPause : std::min(2 * pause_, kLastPause);
+    if (!walk_.was_shared()) alone_ = pause_;
+  }
+
+ private:
+  static constexpr std::uint32_t kFirstPause = 4, kLastPause = 128;
+
+  PacketWalk<Node> walk_;
+  const bool always_alone_;
+  std::uint32_t pause_ = kFirstPause;
+  std::uint32_t alone_ = 0;  // the packets that follow and are walked ray by ray
+};
+
+template <class Node>
+Errc walk(const WideCodec<Node>& codec, RayBatch& batch) {
+  RayPacket packet(batch);
+  PacketWalks<Node> walks(codec, batch, packet);
+  RaySetUp set_up(batch.tree);
+  for (std::size_t first = 0; first < batch.rays.size(); first += RaySetUp::kMost) {
+    const std::size_t count = std::min(batch.rays.size() - first, RaySetUp::kMost);
+    set_up.set_up(batch.rays.subspan(first, count));
+    for (std::uint32_t lane = 0; lane < count; ++lane) {
+      const std::size_t i = first + lane;
+      if (((set_up.entering() >> lane) & 1u) != 0) {
+        packet.add(i, set_up, lane);
+        if (packet.is_full()) walks.answer(packet);
+      } else if (((set_up.taken() >> lane) & 1u) != 0) {
+        batch.answer_nothing(i);
+      } else {
+        batch.answer_alone(i);
+      }
+    }
+  }
+  walks.answer(packet);
+  return Errc::kOk;
+}
+
+void walk_batch(RayBatch& batch) {
+  if (!RaySetUp::takes(batch.tree)) {
+    for (std::size_t i = 0; i < batch.rays.size(); ++i) batch.answer_alone(i);
+    return;
+  }
+  static_cast<void>(
+      with_wide_codec<Errc>(batch.tree, [&](const auto& codec) { return walk(codec, batch); }));
+}
+#endif
+
+}  // namespace
+}  // namespace boxtree::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+#include "runtime/walk/dispatch.h"
+
+namespace boxtree {
+namespace {
+
+BOXTREE_EXPORT(walk_batch);
+
+}  // namespace
+
+void walk_wide(RayBatch& batch) {
+  BOXTREE_DISPATCH(walk_batch)(batch);
+}
+
+}  // namespace boxtree
+#endif
