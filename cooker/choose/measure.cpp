@@ -24,6 +24,19 @@ double per_query(const Queries& queries, std::size_t runs, Status& status, RunQu
   return seconds / static_cast<double>(queries.size());
 }
 
+// The same of a batch of rays.
+double per_ray(const Tree& tree, const std::vector<Ray>& rays, std::size_t runs, Status& status) {
+  if (rays.empty()) return 0;
+  std::vector<RayResult> results(rays.size());
+  const double seconds = median_seconds(runs, [&] {
+    if (const Status cast = closest_hits(tree, rays, results); !cast && status.ok()) status = cast;
+  });
+  for (const RayResult& result : results) {
+    if (!result.ok() && status.ok()) status = result.error();
+  }
+  return seconds / static_cast<double>(rays.size());
+}
+
 }  // namespace
 
 double clock_cost_ns() {
@@ -47,11 +60,17 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
   QueryFigures figures;
   Status status;
   const std::uint64_t rounds = runs + 1;  // every round adds the same to the counts
-  figures.ray_ns = 1e9 * per_query(workload.rays, runs, status, [&](const Ray& ray) {
-                     const auto hit = closest_hit(tree, ray);
-                     if (hit) ++figures.ray_hits;
-                     return hit.code();
-                   });
+  const auto one_by_one = [&](const std::vector<Ray>& rays, std::uint64_t& hits) {
+    return per_query(rays, runs, status, [&](const Ray& ray) {
+      const auto hit = closest_hit(tree, ray);
+      if (hit) ++hits;
+      return hit.code();
+    });
+  };
+  figures.ray_ns = 1e9 * one_by_one(workload.rays, figures.ray_hits);
+  figures.ray_batch_ns = 1e9 * per_ray(tree, workload.rays, runs, status);
+  figures.camera_ns = 1e9 * one_by_one(workload.camera, figures.camera_hits);
+  figures.camera_batch_ns = 1e9 * per_ray(tree, workload.camera, runs, status);
   figures.cast_sphere_ns =
       1e9 * per_query(workload.rays, runs, status, [&](const Ray& ray) {
         const auto hit =
@@ -90,6 +109,7 @@ Result<QueryFigures> measure_queries(const Tree& tree, const Workload& workload,
                         });
   if (!status) return status.error();
   figures.ray_hits /= rounds;
+  figures.camera_hits /= rounds;
   figures.cast_sphere_hits /= rounds;
   figures.box_faces /= rounds;
   figures.point_distance /= static_cast<double>(rounds);

@@ -81,12 +81,16 @@ template <class Query, class RunQuery>
 /// Mean times per query, and totals of the answers.
 struct QueryFigures {
   double ray_ns = 0;
+  double ray_batch_ns = 0;  // the same rays by closest_hits()
+  double camera_ns = 0;
+  double camera_batch_ns = 0;
   double cast_sphere_ns = 0;
   double box_ns = 0;
   double point_ns = 0;
   double pair_first_us = 0;
   double pair_all_us = 0;
   std::uint64_t ray_hits = 0;
+  std::uint64_t camera_hits = 0;
   std::uint64_t cast_sphere_hits = 0;
   std::uint64_t box_faces = 0;
   double point_distance = 0;  // sum

@@ -103,6 +103,31 @@ double touching_distance(const Eigen::Vector3d& half, const Eigen::Matrix3d& rot
   return distance;
 }
 
+// Of a camera that looks at the middle from the direction (2, 1, 2) / 3; the ball of the bounds
+// fills the picture.
+std::vector<Ray> camera_rays(const Eigen::AlignedBox3d& bounds, double diagonal,
+                             std::size_t pixels) {
+  const Eigen::Vector3d back(2.0 / 3, 1.0 / 3, 2.0 / 3), right(2.0 / 3, -2.0 / 3, -1.0 / 3),
+      up(-1.0 / 3, -2.0 / 3, 2.0 / 3);
+  const double width = 1.15;  // twice the tangent of 30 degrees
+  constexpr std::size_t kTile = 4;
+  std::vector<Ray> rays;
+  const auto offset = [&](std::size_t pixel) {
+    return width * ((static_cast<double>(pixel) + 0.5) / static_cast<double>(pixels) - 0.5);
+  };
+  for (std::size_t tile_y = 0; tile_y + kTile <= pixels; tile_y += kTile) {
+    for (std::size_t tile_x = 0; tile_x + kTile <= pixels; tile_x += kTile) {
+      for (std::size_t i = 0; i < kTile * kTile; ++i) {
+        // From the middle row on: the first of them, too, meet something.
+        const double x = offset(tile_x + i % kTile);
+        const double y = offset((tile_y + i / kTile + pixels / 2) % pixels);
+        rays.push_back({bounds.center() + diagonal * back, x * right + y * up - back});
+      }
+    }
+  }
+  return rays;
+}
+
 Pose random_pose(const Eigen::AlignedBox3d& bounds, double share, Random& random) {
   const Eigen::Matrix3d rotation = random.rotation();
   const Eigen::Vector3d direction = random.direction();
@@ -127,6 +152,7 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
     const double length = length_of(toward);
     workload.rays.push_back({origin, length > 0 ? Eigen::Vector3d(toward / length) : toward});
   }
+  workload.camera = camera_rays(bounds, diagonal, size.camera);
   const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.025 * diagonal);
   for (std::size_t i = 0; i < size.boxes; ++i) {
     const Eigen::Vector3d centre = random.inside(bounds);

@@ -16,7 +16,12 @@ struct WorkloadSize {
   std::size_t points = 20'000;
   std::size_t poses = 200;
   std::size_t apart = 100;
+  std::size_t camera = 0;  // pixels of a side, a multiple of 4
 };
+
+/// What Workload::camera is, for texts.
+inline constexpr const char* kCameraMeaning =
+    "a camera at the diagonal's length from the middle, in tiles of 4 x 4 pixels";
 
 /// What Workload::boxes are, for texts.
 inline constexpr const char* kBoxMeaning = "cubes with an edge of 5 % of the diagonal";
@@ -28,6 +33,8 @@ inline constexpr const char* kPoseMeaning =
 struct Workload {
   /// From a sphere with twice the bounding radius toward random points of the bounds.
   std::vector<Ray> rays;
+  /// kCameraMeaning.
+  std::vector<Ray> camera;
   /// Of spheres that are cast along the rays, 1 % of the diagonal.
   double cast_radius = 0;
   /// kBoxMeaning, with centres in the bounds.

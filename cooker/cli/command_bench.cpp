@@ -37,12 +37,13 @@ struct Arguments {
 };
 
 // A tenth of the queries: for a look, not for a figure.
-constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0};
+constexpr WorkloadSize kAllQueries{.camera = 512};
+constexpr WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 0, 128};
 
 Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const Tree& tree,
                    const Arguments& arguments) {
   const Workload workload =
-      make_workload(bounds_in_object_space(tree), arguments.quick ? kQuick : WorkloadSize());
+      make_workload(bounds_in_object_space(tree), arguments.quick ? kQuick : kAllQueries);
   const Result<QueryFigures> figures = measure_queries(tree, workload, arguments.runs);
   if (!figures) return figures.error();
   const Result<OpenFigures> open = measure_open(path, index, 20 * arguments.runs);
@@ -52,6 +53,9 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"codec", codec_name(BoundTree::of(tree).codec())},
               {"triangles", tree.triangle_count()},
               {"ray_ns", figures->ray_ns},
+              {"ray_batch_ns", figures->ray_batch_ns},
+              {"camera_ns", figures->camera_ns},
+              {"camera_batch_ns", figures->camera_batch_ns},
               {"cast_sphere_ns", figures->cast_sphere_ns},
               {"box_ns", figures->box_ns},
               {"point_ns", figures->point_ns},
@@ -61,6 +65,7 @@ Result<Json> bench(const std::filesystem::path& path, std::uint32_t index, const
               {"open_alone_us", open->open_us},
               {"open_page_faults", open->page_faults},
               {"ray_hits", figures->ray_hits},
+              {"camera_hits", figures->camera_hits},
               {"cast_sphere_hits", figures->cast_sphere_hits},
               {"box_faces", figures->box_faces},
               {"point_distance", figures->point_distance},
@@ -132,10 +137,13 @@ void print_row(const Json& row) {
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print(
       "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
-      "  boxes are {};\n  contacts are those with {}\n",
-      kBoxMeaning, kPoseMeaning);
-  fmt::print("  ray   {:9.0f} ns  {} hits\n", row["ray_ns"].get<double>(),
-             row["ray_hits"].get<std::uint64_t>());
+      "  boxes are {};\n  contacts are those with {};\n  view is {}\n",
+      kBoxMeaning, kPoseMeaning, kCameraMeaning);
+  fmt::print("  ray   {:9.0f} ns  {} hits; in batches {:.0f} ns\n", row["ray_ns"].get<double>(),
+             row["ray_hits"].get<std::uint64_t>(), row["ray_batch_ns"].get<double>());
+  fmt::print("  view  {:9.0f} ns  {} hits of rays; in batches {:.0f} ns\n",
+             row["camera_ns"].get<double>(), row["camera_hits"].get<std::uint64_t>(),
+             row["camera_batch_ns"].get<double>());
   fmt::print("  cast  {:9.0f} ns  {} hits of spheres\n", row["cast_sphere_ns"].get<double>(),
              row["cast_sphere_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),

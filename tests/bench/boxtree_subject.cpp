@@ -126,6 +126,15 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
+  bool ray_batches(std::span<const Ray> rays, std::span<double> out) override {
+    hits_.resize(rays.size());
+    if (!closest_hits(tree_, rays, hits_)) throw std::runtime_error("a batch failed");
+    for (std::size_t i = 0; i < rays.size(); ++i) {
+      const auto hit = require(hits_[i]);
+      out[i] = hit ? hit->t : std::numeric_limits<double>::infinity();
+    }
+    return true;
+  }
   bool casts(std::span<const ShapeCast> casts, std::span<double> out) override {
     for (std::size_t i = 0; i < casts.size(); ++i) {
       const ShapeCast& cast = casts[i];
@@ -230,6 +239,7 @@ class BoxtreeSubject : public Subject {
  private:
   cooker::EncodedTree encoded_;
   Tree tree_;
+  std::vector<RayResult> hits_;  // of the last batch
 };
 
 // A compressed file has only an opening time and a size: once open it is its plain-f32 tree.

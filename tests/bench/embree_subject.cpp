@@ -70,6 +70,38 @@ class EmbreeSubject : public Subject {
     }
     return true;
   }
+  // Packets of eight.
+  bool ray_batches(std::span<const Ray> rays, std::span<double> out) override {
+    constexpr std::size_t kWidth = 8;
+    for (std::size_t first = 0; first < rays.size(); first += kWidth) {
+      const std::size_t count = std::min(kWidth, rays.size() - first);
+      RTCIntersectContext context;
+      rtcInitIntersectContext(&context);
+      RTCRayHit8 query{};
+      alignas(32) int valid[kWidth] = {};
+      for (std::size_t i = 0; i < count; ++i) {
+        const Eigen::Vector3f origin = rays[first + i].origin.cast<float>();
+        const Eigen::Vector3f direction = rays[first + i].direction.cast<float>();
+        valid[i] = -1;
+        query.ray.org_x[i] = origin.x();
+        query.ray.org_y[i] = origin.y();
+        query.ray.org_z[i] = origin.z();
+        query.ray.dir_x[i] = direction.x();
+        query.ray.dir_y[i] = direction.y();
+        query.ray.dir_z[i] = direction.z();
+        query.ray.tfar[i] = std::numeric_limits<float>::infinity();
+        query.ray.mask[i] = ~0u;
+        query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+      }
+      rtcIntersect8(valid, scene_, &context, &query);
+      for (std::size_t i = 0; i < count; ++i) {
+        out[first + i] = query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID
+                             ? std::numeric_limits<double>::infinity()
+                             : double{query.ray.tfar[i]};
+      }
+    }
+    return true;
+  }
   // Embree has no box query: uses its point query with the box's circumscribed sphere, and our
   // test.
   bool boxes(std::span<const Eigen::AlignedBox3d> boxes, std::span<double> out) override {

@@ -244,6 +244,9 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
   for (std::size_t i = 0; i < affordable(workload.rays.size(), size); ++i) {
     answers.rays.push_back(closest_t(triangles, workload.rays[i]));
   }
+  for (std::size_t i = 0; i < affordable(workload.camera.size(), size); ++i) {
+    answers.camera.push_back(closest_t(triangles, workload.camera[i]));
+  }
   constexpr double kCastWork = 8;
   const std::vector<ShapeCast> casts = casts_of(workload, ShapeKind::kSphere);
   for (std::size_t i = 0; i < affordable(casts.size(), kCastWork * size); ++i) {

@@ -10,6 +10,7 @@ namespace boxtree::bench {
 /// few seconds: over n triangles (n log n and the overlaps along one axis for pairs).
 struct ExactAnswers {
   std::vector<double> rays;
+  std::vector<double> camera;
   std::vector<double> sphere_casts;
   std::vector<double> spheres;  // numbers of triangles that touch
   std::vector<double> boxes;

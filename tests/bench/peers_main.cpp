@@ -33,8 +33,8 @@ struct Arguments {
   bool json = false;
 };
 
-constexpr cooker::WorkloadSize kFull;
-constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20};
+constexpr cooker::WorkloadSize kFull{.camera = 512};
+constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20, 128};
 
 // Collects rows of one library on one mesh.
 class Rows {
@@ -111,6 +111,7 @@ struct Kind {
   std::string total;  // the row of the sum of all answers
   std::string total_unit;
   double (*total_of)(const std::vector<double>&) = sum;
+  bool is_batch = false;  // a query has no time of its own
 };
 
 template <class Query>
@@ -159,12 +160,31 @@ std::optional<std::vector<double>> run_query(Subject& subject, QueryFunction<Que
   }
   const double each = cooker::median(std::move(seconds)) / static_cast<double>(query_count);
   rows.add(kind.name + "_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * each, kind.unit);
-  const double middle = median_of_each(subject, query, std::span(queries).first(query_count),
-                                       std::span(answers), runs);
-  rows.add(kind.name + "_median_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * middle, kind.unit);
+  if (!kind.is_batch) {
+    const double middle = median_of_each(subject, query, std::span(queries).first(query_count),
+                                         std::span(answers), runs);
+    rows.add(kind.name + "_median_" + kind.unit, (kind.unit == "ns" ? 1e9 : 1e6) * middle,
+             kind.unit);
+  }
   rows.add(kind.name + "_queries", static_cast<double>(query_count), "queries");
   rows.add(kind.total, kind.total_of(answers), kind.total_unit);
   return answers;
+}
+
+// The same rays one by one and in batches.
+void measure_rays(Subject& subject, const std::vector<Ray>& rays, const std::string& name,
+                  const std::vector<double>& exact, double scene, std::size_t runs, Rows& rows) {
+  const double slack = scene * 1e-5;
+  for (const bool is_batch : {false, true}) {
+    const std::string kind = is_batch ? name + "_batch" : name;
+    const auto found =
+        run_query(subject, is_batch ? &Subject::ray_batches : &Subject::rays, rays,
+                  {kind, "ns", kind + "_hits", "hits", count_finite, is_batch}, runs, rows);
+    if (!found) continue;
+    rows.add(kind + "_checked", checked(*found, exact), "queries");
+    rows.add(kind + "_wrong", count_wrong(*found, exact, slack), "queries");
+    rows.add(kind + "_error", largest_error(*found, exact) / scene, "of the scene");
+  }
 }
 
 void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Workload& workload,
@@ -172,12 +192,8 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
   // A library in f32 cannot resolve distances below this share of the scene.
   const double scene = 4 * mesh.bounds.diagonal().norm();
   const double slack = scene * 1e-5;
-  if (const auto found = run_query(subject, &Subject::rays, workload.rays,
-                                   {"ray", "ns", "ray_hits", "hits", count_finite}, runs, rows)) {
-    rows.add("ray_checked", checked(*found, exact.rays), "queries");
-    rows.add("ray_wrong", count_wrong(*found, exact.rays, slack), "queries");
-    rows.add("ray_error", largest_error(*found, exact.rays) / scene, "of the scene");
-  }
+  measure_rays(subject, workload.rays, "ray", exact.rays, scene, runs, rows);
+  measure_rays(subject, workload.camera, "camera", exact.camera, scene, runs, rows);
   if (const auto found =
           run_query(subject, &Subject::casts, casts_of(workload, ShapeKind::kSphere),
                     {"cast_sphere", "ns", "cast_sphere_hits", "hits", count_finite}, runs, rows)) {
@@ -336,7 +352,7 @@ std::size_t shape_count(const Arguments& arguments) {
 
 cooker::WorkloadSize workload_size(const Arguments& arguments) {
   cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
-  if (!is_selected(arguments, "single")) size.boxes = size.points = 0;
+  if (!is_selected(arguments, "single")) size.boxes = size.points = size.camera = 0;
   if (!is_selected(arguments, "single") && !is_selected(arguments, "shapes")) size.rays = 0;
   if (!is_selected(arguments, "pairs")) size.poses = 0;
   if (!is_selected(arguments, "distances")) size.apart = 0;

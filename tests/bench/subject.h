@@ -75,6 +75,8 @@ class Subject {
 
   /// Distance along the ray to the closest hit; infinity without one.
   virtual bool rays(std::span<const Ray>, std::span<double>) { return false; }
+  /// The same of many rays in a call.
+  virtual bool ray_batches(std::span<const Ray>, std::span<double>) { return false; }
   /// How far along the ray the shape is when it first touches; infinity if it does not.
   virtual bool casts(std::span<const ShapeCast>, std::span<double>) { return false; }
   /// Number of triangles that touch the shape.
