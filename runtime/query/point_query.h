@@ -68,6 +68,11 @@ struct PointQuery {
 
   [[nodiscard]] bool leaf(NodeRef ref) noexcept {
     ++nodes_expanded;
+    return read(ref);
+  }
+
+  /// Tests the faces of a leaf; whether to go on.
+  [[nodiscard]] bool read(NodeRef ref) noexcept {
     error = read_leaf(tree, ref, batch);
     if (error != Errc::kOk) return false;
     for (std::uint32_t i = 0; i < batch.count; ++i) {

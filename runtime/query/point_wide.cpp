@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Closest-point queries over the wide codecs.
 #include "runtime/primitive/rounding.h"
+#include "runtime/query/best_first.h"
 #include "runtime/query/point_filter.h"
 #include "runtime/query/point_query.h"
 #include "runtime/walk/erased_codec.h"
@@ -24,6 +25,10 @@ namespace {
 #if HWY_TARGET == HWY_SCALAR
 Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
+  AnyNearNodes nodes(tree, query);
+  return BestFirst(nodes, query, budget).run();
 }
 #else
 // The leaves near a point: the same for both codecs, and compiled once.
@@ -136,6 +141,89 @@ Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query
   PointFaces<Node> faces(tree, codec, query);
   return NearestWalk<Node, PointFaces<Node>>(codec, faces).run(root);
 }
+
+// The source of BestFirst: children and their keys by vectors.
+template <class Node>
+class NearNodes {
+ public:
+  static constexpr std::size_t kStackSize = WideCodec<Node>::kDepthLimit * (kWideChildren - 1) + 1;
+  struct Entry {
+    Box<float> box;
+    std::uint32_t number;  // of the node or leaf
+    bool is_leaf;
+  };
+
+  NearNodes(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
+      : codec_(codec),
+        query_(query),
+        root_(tree.root_f32()),
+        filter_(tree.largest_abs(), query.point),
+        leaves_(tree, query, filter_) {}
+
+  [[nodiscard]] Entry root() const { return {root_, 0, false}; }
+  [[nodiscard]] double key(const Entry& entry) const { return query_.key(entry.box); }
+  [[nodiscard]] bool is_leaf(const Entry& entry) const { return entry.is_leaf; }
+  [[nodiscard]] bool read(const Entry& entry) {
+    const std::uint32_t first = entry.number * kLeafFaces;
+    return leaves_.visit(first, std::min(kLeafFaces, codec_.face_count - first), kNoLeaf);
+  }
+
+  Errc expand(const Entry& entry) {
+    const NodeView<Node> node(codec_, entry.number);
+    links_ = node.links();
+    const Errc error = query_.nodes.count(check_links(codec_, entry.number, links_));
+    if (error != Errc::kOk) return error;
+    for (std::size_t part = 0; part < kParts; ++part) decode(node, entry.box, part, boxes_);
+    set_keys();
+    return Errc::kOk;
+  }
+  [[nodiscard]] std::uint32_t count() const { return links_.child_count; }
+  [[nodiscard]] double key(std::uint32_t i) const { return keys_[i]; }
+  [[nodiscard]] Entry child(std::uint32_t i) const {
+    const bool is_inner = ((links_.inner_mask >> i) & 1u) != 0;
+    return {boxes_.box(i), is_inner ? node_number(links_, i) : leaf_number(links_, i), !is_inner};
+  }
+
+ private:
+  // Those of squared_distance(), to the bit.
+  HWY_INLINE void set_keys() {
+    const hn::CappedTag<double, kWideChildren> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    for (std::size_t i = 0; i < kWideChildren; i += hn::MaxLanes(d)) {
+      auto sum = hn::Zero(d);
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto p = hn::Set(d, query_.point[static_cast<Eigen::Index>(k)]);
+        const auto low = hn::PromoteTo(d, hn::Load(floats, boxes_.low[k] + i));
+        const auto high = hn::PromoteTo(d, hn::Load(floats, boxes_.high[k] + i));
+        const auto outside = hn::Max(hn::Zero(d), hn::Max(hn::Sub(low, p), hn::Sub(p, high)));
+        sum = hn::Add(sum, hn::Mul(outside, outside));
+      }
+      hn::Store(sum, d, keys_ + i);
+    }
+  }
+
+  const WideCodec<Node>& codec_;
+  PointQuery& query_;
+  const Box<float> root_;
+  const PointFilter filter_;
+  PointLeaves leaves_;
+  WideLinks links_{};
+  ChildBoxes boxes_;
+  HWY_ALIGN double keys_[kWideChildren];
+};
+
+template <class Node>
+Errc search(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query,
+            SearchBudget& budget) {
+  NearNodes<Node> nodes(tree, codec, query);
+  return BestFirst(nodes, query, budget).run();
+}
+
+Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
+  return with_wide_codec<Errc>(
+      tree, [&](const auto& codec) { return search(tree, codec, query, budget); });
+}
+
 Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return with_wide_codec<Errc>(tree, [&](const auto& codec) { return walk(tree, codec, query); });
 }
@@ -152,14 +240,23 @@ namespace boxtree {
 namespace {
 
 BOXTREE_EXPORT(walk_point);
+BOXTREE_EXPORT(search_point);
+
+bool is_filtered(const BoundTree& tree, const PointQuery& query) noexcept {
+  return tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), query.point);
+}
 
 }  // namespace
 
 Errc walk_wide(const BoundTree& tree, PointQuery& query) {
-  if (tree.has_float_nodes() && PointFilter::is_near(tree.largest_abs(), query.point)) {
-    return BOXTREE_DISPATCH(walk_point)(tree, query);
-  }
+  if (is_filtered(tree, query)) return BOXTREE_DISPATCH(walk_point)(tree, query);
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
+}
+
+Errc walk_wide(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
+  if (is_filtered(tree, query)) return BOXTREE_DISPATCH(search_point)(tree, query, budget);
+  AnyNearNodes nodes(tree, query);
+  return BestFirst(nodes, query, budget).run();
 }
 
 }  // namespace boxtree

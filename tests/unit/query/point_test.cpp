@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <vector>
 
@@ -13,6 +14,7 @@
 #include "tests/support/cooked.h"
 #include "tests/support/meshes.h"
 #include "tests/support/shape_reference.h"
+#include "tests/unit/walk/targets.h"
 
 namespace boxtree {
 namespace {
@@ -162,6 +164,34 @@ TEST_P(ApproximatePoints, BudgetsEndTheSearchWithTrueBounds) {
         }
       });
   EXPECT_GT(spent, 100);
+}
+
+// Vectors compute the keys of plain code, so that a budget ends every search at the same place.
+TEST_P(ApproximatePoints, BudgetsAreSpentAlikeByEveryInstructionSet) {
+  for_each_point(10, [&](const Tree& tree, const Eigen::Vector3d& point, long double, double) {
+    for (const std::uint64_t budget : {1u, 5u, 12u, 40u, 1u << 30}) {
+      SCOPED_TRACE(budget);
+      PointOptions options;
+      options.node_budget = budget;
+      std::optional<ApproximatePoint> first;
+      for_each_target([&](const char* target) {
+        SCOPED_TRACE(target);
+        const auto found = closest_point(tree, point, options);
+        ASSERT_TRUE(found.ok());
+        if (!first) first = *found;
+        ASSERT_EQ(found->nodes_expanded, first->nodes_expanded);
+        ASSERT_EQ(found->converged, first->converged);
+        ASSERT_EQ(found->lower, first->lower);
+        ASSERT_EQ(found->upper, first->upper);
+        ASSERT_EQ(found->witness.has_value(), first->witness.has_value());
+        if (!found->witness) return;
+        ASSERT_EQ(found->witness->face.id, first->witness->face.id);
+        ASSERT_EQ(found->witness->triangle, first->witness->triangle);
+        ASSERT_EQ(found->witness->point, first->witness->point);
+        ASSERT_EQ(found->witness->distance, first->witness->distance);
+      });
+    }
+  });
 }
 
 TEST_P(ApproximatePoints, NothingBeyondTheMaximalDistance) {
