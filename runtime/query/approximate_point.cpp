@@ -24,8 +24,7 @@ Errc search(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
   if constexpr (kHasWideCodecs && kWalksByVectors) {
     if (has_wide_nodes(tree)) return walk_wide(tree, query, budget);
   }
-  AnyNearNodes nodes(tree, query);
-  return BestFirst(nodes, query, budget).run();
+  return search_best_first(tree, query, budget);
 }
 
 // An upper bound of the length of a vector, even where its square underflows.

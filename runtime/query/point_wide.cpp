@@ -27,8 +27,7 @@ Errc walk_point(const BoundTree& tree, PointQuery& query) {
   return traverse_nearest(tree, ErasedCodec{&tree}, query);
 }
 Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
-  AnyNearNodes nodes(tree, query);
-  return BestFirst(nodes, query, budget).run();
+  return search_best_first(tree, query, budget);
 }
 #else
 // The leaves near a point: the same for both codecs, and compiled once.
@@ -142,86 +141,64 @@ Errc walk(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query
   return NearestWalk<Node, PointFaces<Node>>(codec, faces).run(root);
 }
 
-// The source of BestFirst: children and their keys by vectors.
+// Counts and decodes a node.
 template <class Node>
-class NearNodes {
- public:
-  static constexpr std::size_t kStackSize = WideCodec<Node>::kDepthLimit * (kWideChildren - 1) + 1;
-  struct Entry {
-    Box<float> box;
-    std::uint32_t number;  // of the node or leaf
-    bool is_leaf;
-  };
+HWY_INLINE Errc decode_node(const WideCodec<Node>& codec, WalkBound& nodes, std::uint32_t number,
+                            const Box<float>& box, ChildBoxes& boxes, WideLinks& links) {
+  const NodeView<Node> node(codec, number);
+  links = node.links();
+  for (std::size_t part = 0; part < kParts; ++part) decode(node, box, part, boxes);
+  return nodes.count(check_links(codec, number, links));
+}
 
-  NearNodes(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query)
-      : codec_(codec),
-        query_(query),
-        root_(tree.root_f32()),
-        filter_(tree.largest_abs(), query.point),
-        leaves_(tree, query, filter_) {}
-
-  [[nodiscard]] Entry root() const { return {root_, 0, false}; }
-  [[nodiscard]] double key(const Entry& entry) const { return query_.key(entry.box); }
-  [[nodiscard]] bool is_leaf(const Entry& entry) const { return entry.is_leaf; }
-  [[nodiscard]] bool read(const Entry& entry) {
-    const std::uint32_t first = entry.number * kLeafFaces;
-    return leaves_.visit(first, std::min(kLeafFaces, codec_.face_count - first), kNoLeaf);
+// A node's children and their keys, those of squared_distance() to the bit.
+HWY_NOINLINE Errc expand(const BoundTree& tree, PointQuery& query, NodeRef ref,
+                         const Box<double>& box, NearChildren& out) {
+  Box<float> in_floats;
+  for (std::size_t k = 0; k < 3; ++k) {
+    in_floats.low[k] = static_cast<float>(box.low[k]);
+    in_floats.high[k] = static_cast<float>(box.high[k]);
   }
-
-  Errc expand(const Entry& entry) {
-    const NodeView<Node> node(codec_, entry.number);
-    links_ = node.links();
-    const Errc error = query_.nodes.count(check_links(codec_, entry.number, links_));
-    if (error != Errc::kOk) return error;
-    for (std::size_t part = 0; part < kParts; ++part) decode(node, entry.box, part, boxes_);
-    set_keys();
-    return Errc::kOk;
-  }
-  [[nodiscard]] std::uint32_t count() const { return links_.child_count; }
-  [[nodiscard]] double key(std::uint32_t i) const { return keys_[i]; }
-  [[nodiscard]] Entry child(std::uint32_t i) const {
-    const bool is_inner = ((links_.inner_mask >> i) & 1u) != 0;
-    return {boxes_.box(i), is_inner ? node_number(links_, i) : leaf_number(links_, i), !is_inner};
-  }
-
- private:
-  // Those of squared_distance(), to the bit.
-  HWY_INLINE void set_keys() {
-    const hn::CappedTag<double, kWideChildren> d;
-    const hn::Rebind<float, decltype(d)> floats;
-    for (std::size_t i = 0; i < kWideChildren; i += hn::MaxLanes(d)) {
-      auto sum = hn::Zero(d);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const auto p = hn::Set(d, query_.point[static_cast<Eigen::Index>(k)]);
-        const auto low = hn::PromoteTo(d, hn::Load(floats, boxes_.low[k] + i));
-        const auto high = hn::PromoteTo(d, hn::Load(floats, boxes_.high[k] + i));
-        const auto outside = hn::Max(hn::Zero(d), hn::Max(hn::Sub(low, p), hn::Sub(p, high)));
-        sum = hn::Add(sum, hn::Mul(outside, outside));
-      }
-      hn::Store(sum, d, keys_ + i);
+  ChildBoxes boxes;
+  WideLinks links;
+  const Errc error = with_wide_codec<Errc>(tree, [&](const auto& codec) {
+    return decode_node(codec, query.nodes, ref.first, in_floats, boxes, links);
+  });
+  if (error != Errc::kOk) return error;
+  const hn::CappedTag<double, kWideChildren> d;
+  const hn::Rebind<float, decltype(d)> floats;
+  for (std::size_t i = 0; i < kWideChildren; i += hn::MaxLanes(d)) {
+    auto sum = hn::Zero(d);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto p = hn::Set(d, query.point[static_cast<Eigen::Index>(k)]);
+      const auto low = hn::PromoteTo(d, hn::Load(floats, boxes.low[k] + i));
+      const auto high = hn::PromoteTo(d, hn::Load(floats, boxes.high[k] + i));
+      const auto outside = hn::Max(hn::Zero(d), hn::Max(hn::Sub(low, p), hn::Sub(p, high)));
+      sum = hn::Add(sum, hn::Mul(outside, outside));
+      hn::StoreU(low, d, out.low[k].data() + i);
+      hn::StoreU(high, d, out.high[k].data() + i);
     }
+    hn::StoreU(sum, d, out.key.data() + i);
   }
-
-  const WideCodec<Node>& codec_;
-  PointQuery& query_;
-  const Box<float> root_;
-  const PointFilter filter_;
-  PointLeaves leaves_;
-  WideLinks links_{};
-  ChildBoxes boxes_;
-  HWY_ALIGN double keys_[kWideChildren];
-};
-
-template <class Node>
-Errc search(const BoundTree& tree, const WideCodec<Node>& codec, PointQuery& query,
-            SearchBudget& budget) {
-  NearNodes<Node> nodes(tree, codec, query);
-  return BestFirst(nodes, query, budget).run();
+  out.count = links.child_count;
+  out.leaf_mask = ~links.inner_mask & ((1u << links.child_count) - 1);
+  for (std::uint32_t i = 0; i < out.count; ++i) {
+    const std::uint32_t face = first_face(links, i);
+    out.ref[i] = out.is_leaf(i)
+                     ? NodeRef{face, std::min(kLeafFaces, tree.counts().faces_in_leaves - face)}
+                     : NodeRef{node_number(links, i), 0};
+  }
+  return Errc::kOk;
 }
 
 Errc search_point(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
-  return with_wide_codec<Errc>(
-      tree, [&](const auto& codec) { return search(tree, codec, query, budget); });
+  const PointFilter filter(tree.largest_abs(), query.point);
+  PointLeaves leaves(tree, query, filter);
+  const auto expand_node = [&](NodeRef node, const Box<double>& box, NearChildren& out) {
+    return expand(tree, query, node, box, out);
+  };
+  const auto read = [&](NodeRef leaf) { return leaves.visit(leaf.first, leaf.second, kNoLeaf); };
+  return search_best_first(tree, query, budget, {expand_node, read});
 }
 
 Errc walk_point(const BoundTree& tree, PointQuery& query) {
@@ -255,8 +232,7 @@ Errc walk_wide(const BoundTree& tree, PointQuery& query) {
 
 Errc walk_wide(const BoundTree& tree, PointQuery& query, SearchBudget& budget) {
   if (is_filtered(tree, query)) return BOXTREE_DISPATCH(search_point)(tree, query, budget);
-  AnyNearNodes nodes(tree, query);
-  return BestFirst(nodes, query, budget).run();
+  return search_best_first(tree, query, budget);
 }
 
 }  // namespace boxtree
