@@ -33,7 +33,7 @@ void walk_batch(RayBatch& batch) {
 #else
 // A set of rays of a packet: bit r is ray r.
 using RaySet = std::uint32_t;
-constexpr std::uint32_t kMostRays = 16;
+constexpr std::uint32_t kMostRays = RaySetUp::kMost;
 static_assert(kMostRays % kWideChildren == 0 && kMostRays < 32);
 
 // The rays of a packet that go to a child. Bit c of byte r: ray r goes to child c.
@@ -50,58 +50,52 @@ HWY_INLINE RaySet rays_through(const std::uint8_t* children_of_ray, std::uint32_
   return rays;
 }
 
-// What a ray needs to meet boxes. It meets plane p of an axis at p * inverse + offset; the near and
-// the far plane of a box each have an offset that widens the box.
-struct PacketRay {
-  float inverse[3];
-  float near_offset[3];
-  float far_offset[3];
-  std::uint32_t near_high[3];  // 1: the high plane is near
-};
-
 // The rays that are in flight, and what of them does not depend on the codec.
 class RayPacket {
  public:
-  explicit RayPacket(RayBatch& batch) : batch_(batch), leaf_(batch.tree) {}
+  explicit RayPacket(RayBatch& batch) : batch_(batch), set_up_(batch.tree), leaf_(batch.tree) {}
 
-  [[nodiscard]] bool is_full() const { return count_ == kMostRays; }
-  [[nodiscard]] RaySet all() const { return (1u << count_) - 1; }
-
-  // Adds ray i of the batch, which is ray `lane` of those that were set up and enters the root.
-  void add(std::size_t i, const RaySetUp& set_up, std::uint32_t lane) {
-    const std::uint32_t r = count_++;
-    index_[r] = i;
-    RayFilter& filter = filters_[r];
-    set_up.get(lane, filter);
-    PacketRay& ray = rays_[r];
-    for (std::size_t k = 0; k < 3; ++k) {
-      const float offset = -filter.origin[k] * filter.inverse[k];
-      ray.inverse[k] = filter.inverse[k];
-      ray.near_offset[k] = offset - filter.margin[k];
-      ray.far_offset[k] = offset + filter.margin[k];
-      ray.near_high[k] = filter.near_high[k];
+  // Takes the rays of the batch from `first` on, `count` of them; those that miss the root box, or
+  // are not set up side by side, get their answers.
+  HWY_NOINLINE void take(std::size_t first, std::size_t count) {
+    first_ = first;
+    set_up_.set_up(batch_.rays.subspan(first, count));
+    rays_ = set_up_.entering();
+    filtered_ = prepared_ = 0;
+    for (RaySet rest = ((1u << count) - 1) & ~rays_; rest != 0; rest &= rest - 1) {
+      const auto r = static_cast<std::uint32_t>(std::countr_zero(rest));
+      if (((set_up_.taken() >> r) & 1u) != 0) {
+        batch_.answer_nothing(first + r);
+      } else {
+        batch_.answer_alone(first + r);
+      }
     }
-    t_max_[r] = set_up.t_max(lane);
-    bound_[r] = filter.bound(t_max_[r]);
-    hits_[r].is_hit = false;
+    const Floats d;
+    for (std::size_t r = 0; r < kMostRays; r += kLanes) {
+      hn::Store(hn::Load(d, set_up_.bounds() + r), d, bound_ + r);
+    }
   }
 
+  // Those that are in flight.
+  [[nodiscard]] RaySet all() const { return rays_; }
+
   // Walks the tree with each ray by itself.
-  void walk_alone() {
-    for (std::uint32_t r = 0; r < count_; ++r) {
+  HWY_NOINLINE void walk_alone() {
+    for (RaySet rest = rays_; rest != 0; rest &= rest - 1) {
+      const auto r = static_cast<std::uint32_t>(std::countr_zero(rest));
       WalkBound nodes(batch_.tree.node_count());
-      const auto prepare = [&]() -> RayTest& { return prepared(r); };
-      FilteredRay ray{filters_[r], t_max_[r], nodes, prepare};
+      const auto prepare = [&]() -> RayTest& { return test(r); };
+      FilteredRay ray{filter(r), set_up_.t_max(r), nodes, prepare};
       answer(r, walk_wide(batch_.tree, ray));
     }
-    count_ = 0;
   }
 
   // Every ray's answer, once the walk is over. `walked`: its error, which any of them may have come
   // upon.
-  void answer(Errc walked) {
-    for (std::uint32_t r = 0; r < count_; ++r) answer(r, walked);
-    count_ = 0;
+  HWY_NOINLINE void answer(Errc walked) {
+    for (RaySet rest = rays_; rest != 0; rest &= rest - 1) {
+      answer(static_cast<std::uint32_t>(std::countr_zero(rest)), walked);
+    }
   }
 
   // Those of the rays whose bound is not below `key`.
@@ -128,18 +122,18 @@ class RayPacket {
     static_assert(offsetof(ChildBoxes, high) == sizeof(boxes.low));
     for (; rays != 0; rays &= rays - 1) {
       const auto r = static_cast<std::uint32_t>(std::countr_zero(rays));
-      const PacketRay& ray = rays_[r];
       std::uint32_t bits = 0;
       for (std::size_t part = 0; part < kParts; ++part) {
         FloatVector enter = hn::Zero(d);
         FloatVector leave = hn::Set(d, bound_[r]);
         for (std::size_t k = 0; k < 3; ++k) {
           const float* const axis = planes + k * kWideChildren + part * kLanes;
-          const FloatVector inverse = hn::Set(d, ray.inverse[k]);
-          enter = hn::Max(enter, hn::MulAdd(hn::Load(d, axis + ray.near_high[k] * kSide), inverse,
-                                            hn::Set(d, ray.near_offset[k])));
-          leave = hn::Min(leave, hn::MulAdd(hn::Load(d, axis + (1 - ray.near_high[k]) * kSide),
-                                            inverse, hn::Set(d, ray.far_offset[k])));
+          const FloatVector inverse = hn::Set(d, set_up_.inverse(k, r));
+          const std::size_t near_high = set_up_.near_high(k, r);
+          enter = hn::Max(enter, hn::MulAdd(hn::Load(d, axis + near_high * kSide), inverse,
+                                            hn::Set(d, set_up_.near_offset(k, r))));
+          leave = hn::Min(leave, hn::MulAdd(hn::Load(d, axis + (1 - near_high) * kSide), inverse,
+                                            hn::Set(d, set_up_.far_offset(k, r))));
         }
         const auto meets = hn::Le(enter, leave);
         key[part] = hn::Min(key[part], hn::IfThenElse(meets, enter, key[part]));
@@ -162,25 +156,33 @@ class RayPacket {
     for (; rays != 0; rays &= rays - 1) {
       const auto r = static_cast<std::uint32_t>(std::countr_zero(rays));
       if (enter_[r][child] > bound_[r]) continue;
-      if (!test_triangles(leaf_, filters_[r], bound_[r],
-                          [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
-                            prepared(r).test(triangle, face, half);
-                          })) {
-        return leaf_.error();
-      }
-      if (hits_[r].is_hit) bound_[r] = filters_[r].bound(tests_[r]->t_max);
+      const auto meet = [&](const Triangle& triangle, std::uint32_t face, std::uint32_t half) {
+        test(r).test(triangle, face, half);
+      };
+      if (!test_triangles(leaf_, filter(r), bound_[r], meet)) return leaf_.error();
+      if (has_test(r)) bound_[r] = filters_[r].bound(tests_[r]->t_max);
     }
     return Errc::kOk;
   }
 
  private:
-  // The exact tests of a ray, which some rays never need.
-  HWY_INLINE RayTest& prepared(std::uint32_t r) {
-    if (!tests_[r].has_value()) prepare(r);
+  // What rays need at leaves, which some never reach, and for exact tests, which fewer need.
+  HWY_INLINE const RayFilter& filter(std::uint32_t r) {
+    if (((filtered_ >> r) & 1u) == 0) {
+      filtered_ |= 1u << r;
+      set_up_.get(r, filters_[r]);
+    }
+    return filters_[r];
+  }
+  [[nodiscard]] bool has_test(std::uint32_t r) const { return ((prepared_ >> r) & 1u) != 0; }
+  HWY_INLINE RayTest& test(std::uint32_t r) {
+    if (!has_test(r)) prepare(r);
     return *tests_[r];
   }
   HWY_NOINLINE void prepare(std::uint32_t r) {
-    const Ray& ray = batch_.rays[index_[r]];
+    const Ray& ray = batch_.rays[first_ + r];
+    prepared_ |= 1u << r;
+    hits_[r].is_hit = false;
     tests_[r]
         .emplace(batch_.tree, ray, exponent_of(largest_magnitude(ray.direction)), batch_.any,
                  hits_[r])
@@ -189,24 +191,22 @@ class RayPacket {
 
   void answer(std::uint32_t r, Errc walked) {
     if (walked != Errc::kOk) {
-      batch_.answer_alone(index_[r]);
-    } else if (tests_[r].has_value()) {
-      batch_.answer(index_[r], *tests_[r]);
+      batch_.answer_alone(first_ + r);
+    } else if (has_test(r)) {
+      batch_.answer(first_ + r, *tests_[r]);
     } else {
-      batch_.answer_nothing(index_[r]);
+      batch_.answer_nothing(first_ + r);
     }
-    tests_[r].reset();
   }
 
   RayBatch& batch_;
-  std::uint32_t count_ = 0;
-  std::size_t index_[kMostRays];  // in the batch
-  double t_max_[kMostRays];
-  HWY_ALIGN float bound_[kMostRays] = {};  // parameters above it cannot improve the answer
+  std::size_t first_ = 0;  // the place of ray 0 in the batch
+  RaySet rays_ = 0, filtered_ = 0, prepared_ = 0;
+  RaySetUp set_up_;
+  HWY_ALIGN float bound_[kMostRays];  // parameters above it cannot improve the answer
   HWY_ALIGN float enter_[kMostRays][kWideChildren];  // children of the node that was met last
-  PacketRay rays_[kMostRays];
-  RayFilter filters_[kMostRays];
-  RayCandidate hits_[kMostRays];
+  RayFilter filters_[kMostRays];                     // of the rays `filtered_`
+  RayCandidate hits_[kMostRays];                     // of those `prepared_`
   std::optional<RayTest> tests_[kMostRays];
   LeafFloats leaf_;
 };
@@ -344,23 +344,10 @@ template <class Node>
 Errc walk(const WideCodec<Node>& codec, RayBatch& batch) {
   RayPacket packet(batch);
   PacketWalks<Node> walks(codec, batch, packet);
-  RaySetUp set_up(batch.tree);
-  for (std::size_t first = 0; first < batch.rays.size(); first += RaySetUp::kMost) {
-    const std::size_t count = std::min(batch.rays.size() - first, RaySetUp::kMost);
-    set_up.set_up(batch.rays.subspan(first, count));
-    for (std::uint32_t lane = 0; lane < count; ++lane) {
-      const std::size_t i = first + lane;
-      if (((set_up.entering() >> lane) & 1u) != 0) {
-        packet.add(i, set_up, lane);
-        if (packet.is_full()) walks.answer(packet);
-      } else if (((set_up.taken() >> lane) & 1u) != 0) {
-        batch.answer_nothing(i);
-      } else {
-        batch.answer_alone(i);
-      }
-    }
+  for (std::size_t first = 0; first < batch.rays.size(); first += kMostRays) {
+    packet.take(first, std::min<std::size_t>(batch.rays.size() - first, kMostRays));
+    if (packet.all() != 0) walks.answer(packet);
   }
-  walks.answer(packet);
   return Errc::kOk;
 }
 

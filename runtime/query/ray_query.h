@@ -159,15 +159,24 @@ struct RayTest : RayInTree {
     // above.
     const double t = std::clamp(found->t, interval.enter, interval.leave);
     if (t < t_min || t > t_max) return;
-    RayCandidate candidate{true, t, {kNoFaceId, face_index}, half, found->u, found->v, triangle};
-    if (wishes != nullptr && !wishes->meet(*this, candidate)) return;
-    if (hit.is_hit && t == hit.t) {
-      name(tree, candidate.face);
-      name(tree, hit.face);
-      if (!comes_before(tree, candidate.face, half, hit.face, hit.half)) return;
+    FaceRef face{kNoFaceId, face_index};
+    if (wishes != nullptr) {
+      RayCandidate candidate{true, t, face, half, found->u, found->v, triangle};
+      if (!wishes->meet(*this, candidate)) return;
+      face = candidate.face;
     }
-    hit = candidate;
-    t_max = t;
+    if (hit.is_hit && t == hit.t) {
+      name(tree, face);
+      name(tree, hit.face);
+      if (!comes_before(tree, face, half, hit.face, hit.half)) return;
+    }
+    hit.is_hit = true;
+    hit.t = t_max = t;
+    hit.face = face;
+    hit.half = half;
+    hit.u = found->u;
+    hit.v = found->v;
+    hit.triangle = triangle;
   }
 
   /// Puts the hit, if there is one, in terms of the caller's ray.

@@ -8,6 +8,7 @@
 #define BOXTREE_RUNTIME_QUERY_RAY_SET_UP_INL_H
 #endif
 
+#include <bit>
 #include <span>
 
 #include "runtime/query/ray_filter.h"
@@ -18,10 +19,10 @@ HWY_BEFORE_NAMESPACE();
 namespace boxtree::HWY_NAMESPACE {
 #if HWY_TARGET != HWY_SCALAR
 
-/// Rays of one tree, up to eight at a time.
+/// Rays of one tree, up to sixteen at a time.
 class RaySetUp {
  public:
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kMost = 16;
 
   explicit RaySetUp(const BoundTree& tree)
       : tree_(tree),
@@ -36,7 +37,9 @@ class RaySetUp {
 
   /// Prepares as many rays as there are, kMost at most.
   void set_up(std::span<const Ray> rays) {
-    for (std::size_t i = 0; i < kMost; ++i) {
+    // Whole vectors: what is behind the last ray is the last ray.
+    const std::size_t lanes = (rays.size() + kDoubles - 1) / kDoubles * kDoubles;
+    for (std::size_t i = 0; i < lanes; ++i) {
       const Ray& ray = rays[std::min(i, rays.size() - 1)];
       for (std::size_t k = 0; k < 3; ++k) {
         origin_[k][i] = ray.origin[static_cast<Eigen::Index>(k)];
@@ -47,7 +50,7 @@ class RaySetUp {
     }
     const std::uint32_t all = (1u << rays.size()) - 1;
     taken_ = entering_ = 0;
-    for (std::size_t i = 0; i < kMost; i += kDoubles) set_up(i);
+    for (std::size_t i = 0; i < lanes; i += kDoubles) set_up(i);
     taken_ &= all;
     entering_ &= taken_;
   }
@@ -81,8 +84,24 @@ class RaySetUp {
   /// Its t_max, in parameters of the tree.
   [[nodiscard]] double t_max(std::uint32_t i) const { return t_max_[i]; }
 
+  /// What such a ray needs to meet decoded boxes. It meets plane p of an axis at p * inverse +
+  /// offset; the near and the far plane of a box each have an offset that widens the box.
+  [[nodiscard]] float inverse(std::size_t axis, std::uint32_t i) const { return inverse_[axis][i]; }
+  [[nodiscard]] float near_offset(std::size_t axis, std::uint32_t i) const {
+    return near_offset_[axis][i];
+  }
+  [[nodiscard]] float far_offset(std::size_t axis, std::uint32_t i) const {
+    return far_offset_[axis][i];
+  }
+  /// 1 where the high plane of a box is the near one, else 0.
+  [[nodiscard]] std::uint32_t near_high(std::size_t axis, std::uint32_t i) const {
+    return std::bit_cast<std::uint32_t>(inverse_[axis][i]) >> 31;
+  }
+  /// The parameters, of such a ray, above which nothing can improve its answer: aligned, kMost.
+  [[nodiscard]] const float* bounds() const { return bound_; }
+
  private:
-  using Doubles = hn::CappedTag<double, kMost>;
+  using Doubles = hn::CappedTag<double, 8>;
   using DoubleVector = hn::Vec<Doubles>;
   static constexpr std::size_t kDoubles = hn::MaxLanes(Doubles());
   using Words = hn::Rebind<std::uint64_t, Doubles>;
@@ -168,11 +187,28 @@ class RaySetUp {
     hn::Store(hn::Add(set(rounding_), hn::Mul(set(RayFilter::kGivenAway),
                                               hn::Add(origin_max, set(tree_.largest_abs())))),
               d, error_ + i);
+    const Halves f;
+    // Not below the filter's, which rounds to the next float: by two roundings up to nearest.
+    const auto above = [&](DoubleVector x) {
+      return hn::DemoteTo(f, hn::Mul(x, set(1 + 2 * kRoundoffF32)));
+    };
+    const auto error = above(hn::Load(d, error_ + i));
+    // As RayBoxFilter::bound().
+    const auto bound = hn::Add(hn::Mul(above(hn::Max(zero, hn::Sub(t_max, start))),
+                                       hn::Set(f, static_cast<float>(1 + 8 * kRoundoffF32))),
+                               hn::Mul(hn::Set(f, 4), error));
+    hn::Store(bound, f, bound_ + i);
     for (std::size_t k = 0; k < 3; ++k) {
-      store(hn::Add(origin[k], hn::Mul(start, direction[k])), from_[k] + i);
-      store(hn::Max(hn::Min(inverse[k], set(RayFilter::kLargestInverse)),
-                    set(-RayFilter::kLargestInverse)),
-            inverse_[k] + i);
+      const auto from = hn::DemoteTo(f, hn::Add(origin[k], hn::Mul(start, direction[k])));
+      const auto within =
+          hn::DemoteTo(f, hn::Max(hn::Min(inverse[k], set(RayFilter::kLargestInverse)),
+                                  set(-RayFilter::kLargestInverse)));
+      const auto offset = hn::Neg(hn::Mul(from, within));
+      const auto widened = hn::Mul(error, hn::Abs(within));
+      hn::Store(from, f, from_[k] + i);
+      hn::Store(within, f, inverse_[k] + i);
+      hn::Store(hn::Sub(offset, widened), f, near_offset_[k] + i);
+      hn::Store(hn::Add(offset, widened), f, far_offset_[k] + i);
     }
 
     // As RayShear: the largest component is the main axis, the next two are in cyclic order.
@@ -207,6 +243,9 @@ class RaySetUp {
   HWY_ALIGN double error_[kMost];
   HWY_ALIGN float from_[3][kMost];
   HWY_ALIGN float inverse_[3][kMost];
+  HWY_ALIGN float near_offset_[3][kMost];
+  HWY_ALIGN float far_offset_[3][kMost];
+  HWY_ALIGN float bound_[kMost];
   HWY_ALIGN float shear_[3][kMost];
 };
 

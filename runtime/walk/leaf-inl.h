@@ -201,8 +201,37 @@ class LeafFloats {
     return is_direct_ || convert();
   }
 
+#if BOXTREE_HAS_EIGHT_LANES
+  // Of arrays: a corner is a vector. Its fourth number is the next one of the array, see
+  // find_triangles().
+  HWY_INLINE bool exact_triangle_of_arrays(std::uint32_t lane, Triangle& triangle) {
+    const hn::CappedTag<double, AxisLanes::kCount> d;
+    const hn::Rebind<float, decltype(d)> floats;
+    static constexpr double kNoOrigin[AxisLanes::kCount] = {};
+    const auto origin = hn::LoadU(
+        d, reader_.is_from_origin() ? kNoOrigin : reader_.frame().origin_lanes.lane.data());
+    const auto scale = hn::Set(d, reader_.stored_scale());
+    const auto xyz = hn::FirstN(d, 3);
+    auto is_within = xyz;
+    const auto* const positions = reinterpret_cast<const float*>(mesh_.positions);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto stored =
+          hn::PromoteTo(d, hn::LoadU(floats, positions + start_[std::size_t{3} * lane + c]));
+      const auto position = hn::Mul(hn::Sub(stored, origin), scale);
+      hn::BlendedStore(position, xyz, d, triangle.corner[c].data());
+      is_within = hn::And(is_within, hn::Le(hn::Abs(position), hn::Set(d, kMaxCoordinate)));
+    }
+    if (hn::CountTrue(d, is_within) == 3) return true;
+    error_ = Errc::kVertexNotFinite;
+    return false;
+  }
+#endif
+
   // The triangle of a lane of a leaf that was gathered. Not inlined, for the size of the code.
   HWY_NOINLINE bool exact_triangle(std::uint32_t lane, Triangle& triangle) {
+#if BOXTREE_HAS_EIGHT_LANES
+    if (!reader_.has_clusters()) return exact_triangle_of_arrays(lane, triangle);
+#endif
     const bool is_grid = reader_.is_grid();
     const double scale = reader_.stored_scale();
     const Eigen::Vector3d origin =
