@@ -139,11 +139,10 @@ void print_row(const Json& row) {
       "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
       "  boxes are {};\n  contacts are those with {};\n  view is {}\n",
       kBoxMeaning, kPoseMeaning, kCameraMeaning);
-  fmt::print("  ray   {:9.0f} ns  {} hits; in batches {:.0f} ns\n", row["ray_ns"].get<double>(),
+  fmt::print("  ray   {:9.0f} ns  {} hits, in batches {:.0f} ns\n", row["ray_ns"].get<double>(),
              row["ray_hits"].get<std::uint64_t>(), row["ray_batch_ns"].get<double>());
-  fmt::print("  view  {:9.0f} ns  {} hits of rays; in batches {:.0f} ns\n",
-             row["camera_ns"].get<double>(), row["camera_hits"].get<std::uint64_t>(),
-             row["camera_batch_ns"].get<double>());
+  fmt::print("  view  {:9.0f} ns  {} hits, in batches {:.0f} ns\n", row["camera_ns"].get<double>(),
+             row["camera_hits"].get<std::uint64_t>(), row["camera_batch_ns"].get<double>());
   fmt::print("  cast  {:9.0f} ns  {} hits of spheres\n", row["cast_sphere_ns"].get<double>(),
              row["cast_sphere_hits"].get<std::uint64_t>());
   fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),

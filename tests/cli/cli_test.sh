@@ -1114,7 +1114,7 @@ bench_says 'boxes are cubes with an edge of 5 % of the diagonal'
 same "$(awk '$1 ~ /^(ray|cast|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
 same "$(awk '$1 ~ /^(ray|cast|box|point|first|all|open)$/ && $2 > 0 { printf "%s %s ", $1, $3 }' out)" \
   'ray ns cast ns box ns point ns first us all us open us '
-bench_says "^  ray +[0-9]+ ns  [0-9]+ hits$"
+bench_says "^  ray +[0-9]+ ns  [0-9]+ hits, in batches [0-9]+ ns$"
 bench_says "^  box +[0-9]+ ns  [0-9]+ faces$"
 bench_says "^  point +[0-9]+ ns  [0-9.e+]+ summed distance$"
 bench_says "^  first +[0-9.]+ us  [0-9]+ contacts$"

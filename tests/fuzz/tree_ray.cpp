@@ -49,9 +49,9 @@ void hit_many(const Tree& tree, const Ray& ray, const QueryInput& query, const C
   const std::size_t count = 1 + query.option(3) % rays.size();
   const auto some = std::span(results).first(count);
   for (const bool any : {false, true}) {
-    const auto asked = std::span(rays).first(count);
-    const Status cast = any ? any_hits(tree, asked, some, query.limits())
-                            : closest_hits(tree, asked, some, query.limits());
+    const auto first = std::span(rays).first(count);
+    const Status cast = any ? any_hits(tree, first, some, query.limits())
+                            : closest_hits(tree, first, some, query.limits());
     if (!cast.ok()) {
       finding("a batch with as many results as rays was refused");
     }
