@@ -23,7 +23,8 @@ enum Parts : unsigned {
   kDistance = 2048,
   kWithin = 4096,
   kScene = 8192,
-  kAll = 16383
+  kRayBatch = 16384,
+  kAll = 32767
 };
 #ifndef PARTS
 #define PARTS kAll
@@ -64,6 +65,11 @@ bool query_rays(const World& world) {
     Hit hits[2];
     all = all && closest_hit(world, kDown, front).ok() && any_hit(world, kDown, front).ok() &&
           nearest_hits(world, kDown, hits).ok() && all_hits(world, kDown, kFurther).ok();
+  }
+  if constexpr (has(kRayBatch) && std::is_same_v<World, Tree>) {
+    const boxtree::Ray rays[] = {kDown};
+    boxtree::RayResult results[1];
+    all = all && closest_hits(world, rays, results).ok() && any_hits(world, rays, results).ok();
   }
   return all;
 }
