@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include <boxtree/scene.h>
+#include <boxtree/scene_ray_batch.h>
 
 #include "runtime/primitive/float_state.h"
 #include "runtime/primitive/normal.h"
@@ -156,6 +157,25 @@ SceneRayResult closest_hit(const Scene& scene, const Ray& ray, LayerMask layers,
 SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
                        const QueryLimits& limits) {
   return plain_hit(scene, ray, true, layers, limits);
+}
+
+Status closest_hits(const Scene& scene, std::span<const Ray> rays,
+                    std::span<SceneRayResult> results, LayerMask layers,
+                    const QueryLimits& limits) {
+  if (results.size() != rays.size()) return invalid_query("results");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    results[i] = closest_hit(scene, rays[i], layers, limits);
+  }
+  return {};
+}
+
+Status any_hits(const Scene& scene, std::span<const Ray> rays, std::span<SceneRayResult> results,
+                LayerMask layers, const QueryLimits& limits) {
+  if (results.size() != rays.size()) return invalid_query("results");
+  for (std::size_t i = 0; i < rays.size(); ++i) {
+    results[i] = any_hit(scene, rays[i], layers, limits);
+  }
+  return {};
 }
 
 SceneRayResult closest_hit(const Scene& scene, const Ray& ray, const SceneFaceOptions& options) {

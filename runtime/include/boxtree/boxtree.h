@@ -32,6 +32,7 @@
 #include <boxtree/tree.h>
 #if BOXTREE_HAS_SCENE_QUERIES
 #include <boxtree/scene.h>
+#include <boxtree/scene_ray_batch.h>
 #if BOXTREE_HAS_CAST_QUERIES
 #include <boxtree/scene_cast.h>
 #endif

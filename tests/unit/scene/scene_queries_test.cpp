@@ -93,6 +93,37 @@ TEST_P(SceneQueries, ClosestHitEqualsBruteForce) {
   });
 }
 
+TEST_P(SceneQueries, BatchesAnswerEachRayAsAlone) {
+  std::vector<Ray> rays;
+  for (int i = 0; i < 100; ++i) rays.push_back({point(), point()});
+  rays[7].direction.setZero();
+  std::vector<SceneRayResult> closest(rays.size()), any(rays.size());
+  for (const LayerMask layers : {kAllLayers, LayerMask{1}}) {
+    for (const QueryLimits& limits : {QueryLimits(), QueryLimits{20}}) {
+      ASSERT_TRUE(closest_hits(scene_, rays, closest, layers, limits).ok());
+      ASSERT_TRUE(any_hits(scene_, rays, any, layers, limits).ok());
+      for (std::size_t i = 0; i < rays.size(); ++i) {
+        SCOPED_TRACE(i);
+        const auto expect_same = [](const SceneRayResult& a, const SceneRayResult& b) {
+          EXPECT_EQ(a.code(), b.code());
+          EXPECT_EQ(a.error().detail, b.error().detail);
+          EXPECT_EQ(a.has_value(), b.has_value());
+          EXPECT_EQ(a->t, b->t);
+          EXPECT_EQ(a->instance, b->instance);
+          EXPECT_EQ(a->face.index, b->face.index);
+          EXPECT_EQ(a->point, b->point);
+          EXPECT_EQ(a->normal, b->normal);
+        };
+        expect_same(closest[i], closest_hit(scene_, rays[i], layers, limits));
+        expect_same(any[i], any_hit(scene_, rays[i], layers, limits));
+      }
+    }
+  }
+  const auto few = std::span(closest).first(3);
+  EXPECT_EQ(closest_hits(scene_, rays, few).error().detail, "results");
+  EXPECT_EQ(any_hits(scene_, rays, few).error().detail, "results");
+}
+
 TEST_P(SceneQueries, BoxEqualsBruteForce) {
   before_and_after_moving([&](const std::vector<WorldTriangle>& triangles) {
     std::size_t touched = 0;
