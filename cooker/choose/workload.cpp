@@ -169,6 +169,10 @@ Workload make_workload(const Eigen::AlignedBox3d& bounds, const WorkloadSize& si
   for (std::size_t i = 0; i < size.apart; ++i) {
     workload.apart.push_back(random_pose(bounds, kSharesApart[i % kSharesApart.size()], random));
   }
+  for (std::size_t i = 0; i < size.segments; ++i) {
+    const Eigen::Vector3d origin = random.inside(bounds);
+    workload.segments.push_back({origin, random.direction(), 0, 0.02 * diagonal});
+  }
   return workload;
 }
 

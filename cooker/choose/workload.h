@@ -17,6 +17,7 @@ struct WorkloadSize {
   std::size_t poses = 200;
   std::size_t apart = 100;
   std::size_t camera = 0;  // pixels of a side, a multiple of 4
+  std::size_t segments = 0;
 };
 
 /// What Workload::camera is, for texts.
@@ -35,6 +36,8 @@ struct Workload {
   std::vector<Ray> rays;
   /// kCameraMeaning.
   std::vector<Ray> camera;
+  /// From random points of the bounds in random directions, to 2 % of the diagonal.
+  std::vector<Ray> segments;
   /// Of spheres that are cast along the rays, 1 % of the diagonal.
   double cast_radius = 0;
   /// kBoxMeaning, with centres in the bounds.

@@ -126,6 +126,7 @@ class BoxtreeSubject : public Subject {
     }
     return true;
   }
+  [[nodiscard]] bool ends_rays() const override { return true; }
   bool ray_batches(std::span<const Ray> rays, std::span<double> out) override {
     hits_.resize(rays.size());
     if (!closest_hits(tree_, rays, hits_)) throw std::runtime_error("a batch failed");

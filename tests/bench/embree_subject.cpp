@@ -61,7 +61,7 @@ class EmbreeSubject : public Subject {
       query.ray.dir_x = direction.x();
       query.ray.dir_y = direction.y();
       query.ray.dir_z = direction.z();
-      query.ray.tfar = std::numeric_limits<float>::infinity();
+      query.ray.tfar = static_cast<float>(rays[i].t_max);
       query.ray.mask = ~0u;
       query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
       rtcIntersect1(scene_, &context, &query);
@@ -70,6 +70,7 @@ class EmbreeSubject : public Subject {
     }
     return true;
   }
+  [[nodiscard]] bool ends_rays() const override { return true; }
   // Packets of eight.
   bool ray_batches(std::span<const Ray> rays, std::span<double> out) override {
     constexpr std::size_t kWidth = 8;
@@ -89,7 +90,7 @@ class EmbreeSubject : public Subject {
         query.ray.dir_x[i] = direction.x();
         query.ray.dir_y[i] = direction.y();
         query.ray.dir_z[i] = direction.z();
-        query.ray.tfar[i] = std::numeric_limits<float>::infinity();
+        query.ray.tfar[i] = static_cast<float>(rays[first + i].t_max);
         query.ray.mask[i] = ~0u;
         query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
       }

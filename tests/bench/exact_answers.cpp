@@ -28,7 +28,7 @@ double closest_t(const std::vector<Triangle>& triangles, const Ray& ray) {
   double best = std::numeric_limits<double>::infinity();
   for (const Triangle& triangle : triangles) {
     const auto hit = intersect_ray_triangle(shear, triangle);
-    if (hit && hit->t >= 0) best = std::min(best, hit->t);
+    if (hit && hit->t >= 0 && hit->t <= ray.t_max) best = std::min(best, hit->t);
   }
   return best;
 }
@@ -246,6 +246,9 @@ ExactAnswers exact_answers(const TriangleMesh& mesh, const cooker::Workload& wor
   }
   for (std::size_t i = 0; i < affordable(workload.camera.size(), size); ++i) {
     answers.camera.push_back(closest_t(triangles, workload.camera[i]));
+  }
+  for (std::size_t i = 0; i < affordable(workload.segments.size(), size); ++i) {
+    answers.segments.push_back(closest_t(triangles, workload.segments[i]));
   }
   constexpr double kCastWork = 8;
   const std::vector<ShapeCast> casts = casts_of(workload, ShapeKind::kSphere);

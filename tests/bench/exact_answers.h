@@ -11,6 +11,7 @@ namespace boxtree::bench {
 struct ExactAnswers {
   std::vector<double> rays;
   std::vector<double> camera;
+  std::vector<double> segments;
   std::vector<double> sphere_casts;
   std::vector<double> spheres;  // numbers of triangles that touch
   std::vector<double> boxes;

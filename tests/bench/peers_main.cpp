@@ -33,8 +33,8 @@ struct Arguments {
   bool json = false;
 };
 
-constexpr cooker::WorkloadSize kFull{.camera = 512};
-constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20, 128};
+constexpr cooker::WorkloadSize kFull{.camera = 512, .segments = 200'000};
+constexpr cooker::WorkloadSize kQuick{20'000, 2'000, 2'000, 20, 20, 128, 20'000};
 
 // Collects rows of one library on one mesh.
 class Rows {
@@ -194,6 +194,9 @@ void measure_single(const TriangleMesh& mesh, Subject& subject, const cooker::Wo
   const double slack = scene * 1e-5;
   measure_rays(subject, workload.rays, "ray", exact.rays, scene, runs, rows);
   measure_rays(subject, workload.camera, "camera", exact.camera, scene, runs, rows);
+  if (subject.ends_rays()) {
+    measure_rays(subject, workload.segments, "segment", exact.segments, scene, runs, rows);
+  }
   if (const auto found =
           run_query(subject, &Subject::casts, casts_of(workload, ShapeKind::kSphere),
                     {"cast_sphere", "ns", "cast_sphere_hits", "hits", count_finite}, runs, rows)) {
@@ -352,7 +355,7 @@ std::size_t shape_count(const Arguments& arguments) {
 
 cooker::WorkloadSize workload_size(const Arguments& arguments) {
   cooker::WorkloadSize size = arguments.quick ? kQuick : kFull;
-  if (!is_selected(arguments, "single")) size.boxes = size.points = size.camera = 0;
+  if (!is_selected(arguments, "single")) size.boxes = size.points = size.camera = size.segments = 0;
   if (!is_selected(arguments, "single") && !is_selected(arguments, "shapes")) size.rays = 0;
   if (!is_selected(arguments, "pairs")) size.poses = 0;
   if (!is_selected(arguments, "distances")) size.apart = 0;

@@ -42,7 +42,7 @@ same() {
   values=$(jq -c "[.rows[] | select((.library == \"boxtree\" or .library == \"original\") and .metric == \"$1\") | .value] | unique" "$rows")
   [ "$(jq length <<<"$values")" -eq 1 ] || { echo "$1: expected one value, found $values"; exit 1; }
 }
-for metric in {ray,camera}{,_batch}_hits cast_{sphere,capsule,cube}_hits overlap_{sphere,capsule,cube}_tris collide_{sphere,capsule,cube}_contacts \
+for metric in {ray,camera,segment}{,_batch}_hits cast_{sphere,capsule,cube}_hits overlap_{sphere,capsule,cube}_tris collide_{sphere,capsule,cube}_contacts \
   box_tris pair_hits pair_pairs tumble_first_hits; do
   same "$metric"
 done

@@ -75,6 +75,8 @@ class Subject {
 
   /// Distance along the ray to the closest hit; infinity without one.
   virtual bool rays(std::span<const Ray>, std::span<double>) { return false; }
+  /// Whether it ends rays at their t_max; others do not get segments.
+  [[nodiscard]] virtual bool ends_rays() const { return false; }
   /// The same of many rays in a call.
   virtual bool ray_batches(std::span<const Ray>, std::span<double>) { return false; }
   /// How far along the ray the shape is when it first touches; infinity if it does not.
