@@ -341,7 +341,9 @@ class OptionFields {
             },
             "Pose of the second tree: X,Y,Z or the 12 numbers of a 3x4 matrix, row by row")
         ->type_name("POSE");
-    command_.add_option("--tree2", tree.tree, "Its tree, by name or number [tree 0]")
+    command_
+        .add_option("--tree2", tree.tree,
+                    "Its tree, by name or number; needed if FILE2 holds a scene [tree 0]")
         ->type_name("TREE")
         ->group(kRareOptions);
     command_

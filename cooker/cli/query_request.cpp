@@ -385,12 +385,6 @@ Result<std::vector<Eigen::Vector3d>> hull_points(const std::filesystem::path& me
                            input_name(mesh), kMaxHullPoints, points.size())};
 }
 
-Result<OpenedTree> open_tree(const TreeWanted& wanted) {
-  Result<OpenedFile> opened = open_file(wanted.path);
-  if (!opened) return opened.error();
-  return bind_tree(std::move(opened->file), wanted);
-}
-
 Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
   const auto& [path, which, mesh, option, mesh_option] = wanted;
   File* const file = &opened;
@@ -430,8 +424,16 @@ Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted) {
 Result<const Tree*> TreeCache::get(const SecondTree& second) {
   std::unique_ptr<OpenedTree>& place = opened_[{second.file.string(), second.tree}];
   if (place == nullptr) {
-    Result<OpenedTree> opened =
-        open_tree({second.file, second.tree, second.mesh, "--tree2", "--mesh2"});
+    Result<OpenedFile> file = open_file(second.file);
+    if (!file) return file.error();
+    if (file->file.has_scene() && second.tree.empty()) {
+      return Error{Errc::kInvalidQuery,
+                   input_name(second.file) +
+                       ": the second of two is a tree, and this is a scene; name a tree of the "
+                       "file with --tree2, in a line of a batch with \"tree\""};
+    }
+    Result<OpenedTree> opened = bind_tree(
+        std::move(file->file), {second.file, second.tree, second.mesh, "--tree2", "--mesh2"});
     if (!opened) return opened.error();
     if ((opened->kinds & kPairQueries) == 0) {
       const Error error = kind_left_out(opened->file, opened->index, kPairQueries);

@@ -372,13 +372,11 @@ struct TreeWanted {
   const char* mesh_option;            // that names the mesh, likewise
 };
 
-/// Opens the file and binds the tree.
-Result<OpenedTree> open_tree(const TreeWanted& wanted);
-/// The same for a file that is open; the path serves messages.
+/// Binds a tree of a file that is open; the path serves messages.
 Result<OpenedTree> bind_tree(File opened, const TreeWanted& wanted);
 
-/// Second trees of queries about two, each opened once. Errors: kPartLeftOut, too, if its profile
-/// left pair queries out.
+/// Second trees of queries about two, each opened once. Errors: kInvalidQuery, too, if the file
+/// holds a scene and none of its trees is named; kPartLeftOut if its profile left pair queries out.
 class TreeCache {
  public:
   Result<const Tree*> get(const SecondTree& second);

@@ -97,7 +97,7 @@ expect 1 "$boxtree" query level.bxt contacts --move 'Crate=up'
 grep -q 'expected INSTANCE=X,Y,Z' err
 expect 1 "$boxtree" query level.bxt contacts --move 'Crate=1,0,0,0,0,0,0,0,0,0,1,0'
 grep -q 'invalid_pose: level.bxt: --move Crate: the pose is not invertible: it flattens what it places; expected ' err
-expect 1 "$boxtree" query level.bxt pair level.bxt --pose inf,0,0
+expect 1 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose inf,0,0
 grep -q "invalid_pose: level.bxt: pair: the second tree's pose is not finite: row 1, column 4 is inf; " err
 expect 1 "$boxtree" query level.bxt contacts --move 'Nobody=0,0,0'
 grep -q 'Nobody' err
@@ -158,6 +158,22 @@ expect 0 "$boxtree" query level.bxt --tree crate point --at 0,2,0 --json
 jq -e '(.distance - 1.6) | fabs < 1e-6' out >/dev/null
 expect 0 "$boxtree" query level.bxt pair level.bxt --tree2 crate --pose 0,0.3,0 --json
 jq -e '.hit and ([.pairs[][0].name] | unique == ["Floor"])' out >/dev/null
+# Found by a newcomer: a scene as the second file was its first tree, in its own coordinates, without a word.
+expect 0 "$boxtree" cook --scene "$level/../meshes/crate.obj" -o one.bxt -q
+second='the second of two is a tree, and this is a scene; name a tree of the file with --tree2, in a line of a batch with "tree"'
+for file in level one; do
+  for kind in pair distance overlap; do
+    expect 1 "$boxtree" query flat.bxt $kind $file.bxt
+    same "$(cat err)" "boxtree: invalid_query: $file.bxt: $second"
+  done
+done
+expect 1 "$boxtree" query level.bxt pair one.bxt
+same "$(cat err)" "boxtree: invalid_query: one.bxt: $second"
+printf '%s\n' '{"file":"one.bxt"}' '{"file":"one.bxt","tree":0}' '{"file":"level.bxt","tree":"crate"}' >batch
+expect 1 "$boxtree" query flat.bxt distance --batch batch
+same "$(jq -sc 'map([.error, .found])' out)" '[["invalid_query",null],[null,true],[null,true]]'
+same "$(jq -sr '.[0].detail' out)" "line 1: one.bxt: $second"
+expect 0 "$boxtree" query flat.bxt pair one.bxt --tree2 crate
 printf '%s\n' '{"kind":"ray","origin":[0,10,-3.3],"direction":[0,-1,0]}' '{"kind":"contacts"}' >batch
 expect 0 "$boxtree" query level.bxt --batch batch
 same "$(jq -sc '[.[0].name, .[1].hit]' out)" '["Step 2",false]'
