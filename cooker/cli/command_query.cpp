@@ -171,12 +171,25 @@ std::filesystem::path second_file(const QueryRequest& request) {
       request);
 }
 
-// The error of a query or a scene of the file, behind its name, unless it is that of the second
+// The file that a query names beside the one that it is about; empty for none.
+std::filesystem::path other_file(const QueryRequest& request) {
+  return std::visit(
+      [&](const auto& q) {
+        if constexpr (requires { q.shape; }) {
+          return q.shape.hull.value_or(std::filesystem::path());
+        } else {
+          return second_file(request);
+        }
+      },
+      request);
+}
+
+// The error of a query or a scene of the file, behind its name, unless it is that of the other
 // file.
-Error in_queried_file(const Arguments& arguments, const std::filesystem::path& second,
+Error in_queried_file(const Arguments& arguments, const std::filesystem::path& other,
                       const Error& error) {
-  const bool is_of_second = !second.empty() && error.detail.starts_with(input_name(second) + ": ");
-  if (is_of_second) return error;
+  const bool is_of_other = !other.empty() && error.detail.starts_with(input_name(other) + ": ");
+  if (is_of_other) return error;
   const std::string what =
       error.detail.empty() ? std::string(error_info(error.code).meaning) : error.detail;
   return in_file(input_name(arguments.file), {error.code, what});
@@ -237,7 +250,7 @@ int run(const Arguments& arguments, const RequestDefaults& defaults) {
     TreeCache others;
     const Result<Json> answer = answer_request({defaults.request, {}}, others);
     if (!answer) {
-      return fail(in_queried_file(arguments, second_file(defaults.request), answer.error()));
+      return fail(in_queried_file(arguments, other_file(defaults.request), answer.error()));
     }
     print_answer(arguments, *answer);
     return 0;

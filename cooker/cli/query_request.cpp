@@ -43,6 +43,13 @@ Json listed_face(const Tree& tree, const FaceRef& face) {
   return json;
 }
 
+Error only_of_scenes(const std::string& what, const std::string& instead) {
+  return {Errc::kNoScene,
+          fmt::format("{} are those of a scene, and this is one tree; {}, or query a file of "
+                      "cook --scene, without --tree",
+                      what, instead)};
+}
+
 // A face of each tree.
 Json listed_faces(const Tree& first, const Tree& second, const FacePair& faces) {
   return {listed_face(first, faces.first), listed_face(second, faces.second)};
@@ -126,7 +133,7 @@ Result<Json> answer(const Tree& tree, const SphereRequest& request) {
 
 Result<Json> answer(const Tree& tree, const FrustumRequest& request) {
   if (request.instances) {
-    return Error{Errc::kNoScene, "instances are those of a scene, and this is one tree"};
+    return only_of_scenes("instances", "leave --instances out for its faces");
   }
   return answer_faces(
       tree, [&](FaceVisitor visitor) { return overlap_frustum(tree, request.frustum(), visitor); });
@@ -217,7 +224,7 @@ Result<Json> answer_pair(const Tree& first, const Tree& second, const OverlapReq
 }
 
 Result<Json> answer(const Tree& /*tree*/, const ContactsRequest& /*request*/) {
-  return Error{Errc::kNoScene, "contacts are those of a scene, and this is one tree"};
+  return only_of_scenes("contacts", "of a tree use collide or pair");
 }
 
 QueryKinds kind_of(const RayRequest&) {

@@ -245,7 +245,15 @@ grep -q 'matrix: expected 16 numbers between commas, found "1,2,3"' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix inf,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1
 grep -q 'invalid_query: cube.bxt: frustum: planes: expected a matrix of finite numbers, .*found matrix \[inf,0,0,0,' err
 expect 1 "$boxtree" query cube.bxt frustum --matrix 1,0,0,0,0,1,0,0,0,0,2,0,0,0,0,1 --instances
-grep -q 'no_scene: cube.bxt: instances are those of a scene, and this is one tree' err
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: instances are those of a scene, and this is one tree; leave --instances out for its faces, or query a file of cook --scene, without --tree'
+expect 1 "$boxtree" query cube.bxt contacts
+same "$(cat err)" 'boxtree: no_scene: cube.bxt: contacts are those of a scene, and this is one tree; of a tree use collide or pair, or query a file of cook --scene, without --tree'
+# The error of a hull's file is told by its name, not by that of the tree.
+for kind in collide 'cast --direction 0,0,-1'; do
+  # shellcheck disable=SC2086
+  expect 2 "$boxtree" query cube.bxt $kind --hull no-hull.obj --at 0,0,3
+  grep -q '^boxtree: file_not_found: no-hull.obj: no such file; ' err
+done
 expect 0 "$boxtree" query cube.bxt point --at 0.5,0.5,3 --json
 same "$(jq -c '[.distance,.point]' out)" '[2,[0.5,0.5,1]]'
 expect 0 "$boxtree" query cube.bxt pair cube.bxt --pose 1,0.25,0.25 --json
