@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -46,10 +47,13 @@ std::vector<std::string> lines_of(const std::string& text) {
 
 class ProfileReader {
  public:
-  ProfileReader(const std::filesystem::path& path, Profile& profile)
-      : profile_(profile), complaints_(path.string()) {}
+  /// `tables`: those of all profiles.
+  ProfileReader(const std::filesystem::path& path, Profile& profile, TableKeys tables)
+      : profile_(profile), complaints_(path.string(), std::move(tables)) {}
 
   Status read(const TomlTable& root);
+  /// The tables that were read, and `tables`.
+  [[nodiscard]] const TableKeys& tables() const { return complaints_.tables(); }
 
  private:
   // Tables of one kind, each with its line; empty if there are none.
@@ -70,7 +74,6 @@ class ProfileReader {
   void read_object(const Header& header);
   void read_mesh(const Header& header);
   void read_hidden_faces(Fields& fields, ProfileMesh& mesh);
-  void read_scene_keys(Fields& fields);
   void refuse_keys_outside_tables(const TomlTable& root);
   void read_instance(const Header& header);
   Stated<std::filesystem::path> beside(const Stated<std::string>& file) const {
@@ -200,18 +203,14 @@ void ProfileReader::read_contact(Fields& fields, std::optional<ContactRule>& rul
   }
 }
 
-void ProfileReader::read_scene_keys(Fields& fields) {
+void ProfileReader::read_scene(const Header& header) {
+  Fields fields(*header.table, "[scene]", header.line, complaints_);
   if (const auto source = fields.text("source")) profile_.source = beside(*source);
   if (const auto degrees = fields.number("active_edges", kSharpAngle)) {
     profile_.active_edges = *degrees;
   }
   if (const auto user_data = fields.text("user_data")) profile_.user_data = *user_data;
   read_needs(fields, profile_.scene);
-}
-
-void ProfileReader::read_scene(const Header& header) {
-  Fields fields(*header.table, "[scene]", header.line, complaints_);
-  read_scene_keys(fields);
   const TomlEntry* queries = fields.find("queries");
   if (queries != nullptr && profile_.scene.queries.value == 0) {
     complaints_.expected(queries->line, "queries", "at least one kind", "none");
@@ -364,18 +363,15 @@ void ProfileReader::read_instance(const Header& header) {
 
 // Values of keys; other tables are reported as keys that are not known.
 void ProfileReader::refuse_keys_outside_tables(const TomlTable& root) {
-  const TomlTable no_keys;
-  Fields scene(no_keys, "[scene]", 0, complaints_);
-  read_scene_keys(scene);  // requests them all and finds none
   for (const TomlEntry& entry : root) {
     if (std::holds_alternative<TomlTable>(entry.node.value) || is_array_of_tables(entry.node)) {
       continue;
     }
+    const std::string tables = complaints_.tables_with(entry.key);
     complaints_.expected(entry.line, entry.key,
-                         scene.knows(entry.key)
-                             ? "it below [scene], or another table that has it"
-                             : "it below a table: [scene], [budget], [contact], [[object]], "
-                               "[[mesh]] or [[instance]]",
+                         tables.empty() ? "it below a table: [scene], [budget], [contact], "
+                                          "[[object]], [[mesh]] or [[instance]]"
+                                        : "it below " + tables,
                          "it outside of all tables");
   }
 }
@@ -417,6 +413,18 @@ Status ProfileReader::read(const TomlTable& root) {
   }
   for (const Header& header : instances) read_instance(header);
   return complaints_.status();
+}
+
+// The keys that each table may have: what is requested of one that is empty.
+TableKeys keys_of_tables() {
+  const TomlNode empty{TomlTable(), 0};
+  TomlTable root;
+  for (const char* name : {"scene", "budget", "contact"}) root.push_back({name, 0, empty});
+  for (const char* name : kSeveral) root.push_back({name, 0, {TomlArray(1, empty), 0}});
+  Profile none;
+  ProfileReader reader({}, none, {});
+  static_cast<void>(reader.read(root));  // complains of keys that are needed
+  return reader.tables();
 }
 
 // The line up to a '#' outside of strings.
@@ -476,7 +484,8 @@ Result<Profile> read_profile(const std::filesystem::path& path) {
   profile.path = path;
   profile.lines = lines_of(*text);
   profile.files_read.push_back(path);
-  if (Status status = ProfileReader(path, profile).read(*root); !status) return status.error();
+  ProfileReader reader(path, profile, keys_of_tables());
+  if (Status status = reader.read(*root); !status) return status.error();
   return profile;
 }
 

@@ -40,6 +40,19 @@ void Complaints::expected(std::uint32_t line, std::string_view where, std::strin
   if (wants(line)) add(line, fmt::format("{}: expected {}, found {}", where, expected, found));
 }
 
+void Complaints::add_table(const std::string& name, const std::vector<std::string>& keys) {
+  const auto has_name = [&](const auto& table) { return table.first == name; };
+  if (std::none_of(tables_.begin(), tables_.end(), has_name)) tables_.emplace_back(name, keys);
+}
+
+std::string Complaints::tables_with(std::string_view key) const {
+  std::vector<std::string> names;
+  for (const auto& [name, keys] : tables_) {
+    if (std::find(keys.begin(), keys.end(), key) != keys.end()) names.push_back(name);
+  }
+  return listed(names);
+}
+
 Status Complaints::status() const {
   if (text_.empty()) return {};
   return Error{Errc::kProfileInvalid, fmt::format("{}:{}: {}", path_, line_, text_)};
@@ -190,14 +203,21 @@ bool Fields::is_misspelt(std::string_view key) {
 }
 
 void Fields::finish() {
+  if (where_.starts_with('[')) complaints_.add_table(where_, known_);  // not those of the profile
   for (const TomlEntry& entry : table_) {
     if (!knows(entry.key) && complaints_.wants(entry.line)) refuse(entry, known_);
   }
 }
 
 void Fields::refuse(const TomlEntry& entry, std::span<const std::string> known) {
-  complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known),
-                       '"' + entry.key + '"');
+  const std::string tables = complaints_.tables_with(entry.key);
+  const std::string found = '"' + entry.key + '"';
+  if (tables.empty()) {
+    complaints_.expected(entry.line, where_, with_nearest("a known key", entry.key, known), found);
+  } else {
+    complaints_.expected(entry.line, where_, "a key of this table",
+                         fmt::format("{}, a key of {}", found, tables));
+  }
 }
 
 }  // namespace boxtree::cooker

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cooker/scene/profile.h"
@@ -15,10 +16,21 @@
 
 namespace boxtree::cooker {
 
+/// Tables, "[scene]", in the order of their reading, each with the keys that it may have.
+using TableKeys = std::vector<std::pair<std::string, std::vector<std::string>>>;
+
 /// The first fault of a profile: of several complaints the one with the smallest line is kept.
 class Complaints {
  public:
-  explicit Complaints(std::string path) : path_(std::move(path)) {}
+  /// `tables`: of all profiles, for messages about a key that stands in another table.
+  explicit Complaints(std::string path, TableKeys tables = {})
+      : path_(std::move(path)), tables_(std::move(tables)) {}
+
+  /// Notes the keys of a table, once for all tables of that name.
+  void add_table(const std::string& name, const std::vector<std::string>& keys);
+  [[nodiscard]] const TableKeys& tables() const { return tables_; }
+  /// "[scene] or [[object]]": the tables that may have a key; empty if none may.
+  [[nodiscard]] std::string tables_with(std::string_view key) const;
 
   /// Whether a complaint of this line would be kept; if not, its text need not be made.
   [[nodiscard]] bool wants(std::uint32_t line) const { return text_.empty() || line < line_; }
@@ -30,6 +42,7 @@ class Complaints {
 
  private:
   std::string path_;
+  TableKeys tables_;
   std::string text_;
   std::uint32_t line_ = 0;
 };

@@ -333,11 +333,23 @@ constexpr ProfileFault kNames[] = {
      "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found "
      "\"seen\""},
     {"queries = ['ray']\n[budget]\nbytes = 1\n",
-     "scene.toml:1: queries: expected it below [scene], or another table that has it, found it "
-     "outside of all tables"},
+     "scene.toml:1: queries: expected it below [scene] or [[object]], found it outside of all "
+     "tables"},
     {"match = ['a']\n",
-     "scene.toml:1: match: expected it below a table: [scene], [budget], [contact], [[object]], "
+     "scene.toml:1: match: expected it below [[object]], found it outside of all tables"},
+    {"matches = ['a']\n",
+     "scene.toml:1: matches: expected it below a table: [scene], [budget], [contact], [[object]], "
      "[[mesh]] or [[instance]], found it outside of all tables"},
+    {"[scene]\nmotion = 'moving'\n",
+     "scene.toml:2: [scene]: expected a key of this table, found \"motion\", a key of [[object]]"},
+    {"[scene]\nmesh = 'a'\n",
+     "scene.toml:2: [scene]: expected a key of this table, found \"mesh\", a key of [[instance]]"},
+    {"[budget]\nexternal = true\n",
+     "scene.toml:2: [budget]: expected a key of this table, found \"external\", a key of [scene], "
+     "[[object]] or [[mesh]]"},
+    {"[[object]]\nname = 'a'\ndegrees = 30\n",
+     "scene.toml:3: [[object]]: expected a key of this table, found \"degrees\", a key of "
+     "[[instance]]"},
     {"[[seen]]\nexact = true\n",
      "scene.toml:1: the profile: expected a known key (nearest: \"scene\"), found \"seen\""},
     {"[budget]\nbyte = 1\n",
