@@ -36,14 +36,14 @@ bool is_known(std::string_view keyword) {
          std::all_of(keyword.begin(), keyword.end(), [](char c) { return c > ' ' && c < 127; });
 }
 
-// Counted from 1, or backwards from -1; 0 if not a number. Numbers of texture coordinates and
+// Counted from 1, or backwards from -1; nothing if not a number. Numbers of texture coordinates and
 // normals may follow, and nothing else: 7, 7/1, 7/1/2, 7//2.
-std::int64_t corner_number(std::string_view word) {
+std::optional<std::int64_t> corner_number(std::string_view word) {
   const std::size_t slash = std::min(word.find('/'), word.size());
   const std::string_view rest = word.substr(slash);
   const bool is_corner = std::count(rest.begin(), rest.end(), '/') <= 2 &&
                          rest.find_first_not_of("0123456789+-/") == std::string_view::npos;
-  return is_corner ? read_integer(word.substr(0, slash)).value_or(0) : 0;
+  return is_corner ? read_integer(word.substr(0, slash)) : std::nullopt;
 }
 
 // T is the type of the positions.
@@ -125,7 +125,7 @@ Status Reader<T>::read_vertex() {
   // Words after the position are checked, so that only numbers pass as a vertex.
   const std::string_view no_number = find_no_number(std::span(words_).subspan(position ? used : 0));
   if (!no_number.empty()) return failure(fmt::format("'{}' is no number", no_number));
-  if (used < 3) return failure(fmt::format("a vertex of {} numbers", used));
+  if (used < 3) return failure(fmt::format("expected a vertex of 3 numbers, found {}", used));
   return mesh_.add_vertex(*position, statement_.line);
 }
 
@@ -197,7 +197,7 @@ bool Reader<T>::is_cut() const {
 
 template <class T>
 std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
-  const std::int64_t number = corner_number(word);
+  const std::int64_t number = corner_number(word).value_or(0);
   const auto so_far = static_cast<std::int64_t>(vertices_so_far_);
   if (number > 0 && number <= static_cast<std::int64_t>(mesh_.vertices())) {
     return static_cast<std::uint32_t>(number - 1);
@@ -209,13 +209,13 @@ std::optional<std::uint32_t> Reader<T>::vertex_of(std::string_view word) const {
 // The fault of a corner that refers to no vertex. Its word is quoted, since we count from 0.
 template <class T>
 FaceFault Reader<T>::fault_of(std::string_view word, std::size_t corner) const {
-  const std::int64_t number = corner_number(word);
-  const std::string limit =
-      number < 0 ? fmt::format("{} vertices come before it", vertices_so_far_)
-                 : fmt::format("OBJ counts the {} vertices from 1", mesh_.vertices());
-  const bool is_half = number == 0 && word != "0" && is_cut();
-  std::string why = fmt::format("corner {} (line {}) says '{}', but {}{}", corner, statement_.line,
-                                word, limit, is_half ? kAsIfCut : "");
+  const std::optional<std::int64_t> number = corner_number(word);
+  const std::string fault =
+      !number       ? "which is no number of a vertex"
+      : *number < 0 ? fmt::format("but {} vertices come before it", vertices_so_far_)
+                    : fmt::format("but OBJ counts the {} vertices from 1", mesh_.vertices());
+  std::string why = fmt::format("corner {} (line {}) says '{}', {}{}", corner, statement_.line,
+                                word, fault, !number && is_cut() ? kAsIfCut : "");
   return {Errc::kMeshIndexOutOfRange, std::move(why)};
 }
 

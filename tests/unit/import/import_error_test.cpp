@@ -48,7 +48,7 @@ TEST_F(ImportErrorTest, FilesThatAreNoMesh) {
   // Assimp would leave the vertex out and give its number to the next.
   const Error two = fail("a.obj", "v 0 0 0\nv 1 0\nv 1 0 0\nv 0 1 0\nv 1 1 1\nf 1 2 3\n");
   EXPECT_EQ(two.code, Errc::kImportFailed);
-  EXPECT_TRUE(has(two.detail, "line 2: a vertex of 2 numbers"));
+  EXPECT_TRUE(has(two.detail, "line 2: expected a vertex of 3 numbers, found 2"));
 }
 
 // Found by a newcomer: "no faces", or a message of assimp about a format that nobody meant.
@@ -255,6 +255,12 @@ TEST_F(ImportErrorTest, ObjFaultsCountFromZeroAndQuoteTheFile) {
   EXPECT_EQ(error.code, Errc::kMeshIndexOutOfRange);
   EXPECT_TRUE(has(error.detail,
                   "face 1: corner 2 (line 6) says '9/1', but OBJ counts the 5 vertices from 1"));
+  // Found by a newcomer: 'x' was not one of the vertices.
+  for (const std::string word : {"x", "3.5", "3/x", "99999999999999999999"}) {
+    EXPECT_TRUE(has(fail("b.obj", std::string(kTriangle) + "f 1 2 " + word + "\n").detail,
+                    "says '" + word + "', which is no number of a vertex"))
+        << word;
+  }
 
   const Imported rest = load("a.obj", obj, {.skip_bad = true});
   expect_invariants(rest);
