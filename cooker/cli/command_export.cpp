@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `boxtree export`: triangles and boxes as a file for viewers.
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <memory>
 #include <optional>
@@ -269,7 +270,7 @@ int run(const Arguments& arguments) {
   std::vector<std::filesystem::path> inputs{arguments.file};
   if (!arguments.mesh.empty()) inputs.push_back(arguments.mesh);
   if (!output->stream) {
-    const Status status = check_outputs(std::span(&output->path, 1), inputs);
+    const Status status = check_outputs(std::array{Output{output->path}}, inputs);
     if (!status) return usage("export: " + status.error().detail);
     const Status replaced = check_replaced(
         output->path, *is_glb_name(output->path) ? OutputKind::kShownGlb : OutputKind::kShownObj);

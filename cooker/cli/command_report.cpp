@@ -53,14 +53,18 @@ struct Arguments {
 };
 
 // Those that were not given are empty.
-std::array<std::filesystem::path, 4> outputs_of(const Arguments& arguments) {
-  return {arguments.output, arguments.json_out, arguments.csv, arguments.approximate_csv};
+std::array<Output, 4> outputs_of(const Arguments& arguments) {
+  return {{{arguments.output},
+           {arguments.json_out, "--json-out"},
+           {arguments.csv, "--csv"},
+           {arguments.approximate_csv, "--csv-approximate"}}};
 }
 
 // How many of the outputs are standard output, which the summary must leave alone.
 std::ptrdiff_t count_standard_outputs(const Arguments& arguments) {
   const auto outputs = outputs_of(arguments);
-  return std::count_if(outputs.begin(), outputs.end(), is_standard_stream);
+  return std::count_if(outputs.begin(), outputs.end(),
+                       [](const Output& output) { return is_standard_stream(output.path); });
 }
 
 std::vector<std::string> names_of(const std::vector<std::filesystem::path>& meshes) {

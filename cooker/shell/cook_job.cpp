@@ -18,9 +18,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Those that are not given are empty.
-std::array<fs::path, 3> output_files(const CookJob& job) {
-  return {job.output_stream ? fs::path() : job.output, job.depfile, job.reordered};
+std::array<Output, 3> output_files(const CookJob& job) {
+  return {{{job.output_stream ? fs::path() : job.output},
+           {job.depfile, "--depfile"},
+           {job.reordered, "--write-reordered"}}};
 }
 
 class Job {

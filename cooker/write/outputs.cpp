@@ -132,21 +132,27 @@ const char* name_of(OutputKind kind) {
 
 }  // namespace
 
-Status check_outputs(std::span<const fs::path> outputs, std::span<const fs::path> inputs) {
+Status check_outputs(std::span<const Output> outputs, std::span<const fs::path> inputs) {
+  const auto shown = [](const Output& output) {
+    const std::string option = output.option;
+    return option.empty() ? output.path.string() : option + " " + output.path.string();
+  };
+  const auto refuse = [&](const Output& output, const std::string& other) {
+    return Error{Errc::kWriteFailed,
+                 fmt::format("{}: is the same file as {}; it would be written over: name another "
+                             "output",
+                             shown(output), other)};
+  };
   for (std::size_t i = 0; i < outputs.size(); ++i) {
-    const fs::path& output = outputs[i];
-    if (output.empty()) continue;
-    const auto refuse = [&output](const fs::path& other, const char* what) {
-      return Error{Errc::kWriteFailed,
-                   fmt::format("{}: is the same file as {} {}; it would be written over: name "
-                               "another output",
-                               output.string(), what, other.string())};
-    };
+    const Output& output = outputs[i];
+    if (output.path.empty()) continue;
     for (const fs::path& input : inputs) {
-      if (is_same_file(output, input)) return refuse(input, "the input");
+      if (is_same_file(output.path, input)) return refuse(output, "the input " + input.string());
     }
-    for (const fs::path& other : outputs.subspan(i + 1)) {
-      if (!other.empty() && is_same_file(output, other)) return refuse(other, "the output");
+    for (const Output& earlier : outputs.first(i)) {
+      if (!earlier.path.empty() && is_same_file(output.path, earlier.path)) {
+        return refuse(output, "the output " + shown(earlier));
+      }
     }
   }
   return {};

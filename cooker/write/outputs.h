@@ -9,10 +9,14 @@
 
 namespace boxtree::cooker {
 
+struct Output {
+  std::filesystem::path path;  // empty if it was not given
+  const char* option = "";     // that names it, for messages; of the output itself none
+};
+
 /// Checks that no output is an input or another output, under any name, hard link or symbolic link.
-/// Empty paths are outputs that were not given. Reads no file; call it before anything is written.
-/// Error: kWriteFailed.
-Status check_outputs(std::span<const std::filesystem::path> outputs,
+/// Reads no file; call it before anything is written. Error: kWriteFailed.
+Status check_outputs(std::span<const Output> outputs,
                      std::span<const std::filesystem::path> inputs);
 
 /// What a program writes: a new output of a kind takes the place of an old one, and of nothing

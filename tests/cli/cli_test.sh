@@ -1377,6 +1377,9 @@ for output in own.obj ./own.obj hard.obj soft.obj; do
   expect 1 "$boxtree" report own.obj --quick -o "$output"
 done
 expect 1 "$boxtree" cook own.obj -o not-own.bxt --depfile ./not-own.bxt -q
+same "$(cat err)" 'boxtree: usage: cook: --depfile ./not-own.bxt: is the same file as the output not-own.bxt; it would be written over: name another output'
+expect 1 "$boxtree" cook own.obj -o not-own.bxt --write-reordered ./own.obj -q
+same "$(cat err)" 'boxtree: usage: cook: --write-reordered ./own.obj: is the same file as the input own.obj; it would be written over: name another output'
 expect 1 "$boxtree" cook own.obj --profile empty.toml -o empty.toml -q
 expect 1 "$boxtree" cook own.obj -o '' -q
 same "$(stat -c %s empty.toml)" 0

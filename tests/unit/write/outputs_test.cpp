@@ -26,7 +26,9 @@ TEST(Outputs, AreFilesOfTheirOwn) {
   fs::create_directory(folder.path() / "sub");
   fs::create_symlink("new", folder.path() / "dangling");
   const auto code = [&](const fs::path& output, const fs::path& other) {
-    return check_outputs(std::array{folder.path() / output, other}, std::array{mesh}).code();
+    return check_outputs(std::array{Output{folder.path() / output}, Output{other}},
+                         std::array{mesh})
+        .code();
   };
   for (const char* same : {"m.obj", "./m.obj", "sub/../m.obj", "hard", "soft"}) {
     EXPECT_EQ(code(same, ""), Errc::kWriteFailed) << same;
@@ -35,6 +37,20 @@ TEST(Outputs, AreFilesOfTheirOwn) {
   EXPECT_EQ(code("out", folder.path() / "out"), Errc::kWriteFailed);
   EXPECT_EQ(code("new", folder.path() / "dangling"), Errc::kWriteFailed);
   EXPECT_EQ(code("out", folder.path() / "new"), Errc::kOk);
+}
+
+// Found by a newcomer: "y.bxt: is the same file as the output y.bxt" of --depfile y.bxt.
+TEST(Outputs, AreToldByTheirOptions) {
+  const auto said = [](const Output& more, const fs::path& input) {
+    return check_outputs(std::array{Output{"y.bxt"}, more}, std::array{input}).error().detail;
+  };
+  constexpr const char* kRest = "; it would be written over: name another output";
+  EXPECT_EQ(said({"./y.bxt", "--depfile"}, "m.obj"),
+            std::string("--depfile ./y.bxt: is the same file as the output y.bxt") + kRest);
+  EXPECT_EQ(said({"./m.obj", "--depfile"}, "m.obj"),
+            std::string("--depfile ./m.obj: is the same file as the input m.obj") + kRest);
+  EXPECT_EQ(said({"y.d", "--depfile"}, "y.bxt"),
+            std::string("y.bxt: is the same file as the input y.bxt") + kRest);
 }
 
 // An export over the mesh of the cook, a cook over a profile.
