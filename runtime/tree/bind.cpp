@@ -55,7 +55,7 @@ Result<Tree> Tree::bind(const File& opened, std::uint32_t index, const BindOptio
 Result<Tree> Tree::bind(const File& file, const BindOptions& options) {
   if (file.has_scene()) {
     return error_with(Errc::kTreeIndex, {},
-                      "the file holds a scene: bind that, or say which tree, by a number below #",
+                      "the file holds a scene: bind that, or a tree by its number; trees: #",
                       {file.tree_count()});
   }
   if (file.tree_count() != 1) {
