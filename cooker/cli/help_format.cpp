@@ -52,6 +52,8 @@ std::string HelpFormatter::make_help(const CLI::App* app, std::string name,
   const CLI::App* const outer = std::exchange(app_, app);
   std::string help = CLI::Formatter::make_help(app, std::move(name), mode);
   app_ = outer;
+  // CLI11 has an empty line behind a group, shown or not, and another one before what follows.
+  for (std::size_t at = 0; (at = help.find("\n\n\n", at)) != std::string::npos;) help.erase(at, 1);
   return help;
 }
 

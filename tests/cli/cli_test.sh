@@ -1574,6 +1574,11 @@ grep -q -- '--codec' out
 if grep -q -- '--depfile' out; then echo "--help shows rare options"; exit 1; fi
 expect 0 "$boxtree" cook --help-all
 grep -q -- '--depfile' out
+for line in 'cook --help' 'cook --help-all' 'export --help' 'query --help' 'query pair --help' 'query pair --help-all' --help --help-all help; do
+  # shellcheck disable=SC2086
+  expect 0 "$boxtree" $line
+  if grep -Pzq '\n\n\n' out; then echo "$line: two empty lines"; cat out; exit 1; fi
+done
 expect 0 "$boxtree" cook cube.obj -o cube.bxt
 same "$(wc -c <err)" 0
 echo "command line: all as expected"
