@@ -239,7 +239,7 @@ int run(const Arguments& arguments) {
   if (arguments.calibrate) return run_calibration(arguments);
   Json rows = Json::array();
   for (const std::filesystem::path& path : arguments.files) {
-    const Result<File> file = File::open(path);
+    const Result<File> file = map_file(path);
     if (!file) return fail(file.error());
     for (std::uint32_t i = 0; i < file->tree_count(); ++i) {
       const Result<Tree> tree = Tree::bind(*file, i);

@@ -28,8 +28,8 @@
 #include "cooker/cli/scene_query.h"
 #include "cooker/cli/standard_streams.h"
 #include "cooker/import/file_error.h"
+#include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
-#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -105,7 +105,7 @@ class BatchLines {
                                                     number_, kLongestLine)};
     }
     if (error_ == 0) return {};
-    return read_failure(name(), error_);
+    return input_failure(name(), error_);
   }
 
  private:

@@ -2,6 +2,7 @@
 // Whether a file is a blob is known from its header alone.
 #include "cooker/cli/open_file.h"
 
+#include <cerrno>
 #include <charconv>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <boxtree/blob.h>
 
 #include "cooker/cli/standard_streams.h"
+#include "cooker/system/input_failure.h"
 #include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
@@ -31,9 +33,15 @@ Result<OpenedFile> open_standard_input() {
 
 }  // namespace
 
+Result<File> map_file(const std::filesystem::path& path) {
+  Result<File> mapped = File::open(path);
+  if (mapped.code() == Errc::kFileNotFound) return input_failure(path.string(), ENOENT);
+  return mapped;
+}
+
 Result<OpenedFile> open_file(const std::filesystem::path& path) {
   if (is_standard_stream(path)) return open_standard_input();
-  Result<File> mapped = File::open(path);
+  Result<File> mapped = map_file(path);
   if (mapped) return OpenedFile{std::move(*mapped)};
   if (mapped.code() != Errc::kFeatureUnsupported) return mapped.error();
   Result<File> blob = open_blob(path);

@@ -17,7 +17,10 @@ struct OpenedFile {
   std::uint64_t blob_bytes = 0;  // size of the compressed file; 0 for a mapped one
 };
 
-/// "-" is standard input. Errors as File::open, open_blob and standard_input.
+/// File::open(), with the message of input_failure() for a missing file.
+Result<File> map_file(const std::filesystem::path& path);
+
+/// "-" is standard input. Errors as map_file, open_blob and standard_input.
 Result<OpenedFile> open_file(const std::filesystem::path& path);
 
 /// How commands import meshes, which may come from anywhere: no file ends the command.

@@ -12,7 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "runtime/file/read_failure.h"
+#include "cooker/system/input_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -40,7 +40,7 @@ Result<std::string> output_of(const std::vector<std::string>& command, bool quie
   ::close(ends[1]);
   if (failed != 0) {
     ::close(ends[0]);
-    return read_failure(command[0], failed);
+    return input_failure(command[0], failed);
   }
   std::string text;
   std::array<char, 65536> block;

@@ -7,7 +7,7 @@
 #include <system_error>
 
 #include "cooker/import/whole_file.h"
-#include "runtime/file/read_failure.h"
+#include "cooker/system/input_failure.h"
 
 namespace boxtree::cooker {
 
@@ -33,7 +33,7 @@ Result<std::uint64_t> SourceFile::size() const {
   if (bytes_) return std::uint64_t{bytes_->size()};
   std::error_code failed;
   const std::uintmax_t size = std::filesystem::file_size(path_, failed);
-  if (failed) return read_failure(title_, failed.value());
+  if (failed) return input_failure(title_, failed.value());
   return std::uint64_t{size};
 }
 

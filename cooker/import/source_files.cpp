@@ -18,8 +18,8 @@
 #include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/system/file_handle.h"
+#include "cooker/system/input_failure.h"
 #include "cooker/text/percent.h"
-#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -38,14 +38,14 @@ Status check_source_file(const SourceFile& source, const std::string& named_in) 
   const fs::path& path = source.path();
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return read_failure(path.string(), error.value(), named_in);
+  if (!fs::exists(status)) return input_failure(path.string(), error.value(), named_in);
   if (fs::is_directory(status)) return unreadable(path, "is a directory, not a mesh file");
   // A pipe or a device cannot be read twice, and assimp reads most files more than once.
   if (!fs::is_regular_file(status)) return unreadable(path, "is not a regular file");
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return read_failure(path.string(), errno, named_in);
+  if (!file) return input_failure(path.string(), errno, named_in);
   if (std::fgetc(file.get()) != EOF) return {};
-  if (std::ferror(file.get()) != 0) return read_failure(path.string(), errno);
+  if (std::ferror(file.get()) != 0) return input_failure(path.string(), errno);
   return empty;
 }
 

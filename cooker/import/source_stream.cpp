@@ -13,7 +13,7 @@
 #include <xxhash.h>
 
 #include "cooker/import/file_error.h"
-#include "runtime/file/read_failure.h"
+#include "cooker/system/input_failure.h"
 
 namespace boxtree::cooker {
 
@@ -29,7 +29,7 @@ Result<SourceStream> SourceStream::open(const SourceFile& source) {
   SourceStream stream;
   stream.title_ = source.title();
   stream.file_ = source.open();
-  if (!stream.file_) return read_failure(source.title(), errno);
+  if (!stream.file_) return input_failure(source.title(), errno);
   const Result<std::uint64_t> size = source.size();
   if (!size) return size.error();
   stream.unread_ = *size;
@@ -87,7 +87,7 @@ bool SourceStream::skip(std::uint64_t count) {
 }
 
 Error SourceStream::ended_in(std::string_view what) const {
-  if (error_ != 0) return read_failure(title_, error_);
+  if (error_ != 0) return input_failure(title_, error_);
   return Error{Errc::kImportFailed, title_ + ": the file ends in " + std::string(what) + kAsIfCut};
 }
 

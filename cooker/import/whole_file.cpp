@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "cooker/system/file_handle.h"
-#include "runtime/file/read_failure.h"
+#include "cooker/system/input_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -24,7 +24,7 @@ Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
                    const std::function<void(const char* bytes, std::size_t count)>& sink,
                    const std::string& named_in) {
   const FileHandle file(std::fopen(path.c_str(), "rb"));
-  if (!file) return read_failure(path.string(), errno, named_in);
+  if (!file) return input_failure(path.string(), errno, named_in);
   std::vector<char> chunk(kChunkBytes);
   std::uint64_t left = most;
   for (;;) {
@@ -37,7 +37,7 @@ Status read_chunks(const std::filesystem::path& path, std::uint64_t most,
     left -= got;
     sink(chunk.data(), got);
     if (got == chunk.size()) continue;
-    return std::ferror(file.get()) != 0 ? Status(read_failure(path.string(), errno)) : Status();
+    return std::ferror(file.get()) != 0 ? Status(input_failure(path.string(), errno)) : Status();
   }
 }
 

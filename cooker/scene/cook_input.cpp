@@ -12,8 +12,8 @@
 #include <fmt/format.h>
 
 #include "cooker/import/file_error.h"
+#include "cooker/system/input_failure.h"
 #include "format/limits.h"
-#include "runtime/file/read_failure.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -70,7 +70,7 @@ Status check_named(const Profile& profile, std::string_view key, const Stated<fs
   if (fs::status(file.value, error).type() != fs::file_type::not_found) return {};
   const std::string path = profile.path.string();
   return in_file(fmt::format("{}:{}: {}", path, file.line, key),
-                 read_failure(file.value.string(), ENOENT, path));
+                 input_failure(file.value.string(), ENOENT, path));
 }
 
 // Each mesh of a profile becomes a mesh of the scene. A file that several name is read once for

@@ -447,7 +447,7 @@ expect 1 "$boxtree" query cube.bxt ray --origin 0,0,0 --direction 0,0,0
 printf '{"kind":"ray","origin":[0,0,9],"direction":[0,0,-1]}\n' >one.jsonl
 missing() {
   expect 2 "$boxtree" "$@"
-  grep -qx 'boxtree: file_not_found: missing: no such file; check the name, which is relative to the current folder' err ||
+  grep -qxF "boxtree: file_not_found: missing: no such file; check the name, which is relative to the current folder, $PWD" err ||
     { echo "$*"; cat err; exit 1; }
 }
 missing cook missing -o none.bxt
