@@ -6,22 +6,22 @@
 #include <span>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include "cooker/text/json.h"
 #include "cooker/version.h"
 #include "runtime/file/checksum.h"
 
 namespace boxtree::cooker {
 namespace {
 
-nlohmann::ordered_json grid_record(const CookOptions& options) {
+Json grid_record(const CookOptions& options) {
   if (options.geometry != GeometryId::kGrid && !options.may_use_grid) return nullptr;
   if (options.grid.tolerance) return {{"tolerance", *options.grid.tolerance}};
   if (options.grid.step_exponent) return {{"step_exponent", *options.grid.step_exponent}};
   return {{"bits", options.grid.bits}};
 }
 
-nlohmann::ordered_json budget(const std::optional<double>& limit) {
+Json budget(const std::optional<double>& limit) {
   if (!limit) return nullptr;
   return *limit;
 }
@@ -40,7 +40,7 @@ std::uint64_t hash_of(const Profile& profile) {
 
 std::string make_cook_record(const CookOptions& options, const CookInput& input,
                              const Profile& profile) {
-  nlohmann::ordered_json record;
+  Json record;
   record["tool"] = fmt::format("boxtree {}", kVersion);
   record["options"] = {
       {"codec", options.codec ? std::string(codec_name(*options.codec)) : "auto"},
@@ -65,14 +65,14 @@ std::string make_cook_record(const CookOptions& options, const CookInput& input,
   if (options.shrink_share != kShrinkShare) {
     record["options"]["shrink_share"] = options.shrink_share;
   }
-  record["sources"] = nlohmann::ordered_json::array();
+  record["sources"] = Json::array();
   for (std::size_t i = 0; i < input.imports.size(); ++i) {
     record["sources"].push_back({{"name", input.import_names[i]},
                                  {"xxh3", hash_text(input.imports[i].content_hash)},
                                  {"faces", input.imports[i].source_faces}});
   }
   if (!profile.path.empty()) record["profile"] = {{"xxh3", hash_text(hash_of(profile))}};
-  return record.dump(-1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+  return record.dump(-1, true) + "\n";
 }
 
 }  // namespace boxtree::cooker

@@ -8,14 +8,12 @@
 #include <optional>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/whole_file.h"
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr std::array kStores = {GeometryId::kArrays, GeometryId::kExact, GeometryId::kGrid};
 constexpr std::array kSteps = {"query_ns", "node_ns", "leaf_ns"};
@@ -26,23 +24,23 @@ Error fault(std::string what) {
 }
 
 std::string member(const Json& row, const char* key) {
-  const auto found = row.find(key);
-  return found != row.end() && found->is_string() ? found->get<std::string>() : std::string();
+  const Json* const found = row.find(key);
+  return found != nullptr && found->is_string() ? found->get<std::string>() : std::string();
 }
 
 Result<StepCost> parse_steps(const Json& row, const std::string& place, const char* kind) {
-  const auto found = row.find(kind);
-  if (found == row.end() || !found->is_object()) {
+  const Json* const found = row.find(kind);
+  if (found == nullptr || !found->is_object()) {
     return fault(fmt::format("{}: expected an object \"{}\"", place, kind));
   }
   std::array<double, kSteps.size()> steps{};
   for (std::size_t i = 0; i < kSteps.size(); ++i) {
-    const auto step = found->find(kSteps[i]);
-    const bool is_number = step != found->end() && step->is_number();
+    const Json* const step = found->find(kSteps[i]);
+    const bool is_number = step != nullptr && step->is_number();
     steps[i] = is_number ? step->get<double>() : -1;
     if (!(steps[i] >= 0) || !std::isfinite(steps[i])) {
       return fault(fmt::format("{}, {}: expected \"{}\", nanoseconds, 0 or more, found {}", place,
-                               kind, kSteps[i], step == found->end() ? "nothing" : step->dump()));
+                               kind, kSteps[i], step == nullptr ? "nothing" : step->dump()));
     }
   }
   if (std::all_of(steps.begin(), steps.end(), [](double step) { return step == 0; })) {
@@ -98,10 +96,10 @@ std::string costs_to_json(const Calibration& calibration) {
 }
 
 Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
-  const Json document = Json::parse(text, nullptr, false);
-  if (document.is_discarded()) return fault("no JSON");
-  const auto rows = document.is_object() ? document.find("costs") : document.end();
-  if (!document.is_object() || rows == document.end() || !rows->is_array()) {
+  const ParsedJson parsed = parse_json(text);
+  if (parsed.fault != ParsedJson::Fault::kNone) return fault("no JSON");
+  const Json* const rows = parsed.value.find("costs");
+  if (rows == nullptr || !rows->is_array()) {
     return fault("expected an object with an array \"costs\"");
   }
   std::vector<CodecCost> costs;

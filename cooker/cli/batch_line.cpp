@@ -154,11 +154,13 @@ class KeyFields {
 
   // The numbers of an array; nothing if it is another value.
   static std::optional<std::vector<double>> numbers_of(const Json& value) {
-    const auto is_number = [](const Json& each) { return each.is_number(); };
-    if (!value.is_array() || !std::all_of(value.begin(), value.end(), is_number)) {
-      return std::nullopt;
+    if (!value.is_array()) return std::nullopt;
+    std::vector<double> numbers;
+    for (const Json& each : value) {
+      if (!each.is_number()) return std::nullopt;
+      numbers.push_back(each.get<double>());
     }
-    return value.get<std::vector<double>>();
+    return numbers;
   }
   static bool convert(const Json& value, Eigen::Vector3d& out) {
     const auto numbers = numbers_of(value);
@@ -201,11 +203,14 @@ class KeyFields {
     return value.is_string() || value.is_number_unsigned();
   }
   static bool convert(const Json& value, std::vector<std::string>& out) {
-    const Json texts = value.is_array() ? value : Json::array({value});
-    const auto is_text = [](const Json& each) { return each.is_string(); };
-    const bool are_texts = std::all_of(texts.begin(), texts.end(), is_text);
-    if (are_texts) out = texts.get<std::vector<std::string>>();
-    return are_texts;
+    std::vector<std::string> texts;
+    for (const Json& each :
+         value.is_array() ? std::span(value.begin(), value.end()) : std::span(&value, 1)) {
+      if (!each.is_string()) return false;
+      texts.push_back(each.get<std::string>());
+    }
+    out = std::move(texts);
+    return true;
   }
   static bool convert(const Json& value, std::filesystem::path& out) {
     if (value.is_string()) out = value.get<std::string>();
@@ -239,8 +244,8 @@ class KeyFields {
       if (expected == nullptr) expected = form_of(out);
     }
     known_.emplace_back(key);
-    const auto found = json_.find(key);
-    if (found == json_.end()) return fail(key, expected, kNoSuchKey);
+    const Json* const found = json_.find(key);
+    if (found == nullptr) return fail(key, expected, kNoSuchKey);
     if (!convert(*found, out)) fail(key, expected, found_text(*found));
   }
   // The same, but the key may be missing.
@@ -275,41 +280,35 @@ std::string with_underscores(std::string key) {
 // The object of a line. What nests deeper than any value that a message shows would overflow the
 // stack.
 Result<BatchLine> parse_line(std::string_view text) {
-  constexpr int kDeepest = 4;
-  bool is_too_deep = false;
-  std::vector<std::string> keys;  // all that the line has, in its order
-  const auto watch = [&](int depth, Json::parse_event_t event, const Json& parsed) {
-    is_too_deep = is_too_deep || depth > kDeepest;
-    const bool is_of_line = event == Json::parse_event_t::key && depth == 1;
-    if (is_of_line && !is_too_deep) keys.push_back(parsed.get<std::string>());
-    return !is_too_deep;
-  };
-  try {
-    const Json json = Json::parse(text, watch);
-    if (is_too_deep) {
+  constexpr std::size_t kDeepest = 4;
+  const ParsedJson parsed = parse_json(text, kDeepest);
+  const auto& [fault, byte, json, keys] = parsed;
+  switch (fault) {
+    case ParsedJson::Fault::kNoJson:
+      return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", byte));
+    case ParsedJson::Fault::kTooLarge:
+      return invalid(
+          "expected a JSON object of finite numbers, found one beyond what a double holds");
+    case ParsedJson::Fault::kTooDeep:
       return invalid(fmt::format(
           "{}expected a JSON object of numbers, texts and arrays of them, found an array or an "
           "object in another",
           keys.empty() ? std::string() : '"' + keys.back() + "\": "));
-    }
-    if (!json.is_object()) return invalid("expected a JSON object, found " + found_text(json));
-    BatchLine line;
-    for (const std::string& key : keys) {
-      const std::string name = with_underscores(key);
-      const auto [first, is_new] = line.written.emplace(name, key);
-      if (!is_new) {
-        return invalid(fmt::format("\"{}\": expected once, found twice{}", key,
-                                   first->second == key ? "" : ": - and _ are the same"));
-      }
-      line.values[name] = json[key];
-    }
-    return line;
-  } catch (const Json::parse_error& error) {
-    return invalid(fmt::format("expected a JSON object, found no JSON at byte {}", error.byte));
-  } catch (const Json::out_of_range&) {
-    return invalid(
-        "expected a JSON object of finite numbers, found one beyond what a double holds");
+    case ParsedJson::Fault::kNone:
+      break;
   }
+  if (!json.is_object()) return invalid("expected a JSON object, found " + found_text(json));
+  BatchLine line;
+  for (const std::string& key : keys) {
+    const std::string name = with_underscores(key);
+    const auto [first, is_new] = line.written.emplace(name, key);
+    if (!is_new) {
+      return invalid(fmt::format("\"{}\": expected once, found twice{}", key,
+                                 first->second == key ? "" : ": - and _ are the same"));
+    }
+    line.values[name] = json[key];
+  }
+  return line;
 }
 
 Result<BatchRequest> request_of(std::string_view kind, const BatchLine& of,
@@ -346,7 +345,7 @@ Result<BatchRequest> parse_request(std::string_view line, const RequestDefaults&
   if (!parsed) return parsed.error();
   const Json& values = parsed->values;
   std::string kind = defaults.kind;
-  if (const auto given = values.find("kind"); given != values.end()) {
+  if (const Json* const given = values.find("kind"); given != nullptr) {
     if (!given->is_string())
       return invalid("\"kind\": expected a text, found " + found_text(*given));
     kind = given->get<std::string>();

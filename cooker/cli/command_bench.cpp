@@ -120,11 +120,12 @@ void print_approximate(const Json& kinds) {
             row["node_budget"].is_null()
                 ? fmt::format("error {}", row["relative_error"].get<double>())
                 : fmt::format("budget {}", row["node_budget"].get<std::uint64_t>());
-        const std::string error =
-            row["found"] == 0 ? "-" : fmt::format("{:.2g}", row["measured_error"].get<double>());
+        const std::string error = row["found"].get<std::uint64_t>() == 0
+                                      ? "-"
+                                      : fmt::format("{:.2g}", row["measured_error"].get<double>());
         fmt::print("    {:<14} {:12.0f} {:10.1f} {:>14}{}\n", allowed,
                    row["median_ns"].get<double>(), row["nodes"].get<double>(), error,
-                   row["false_bounds"] == 0 ? "" : "  FALSE BOUNDS");
+                   row["false_bounds"].get<std::uint64_t>() == 0 ? "" : "  FALSE BOUNDS");
       }
     }
   }
@@ -179,7 +180,7 @@ int run_calibration(const Arguments& arguments) {
   const Result<Calibration> calibration = calibrate(meshes, arguments.runs);
   if (!calibration) return fail(calibration.error());
   if (arguments.json) {
-    print(Json::parse(costs_to_json(*calibration)));
+    print(parse_json(costs_to_json(*calibration)).value);
     return 0;
   }
   fmt::print(

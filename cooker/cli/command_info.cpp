@@ -108,7 +108,7 @@ void print_form(const char* what, const Json& tree, const char* key) {
   const Json& form = tree[key];
   if (form.is_null()) return;
   fmt::print("  {}: {}, {:.2f} bytes per triangle\n", what,
-             form == "runs" ? "by runs of the source's faces" : "of each face",
+             form.get<std::string>() == "runs" ? "by runs of the source's faces" : "of each face",
              tree["bytes_per_triangle"][key].get<double>());
 }
 
@@ -249,7 +249,8 @@ void print_file(const Json& json) {
     print_form("materials", tree, "materials");
     print_form("user data", tree, "user_data");
     fmt::print("{}", text_of_moves(tree));
-    fmt::print("  surface{}: {}\n", tree["geometry"] == "grid" ? " on the grid" : "",
+    fmt::print("  surface{}: {}\n",
+               tree["geometry"].get<std::string>() == "grid" ? " on the grid" : "",
                text_of_surface(tree["surface"]));
     fmt::print("  bounds {} to {}\n", line_of(tree["bounds"]["min"]),
                line_of(tree["bounds"]["max"]));

@@ -127,7 +127,7 @@ Json to_json(const PaperFigures& mesh) {
            static_cast<double>(mesh.merged_nodes) / static_cast<double>(mesh.original_nodes)},
           {"shrink_nodes", mesh.shrink_nodes},
           {"depth", mesh.depth},
-          {"kinds", mesh.kinds},
+          {"kinds", Json::array_of(mesh.kinds)},
           {"cuts", mesh.cuts},
           {"unique_cuts", mesh.unique_cuts},
           {"codecs", codecs},
@@ -341,7 +341,7 @@ int run_tradeoff(const Arguments& arguments) {
       !status) {
     return fail(status.error());
   }
-  return write_report(arguments, tradeoff_page(*report), Json::parse(to_json(*report)),
+  return write_report(arguments, tradeoff_page(*report), parse_json(to_json(*report)).value,
                       tradeoff_summary(*report), std::move(written));
 }
 

@@ -73,8 +73,8 @@ Json import_json(const ImportReport& report) {
   for (const std::filesystem::path& file : report.files_missing) {
     json["files_missing"].push_back(file.string());
   }
-  if (!report.groups.empty()) json["groups"] = report.groups;
-  if (!report.primitives.empty()) json["primitives"] = report.primitives;
+  if (!report.groups.empty()) json["groups"] = Json::array_of(report.groups);
+  if (!report.primitives.empty()) json["primitives"] = Json::array_of(report.primitives);
   json["skipped"] = Json::array();
   for (const SkippedFace& face : report.skipped) {
     json["skipped"].push_back({{"face", face.face_id}, {"reason", face.reason}});
@@ -280,7 +280,7 @@ void add_scene(const Summary& summary, Json& json) {
                    {"source_meshes", scene.meshes},
                    {"placed_triangles", scene.placed_triangles},
                    {"file_bytes", summary.file_bytes}};
-  json["notices"] = scene.notices;
+  json["notices"] = Json::array_of(scene.notices);
 }
 
 Json why_json(const std::vector<WhyLine>& why) {
@@ -346,7 +346,7 @@ Json imports_json(const std::vector<ImportReport>& imports) {
 Json summary_json(const Summary& summary) {
   Json json;
   json["trees"] = trees_json(summary);
-  json["warnings"] = warnings_of(summary);
+  json["warnings"] = Json::array_of(warnings_of(summary));
   if (summary.scene) add_scene(summary, json);
   json["why"] = why_json(summary.why);
   return json;

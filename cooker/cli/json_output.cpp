@@ -12,11 +12,9 @@ namespace {
 
 // -0 is 0, and reads as if it were something else.
 void drop_signs_of_zero(Json& value) {
-  if (value.is_structured()) {
-    for (Json& each : value) drop_signs_of_zero(each);
-  } else if (value.is_number_float() && value.get<double>() == 0) {
-    value = 0.0;
-  }
+  for (Json& each : value) drop_signs_of_zero(each);
+  for (auto& [key, member] : value.items()) drop_signs_of_zero(member);
+  if (value.is_number_float() && value.get<double>() == 0) value = 0.0;
 }
 
 }  // namespace
@@ -34,7 +32,7 @@ std::string document_text(const Json& document) {
   Json whole = {{"schema", kSchema}};
   whole.update(document);
   drop_signs_of_zero(whole);
-  return whole.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return whole.dump(2) + "\n";
 }
 
 void print(const Json& document) {
@@ -43,12 +41,12 @@ void print(const Json& document) {
 
 void print_files(std::vector<Json> documents, bool are_several) {
   if (!are_several) return print(documents.front());
-  print(Json{{"files", std::move(documents)}});
+  print(Json{{"files", Json::array_of(std::move(documents))}});
 }
 
 std::string line_of(Json value) {
   drop_signs_of_zero(value);
-  return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  return value.dump();
 }
 
 }  // namespace boxtree::cooker

@@ -6,13 +6,11 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <nlohmann/json.hpp>
 
+#include "cooker/text/json.h"
 #include "format/codec.h"
 
 namespace boxtree::cooker {
-
-using Json = nlohmann::ordered_json;
 
 /// Prints one JSON document to standard output, behind the number of the schema that all documents
 /// of this program follow (docs/JSON.md): keys may be added under it, none is renamed. Bytes that

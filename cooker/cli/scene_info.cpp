@@ -125,7 +125,7 @@ Result<Json> scene_json(const File& file) {
 void print_scene(const Json& scene) {
   fmt::print("scene: {} ({} moving), {} placed; answers {}\n",
              counted(scene["instance_count"].get<std::uint32_t>(), "instance"),
-             scene["moving"].get<std::size_t>(),
+             scene["moving"].get<std::uint64_t>(),
              counted(scene["placed_triangles"].get<std::uint64_t>(), "triangle"),
              line_of(scene["queries"]));
   std::map<std::uint32_t, std::size_t> of_layer;

@@ -8,9 +8,8 @@
 #include <limits>
 #include <map>
 
-#include <nlohmann/json.hpp>
-
 #include "cooker/export/placed_shape.h"
+#include "cooker/text/json.h"
 #include "cooker/version.h"
 #include "cooker/write/byte_sink.h"
 #include "runtime/tree/bound_tree.h"
@@ -18,7 +17,6 @@
 namespace boxtree::cooker {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using Position = std::array<float, 3>;
 
 // Numbers of the glTF 2.0 specification.
@@ -213,9 +211,7 @@ class Document {
     if (bytes > 0) append("buffers", {{"byteLength", bytes}});
   }
 
-  [[nodiscard]] std::string text() const {
-    return json_.dump(-1, ' ', false, Json::error_handler_t::replace);
-  }
+  [[nodiscard]] std::string text() const { return json_.dump(); }
 
  private:
   // Appends to one of the document's arrays and returns the index. glTF forbids empty arrays, so
@@ -303,8 +299,8 @@ class Document {
                                                                {"componentType", kFloat},
                                                                {"count", part.vertex_count},
                                                                {"type", "VEC3"},
-                                                               {"min", part.low},
-                                                               {"max", part.high}});
+                                                               {"min", Json::array_of(part.low)},
+                                                               {"max", Json::array_of(part.high)}});
     const std::size_t index_accessor = append(
         "accessors", {{"bufferView", indices},
                       {"componentType", part.has_short_indices() ? kUnsignedShort : kUnsignedInt},

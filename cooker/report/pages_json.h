@@ -2,17 +2,16 @@
 // Pages of a cold file as JSON, for `bench --pages` and for reports.
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include "cooker/report/pages.h"
+#include "cooker/text/json.h"
 
 namespace boxtree::cooker {
 
-[[nodiscard]] inline nlohmann::ordered_json to_json(const PageCount& count) {
+[[nodiscard]] inline Json to_json(const PageCount& count) {
   return {{"queries", count.queries}, {"median", count.median}, {"worst", count.worst}};
 }
 
-[[nodiscard]] inline nlohmann::ordered_json to_json(const PageFigures& pages) {
+[[nodiscard]] inline Json to_json(const PageFigures& pages) {
   return {{"file", pages.file_pages},
           {"open", pages.open},
           {"ray", to_json(pages.ray)},
@@ -20,7 +19,7 @@ namespace boxtree::cooker {
           {"point", to_json(pages.point)}};
 }
 
-[[nodiscard]] inline nlohmann::ordered_json to_json(const FirstRays& first) {
+[[nodiscard]] inline Json to_json(const FirstRays& first) {
   return {{"levels", first.levels},
           {"nodes", first.nodes},
           {"pages_before", first.pages_before},

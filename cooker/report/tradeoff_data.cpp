@@ -9,17 +9,15 @@
 #include <thread>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "cooker/import/whole_file.h"
 #include "cooker/report/pages_json.h"
 #include "cooker/report/tradeoff_advice.h"
+#include "cooker/text/json.h"
 #include "cooker/version.h"
 
 namespace boxtree::cooker {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 // The rest of the first line that begins with `key` and a colon.
 std::string line_of(const char* path, const std::string& key) {
@@ -33,24 +31,23 @@ std::string line_of(const char* path, const std::string& key) {
   return {};
 }
 
-std::string compiler() {
+constexpr const char* kCompiler =
 #if defined(__clang__)
-  std::string name = "Clang " __clang_version__;
+    "Clang " __clang_version__
 #elif defined(__GNUC__)
-  std::string name = "GCC " __VERSION__;
+    "GCC " __VERSION__
 #else
-  std::string name = "unknown";
+    "unknown"
 #endif
 #ifdef __OPTIMIZE__
-  name += ", optimised";
+    ", optimised"
 #else
-  name += ", not optimised";
+    ", not optimised"
 #endif
 #ifndef NDEBUG
-  name += ", with assertions";
+    ", with assertions"
 #endif
-  return name;
-}
+    ;
 
 std::string text_of(const Json& value) {
   if (value.is_null()) return {};
@@ -196,7 +193,7 @@ Surroundings surroundings(const std::string& command) {
   if (::uname(&system) == 0) {
     around.system = fmt::format("{} {} {}", system.sysname, system.release, system.machine);
   }
-  around.compiler = compiler();
+  around.compiler = kCompiler;
   around.version = kVersion;
   double load = 0;
   if (::getloadavg(&load, 1) == 1) around.load = fmt::format("{:.2f}", load);
@@ -207,12 +204,13 @@ Surroundings surroundings(const std::string& command) {
 Result<IncludedResults> read_results(const std::filesystem::path& path) {
   const Result<std::string> text = read_whole_file(path, kMaxResultsBytes);
   if (!text) return text.error();
-  const Json document = Json::parse(*text, nullptr, false);
+  const ParsedJson parsed = parse_json(*text);
+  const Json& document = parsed.value;
   const bool has_rows = document.is_object() && document.contains("rows");
   const Json& rows = has_rows ? document["rows"] : document;
   const auto is_row = [](const Json& row) { return row.is_object(); };
-  const char* const found = document.is_discarded()            ? "no JSON"
-                            : !rows.is_array() || rows.empty() ? "no rows"
+  const char* const found = parsed.fault != ParsedJson::Fault::kNone ? "no JSON"
+                            : !rows.is_array() || rows.empty()       ? "no rows"
                             : std::all_of(rows.begin(), rows.end(), is_row)
                                 ? nullptr
                                 : "rows of another kind";
@@ -262,7 +260,7 @@ std::string to_json(const TradeoffReport& report) {
     }
     json["included"].push_back({{"title", results.title}, {"text", results.text}, {"rows", rows}});
   }
-  return json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json.dump(1) + "\n";
 }
 
 std::string to_csv(const TradeoffReport& report) {
