@@ -147,9 +147,8 @@ class KeyFields {
     if (written != key) {
       for (std::string& name : names) std::replace(name.begin(), name.end(), '_', '-');
     }
-    return fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_,
-                       fmt::join(names, ", "), names.empty() ? "" : " or ", written,
-                       suggestion(written, names));
+    return fmt::format("{}: expected the keys {}{}kind, found \"{}\"{}", kind_, joined(names, ", "),
+                       names.empty() ? "" : " or ", written, suggestion(written, names));
   }
 
   // The numbers of an array; nothing if it is another value.

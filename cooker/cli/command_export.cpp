@@ -24,6 +24,7 @@
 #include "cooker/import/mesh_arrays.h"
 #include "cooker/import/source_scene.h"
 #include "cooker/text/counted.h"
+#include "cooker/text/nearest_name.h"
 #include "cooker/write/outputs.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -244,7 +245,7 @@ std::string report_text(const std::string& output, const ExportReport& report,
                       group.count == 1 ? "1 box" : fmt::format("{} boxes", group.count)));
     }
     if (report.instances) parts.push_back(counted(tree.instances, "instance"));
-    text += fmt::format("{}: {}\n", shown(tree.name), fmt::join(parts, ", "));
+    text += fmt::format("{}: {}\n", shown(tree.name), joined(parts, ", "));
   }
   return text;
 }

@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "cooker/import/import.h"
+#include "cooker/text/nearest_name.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -65,10 +66,6 @@ std::vector<Place> places_of(const Command& program) {
   std::vector<Place> places;
   add_places(program, program, "", {}, places);
   return places;
-}
-
-std::string joined(const std::vector<std::string>& words, const char* between = " ") {
-  return fmt::format("{}", fmt::join(words, between));
 }
 
 // 'text' as one word of bash, zsh or fish, which differ in what a backslash means.

@@ -19,6 +19,7 @@
 #include "cooker/cli/tree_kinds.h"
 #include "cooker/import/import.h"
 #include "cooker/import/mesh_arrays.h"
+#include "cooker/text/nearest_name.h"
 #include "cooker/text/pose_fault.h"
 #include "format/tree_record.h"
 #include "runtime/file/open_file.h"
@@ -73,7 +74,7 @@ struct TreeKinds {
   }
   template <class Hit>
   static auto rank(const Tree&, const Hit& hit) {  // without ids all faces have the same
-    return std::tuple(hit.face.id, hit.face.index, hit.triangle);
+    return std::array{std::uint32_t{0}, hit.face.id, hit.face.index, hit.triangle};
   }
 };
 
@@ -259,6 +260,15 @@ QueryKinds kind_of(const AboutTwo&) {
   return kPairQueries;
 }
 
+// "[1,2.5,3]". Not fmt::join: the code that prints numbers would be compiled here again.
+std::string list_of(std::span<const double> numbers) {
+  std::string text;
+  for (const double number : numbers) {
+    text += fmt::format("{}{}", text.empty() ? "[" : ",", number);
+  }
+  return text + "]";
+}
+
 // Shows what a request is made of: what is needed, and what differs from the defaults.
 class FieldTexts {
  public:
@@ -278,17 +288,14 @@ class FieldTexts {
   }
 
   void required(const char* key, const Eigen::Vector3d& value, const char* /*help*/) {
-    fields_.push_back({key, fmt::format("[{},{},{}]", value[0], value[1], value[2]), true});
+    fields_.push_back({key, list_of(std::span(value.data(), 3)), true});
   }
   void required(const char* key, double value, const char* /*help*/) {
     fields_.push_back({key, fmt::format("{}", value), true});
   }
   void required(const char* key, const Frustum::ViewProjection& value, const char* /*help*/) {
-    std::string numbers;
-    for (Eigen::Index i = 0; i < value.size(); ++i) {
-      numbers += fmt::format("{}{}", i == 0 ? "" : ",", value(i / 4, i % 4));
-    }
-    fields_.push_back({key, fmt::format("[{}]", numbers), true});
+    const Eigen::Matrix4d by_columns = value.transpose();
+    fields_.push_back({key, list_of(std::span(by_columns.data(), 16)), true});
   }
   template <class T>
   void optional(const char* key, const T& value, const char* /*help*/, bool* /*given*/ = nullptr) {
@@ -300,9 +307,7 @@ class FieldTexts {
   }
   void shape(const CastShape& shape) {
     if_given("sphere", shape.sphere, [](double radius) { return fmt::format("{}", radius); });
-    const auto list = [](const auto& numbers) {
-      return fmt::format("[{}]", fmt::join(numbers, ","));
-    };
+    const auto list = [](std::span<const double> numbers) { return list_of(numbers); };
     if_given("capsule", shape.capsule, list);
     if_given("box", shape.box, list);
     if_given("hull", shape.hull, [](const std::filesystem::path& mesh) { return mesh.string(); });
@@ -451,6 +456,10 @@ Result<const Tree*> TreeCache::get(const SecondTree& second) {
   return &place->tree;
 }
 
+void sort_places(std::vector<HitPlace>& places) {
+  std::sort(places.begin(), places.end());
+}
+
 namespace {
 
 std::string any_and_all_fault(bool any, bool all, std::string_view before) {
@@ -476,8 +485,7 @@ std::string CastShape::fault(std::string_view before, bool may_lack_shape) const
   if (hull) given.push_back(fmt::format("{}hull", before));
   if (given.size() > 1 || (given.empty() && !may_lack_shape)) {
     return fmt::format("expected one shape, {0}sphere, {0}capsule, {0}box or {0}hull, found {1}",
-                       before,
-                       given.empty() ? "none" : fmt::format("{}", fmt::join(given, " and ")));
+                       before, given.empty() ? "none" : joined(given, " and "));
   }
   if (rotation && !given.empty() && !box && !hull) {
     return fmt::format("expected {0}rotation with {0}box or {0}hull, found it with {1}", before,
@@ -580,8 +588,8 @@ Error explained_pose(std::string_view whose, const Pose& pose) {
     for (Eigen::Index column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
   }
   return {Errc::kInvalidPose,
-          fmt::format("{} pose {}; expected finite numbers of an invertible map, found [{}]", whose,
-                      pose_fault(pose), fmt::join(numbers, ","))};
+          fmt::format("{} pose {}; expected finite numbers of an invertible map, found {}", whose,
+                      pose_fault(pose), list_of(numbers))};
 }
 
 Error explained(const Error& error, const QueryRequest& request) {

@@ -3,8 +3,8 @@
 #include "cooker/cli/scene_query.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -60,7 +60,7 @@ struct SceneKinds {
   }
   template <class Hit>
   static auto rank(const Scene&, const Hit& hit) {
-    return std::tuple(hit.instance, hit.face.id, hit.face.index, hit.triangle);
+    return std::array{hit.instance, hit.face.id, hit.face.index, hit.triangle};
   }
 };
 

@@ -3,8 +3,11 @@
 // differ in what names a face.
 #pragma once
 
-#include <algorithm>
-#include <tuple>
+#include <array>
+#include <compare>
+#include <cstddef>
+#include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "cooker/cli/query_request.h"
@@ -23,9 +26,19 @@ namespace boxtree::cooker {
   return "";
 }
 
+/// Where a hit stands in a list: by the number, then by what was hit.
+struct HitPlace {
+  double number;
+  std::array<std::uint32_t, 4> what;
+  std::size_t index;  // in the list that is not in order yet
+
+  auto operator<=>(const HitPlace&) const = default;
+};
+void sort_places(std::vector<HitPlace>& places);
+
 /// Of a Kinds::Body, a Tree or a Scene, which answers by OfRay, OfCast and OfShape and takes
-/// Options. Kinds::add_face(body, hit, json) adds what was hit, Kinds::tree_of(body, hit) is the tree
-/// that it is of; Kinds::rank(body, hit) orders hits at the same place.
+/// Options. Kinds::add_face(body, hit, json) adds what was hit, Kinds::tree_of(body, hit) is the
+/// tree that it is of; Kinds::rank(body, hit) orders hits at the same place.
 template <class Kinds>
 class ShapeAnswers {
  public:
@@ -132,7 +145,7 @@ class ShapeAnswers {
     };
     const Result<Visit> visit = collide(body_, shape, keep);
     if (!visit) return visit.error();
-    sort(contacts, [](const OfShape&) { return 0; });
+    sort(contacts, [](const OfShape&) { return 0.0; });
     if (request.merges) contacts.resize(merge_contacts(contacts, request.merge));
     Json json = Json::array();
     for (const OfShape& contact : contacts) {
@@ -170,10 +183,14 @@ class ShapeAnswers {
   // By first(hit), then by what was hit.
   template <class Hit, class First>
   void sort(std::vector<Hit>& hits, const First& first) const {
-    std::sort(hits.begin(), hits.end(), [&](const Hit& a, const Hit& b) {
-      const auto of_a = first(a), of_b = first(b);
-      return of_a != of_b ? of_a < of_b : Kinds::rank(body_, a) < Kinds::rank(body_, b);
-    });
+    std::vector<HitPlace> places;
+    for (const Hit& hit : hits) {
+      places.push_back({first(hit), Kinds::rank(body_, hit), places.size()});
+    }
+    sort_places(places);
+    std::vector<Hit> sorted;
+    for (const HitPlace& place : places) sorted.push_back(hits[place.index]);
+    hits = std::move(sorted);
   }
 
   template <class Hit, class First, class Add>

@@ -44,6 +44,15 @@ std::string listed(std::span<const std::string> names) {
   return text;
 }
 
+std::string joined(std::span<const std::string> words, std::string_view between) {
+  std::string text;
+  for (const std::string& word : words) {
+    if (&word != words.data()) text += between;
+    text += word;
+  }
+  return text;
+}
+
 std::string suggestion(std::string_view name, std::span<const std::string> names) {
   const std::string nearest = nearest_name(name, names);
   const bool is_near = edit_distance(name, nearest) <= std::max<std::size_t>(name.size() / 3, 1);

@@ -21,6 +21,10 @@ namespace boxtree::cooker {
 /// "ray, box or point".
 [[nodiscard]] std::string listed(std::span<const std::string> names);
 
+/// The words one after another, `between` between them.
+[[nodiscard]] std::string joined(std::span<const std::string> words,
+                                 std::string_view between = " ");
+
 /// "; did you mean 'query'?" with the nearest of `names`; empty if more than a third of the letters
 /// would change.
 [[nodiscard]] std::string suggestion(std::string_view name, std::span<const std::string> names);

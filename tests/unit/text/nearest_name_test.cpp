@@ -37,5 +37,13 @@ TEST(Listed, SeparatesTheLastByOr) {
   EXPECT_EQ(listed({}), "");
 }
 
+TEST(Joined, PutsAWordBetween) {
+  const std::array<std::string, 3> words = {"", "book", "query"};
+  EXPECT_EQ(joined(words), " book query");
+  EXPECT_EQ(joined(words, " and "), " and book and query");
+  EXPECT_EQ(joined(std::span(words).last(1)), "query");
+  EXPECT_EQ(joined({}), "");
+}
+
 }  // namespace
 }  // namespace boxtree::cooker
