@@ -182,7 +182,7 @@ Json file_json(const File& file) {
 
 // What stands behind the bytes of face ids.
 const char* meaning_of_ids(const std::string& face_ids) {
-  if (face_ids == "stored") return "of the source's faces";
+  if (face_ids == "stored") return "stored, those of the source's faces";
   if (face_ids == "source order") return "none needed, the tree's faces are in the source's order";
   return "none, queries number faces in the tree's order";
 }

@@ -1332,7 +1332,7 @@ for ids in stored none 'source order'; do
   expect 0 "$boxtree" info ids.bxt
   same "$(sed -n 's/^bytes: //p' out | grep -o '[0-9]*' | awk '{ sum += $1 } END { print sum }')" "$(stat -c %s ids.bxt)"
   case $ids in
-    stored) grep -q "^  face ids: of the source's faces$" out ;;
+    stored) grep -q "^  face ids: stored, those of the source's faces$" out ;;
     none) grep -q "^  face ids: none, queries number faces in the tree's order$" out ;;
     *) grep -q "^  face ids: none needed, the tree's faces are in the source's order$" out ;;
   esac
