@@ -170,6 +170,7 @@ class Account {
       case SectionKind::kLayers:
         return "which layers answer which queries and collide with which";
       case SectionKind::kMaterials:
+        return "where their names are";
       case SectionKind::kMaterialRuns:
       case SectionKind::kFaceMaterials:
         aspect = Aspect::kMaterials;
@@ -192,7 +193,6 @@ class Account {
       case Aspect::kFaceIds:
         return "numbers of the source's faces; --no-face-ids leaves them out";
       case Aspect::kMaterials: {
-        if (entry.owner == kNoOwner) return "where their names are";
         const std::optional<FaceNumberBytes>& forms = cooked_.trees[entry.owner].material_forms;
         return forms ? "--materials; " + forms_text(*forms) : "--materials";
       }

@@ -14,6 +14,7 @@ cd "$work"
 expect 0 "$boxtree" cook "$level/level.gltf" -o level.bxt --exact --json --depfile level.d
 same "$(jq -c '[.scene.instances, .scene.moving, (.trees | length)]' out)" '[53,0,8]'
 same "$(jq '[.why[] | select(.kept) | .bytes] | add' out)" "$(stat -c %s level.bxt)"
+same "$(jq -c '[.why[] | select(.reason == "") | .part]' out)" '[]'
 same "$(jq '.scene.file_bytes' out)" "$(stat -c %s level.bxt)"
 grep -q 'level.gltf' level.d
 expect 0 "$boxtree" verify level.bxt
