@@ -100,13 +100,13 @@ done
 
 # The command of GUIDE.md for a profile that says itself what to cook: once, and again if a mesh of it changes.
 mkdir "$work/listed"
-cp "$work/meshes"/* "$work/assets/game.cpp" "$work/listed"
+cp "$work/meshes"/* "$work/listed"
+printf '#include <cstdio>\nint main() { std::puts(SCENE_FILE); }\n' >"$work/listed/game.cpp"
 printf '[[mesh]]\nname = "crate"\nfile = "crate.obj"\n[[instance]]\nmesh = "crate"\n' >"$work/listed/scene.toml"
 {
-  printf '%s\n' 'find_package(boxtree CONFIG REQUIRED)' 'add_executable(game game.cpp)' \
-    'target_compile_definitions(game PRIVATE BOXTREE_ASSET_DIR="" SMALL_DIR="")'
+  printf '%s\n' 'find_package(boxtree CONFIG REQUIRED)' 'add_executable(game game.cpp)'
   python3 "$source/tests/docs/blocks.py" "$source/docs/GUIDE.md" cmake |
-    sed -n '/^set(scene /,/^target_sources(/p'
+    sed -n '/^set(scene /,/^target_compile_definitions(/p'
 } | project listed CXX
 for generator in Ninja "Unix Makefiles"; do
   out=$work/listed/build
@@ -114,6 +114,7 @@ for generator in Ninja "Unix Makefiles"; do
   configured listed -G "$generator"
   quiet cmake --build "$out"
   [ "$("$work/prefix/bin/boxtree" info "$out/scene.bxt" --json | jq .scene.instance_count)" = 1 ] || fail "no scene"
+  [ "$("$out/game")" = "$out/scene.bxt" ] || fail "$generator: the program does not know the scene"
   quiet cmake --build "$out"
   if grep -q Generating "$work/log"; then fail "$generator: a scene was cooked twice"; fi
   sleep 1.1
