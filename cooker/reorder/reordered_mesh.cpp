@@ -8,10 +8,16 @@
 
 #include <fmt/format.h>
 
+#include <boxtree/blob.h>
+#include <boxtree/file.h>
+
 #include "cooker/import/file_error.h"
+#include "cooker/import/mesh_arrays.h"
 #include "cooker/import/text_tokens.h"
 #include "cooker/import/whole_file.h"
 #include "cooker/reorder/reorder.h"
+#include "format/tree_record.h"
+#include "runtime/file/open_file.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -80,6 +86,18 @@ Result<AtomicFile> write_reordered(const fs::path& source, std::span<const Sourc
   if (!written) return in_file(source, written.error());
   if (Status status = out.finish(); !status) return status.error();
   return file;
+}
+
+bool is_mesh_of(const fs::path& mesh, const fs::path& cooked, ImportOptions import) {
+  Result<File> file = File::open(cooked);
+  if (!file) file = open_blob(cooked);
+  if (!file || file->tree_count() != 1) return false;
+  const TreeRecord record = OpenFile::of(*file).tree_record(0);
+  if ((record.flags & kTreeFacesInSourceOrder) == 0) return false;
+  const bool is_f64 = (record.flags & kTreePositionsF64) != 0;
+  import.precision = is_f64 ? Precision::kF64 : Precision::kF32;
+  const Result<Imported> imported = import_mesh(mesh, import);
+  return imported && hash_of(imported->mesh) == record.geometry_hash;
 }
 
 }  // namespace boxtree::cooker

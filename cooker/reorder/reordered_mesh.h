@@ -10,6 +10,7 @@
 #include <boxtree/error.h>
 
 #include "cooker/cook.h"
+#include "cooker/import/import.h"
 #include "cooker/write/atomic_file.h"
 
 namespace boxtree::cooker {
@@ -37,5 +38,10 @@ Status check_reordered_names(const std::filesystem::path& source,
 Result<AtomicFile> write_reordered(const std::filesystem::path& source,
                                    std::span<const SourceCorners> faces,
                                    const std::filesystem::path& target);
+
+/// Whether a mesh is the one that a file was cooked with: one that an earlier write_reordered()
+/// has written beside it. `import`: how meshes are read; the file says with which precision.
+[[nodiscard]] bool is_mesh_of(const std::filesystem::path& mesh,
+                              const std::filesystem::path& cooked, ImportOptions import);
 
 }  // namespace boxtree::cooker

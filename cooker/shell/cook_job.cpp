@@ -36,6 +36,8 @@ class Job {
 
   Result<Summary> run() {
     if (Status status = check_job(job_); !status) return status.error();
+    is_mesh_replaceable_ =
+        !job_.reordered.empty() && is_mesh_of(job_.reordered, job_.output, options_.import);
     if (Status status = read_settings(); !status) return status.error();
     Result<CookInput> input = load();
     if (!input) return input.error();
@@ -58,6 +60,14 @@ class Job {
       if (profile_.user_data) options_.import.user_data = profile_.user_data->value;
     }
     return {};
+  }
+
+  // Nothing in a mesh says that a cook has written it: it is told by what stands at the output.
+  [[nodiscard]] Error foreign_mesh() const {
+    return {Errc::kWriteFailed,
+            job_.reordered.string() +
+                ": expected what an earlier cook has written with the output, or none, found "
+                "another file; it would be lost: remove it, or name another output"};
   }
 
   [[nodiscard]] Result<CookInput> load() const {
@@ -93,6 +103,7 @@ class Job {
       Result<AtomicFile> mesh =
           write_reordered(job_.inputs.front(), cooked.tree_order, job_.reordered);
       if (!mesh) return mesh.error();
+      if (!is_mesh_replaceable_ && mesh->loses_bytes()) return foreign_mesh();
       reordered.emplace(std::move(*mesh));
       cooked.tree_order = {};
     }
@@ -139,6 +150,7 @@ class Job {
   const CookJob& job_;
   CookOptions options_;
   Profile profile_;
+  bool is_mesh_replaceable_ = false;  // the one at the place of the reordered mesh
   const Progress& progress_;
 };
 

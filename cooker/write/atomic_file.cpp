@@ -2,6 +2,7 @@
 // Write, fsync, rename, fsync of the directory; all steps that can fail come before the rename.
 #include "cooker/write/atomic_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <fcntl.h>
@@ -105,6 +106,14 @@ Result<AtomicFile> AtomicFile::create(const OutputTarget& to) {
 
 Status AtomicFile::write(Bytes bytes) {
   return write_all(descriptor(), bytes) ? Status() : write_failure(target_, "cannot write");
+}
+
+bool AtomicFile::loses_bytes() const {
+  std::error_code error;
+  if (!replaces_ || (fs::file_size(target_, error) == 0 && !error)) return false;
+  const Result<Mapping> before = Mapping::map(target_.string());
+  const Result<Mapping> after = Mapping::map(descriptor(), target_.string());
+  return !before || !after || !std::ranges::equal(before->bytes(), after->bytes());
 }
 
 // The old file keeps a name until the new one is durable. Where names cannot be exchanged, it loses

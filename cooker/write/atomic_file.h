@@ -42,6 +42,9 @@ class AtomicFile {
   /// The descriptor, to read what was written before commit().
   [[nodiscard]] int descriptor() const { return temporary_.descriptor(); }
 
+  /// Whether commit() would replace a file that has bytes, and not the same as the new one.
+  [[nodiscard]] bool loses_bytes() const;
+
   /// Makes the bytes durable and moves them to the target: fsync, rename, fsync of the directory.
   /// After an error the target is the old file, or missing if there was none. A stream may have
   /// taken a part of the bytes.

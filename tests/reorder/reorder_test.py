@@ -624,8 +624,43 @@ def test_requests(folder):
         expect(not bxt.exists() and not (folder / "b.obj").exists(), "files after", words)
 
 
+def test_replaced(folder):
+    """A mesh is replaced by itself, and if the output is what was cooked with it; no other is lost."""
+    source, target, bxt = folder / "a.obj", folder / "b.obj", folder / "a.bxt"
+    one_face = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"
+    words = ("cook", source, "-o", bxt, "--write-reordered", target, "-q")
+
+    def refused(found):
+        target.write_text(found, encoding="utf-8")
+        before = bxt.read_bytes() if bxt.exists() else None
+        stderr = run(*words, status=2)
+        expect("b.obj: expected what an earlier cook has written" in stderr and "it would be lost" in stderr, stderr)
+        expect(target.read_text(encoding="utf-8") == found, "the mesh was lost")
+        expect((bxt.read_bytes() if bxt.exists() else None) == before, "the output has changed")
+
+    source.write_text(one_face, encoding="utf-8")
+    refused(one_face.replace("1 0 0", "2 0 0"))  # no output is there
+    refused("no mesh")
+    target.write_text("", encoding="utf-8")
+    run(*words)
+    run(*words)
+    for x, options in (("3", ()), ("4", ("--codec", "blob-zstd")), ("5", ("--external",)), ("6", ("--f64",)),
+                       ("7", ())):
+        source.write_text(one_face.replace("1 0 0", x + " 0 0"), encoding="utf-8")
+        run(*words, *options)  # the mesh was that of the output
+        expect(f"v {x} 0 0" in target.read_text(encoding="utf-8"), "the mesh is the old one")
+    run(*words)
+    refused(one_face.replace("1 0 0", "2 0 0"))  # it is of another mesh
+    run("cook", source, "-o", bxt, "-q", "--no-face-ids")
+    refused(one_face)
+    target.unlink()
+    run(*words)
+    bxt.unlink()
+    run(*words)  # the same mesh again
+
+
 def main():
-    for test in (test_obj, test_bad_faces, test_ply, test_gltf, test_requests):
+    for test in (test_obj, test_bad_faces, test_ply, test_gltf, test_requests, test_replaced):
         with tempfile.TemporaryDirectory() as folder:
             test(pathlib.Path(folder))
         print(test.__name__, "as expected")
