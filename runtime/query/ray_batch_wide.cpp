@@ -218,7 +218,7 @@ class PacketWalk {
       : codec_(codec),
         packet_(packet),
         prefetch_(tree, codec),
-        is_large_(codec.node_count > kLargeTree),
+        is_large_(Prefetch<Node>::pays(codec)),
         root_(tree.root_f32()) {}
 
   // Whether a walk together pays: it does from some 1.9 rays a node on (docs/MEASUREMENTS.md).
@@ -299,8 +299,6 @@ class PacketWalk {
   HWY_INLINE bool pop(typename Stack::Child& at) {
     return stack_.pop(std::numeric_limits<float>::infinity(), at);
   }
-
-  static constexpr std::uint32_t kLargeTree = 4096;  // see RayWalk
 
   const WideCodec<Node>& codec_;
   RayPacket& packet_;

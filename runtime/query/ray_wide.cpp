@@ -78,7 +78,7 @@ class RayWalk {
         ray_(ray),
         filter_(ray.filter),
         prefetch_(tree, codec),
-        is_large_(codec.node_count > kLargeTree),
+        is_large_(Prefetch<Node>::pays(codec)),
         leaves_(tree, ray) {}
 
   // The children of a node at depth n are in open_[n + 1]; the root is in open_[0], as if it were a
@@ -179,10 +179,6 @@ class RayWalk {
   const WideCodec<Node>& codec_;
   FilteredRay& ray_;
   const RayFilter& filter_;
-  // Smaller trees are in the caches: there, requesting what comes next costs mispredicted branches
-  // and gains nothing. 4096 nodes are some 200 000 triangles.
-  static constexpr std::uint32_t kLargeTree = 4096;
-
   const Prefetch<Node> prefetch_;
   const bool is_large_;
   RayLeaves leaves_;
