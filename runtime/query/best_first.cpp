@@ -17,6 +17,7 @@ class BestFirst {
 
   Errc run(const BoundTree& tree) noexcept {
     const Errc error = visit({root_box<double>(tree), tree.root_ref(), tree.is_leaf()});
+    sort();
     budget_.left = std::min(budget_.left, frontier_.least_left());
     return error;
   }
@@ -32,7 +33,7 @@ class BestFirst {
   Errc visit(Entry entry) noexcept {
     double key = query_.key(entry.box);
     if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
-    while (frontier_.pop(enough(), key, entry)) {
+    while (pop(key, entry)) {
       bool goes_on = true;
       while (goes_on) {
         if (query_.nodes_expanded == budget_.nodes) {
@@ -61,6 +62,22 @@ class BestFirst {
     return std::bit_cast<double>(std::bit_cast<std::uint64_t>(bound) + 1);
   }
 
+  [[nodiscard]] bool pop(double& key, Entry& entry) noexcept {
+    sort();
+    return frontier_.pop(enough(), key, entry);
+  }
+  void sort() noexcept {
+    if (!is_sorted_) frontier_.sort(enough());
+    is_sorted_ = true;
+  }
+
+  // Until something is found most children are as good as any, and are left out afterwards.
+  [[nodiscard]] bool push(double key, double limit, const Entry& entry) noexcept {
+    if (query_.found) return frontier_.push(key, limit, entry);
+    is_sorted_ = false;
+    return frontier_.add(key, entry);
+  }
+
   [[nodiscard]] Entry child(std::uint32_t i) const noexcept {
     return {children_.box(i), children_.ref[i], children_.is_leaf(i)};
   }
@@ -69,17 +86,26 @@ class BestFirst {
   Errc queue_children(bool& goes_on, double& key, Entry& entry) noexcept {
     const double limit = enough();
     std::uint32_t nearest = 0;
-    for (std::uint32_t i = 1; i < children_.count; ++i) {
-      if (children_.key[i] < children_.key[nearest]) nearest = i;
-    }
-    goes_on = !query_.found && children_.count > 0 && children_.key[nearest] < limit;
-    for (std::uint32_t i = 0; i < children_.count; ++i) {
-      if (goes_on && i == nearest) continue;
-      if (!(children_.key[i] < limit)) {
-        budget_.left = std::min(budget_.left, children_.key[i]);
-      } else if (!frontier_.push(children_.key[i], limit, child(i))) {
-        return Errc::kDepthExceeded;
+    goes_on = false;
+    if (!query_.found) {
+      for (std::uint32_t i = 1; i < children_.count; ++i) {
+        if (children_.key[i] < children_.key[nearest]) nearest = i;
       }
+      goes_on = children_.count > 0 && children_.key[nearest] < limit;
+    }
+    // No branch on whether a child is near: it is as likely as not.
+    std::uint32_t near = 0;
+    double left = budget_.left;
+    for (std::uint32_t i = 0; i < children_.count; ++i) {
+      const bool is_near = children_.key[i] < limit;
+      near |= static_cast<std::uint32_t>(is_near) << i;
+      left = std::min(left, is_near ? left : children_.key[i]);
+    }
+    budget_.left = left;
+    if (goes_on) near &= ~(1u << nearest);
+    for (; near != 0; near &= near - 1) {
+      const auto i = static_cast<std::uint32_t>(std::countr_zero(near));
+      if (!push(children_.key[i], limit, child(i))) return Errc::kDepthExceeded;
     }
     if (goes_on) {
       key = children_.key[nearest];
@@ -91,6 +117,7 @@ class BestFirst {
   PointQuery& query_;
   SearchBudget& budget_;
   const NearNodes& nodes_;
+  bool is_sorted_ = true;  // the frontier
   NearChildren children_;
   Frontier<Entry, kQueue, kStackSize<ErasedCodec>> frontier_;
 };

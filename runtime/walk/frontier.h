@@ -21,6 +21,15 @@ class Frontier {
   /// when not even the stack has room: then the tree is deeper than any valid one.
   [[nodiscard]] bool push(double key, double enough, const Entry& entry) noexcept {
     if (queued_ == Queue && enough < swept_) sweep(enough);
+    const bool is_queued = stacked_ == 0 && queued_ < Queue;
+    if (!add(key, entry)) return false;
+    if (is_queued) std::push_heap(handles_.begin(), end());
+    return true;
+  }
+
+  /// The same for entries that sort() puts in order before any is taken, or least_left() is asked
+  /// for: many of them may have become too far by then.
+  [[nodiscard]] bool add(double key, const Entry& entry) noexcept {
     if (stacked_ > 0 || queued_ == Queue) {
       if (stacked_ == Stack) return false;
       stack_[stacked_++] = {key, entry};
@@ -33,9 +42,9 @@ class Frontier {
     handle.key = key;
     handle.number = pushed_++;
     entries_[handle.place] = entry;
-    std::push_heap(handles_.begin(), end());
     return true;
   }
+  void sort(double enough) noexcept { sweep(enough); }
 
   /// Takes the next entry whose key is below `enough`; false if there is none.
   [[nodiscard]] bool pop(double enough, double& key, Entry& entry) noexcept {
