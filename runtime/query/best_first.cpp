@@ -32,7 +32,7 @@ class BestFirst {
 
   Errc visit(Entry entry) noexcept {
     double key = query_.key(entry.box);
-    if (!frontier_.push(key, enough(), entry)) return Errc::kInternal;
+    if (!push(key, enough(), entry)) return Errc::kInternal;
     while (pop(key, entry)) {
       bool goes_on = true;
       while (goes_on) {
@@ -72,7 +72,7 @@ class BestFirst {
   }
 
   // Until something is found most children are as good as any, and are left out afterwards.
-  [[nodiscard]] bool push(double key, double limit, const Entry& entry) noexcept {
+  [[nodiscard, gnu::noinline]] bool push(double key, double limit, const Entry& entry) noexcept {
     if (query_.found) return frontier_.push(key, limit, entry);
     is_sorted_ = false;
     return frontier_.add(key, entry);

@@ -96,7 +96,7 @@ class Frontier {
 
   // Drops what will never be taken. Once for each value of `enough`: it costs as much as the queue
   // is long.
-  void sweep(double enough) noexcept {
+  [[gnu::noinline]] void sweep(double enough) noexcept {
     swept_ = enough;
     std::size_t kept = 0;
     for (std::size_t i = 0; i < queued_; ++i) {
