@@ -18,22 +18,21 @@ void RayBatch::answer(std::size_t i, RayTest& test) {
 
 namespace {
 
-Status answer(const Tree& queried, std::span<const Ray> rays, std::span<RayResult> results,
-              bool any, const QueryLimits& limits) {
+Status answer_all(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
+                  bool any, const QueryLimits& limits, RayWishes* wishes,
+                  FunctionRef<RayResult(const Ray&)> alone) {
   if (results.size() != rays.size()) return invalid_query("results");
+  RayBatch batch{BoundTree::of(tree), rays, results, any, wishes, alone};
+  // A packet reads nodes for several rays: what one of them may read cannot be told.
+  const bool is_limited = limits.nodes != QueryLimits().nodes;
   if constexpr (kHasWideCodecs && kWalksByVectors) {
-    const BoundTree& tree = BoundTree::of(queried);
-    const bool is_limited = limits.nodes != QueryLimits().nodes;
-    if (!is_limited && has_wide_nodes(tree) && tree.has_float_nodes()) {
+    if (!is_limited && has_wide_nodes(batch.tree) && batch.tree.has_float_nodes()) {
       const DefaultFloatState state;
-      RayBatch batch{queried, tree, rays, results, any};
       walk_wide(batch);
       return {};
     }
   }
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    results[i] = any ? any_hit(queried, rays[i], limits) : closest_hit(queried, rays[i], limits);
-  }
+  for (std::size_t i = 0; i < rays.size(); ++i) batch.answer_alone(i);
   return {};
 }
 
@@ -41,12 +40,28 @@ Status answer(const Tree& queried, std::span<const Ray> rays, std::span<RayResul
 
 Status closest_hits(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
                     const QueryLimits& limits) {
-  return answer(tree, rays, results, false, limits);
+  return answer_all(tree, rays, results, false, limits, nullptr,
+                    [&](const Ray& ray) { return closest_hit(tree, ray, limits); });
 }
 
 Status any_hits(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
                 const QueryLimits& limits) {
-  return answer(tree, rays, results, true, limits);
+  return answer_all(tree, rays, results, true, limits, nullptr,
+                    [&](const Ray& ray) { return any_hit(tree, ray, limits); });
+}
+
+Status closest_hits(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
+                    const FaceOptions& options) {
+  RayWishes wishes{{BoundTree::of(tree), &options}, &meet_wishes};
+  return answer_all(tree, rays, results, false, options.limits, &wishes,
+                    [&](const Ray& ray) { return closest_hit(tree, ray, options); });
+}
+
+Status any_hits(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
+                const FaceOptions& options) {
+  RayWishes wishes{{BoundTree::of(tree), &options}, &meet_wishes};
+  return answer_all(tree, rays, results, true, options.limits, &wishes,
+                    [&](const Ray& ray) { return any_hit(tree, ray, options); });
 }
 
 }  // namespace boxtree

@@ -185,7 +185,7 @@ class RayPacket {
     hits_[r].is_hit = false;
     tests_[r]
         .emplace(batch_.tree, ray, exponent_of(largest_magnitude(ray.direction)), batch_.any,
-                 hits_[r])
+                 hits_[r], batch_.wishes)
         .prepare();
   }
 

@@ -39,27 +39,28 @@ void hit_all(const Tree& tree, const Ray& ray, const QueryInput& query, const Ch
 }
 
 // The ray among others that go the same way.
-void hit_many(const Tree& tree, const Ray& ray, const QueryInput& query, const Check& check) {
+// `options`: QueryLimits or FaceOptions.
+template <class Options>
+void hit_many(const Tree& tree, const Ray& ray, const QueryInput& query, const Options& options,
+              const Check& check) {
   std::array<Ray, 20> rays;
   rays.fill(ray);
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    rays[i].origin[i % 3] += static_cast<double>(i / 3) * query.number(8);
+    rays[i].origin[static_cast<Eigen::Index>(i % 3)] +=
+        static_cast<double>(i / 3) * query.number(8);
   }
   std::array<RayResult, 20> results;
-  const std::size_t count = 1 + query.option(3) % rays.size();
-  const auto some = std::span(results).first(count);
+  const auto first = std::span(rays).first(1 + query.option(3) % rays.size());
+  const auto some = std::span(results).first(first.size());
   for (const bool any : {false, true}) {
-    const auto first = std::span(rays).first(count);
-    const Status cast = any ? any_hits(tree, first, some, query.limits())
-                            : closest_hits(tree, first, some, query.limits());
-    if (!cast.ok()) {
-      finding("a batch with as many results as rays was refused");
-    }
-    for (std::size_t i = 0; i < count; ++i) {
+    const Status cast =
+        any ? any_hits(tree, first, some, options) : closest_hits(tree, first, some, options);
+    if (!cast.ok()) finding("a batch with as many results as rays was refused");
+    for (std::size_t i = 0; i < some.size(); ++i) {
       check(some[i]);
       if (some[i]) check_hit(*some[i], check);
       const RayResult alone =
-          any ? any_hit(tree, rays[i], query.limits()) : closest_hit(tree, rays[i], query.limits());
+          any ? any_hit(tree, rays[i], options) : closest_hit(tree, rays[i], options);
       check.holds(alone.code() == some[i].code() && alone.has_value() == some[i].has_value() &&
                       alone->t == some[i]->t && alone->face.index == some[i]->face.index &&
                       alone->triangle == some[i]->triangle,
@@ -76,7 +77,11 @@ void run(Bytes input) {
     if (query.option(1) % 2 == 1) ray.t_min = query.number(6);
     if (query.option(1) % 4 >= 2) ray.t_max = query.number(7);
     if (query.option(1) % 8 >= 4) return hit_all(tree, ray, query, check);
-    if (query.option(1) % 16 >= 8) hit_many(tree, ray, query, check);
+    if (query.option(1) % 16 >= 8) {
+      const Filters filters(query);
+      query.option(4) % 2 == 0 ? hit_many(tree, ray, query, query.limits(), check)
+                               : hit_many(tree, ray, query, face_options(query, filters), check);
+    }
     const auto closest = closest_hit(tree, ray, query.limits());
     const auto any = any_hit(tree, ray, query.limits());
     check(closest);

@@ -20,4 +20,12 @@ BOXTREE_API Status closest_hits(const Tree& tree, std::span<const Ray> rays,
 BOXTREE_API Status any_hits(const Tree& tree, std::span<const Ray> rays,
                             std::span<RayResult> results, const QueryLimits& limits = {});
 
+/// The same among the faces that `options` let be hit. A filter is called in no promised order, and
+/// for other candidates than single rays have.
+BOXTREE_API Status closest_hits(const Tree& tree, std::span<const Ray> rays,
+                                std::span<RayResult> results, const FaceOptions& options);
+/// Some hit of those, or nothing, for each ray.
+BOXTREE_API Status any_hits(const Tree& tree, std::span<const Ray> rays,
+                            std::span<RayResult> results, const FaceOptions& options);
+
 }  // namespace boxtree

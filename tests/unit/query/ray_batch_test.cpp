@@ -42,20 +42,21 @@ bool same_bits(const RayResult& a, const RayResult& b) {
 // What results hold before a call: every one must be written.
 const RayResult kUnwritten(Errc::kInternal, "not written");
 
-// By every instruction set; that of the closest hits is the same by all.
-void expect_as_alone(const Tree& tree, const std::vector<Ray>& rays,
-                     const QueryLimits& limits = {}) {
+// By every instruction set; that of the closest hits is the same by all. `options`: QueryLimits or
+// FaceOptions.
+template <class Options = QueryLimits>
+void expect_as_alone(const Tree& tree, const std::vector<Ray>& rays, const Options& options = {}) {
   std::vector<RayResult> by_first;
   for_each_target([&](const char* target) {
     SCOPED_TRACE(target);
     std::vector<RayResult> closest(rays.size(), kUnwritten), any(rays.size(), kUnwritten);
-    ASSERT_TRUE(closest_hits(tree, rays, closest, limits).ok());
-    ASSERT_TRUE(any_hits(tree, rays, any, limits).ok());
+    ASSERT_TRUE(closest_hits(tree, rays, closest, options).ok());
+    ASSERT_TRUE(any_hits(tree, rays, any, options).ok());
     if (by_first.empty()) by_first = closest;
     for (std::size_t i = 0; i < rays.size(); ++i) {
       SCOPED_TRACE(i);
-      ASSERT_TRUE(same_bits(closest[i], closest_hit(tree, rays[i], limits)));
-      ASSERT_TRUE(same_bits(any[i], any_hit(tree, rays[i], limits)));
+      ASSERT_TRUE(same_bits(closest[i], closest_hit(tree, rays[i], options)));
+      ASSERT_TRUE(same_bits(any[i], any_hit(tree, rays[i], options)));
       ASSERT_TRUE(same_bits(closest[i], by_first[i]));
     }
   });
@@ -210,6 +211,25 @@ TEST_P(RayBatches, WithRaysThatAreRefusedOrExtremeAreAsAlone) {
   });
 }
 
+TEST_P(RayBatches, OfSidesAndFacesAreAsAlone) {
+  for_each_mesh([&](const Tree& tree, const Eigen::AlignedBox3d& box) {
+    std::vector<Ray> rays;
+    const Eigen::Vector3d eye = point_around(box, 4);
+    for (int i = 0; i < 50; ++i) rays.push_back({eye, point_around(box, 1) - eye});
+    const auto some = [](const FaceRef& face) { return face.index % 3 != 0; };
+    FaceOptions options;
+    options.back_faces = BackFaces::kIgnore;
+    expect_as_alone(tree, rays, options);
+    options.filter = some;
+    options.back_faces = BackFaces::kOnly;
+    expect_as_alone(tree, rays, options);
+    options.back_faces = BackFaces::kHit;
+    expect_as_alone(tree, rays, options);
+    options.limits = {5};
+    expect_as_alone(tree, rays, options);
+  });
+}
+
 TEST_P(RayBatches, OfAnyNumberAreAsAlone) {
   const test::CookedTree cooked = test::cook_tree(test::torus(20, 12), GetParam());
   for (std::size_t count = 0; count < 40; ++count) {
@@ -230,7 +250,7 @@ TEST_P(RayBatches, GiveEachRayItsOwnLimit) {
     rays.push_back({from, point_around(cooked.tree.bounds(), 1) - from});
   }
   for (const std::uint64_t nodes : {0u, 1u, 3u, 1000u}) {
-    expect_as_alone(cooked.tree, rays, {nodes});
+    expect_as_alone(cooked.tree, rays, QueryLimits{nodes});
   }
 }
 
