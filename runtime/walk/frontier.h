@@ -27,8 +27,8 @@ class Frontier {
     return true;
   }
 
-  /// The same for entries that sort() puts in order before any is taken, or least_left() is asked
-  /// for: many of them may have become too far by then.
+  /// The same for entries that sort() puts in order before any is taken and before least_left():
+  /// many of them may have become too far by then.
   [[nodiscard]] bool add(double key, const Entry& entry) noexcept {
     if (stacked_ > 0 || queued_ == Queue) {
       if (stacked_ == Stack) return false;
