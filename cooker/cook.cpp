@@ -133,7 +133,10 @@ class Cook {
 
   // The grid of each mesh that must not choose one itself.
   Result<std::vector<std::optional<Grid>>> grids() {
-    if (input_.has_top_level) return scene_grids(input_.scene, plan_, options_.grid);
+    if (input_.has_top_level) {
+      return scene_grids(input_.scene, plan_, options_.grid,
+                         options_.geometry == GeometryId::kGrid);
+    }
     std::vector<std::optional<Grid>> grids(plan_.meshes.size());
     const bool may_choose_grid =
         options_.may_use_grid && (options_.try_all || may_grid_win(options_.wishes));

@@ -32,7 +32,7 @@ Eigen::AlignedBox3d world_bounds(const SourceScene& scene, const ScenePlan& plan
 }  // namespace
 
 std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const ScenePlan& plan,
-                                             const GridChoice& choice) {
+                                             const GridChoice& choice, bool is_stated) {
   std::vector<Eigen::AlignedBox3d> bounds;
   for (const SceneMesh& mesh : scene.meshes) bounds.push_back(bounds_of(mesh.mesh));
   const Result<Grid> of_scene =
@@ -57,14 +57,17 @@ std::vector<std::optional<Grid>> scene_grids(const SourceScene& scene, const Sce
       is_possible = take_finer(choose_grid(bounds[m], {.tolerance = left}));
     }
     if (mesh.default_precision || !mesh.tolerance) {
-      const Result<Grid> least = choose_grid(bounds[m], {.bits = kLeastMeshBits});
-      is_possible &= take_finer(least);
       const double scale = mesh.largest_scale > 0 ? mesh.largest_scale : 1;
       const int step = of_scene->step_exponent - exponent_above(scale);
-      if (grid && step < grid->step_exponent) {
-        is_possible &= take_finer(choose_grid(bounds[m], {.step_exponent = step}));
+      largest_step = step;
+      if (!is_stated) {
+        const Result<Grid> least = choose_grid(bounds[m], {.bits = kLeastMeshBits});
+        is_possible &= take_finer(least);
+        if (least) largest_step = std::min(step, least->step_exponent);
       }
-      if (least) largest_step = std::min(step, least->step_exponent);
+      if (is_possible && (!grid || step < grid->step_exponent)) {
+        is_possible = take_finer(choose_grid(bounds[m], {.step_exponent = step}));
+      }
     }
     if (!is_possible) continue;
     grids[m] = grid;

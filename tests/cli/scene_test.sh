@@ -36,6 +36,22 @@ expect 0 "$boxtree" cook "$level/level.gltf" -o again.bxt --exact --candidates
 same "$(grep -c 'not tried, geometry grid' out)" 0
 same "$(grep -cE ' wide8 +arrays ' out)" 8
 
+# A step or bits that are stated are those of every mesh, however small beside the scene, so that their borders fit.
+printf 'v %s\n' '-500 0 0' '0.3333252 0 0' '0.3333252 1 0' '-500 1 0' >big.obj
+printf 'v %s\n' '0.3333252 0 0' '1.1 0 0' '1.1 1 0' '0.3333252 1 0' >small.obj
+for mesh in big small; do echo 'f 1 2 3 4' >>$mesh.obj; done
+for stated in '--grid-step 2^-10' '--grid-bits 12'; do
+  # shellcheck disable=SC2086 # an option and its value
+  expect 0 "$boxtree" cook --scene big.obj small.obj -o border.bxt $stated
+  expect 0 "$boxtree" info border.bxt --json
+  same "$(jq '[.trees[].grid_step] | unique | length' out)" 1
+  for i in $(seq 0 40); do
+    printf '{"kind":"ray","origin":[%s,0.5,1],"direction":[0,0,-1]}\n' "$(awk "BEGIN { print 0.3333252 + ($i - 20) / 20000 }")"
+  done >border.jsonl
+  expect 0 "$boxtree" query border.bxt --batch border.jsonl
+  same "$(grep -c '"hit":true' out)" 41
+done
+
 # One mesh is no scene, unless it is made one; its bytes are accounted for likewise.
 expect 0 "$boxtree" cook "$level/../meshes/crate.obj" -o crate.bxt --why
 grep -q 'what a reader opens the file by' out
