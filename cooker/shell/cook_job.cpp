@@ -67,7 +67,7 @@ class Job {
     return {Errc::kWriteFailed,
             job_.reordered.string() +
                 ": expected what an earlier cook has written with the output, or none, found "
-                "another file; it would be lost: remove it, or name another output"};
+                "another file; it would be lost: remove it, or name another"};
   }
 
   [[nodiscard]] Result<CookInput> load() const {

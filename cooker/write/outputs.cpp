@@ -162,11 +162,10 @@ Status check_replaced(const fs::path& output, OutputKind kind) {
   const std::string start =
       start_of(output, kind == OutputKind::kDepfile ? kMostOfDepfile : kStart);
   if (start.empty() || begins_as(kind, start)) return {};
-  return Error{
-      Errc::kWriteFailed,
-      fmt::format("{}: expected {} in the place of the output, or none, found another file; "
-                  "it would be lost: remove it, or name another output",
-                  output.string(), name_of(kind))};
+  return Error{Errc::kWriteFailed,
+               fmt::format("{}: expected {} there, or none, found another file; "
+                           "it would be lost: remove it, or name another",
+                           output.string(), name_of(kind))};
 }
 
 }  // namespace boxtree::cooker

@@ -805,7 +805,7 @@ same "$(wc -c <err)" 0
 echo 'my own words' >notes.txt
 refuses() {
   expect 1 "$boxtree" "$@"
-  tr -s ' \n' ' ' <err | grep -qE "^boxtree: usage: $1: notes.txt: expected $kind in the place of the output, or none, found another file; it would be lost"
+  tr -s ' \n' ' ' <err | grep -qE "^boxtree: usage: $1: notes.txt: expected $kind there, or none, found another file; it would be lost"
   same "$(cat notes.txt)" 'my own words'
 }
 kind="a report's page" refuses report cube.obj --quick --no-times -o notes.txt
@@ -1508,12 +1508,12 @@ grep -q 'groups: expected a mesh by its ending: .*; found none$' err
 # Nothing takes the place of another kind of file.
 cp groups.obj shown.obj
 expect 1 "$boxtree" export groups.bxt -o shown.obj
-same "$(cat err)" 'boxtree: usage: export: shown.obj: expected what an export has written in the place of the output, or none, found another file; it would be lost: remove it, or name another output'
+same "$(cat err)" 'boxtree: usage: export: shown.obj: expected what an export has written there, or none, found another file; it would be lost: remove it, or name another'
 cmp groups.obj shown.obj
 for _ in once again; do expect 0 "$boxtree" export groups.bxt -o shown2.obj; expect 0 "$boxtree" export groups.bxt -o shown.glb; done
 printf '[scene]\n' >kept.toml
 expect 1 "$boxtree" cook groups.obj -o kept.toml
-grep -q 'kept.toml: expected a cooked file in the place of the output, or none, found another file' err
+grep -q 'kept.toml: expected a cooked file there, or none, found another file' err
 same "$(cat kept.toml)" '[scene]'
 expect 1 "$boxtree" cook groups.obj -o groups.bxt --depfile shown.obj
 grep -q 'shown.obj: expected another ending than .obj, which is that of a mesh, as shown.d' err
