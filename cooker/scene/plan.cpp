@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "cooker/scene/plan_meshes.h"
+#include "cooker/text/nearest_name.h"
 #include "runtime/primitive/float_state.h"
 
 namespace boxtree::cooker {
@@ -51,6 +52,14 @@ bool is_spawned(const Profile& profile, std::uint32_t object) {
   });
 }
 
+// Of instances and of their meshes.
+std::vector<std::string> names_of(const SourceScene& scene) {
+  std::vector<std::string> names;
+  for (const SceneInstance& instance : scene.instances) names.push_back(instance.name);
+  for (const SceneMesh& mesh : scene.meshes) names.push_back(mesh.mesh.name);
+  return names;
+}
+
 void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan& plan) {
   const std::vector<std::uint32_t> objects = objects_of(scene, profile);
   std::vector<std::size_t> count(profile.objects.size(), 0);
@@ -69,9 +78,9 @@ void plan_instances(const SourceScene& scene, const Profile& profile, ScenePlan&
                               dropped ? ": " : "", dropped ? why : ""),
                   dropped ? *dropped : object.name.line);
     } else if (!object.match.empty()) {
-      plan.notices.push_back(fmt::format("{}: no instance is of object \"{}\"",
-                                         profile.cite(object.match.front().line),
-                                         object.name.value));
+      plan.notices.push_back(fmt::format("{}: no instance is of object \"{}\"{}",
+                                         profile.cite(object.match.front().line), object.name.value,
+                                         suggestion(object.match.front().value, names_of(scene))));
     }
     if (count[o] == 0 && is_spawned(profile, o) && !object.never_collides_with.empty()) {
       plan.notices.push_back(

@@ -95,6 +95,18 @@ match = ["Tree*"]
   expect_decision(planned, Aspect::kInstances, OwnerKind::kObject, 3, true, 11, "1 moving");
 }
 
+TEST_F(PlanTest, AnObjectWithoutInstancesIsToldTheNearestName) {
+  const ScenePlan planned = plan(scene_of({mesh_of("crate")}, {placed("Gate A", 0)}), R"(
+[[object]]
+name = "gates"
+match = ["gate *"]
+)");
+  ASSERT_EQ(planned.notices.size(), 1u);
+  EXPECT_EQ(planned.notices[0],
+            "scene.toml:4: match = [\"gate *\"]: no instance is of object \"gates\"; did you mean "
+            "'Gate A'?");
+}
+
 TEST_F(PlanTest, AListedInstanceMayNameItsObject) {
   const ScenePlan planned =
       plan(scene_of({mesh_of("crate")}, {placed("a", 0), placed("b", 0), placed("c", 0)}),
