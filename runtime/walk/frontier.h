@@ -21,9 +21,9 @@ class Frontier {
   /// when not even the stack has room: then the tree is deeper than any valid one.
   [[nodiscard]] bool push(double key, double enough, const Entry& entry) noexcept {
     if (queued_ == Queue && enough < swept_) sweep(enough);
-    const bool is_queued = stacked_ == 0 && queued_ < Queue;
+    const std::size_t before = queued_;
     if (!add(key, entry)) return false;
-    if (is_queued) std::push_heap(handles_.begin(), end());
+    if (queued_ != before) std::push_heap(handles_.begin(), end());
     return true;
   }
 
