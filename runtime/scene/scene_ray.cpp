@@ -138,6 +138,14 @@ SceneRayResult plain_hit(const Scene& queried, const Ray& ray, bool stop_at_firs
   return one_hit(scene, ray, stop_at_first, {scene, kRayQueries, layers, work}, nullptr);
 }
 
+template <class Answer>
+Status answer_each(std::span<const Ray> rays, std::span<SceneRayResult> results,
+                   const Answer& answer) {
+  if (results.size() != rays.size()) return invalid_query("results");
+  for (std::size_t i = 0; i < rays.size(); ++i) results[i] = answer(rays[i]);
+  return {};
+}
+
 SceneRayResult wanted_hit(const Scene& queried, const Ray& ray, bool stop_at_first,
                           const SceneFaceOptions& options) {
   const DefaultFloatState state;
@@ -162,20 +170,14 @@ SceneRayResult any_hit(const Scene& scene, const Ray& ray, LayerMask layers,
 Status closest_hits(const Scene& scene, std::span<const Ray> rays,
                     std::span<SceneRayResult> results, LayerMask layers,
                     const QueryLimits& limits) {
-  if (results.size() != rays.size()) return invalid_query("results");
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    results[i] = closest_hit(scene, rays[i], layers, limits);
-  }
-  return {};
+  return answer_each(rays, results,
+                     [&](const Ray& ray) { return closest_hit(scene, ray, layers, limits); });
 }
 
 Status any_hits(const Scene& scene, std::span<const Ray> rays, std::span<SceneRayResult> results,
                 LayerMask layers, const QueryLimits& limits) {
-  if (results.size() != rays.size()) return invalid_query("results");
-  for (std::size_t i = 0; i < rays.size(); ++i) {
-    results[i] = any_hit(scene, rays[i], layers, limits);
-  }
-  return {};
+  return answer_each(rays, results,
+                     [&](const Ray& ray) { return any_hit(scene, ray, layers, limits); });
 }
 
 SceneRayResult closest_hit(const Scene& scene, const Ray& ray, const SceneFaceOptions& options) {
