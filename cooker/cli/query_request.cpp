@@ -307,11 +307,10 @@ class FieldTexts {
   }
   void shape(const CastShape& shape) {
     if_given("sphere", shape.sphere, [](double radius) { return fmt::format("{}", radius); });
-    const auto list = [](std::span<const double> numbers) { return list_of(numbers); };
-    if_given("capsule", shape.capsule, list);
-    if_given("box", shape.box, list);
+    if_given("capsule", shape.capsule, list_of);
+    if_given("box", shape.box, list_of);
     if_given("hull", shape.hull, [](const std::filesystem::path& mesh) { return mesh.string(); });
-    if_given("rotation", shape.rotation, list);
+    if_given("rotation", shape.rotation, list_of);
   }
 
  private:
