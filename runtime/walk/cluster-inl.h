@@ -46,20 +46,20 @@ class ClusterReader {
     const WordVector fields = set(faces.fields);
     const Olds olds{window_at(faces.bytes), faces.others};
     const Vertices thirds =
-        find_vertices(faces, olds, lanes_with(fields, kThirdBits), ranks(faces.new_thirds), 0);
+        find_vertices(faces, olds, lanes_with(fields, kThirdBits), ranks(faces.new_thirds), iota());
     const auto new_thirds = static_cast<std::uint32_t>(std::popcount(faces.new_thirds));
     const std::uint32_t new_aparts = faces.new_others & 0xffu;
     const Vertices aparts =
         find_vertices(faces, olds, lanes_with(small(new_aparts), kLaneBits),
-                      hn::Add(ranks(new_aparts), small(new_thirds)), kLeafFaces);
+                      hn::Add(ranks(new_aparts), small(new_thirds)), hn::Iota(Words(), kLeafFaces));
     const FloatVector scales = hn::Set(Floats(), scale);
     FloatVector third[3], apart[3];
     if (HWY_LIKELY(is_narrow_)) {
       read_vertices<true>(thirds, 0, scales, triangles, third);
       read_vertices<true>(aparts, kLeafFaces, scales, triangles, apart);
     } else {
-      read_vertices<false>(thirds, 0, scales, triangles, third);
-      read_vertices<false>(aparts, kLeafFaces, scales, triangles, apart);
+      read_wide_vertices(thirds, 0, scales, triangles, third);
+      read_wide_vertices(aparts, kLeafFaces, scales, triangles, apart);
     }
     auto corrupt =
         hn::Or(thirds.corrupt,
@@ -77,33 +77,17 @@ class ClusterReader {
     return hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())));
   }
 
-  /// The numbers of all corners of 8 triangles, [corner][axis][triangle], in the order of the
-  /// source. False where there are too many vertices for it, more than leaves usually have.
-  /// Precondition: there are no quads among them.
-  static HWY_INLINE bool find_numbers(const LeafTriangles& triangles,
+  /// The numbers of all corners, [corner][axis][triangle], in the order of the source.
+  static HWY_INLINE void find_numbers(const LeafTriangles& triangles,
                                       std::uint32_t (&out)[3][3][kMaxLeafTriangles]) {
-    const auto turn =
-        permute(hn::Load(Words(), LeafTriangles::kTurn), hn::Load(Words(), triangles.step));
-    const auto by_one = hn::Eq(turn, small(1)), by_two = hn::Eq(turn, small(2));
-    const auto first = hn::Load(Words(), triangles.corner[0]);
-    const auto second = hn::Load(Words(), triangles.corner[1]);
-    const auto third = iota();
-    if (bits_of_words(is_less(small(2 * kWideChildren - 1), hn::Max(first, second))) != 0)
-      return false;
-    const TwoVectorLanes corner[3] = {
-        TwoVectorLanes(hn::IfThenElse(by_one, third, hn::IfThenElse(by_two, second, first))),
-        TwoVectorLanes(hn::IfThenElse(by_one, first, hn::IfThenElse(by_two, third, second))),
-        TwoVectorLanes(hn::IfThenElse(by_one, second, hn::IfThenElse(by_two, first, third)))};
-    const Floats d;
+    const FaceCorners corners(triangles);
     for (std::size_t k = 0; k < 3; ++k) {
       const auto* const numbers = reinterpret_cast<const float*>(triangles.number[k]);
-      const auto low = hn::Load(d, numbers), high = hn::Load(d, numbers + kWideChildren);
-      HWY_UNROLL(3)
-      for (std::size_t c = 0; c < 3; ++c) {
-        hn::Store(corner[c].look_up(low, high), d, reinterpret_cast<float*>(out[c][k]));
-      }
+      FloatVector group[4];
+      for (std::size_t g = 0; g < 4; ++g) group[g] = hn::Load(Floats(), numbers + g * kLeafFaces);
+      corners.spread(group, reinterpret_cast<float*>(out[0][k]),
+                     reinterpret_cast<float*>(out[1][k]), reinterpret_cast<float*>(out[2][k]));
     }
-    return true;
   }
 
   [[nodiscard]] HWY_INLINE bool has_avx512() const { return read_by_avx512_ != nullptr; }
@@ -192,6 +176,73 @@ class ClusterReader {
     WordVector lanes;
     hn::Mask<Floats> is_high;
   };
+  // The corners of faces among references, in the order of the source, and the lanes of triangles
+  // among faces.
+  class FaceCorners {
+   public:
+    explicit HWY_NOINLINE FaceCorners(const LeafTriangles& triangles)
+        : first_(hn::Load(Words(), triangles.corner[0])),
+          second_(hn::Load(Words(), triangles.corner[1])),
+          has_quads_(triangles.count != kLeafFaces) {
+      const auto turn =
+          permute(hn::Load(Words(), LeafTriangles::kTurn), hn::Load(Words(), triangles.step));
+      by_one_ = hn::RebindMask(Floats(), hn::Eq(turn, small(1)));
+      by_two_ = hn::RebindMask(Floats(), hn::Eq(turn, small(2)));
+      if (!has_quads_) return;
+      for (std::size_t part = 0; part < 2; ++part) {
+        const hn::Rebind<std::uint8_t, Words> bytes;
+        const auto code =
+            hn::PromoteTo(Words(), hn::LoadU(bytes, triangles.code + part * kLeafFaces));
+        face_[part] = hn::ShiftRight<1>(code);
+        is_half_[part] = hn::RebindMask(Floats(), hn::TestBit(code, small(1)));
+      }
+    }
+
+    // One axis: `group` has the references, eight by eight, the fourth corners last. Not inlined,
+    // for size.
+    HWY_NOINLINE void spread(const FloatVector (&group)[4], float* out_0, float* out_1,
+                             float* out_2) const {
+      const auto first = with_third_group(first_, group);
+      const auto second = with_third_group(second_, group);
+      const auto third = group[0];
+      const auto corner_0 = hn::IfThenElse(by_one_, third, hn::IfThenElse(by_two_, second, first));
+      const auto corner_1 = hn::IfThenElse(by_one_, first, hn::IfThenElse(by_two_, third, second));
+      const auto corner_2 = hn::IfThenElse(by_one_, second, hn::IfThenElse(by_two_, first, third));
+      const Floats d;
+      if (!has_quads_) {
+        hn::Store(corner_0, d, out_0);
+        hn::Store(corner_1, d, out_1);
+        hn::Store(corner_2, d, out_2);
+        return;
+      }
+      for (std::size_t part = 0; part < 2; ++part) {
+        const auto lanes = hn::IndicesFromVec(d, face_[part]);
+        const auto middle = hn::TableLookupLanes(corner_2, lanes);
+        const std::size_t at = part * kLeafFaces;
+        hn::Store(hn::TableLookupLanes(corner_0, lanes), d, out_0 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], middle, hn::TableLookupLanes(corner_1, lanes)), d,
+                  out_1 + at);
+        hn::Store(hn::IfThenElse(is_half_[part], hn::TableLookupLanes(group[3], lanes), middle), d,
+                  out_2 + at);
+      }
+    }
+
+   private:
+    static HWY_INLINE FloatVector with_third_group(const TwoVectorLanes& reference,
+                                                   const FloatVector (&group)[4]) {
+      const auto is_third =
+          hn::RebindMask(Floats(), is_less(small(2 * kLeafFaces - 1), reference.lanes));
+      return hn::IfThenElse(is_third, hn::TableLookupLanes(group[2], {reference.lanes.raw}),
+                            reference.look_up(group[0], group[1]));
+    }
+
+    TwoVectorLanes first_, second_;
+    bool has_quads_;
+    hn::Mask<Floats> by_one_, by_two_;
+    WordVector face_[2];
+    hn::Mask<Floats> is_half_[2];
+  };
+
   // The byte of a table that each lane of `group` names.
   static HWY_INLINE WordVector look_up(hn::Vec<Bytes> table, WordVector group) {
     return hn::BitCast(Words(), hn::TableLookupBytes(table, hn::BitCast(Bytes(), group)));
@@ -205,14 +256,14 @@ class ClusterReader {
     return hn::LoadDup128(Bytes(), reinterpret_cast<const std::uint8_t*>(bytes));
   }
 
-  // The vertices of references `first` to `first` + 7. `rank`: how many up to each are new.
+  // The vertices of eight references. `rank`: how many references up to each are new.
   HWY_INLINE Vertices find_vertices(const LeafFields& faces, const Olds& olds, WordMask is_new,
-                                    WordVector rank, std::uint32_t first) const {
+                                    WordVector rank, WordVector reference) const {
     // Those that are not new have their fields one after another, each in up to three bytes.
     HWY_ALIGN static constexpr std::uint8_t kFirstByte[32] = {
         0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12,
         0, 0, 0, 0, 4, 4, 4, 4, 8, 8, 8, 8, 12, 12, 12, 12};
-    const auto old = hn::Sub(hn::Iota(Words(), first), rank);
+    const auto old = hn::Sub(reference, rank);
     const auto place = hn::Add(multiply(old, small(faces.old_bits)), set(olds.at));
     const auto byte = hn::TableLookupBytes(hn::BitCast(Bytes(), hn::ShiftRight<3>(place)),
                                            hn::Load(Bytes(), kFirstByte));
@@ -340,16 +391,23 @@ class ClusterReader {
     }
   }
 
-  // Any leaf: its triangles in the order of decoders of one leaf. Cold, so that it is compiled for
-  // size: its vectors take the time.
-  [[gnu::cold]] HWY_NOINLINE bool read_any(const LeafFields& faces, float scale,
-                                           LeafTriangles& triangles, LeafCoordinates& out) {
+  // Not inlined, for size.
+  HWY_NOINLINE void read_wide_vertices(const Vertices& vertices, std::uint32_t first,
+                                       FloatVector scale, LeafTriangles& triangles,
+                                       FloatVector (&out)[3]) {
+    read_vertices<false>(vertices, first, scale, triangles, out);
+  }
+
+  // Any leaf: with quads, with most faces apart, or with far more vertices of others than usual.
+  HWY_NOINLINE bool read_any(const LeafFields& faces, float scale, LeafTriangles& triangles,
+                             LeafCoordinates& out) {
     const FloatVector scales = hn::Set(Floats(), scale);
     const std::uint32_t is_new = faces.new_thirds | faces.new_others << kLeafFaces;
-    const std::uint32_t count = kLeafFaces + faces.others;
-    HWY_ALIGN float all[3][kMostLeafReferences];
     auto corrupt = join_strip(set(faces.fields), triangles).corrupt;
-    for (std::uint32_t first = 0; first < count; first += kWideChildren) {
+    // References from `first` on, of which lane i gets number `slot`, to numbers from `at` on.
+    // Lanes that are not `wanted` get any vertex of the cluster.
+    const auto read_group = [&](std::uint32_t first, WordVector slot, WordMask wanted,
+                                std::uint32_t at, FloatVector(&position)[3]) {
       const std::uint32_t here = (is_new >> first) & 0xffu;
       const auto before = static_cast<std::uint32_t>(std::popcount(is_new & ((1u << first) - 1)));
       // A window for each group: up to 8 references and the bits before them fit into it.
@@ -357,37 +415,48 @@ class ClusterReader {
                     LeafFields::kWindowBits);
       const std::uint32_t place = faces.others + (first - before) * faces.old_bits;
       const Olds olds{window_at(faces.bytes + place / 8), faces.others - place / 8 * 8};
-      const Vertices vertices = find_vertices(faces, olds, lanes_with(small(here), kLaneBits),
-                                              hn::Add(ranks(here), small(before)), first);
-      FloatVector position[3];
-      read_vertices<false>(vertices, first, scales, triangles, position);
-      for (std::size_t k = 0; k < 3; ++k) hn::Store(position[k], Floats(), all[k] + first);
-      corrupt = hn::Or(corrupt,
-                       hn::IfThenElseZero(is_less(iota(), small(count - first)), vertices.corrupt));
+      const Vertices vertices = find_vertices(
+          faces, olds, hn::TestBit(hn::Shr(small(here), slot), small(1)),
+          hn::Add(permute(ranks(here), slot), small(before)), hn::Add(slot, small(first)));
+      corrupt = hn::Or(corrupt, hn::IfThenElseZero(wanted, vertices.corrupt));
+      read_wide_vertices(vertices, at, scales, triangles, position);
+    };
+    const std::uint32_t apart_others = 2 * faces.aparts;
+    FloatVector group[4][3];
+    read_group(0, iota(), is_less(iota(), small(kLeafFaces)), 0, group[0]);
+    read_group(kLeafFaces, iota(), is_less(iota(), small(apart_others)), kLeafFaces, group[1]);
+    const bool has_more = apart_others > kLeafFaces;
+    if (has_more) {
+      read_group(2 * kLeafFaces, iota(), is_less(iota(), small(apart_others - kLeafFaces)),
+                 2 * kLeafFaces, group[2]);
+    }
+    if (faces.quads != 0) {
+      const auto slot = hn::Sub(ranks(faces.quads), small(1));
+      read_group(kLeafFaces + apart_others, slot, lanes_with(small(faces.quads), kLaneBits),
+                 LeafTriangles::kFourths, group[3]);
     }
     if (!hn::AllTrue(Words(), hn::Eq(corrupt, hn::Zero(Words())))) return false;
-    std::uint32_t fourth = kLeafFaces + 2 * faces.aparts;
-    std::uint32_t written = 0;
-    auto& of_quads = triangles.of_quads;
-    for (std::uint32_t f = 0; f < kLeafFaces; ++f) {
-      const std::uint32_t step = triangles.step[f];
-      const std::uint32_t turn = step == StripStep::kApart ? 0 : step % 3;
-      std::uint8_t corner[3];
-      corner[turn] = static_cast<std::uint8_t>(triangles.corner[0][f]);
-      corner[(turn + 1) % 3] = static_cast<std::uint8_t>(triangles.corner[1][f]);
-      corner[(turn + 2) % 3] = static_cast<std::uint8_t>(f);
-      const auto face = static_cast<std::uint8_t>(f);
-      of_quads[written++] = {face, 0, {corner[0], corner[1], corner[2]}};
-      if (((faces.quads >> f) & 1u) == 0) continue;
-      of_quads[written++] = {face, 1, {corner[0], corner[2], static_cast<std::uint8_t>(fourth++)}};
+    name_lanes(faces.quads, triangles);
+    const FaceCorners corners(triangles);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const FloatVector of_axis[4] = {group[0][k], group[1][k], group[has_more ? 2 : 1][k],
+                                      group[faces.quads != 0 ? 3 : 0][k]};
+      corners.spread(of_axis, out[0][k], out[1][k], out[2][k]);
     }
-    for (std::uint32_t i = 0; i < written; ++i) {
-      for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t k = 0; k < 3; ++k) out[c][k][i] = all[k][of_quads[i].reference[c]];
-      }
-    }
-    triangles.count = written;
     return true;
+  }
+
+  // The face and the half of each lane.
+  static HWY_INLINE void name_lanes(std::uint32_t quads, LeafTriangles& triangles) {
+    std::uint32_t count = 0;
+    HWY_UNROLL(1)
+    for (std::uint32_t half = 0; half < 2 * kLeafFaces; ++half) {
+      // Written over by the next one where there is no such half; then zeros.
+      triangles.code[count] = static_cast<std::uint8_t>(half);
+      count += half % 2 == 0 || ((quads >> half / 2) & 1u) != 0 ? 1 : 0;
+    }
+    triangles.count = count;
+    std::fill(triangles.code + count, std::end(triangles.code), std::uint8_t{0});
   }
 
   const ClusterView& view_;

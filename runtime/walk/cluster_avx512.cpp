@@ -120,46 +120,16 @@ HWY_INLINE TwoWords words_from(const LongWords& words, Sixteen bit) {
           _mm512_mask_mov_epi32(words.part[1], is_second, words.part[2])};
 }
 
-bool find_and_read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
-                   LeafTriangles& triangles, LeafCoordinates& out);
-
-// Neighbours are read one after another, so the cluster is mostly the one of the last leaf.
-bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
-          LeafTriangles& triangles, LeafCoordinates& out) {
-  if (HWY_UNLIKELY(leaf / kClusterLeaves != cluster.leaves.cluster)) {
-    return find_and_read(view, leaf, scale, cluster, triangles, out);
-  }
-  LeafFields faces;
-  if (!cluster.leaves.find(leaf % kClusterLeaves, faces) || !faces.is_usual) return false;
-  triangles.count = kLeafFaces;
-
-  // Which vertices references are to: new ones in a row, and others by their distance from the last
-  // new one. Fields of those follow each other, each in up to three bytes.
-  const Sixteen iota = load(kIota);
-  const auto is_new = static_cast<__mmask16>(faces.new_thirds | faces.new_others << kLeafFaces);
-  const Sixteen place = _mm512_add_epi32(_mm512_mullo_epi16(iota, every_small(faces.old_bits)),
-                                         every_small(faces.others));
-  const Sixteen first_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
-  const Sixteen bytes = _mm512_add_epi32(
-      _mm512_shuffle_epi8(_mm512_srli_epi32(place, 3), first_byte), every_constant<0x80020100>());
-  const Sixteen window =
-      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(faces.bytes)));
-  const Sixteen field =
-      _mm512_and_si512(_mm512_srlv_epi32(_mm512_shuffle_epi8(window, bytes),
-                                         _mm512_and_si512(place, every_constant<7>())),
-                       every(kLaneConstants.low_bits[faces.old_bits]));
-  const Sixteen news =
-      _mm512_maskz_expand_epi32(is_new, _mm512_add_epi32(iota, every(faces.before + 1)));
-  const Sixteen vertex = _mm512_mask_expand_epi32(news, static_cast<__mmask16>(~is_new),
-                                                  _mm512_sub_epi32(every(faces.last), field));
-  const Sixteen inside = _mm512_min_epu32(vertex, every(cluster.leaves.last_vertex));
-  const auto references = static_cast<__mmask16>((1u << (kLeafFaces + faces.others)) - 1);
-  const __mmask16 corrupt = _mm512_mask_cmpneq_epu32_mask(references, vertex, inside);
-
-  // Where they are. Products below 2^16.
-  const Sixteen group = _mm512_mulhi_epu16(inside, every(cluster.leaves.per_group));
+// Sixteen vertices of a cluster: their numbers to `number`, and where they are. `kIsLong`: whether
+// Avx512Cluster::is_long may be set.
+template <bool kIsLong>
+HWY_INLINE void read_vertices(const ClusterView& view, Sixteen vertex, float scale,
+                              Avx512Cluster& cluster, std::uint32_t* const (&number)[3],
+                              __m512 (&position)[3]) {
+  // Products below 2^16.
+  const Sixteen group = _mm512_mulhi_epu16(vertex, every(cluster.leaves.per_group));
   const Sixteen in_group =
-      _mm512_sub_epi32(inside, _mm512_mullo_epi16(group, every(cluster.leaves.group_size)));
+      _mm512_sub_epi32(vertex, _mm512_mullo_epi16(group, every(cluster.leaves.group_size)));
   const Sixteen bit = _mm512_mullo_epi16(in_group, look_up(cluster.stride, group));
   const LongWords words = words_at(
       cluster.leaves.bytes,
@@ -169,7 +139,7 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
   const Sixteen z = _mm512_add_epi32(x, look_up(cluster.at[1], group));
   const TwoWords of_y = words_from(words, y);
   TwoWords of_z = words_from(words, z);
-  if (HWY_UNLIKELY(cluster.is_long)) {
+  if constexpr (kIsLong) {
     const __mmask16 is_third = _mm512_cmpgt_epu32_mask(z, every_constant<63>());
     of_z = {_mm512_mask_mov_epi32(of_z.low, is_third, words.part[2]),
             _mm512_mask_mov_epi32(of_z.high, is_third, words.part[3])};
@@ -178,7 +148,6 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
                              _mm512_shrdv_epi32(of_y.low, of_y.high, y),
                              _mm512_shrdv_epi32(of_z.low, of_z.high, z)};
   Sixteen stored[3];
-  __m512 position[3];
   HWY_UNROLL(3)
   for (std::size_t k = 0; k < 3; ++k) {
     stored[k] = _mm512_add_epi32(_mm512_and_si512(offset[k], look_up(cluster.low_bits[k], group)),
@@ -188,7 +157,7 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
     HWY_UNROLL(3)
     for (std::size_t k = 0; k < 3; ++k) {
       const Sixteen whole = _mm512_sllv_epi32(stored[k], every(cluster.trailing[k]));
-      _mm512_store_si512(triangles.number[k], whole);
+      _mm512_store_si512(number[k], whole);
       position[k] = _mm512_cvtepi32_ps(whole);
     }
   } else {
@@ -199,7 +168,7 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
           _mm512_sllv_epi32(_mm512_xor_si512(stored[k], sign), every(cluster.trailing[k]));
       const Sixteen bits =
           _mm512_or_si512(magnitude, _mm512_and_si512(sign, every_constant<0x80000000>()));
-      _mm512_store_si512(triangles.number[k], bits);
+      _mm512_store_si512(number[k], bits);
       position[k] = _mm512_castsi512_ps(bits);
     }
   }
@@ -207,6 +176,152 @@ bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluste
   for (std::size_t k = 0; k < 3; ++k) {
     position[k] = _mm512_mul_ps(position[k], _mm512_set1_ps(scale));
   }
+}
+
+// The bytes in which a field that begins at bit `place` is, as places in a window: the first three.
+HWY_INLINE Sixteen bytes_of_fields(Sixteen place) {
+  const Sixteen first_byte = _mm512_set4_epi32(0x0c0c0c0c, 0x08080808, 0x04040404, 0);
+  return _mm512_add_epi32(_mm512_shuffle_epi8(_mm512_srli_epi32(place, 3), first_byte),
+                          every_constant<0x80020100>());
+}
+// The fields, of `words` with these bytes.
+HWY_INLINE Sixteen fields_of(Sixteen words, Sixteen place, std::uint32_t old_bits) {
+  return _mm512_and_si512(_mm512_srlv_epi32(words, _mm512_and_si512(place, every_constant<7>())),
+                          every(kLaneConstants.low_bits[old_bits]));
+}
+
+// The vertices of any sixteen references. Returns which are corrupt; those of no reference are any.
+HWY_INLINE __mmask16 find_vertices(const LeafFields& faces, std::uint32_t last_vertex,
+                                   Sixteen reference, Sixteen& vertex) {
+  const Sixteen is_new = every(faces.new_thirds | faces.new_others << kLeafFaces);
+  const Sixteen bit = _mm512_sllv_epi32(every_constant<1>(), reference);
+  const Sixteen up_to = _mm512_or_si512(bit, _mm512_sub_epi32(bit, every_constant<1>()));
+  const Sixteen news = _mm512_popcnt_epi32(_mm512_and_si512(is_new, up_to));
+  const Sixteen place = _mm512_add_epi32(
+      _mm512_mullo_epi16(_mm512_sub_epi32(reference, news), every_small(faces.old_bits)),
+      every_small(faces.others));
+  // One window for all fields of a leaf. The highest byte of what is looked up in it is any.
+  constexpr std::size_t kWindowBytes = sizeof(Sixteen);
+  static_assert(kMostLeafReferences *
+                    (1 + ClusterHeader::kMostOldBits + (1u << kOldWiderBits) - 1) <=
+                8 * kWindowBytes);
+  static_assert(sizeof(faces.fields) + kLeafFaces / 8 + kWindowBytes <= kClusterPadding);
+  const Sixteen window = _mm512_loadu_si512(faces.bytes);
+  const Sixteen field =
+      fields_of(_mm512_permutexvar_epi8(bytes_of_fields(place), window), place, faces.old_bits);
+  const Sixteen found =
+      _mm512_mask_add_epi32(_mm512_sub_epi32(every(faces.last), field),
+                            _mm512_test_epi32_mask(is_new, bit), every(faces.before), news);
+  vertex = _mm512_min_epu32(found, every(last_vertex));
+  return _mm512_cmpneq_epu32_mask(found, vertex);
+}
+
+// The corners of all triangles, in the order of the source, from the references to them.
+HWY_INLINE void join_triangles(std::uint32_t quads, const __m512 (&low)[3], const __m512 (&high)[3],
+                               LeafTriangles& triangles, LeafCoordinates& out) {
+  // A lane for each half that there is.
+  constexpr std::uint32_t kFirstHalves = 0x5555;
+  const auto is_there = static_cast<__mmask16>(kFirstHalves | _pdep_u32(quads, ~kFirstHalves));
+  const Sixteen code = _mm512_maskz_compress_epi32(is_there, load(kIota));
+  _mm_storeu_si128(reinterpret_cast<__m128i*>(triangles.code), _mm512_cvtepi32_epi8(code));
+  triangles.count = kLeafFaces + static_cast<std::uint32_t>(std::popcount(quads));
+  const __mmask16 is_second = _mm512_test_epi32_mask(code, every_constant<1>());
+  const Sixteen face = _mm512_srli_epi32(code, 1);
+  const auto look_up_eight = [](const std::uint32_t* row, Sixteen lane) {
+    const auto eight = _mm256_load_si256(reinterpret_cast<const __m256i*>(row));
+    return _mm512_permutexvar_epi32(lane, _mm512_castsi256_si512(eight));
+  };
+  // See LeafTriangles::find_corners().
+  const Sixteen turn = look_up_eight(LeafTriangles::kTurn, look_up_eight(triangles.step, face));
+  const Sixteen first = look_up_eight(triangles.corner[0], face);
+  const Sixteen second = look_up_eight(triangles.corner[1], face);
+  const __mmask16 by_one = _mm512_cmpeq_epi32_mask(turn, every_constant<1>());
+  const __mmask16 by_two = _mm512_cmpeq_epi32_mask(turn, every_constant<2>());
+  const auto turned = [&](Sixteen by_none, Sixteen if_one, Sixteen if_two) {
+    return _mm512_mask_mov_epi32(_mm512_mask_mov_epi32(by_none, by_one, if_one), by_two, if_two);
+  };
+  const Sixteen third = turned(face, second, first);
+  const Sixteen reference[3] = {
+      turned(first, face, second),
+      _mm512_mask_mov_epi32(turned(second, first, face), is_second, third),
+      _mm512_mask_add_epi32(third, is_second, face, every_small(LeafTriangles::kFourths))};
+  HWY_UNROLL(3)
+  for (std::size_t c = 0; c < 3; ++c) {
+    HWY_UNROLL(3)
+    for (std::size_t k = 0; k < 3; ++k) {
+      _mm512_storeu_ps(out[c][k], _mm512_permutex2var_ps(low[k], reference[c], high[k]));
+    }
+  }
+}
+
+// Any leaf: with quads, with most faces apart, with far more vertices of others than usual, or of a
+// cluster whose offsets are wide.
+HWY_NOINLINE bool read_any(const ClusterView& view, const LeafFields& faces, float scale,
+                           Avx512Cluster& cluster, LeafTriangles& triangles, LeafCoordinates& out) {
+  // References in the order of LeafTriangles::number.
+  const Sixteen iota = load(kIota);
+  const std::uint32_t apart_others = 2 * faces.aparts;
+  const Sixteen fourths =
+      _mm512_broadcast_i64x4(hn::Add(ranks(faces.quads), small(kLeafFaces - 1 + apart_others)).raw);
+  const Sixteen reference[2] = {
+      iota,
+      _mm512_mask_mov_epi32(_mm512_add_epi32(iota, every_small(2 * kLeafFaces)), 0xff00, fourths)};
+  const std::uint32_t of_faces = (1u << (kLeafFaces + apart_others)) - 1;
+  const std::uint32_t wanted = of_faces | faces.quads << LeafTriangles::kFourths;
+  std::uint32_t corrupt = 0;
+  __m512 position[2][3];
+  for (std::size_t part = 0; part < 2; ++part) {
+    Sixteen vertex;
+    const std::uint32_t first = static_cast<std::uint32_t>(16 * part);
+    corrupt |= find_vertices(faces, cluster.leaves.last_vertex, reference[part], vertex) << first;
+    read_vertices<true>(
+        view, vertex, scale, cluster,
+        {triangles.number[0] + first, triangles.number[1] + first, triangles.number[2] + first},
+        position[part]);
+  }
+  const StripCorners corners = join_strip(hn::Set(Words(), faces.fields), triangles);
+  join_triangles(faces.quads, position[0], position[1], triangles, out);
+  return (corrupt & wanted) == 0 &&
+         hn::AllTrue(Words(), hn::Eq(corners.corrupt, hn::Zero(Words())));
+}
+
+bool find_and_read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
+                   LeafTriangles& triangles, LeafCoordinates& out);
+
+// Neighbours are read one after another, so the cluster is mostly the one of the last leaf.
+bool read(const ClusterView& view, std::uint32_t leaf, float scale, Avx512Cluster& cluster,
+          LeafTriangles& triangles, LeafCoordinates& out) {
+  if (HWY_UNLIKELY(leaf / kClusterLeaves != cluster.leaves.cluster)) {
+    return find_and_read(view, leaf, scale, cluster, triangles, out);
+  }
+  LeafFields faces;
+  if (!cluster.leaves.find(leaf % kClusterLeaves, faces)) return false;
+  if (HWY_UNLIKELY(!faces.is_usual || cluster.is_long)) {
+    const LeafFields faces_copy = faces;  // so that the usual case may keep it in registers
+    return read_any(view, faces_copy, scale, cluster, triangles, out);
+  }
+  triangles.count = kLeafFaces;
+
+  // Which vertices references are to: new ones in a row, and others by their distance from the last
+  // new one. Fields of those follow each other.
+  const Sixteen iota = load(kIota);
+  const auto is_new = static_cast<__mmask16>(faces.new_thirds | faces.new_others << kLeafFaces);
+  const Sixteen place = _mm512_add_epi32(_mm512_mullo_epi16(iota, every_small(faces.old_bits)),
+                                         every_small(faces.others));
+  const Sixteen window =
+      _mm512_broadcast_i32x4(_mm_loadu_si128(reinterpret_cast<const __m128i*>(faces.bytes)));
+  const Sixteen field =
+      fields_of(_mm512_shuffle_epi8(window, bytes_of_fields(place)), place, faces.old_bits);
+  const Sixteen news =
+      _mm512_maskz_expand_epi32(is_new, _mm512_add_epi32(iota, every(faces.before + 1)));
+  const Sixteen vertex = _mm512_mask_expand_epi32(news, static_cast<__mmask16>(~is_new),
+                                                  _mm512_sub_epi32(every(faces.last), field));
+  const Sixteen inside = _mm512_min_epu32(vertex, every(cluster.leaves.last_vertex));
+  const auto references = static_cast<__mmask16>((1u << (kLeafFaces + faces.others)) - 1);
+  const __mmask16 corrupt = _mm512_mask_cmpneq_epu32_mask(references, vertex, inside);
+  __m512 position[3];
+  read_vertices<false>(view, inside, scale, cluster,
+                       {triangles.number[0], triangles.number[1], triangles.number[2]}, position);
 
   // Corners of faces are references.
   const StripCorners corners = join_strip(hn::Set(Words(), faces.fields), triangles);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Decodes leaves of clusters by AVX-512: all 16 references at once, in half the instructions of
+// Decodes leaves of clusters by AVX-512: 16 references at once, in half the instructions of
 // cluster-inl.h, whose walks call it where the machine has it. Walks themselves gain little by
 // AVX-512, so this alone is compiled for it.
 #pragma once
@@ -29,8 +29,7 @@ struct Avx512Cluster {
   alignas(64) Lanes byte;  // where the vertices of the last leaf are: written, then read
 };
 
-/// Decodes leaf `leaf` as ClusterReader::read does. False also where that has to read it: leaves
-/// with quads, with most faces apart, or with far more vertices of others than usual.
+/// Decodes leaf `leaf` as ClusterReader::read does; false where that does not read it either.
 using Avx512LeafReader = bool (*)(const ClusterView& view, std::uint32_t leaf, float scale,
                                   Avx512Cluster& cluster, LeafTriangles& triangles,
                                   LeafCoordinates& out);

@@ -28,7 +28,7 @@ class LeafFloats {
       : reader_(tree.leaves()),
         mesh_(reader_.mesh()),
         floats_(reader_.floats()),
-        lane_face_{0, 1, 2, 3, 4, 5, 6, 7}
+        lane_code_{0, 2, 4, 6, 8, 10, 12, 14}
 #if BOXTREE_HAS_EIGHT_LANES
         ,
         clusters_(reader_.clusters())
@@ -47,8 +47,10 @@ class LeafFloats {
 #if BOXTREE_HAS_EIGHT_LANES
     // The usual case without another call.
     if (is_direct_ &&
-        (take_ahead(first / kLeafFaces) || read_by_avx512(first / kLeafFaces, *leaf_)))
+        (take_ahead(first / kLeafFaces) || read_by_avx512(first / kLeafFaces, *leaf_))) {
+      count_ = leaf_->triangles.count;
       return true;
+    }
 #endif
     return load_any();
   }
@@ -114,7 +116,7 @@ class LeafFloats {
 
   /// The face that a lane belongs to, in the tree's order.
   [[nodiscard]] std::uint32_t face(std::uint32_t lane) const {
-    return is_direct_ ? first_ + face_in_leaf(lane) : batch_.face[lane];
+    return is_direct_ ? first_ + face_and_half(lane) / 2 : batch_.face[lane];
   }
 
   /// Calls visit(triangle, face, half) with the exact triangle of a lane. False when its bytes are
@@ -127,7 +129,8 @@ class LeafFloats {
     }
     Triangle triangle;
     if (!exact_triangle(lane, triangle)) return false;
-    visit(triangle, first_ + face_in_leaf(lane), half(lane));
+    const std::uint32_t named = face_and_half(lane);
+    visit(triangle, first_ + named / 2, named % 2);
     return true;
   }
 
@@ -139,11 +142,9 @@ class LeafFloats {
     if (!is_direct_) return false;
     const LeafTriangles& leaf = leaf_->triangles;
     HWY_ALIGN std::uint32_t number[3][3][kMaxLeafTriangles];
-    if (HWY_LIKELY(count_ == kLeafFaces && ClusterReader::find_numbers(leaf, number))) {
-      for (std::uint32_t lane = 0; lane < kLeafFaces; ++lane) out.face[lane] = first_ + lane;
-    } else {
-      find_any_numbers(number, out.face);
-    }
+    ClusterReader::find_numbers(leaf, number);
+    for (std::uint32_t lane = 0; lane < count_; ++lane)
+      out.face[lane] = first_ + leaf.face_and_half(lane) / 2;
     const hn::CappedTag<double, 4> doubles;
     const hn::Rebind<std::int32_t, decltype(doubles)> integers;
     const hn::Rebind<float, decltype(doubles)> floats;
@@ -266,22 +267,6 @@ class LeafFloats {
   }
 
 #if BOXTREE_HAS_EIGHT_LANES
-  // Rarer: for size.
-  [[gnu::cold]] HWY_NOINLINE void find_any_numbers(
-      std::uint32_t (&out)[3][3][kMaxLeafTriangles],
-      std::array<std::uint32_t, kMaxLeafTriangles>& face) const {
-    const LeafTriangles& leaf = leaf_->triangles;
-    for (std::uint32_t lane = 0; lane < kMaxLeafTriangles; ++lane) {
-      const std::uint32_t triangle = std::min(lane, count_ - 1);  // lanes of none have the last
-      std::uint32_t references[3];
-      leaf.find_corners(triangle, references);
-      for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t k = 0; k < 3; ++k) out[c][k][lane] = leaf.number[k][references[c]];
-      }
-      face[lane] = first_ + leaf.face(triangle);
-    }
-  }
-
   HWY_INLINE bool gather_cluster() {
     if (!clusters_.read(first_ / kLeafFaces, floats_.scale, leaf_->triangles, leaf_->coordinate)) {
       return false;
@@ -292,18 +277,12 @@ class LeafFloats {
 
 #endif
 
-  // Of a lane of a leaf that was gathered.
-  [[nodiscard]] HWY_INLINE std::uint32_t face_in_leaf(std::uint32_t lane) const {
+  // See LeafTriangles, of a leaf that was gathered.
+  [[nodiscard]] HWY_INLINE std::uint32_t face_and_half(std::uint32_t lane) const {
 #if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return leaf_->triangles.face(lane);
+    if (reader_.has_clusters()) return leaf_->triangles.face_and_half(lane);
 #endif
-    return lane_face_[lane];
-  }
-  [[nodiscard]] HWY_INLINE std::uint32_t half(std::uint32_t lane) const {
-#if BOXTREE_HAS_EIGHT_LANES
-    if (reader_.has_clusters()) return leaf_->triangles.half(lane);
-#endif
-    return lane != 0 && lane_face_[lane] == lane_face_[lane - 1] ? 1 : 0;
+    return lane_code_[lane];
   }
 
   // [corner][axis], as they are stored.
@@ -367,7 +346,7 @@ class LeafFloats {
         start_[3 * count] = starts[0];
         start_[3 * count + 1] = starts[second];
         start_[3 * count + 2] = starts[second + 1];
-        lane_face_[count] = static_cast<std::uint8_t>(face);
+        lane_code_[count] = static_cast<std::uint8_t>(2 * face + second - 1);
       }
     }
     count_ = count;
@@ -448,8 +427,8 @@ class LeafFloats {
   Errc error_ = Errc::kOk;
   // Of each corner's position, in floats: three for each lane.
   HWY_ALIGN std::uint32_t start_[std::size_t{3} * kMaxLeafTriangles];
-  // The face of the leaf that a lane of arrays belongs to; triangles of a quad are side by side.
-  std::uint8_t lane_face_[kMaxLeafTriangles];
+  // Of each lane of arrays: see LeafTriangles::face_and_half().
+  std::uint8_t lane_code_[kMaxLeafTriangles];
   TriangleBatch batch_;
 #if BOXTREE_HAS_EIGHT_LANES
   ClusterReader clusters_;

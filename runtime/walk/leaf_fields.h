@@ -36,7 +36,8 @@ struct LeafFields {
   std::uint32_t last = 0;        // number of the last new vertex
   std::uint32_t old_bits = 0;    // of each reference that is not new
   const std::byte* bytes = nullptr;  // new_others, then references that are not new
-  // Triangles, with at most 8 other references, and at most kWindowBits in `bytes`.
+  // At most 8 other references but fourth corners, and the fields of all before those in
+  // kWindowBits.
   bool is_usual = false;
 };
 
@@ -113,28 +114,24 @@ struct LeafTable {
 /// Coordinates as floats: [corner][axis][triangle].
 using LeafCoordinates = float[3][3][kMaxLeafTriangles];
 
-/// The triangles of a leaf as it was read last: their corners are references to vertices.
+/// The triangles of a leaf as it was read last: their corners are references to vertices. A lane is
+/// a triangle; those of a quad are side by side.
 struct LeafTriangles {
-  // A triangle of a leaf with quads.
-  struct OfQuads {
-    std::uint8_t face, half;
-    std::array<std::uint8_t, 3> reference;
-  };
+  /// References to the fourth corners of quads, by face.
+  static constexpr std::uint32_t kFourths = 3 * kLeafFaces;
 
-  std::uint32_t count = 0;  // more than 8 if there are quads: a quad is two, one after the other
-  OfQuads of_quads[2 * kLeafFaces];
+  std::uint32_t count = 0;                          // more than 8 if there are quads
+  std::uint8_t code[2 * kLeafFaces];                // of each lane: 2 * face + half
   alignas(32) std::uint32_t step[kLeafFaces];       // to each face
   alignas(32) std::uint32_t corner[2][kLeafFaces];  // references of its first two corners
   // [axis]: whole numbers, or bits of floats. Third corners of all faces, a lane each; after them,
-  // the other two of those that are apart, and the fourth corners of quads.
+  // the other two of those that are apart, and from kFourths on the fourth corners of quads.
   alignas(64) std::uint32_t number[3][kMostLeafReferences];
 
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t face(std::uint32_t lane) const noexcept {
-    return count == kLeafFaces ? lane : of_quads[lane].face;
-  }
-  /// 1 for the second triangle of a quad.
-  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t half(std::uint32_t lane) const noexcept {
-    return count == kLeafFaces ? 0 : of_quads[lane].half;
+  /// Twice the face of a lane, and 1 more for the second triangle of a quad.
+  [[nodiscard]] BOXTREE_ALWAYS_INLINE std::uint32_t face_and_half(
+      std::uint32_t lane) const noexcept {
+    return count == kLeafFaces ? 2 * lane : code[lane];
   }
 
   /// Of each step: the corner of the source that the first one of the lane is.
@@ -143,15 +140,16 @@ struct LeafTriangles {
 
   /// The references of the corners of lane `lane`, in the order of the source.
   BOXTREE_ALWAYS_INLINE void find_corners(std::uint32_t lane, std::uint32_t (&out)[3]) const {
-    if (count != kLeafFaces) {
-      for (std::size_t c = 0; c < 3; ++c) out[c] = of_quads[lane].reference[c];
-      return;
-    }
     static constexpr std::uint8_t kNext[] = {0, 1, 2, 0, 1};
-    const std::uint8_t* const place = kNext + kTurn[step[lane]];
-    out[place[0]] = corner[0][lane];
-    out[place[1]] = corner[1][lane];
-    out[place[2]] = lane;
+    const std::uint32_t named = face_and_half(lane);
+    const std::uint32_t in_leaf = named / 2;
+    const std::uint8_t* const place = kNext + kTurn[step[in_leaf]];
+    out[place[0]] = corner[0][in_leaf];
+    out[place[1]] = corner[1][in_leaf];
+    out[place[2]] = in_leaf;
+    if (named % 2 == 0) return;
+    out[1] = out[2];
+    out[2] = kFourths + in_leaf;
   }
 
   /// The corners of lane `lane`, [corner][axis]: steps of the grid, or the floats of the source.
