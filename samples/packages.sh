@@ -1,7 +1,9 @@
-# shellcheck shell=bash disable=SC2034 # read by the scripts that source it
+#!/usr/bin/env bash
 # SPDX-License-Identifier: MIT
-# Debian 12 packages, and the one function that installs what of them is missing. Sourced by
-# samples/quickstart.sh and tests/run.sh.
+# Debian 12 packages, in lists, and the one function that installs what of them is missing. Sourced by
+# samples/quickstart.sh and tests/run.sh, and a command for other shells:
+#   samples/packages.sh install LIST|PACKAGE...     as in: install BUILD_PACKAGES glmark2-data
+# shellcheck disable=SC2034 # the lists are read by the scripts that source it
 
 BUILD_PACKAGES="g++ cmake make ninja-build libeigen3-dev libassimp-dev libdraco-dev libminizip-dev
   zlib1g-dev libtbb-dev pkg-config liblzma-dev libzstd-dev libcli11-dev libfmt-dev nlohmann-json3-dev libxxhash-dev
@@ -35,3 +37,22 @@ install_missing() {
     apt-get install -y -q --no-install-recommends "${missing[@]}" |
     awk '/^(Get:|Setting up )/ { if (++n % 25 == 0) { print "  " n " steps, now " $0; fflush() } }' >&2
 }
+
+if [ "${BASH_SOURCE[0]}" = "$0" ]; then
+  set -euo pipefail
+  refuse() { echo "samples/packages.sh: $1; usage: samples/packages.sh install LIST|PACKAGE..." >&2; exit 1; }
+  [ "${1-}" = install ] || refuse "expected install, found '${1-}'"
+  [ $# -gt 1 ] || refuse "nothing to install"
+  packages=()
+  for name in "${@:2}"; do
+    case $name in
+      *_PACKAGES)
+        [ -n "${!name-}" ] || refuse "no list '$name'"
+        read -ra list -d '' <<<"${!name}" || true # true only at a delimiter, which a list has none of
+        packages+=("${list[@]}")
+        ;;
+      *) packages+=("$name") ;;
+    esac
+  done
+  install_missing "${packages[@]}"
+fi

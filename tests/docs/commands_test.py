@@ -19,7 +19,7 @@ import tempfile
 
 from blocks import blocks_of
 
-BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|\. samples/packages\.sh|cmake -S \. -B build-deb )")
+BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-deb )")
 
 # What programs of the pages use of the application around them.
 AROUND = """
