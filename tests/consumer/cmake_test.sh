@@ -447,4 +447,15 @@ sanitize=$(cache BOXTREE_SANITIZE)
 read -ra flags <<<"$(pkg-config --cflags --libs boxtree-paper) ${sanitize:+-fsanitize=$sanitize}"
 quiet "$compiler" -std=c++20 "$work/plain.cpp" -o "$work/plain" "${flags[@]}"
 LD_LIBRARY_PATH=$lib quiet "$work/plain" "$work/level.bxt"
+
+# The GUIDE's Makefile finds the library below a prefix that make's environment does not name.
+python3 "$source/tests/docs/blocks.py" "$source/docs/GUIDE.md" makefile |
+  sed "s|\$(PREFIX)/lib/|$lib/|" >"$work/Makefile"
+grep -q "PKG_CONFIG_PATH=$lib/pkgconfig" "$work/Makefile" || fail "the GUIDE has no Makefile with a prefix"
+cat >"$work/game.cpp" <<'CODE'
+#include <boxtree/boxtree.h>
+int main(int, char** argv) { return boxtree::File::open(argv[1]).ok() ? 0 : 1; }
+CODE
+quiet env -u PKG_CONFIG_PATH make -C "$work" CXX="$compiler ${sanitize:+-fsanitize=$sanitize}" game
+LD_LIBRARY_PATH=$lib quiet "$work/game" "$work/level.bxt"
 echo "cmake: as expected"

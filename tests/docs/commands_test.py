@@ -139,6 +139,12 @@ recooks 'for another material library' touch crate.mtl
 recooks 'for another boxtree' touch bin/boxtree
 recooks 'for other options' sed -i 's/--quiet/--quiet --exact/' Makefile
 boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | grep -x 2
+# A Makefile that makes the PATH itself is told that $(shell) does not see it, or works (GNU make 4.4).
+sed -i '1i export PATH := $(CURDIR)/bin:$(PATH)' Makefile
+cooks() { env PATH=/usr/bin:/bin make -B >said 2>&1; }
+cooks || grep -q 'make was called without boxtree on the PATH' said
+sed -i 's|^BOXTREE := .*|BOXTREE := bin/boxtree|' Makefile
+cooks
 """, line)
 
     def ninja(self, page, text, line):
@@ -181,7 +187,9 @@ boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | g
             if language == "sh" and BUILDS.match(text):
                 continue
             {"sh": self.run, "text": self.check_output, "cpp": self.program, "toml": self.profile,
-             "make": self.makefile, "ninja": self.ninja, "cmake": lambda *_: None}[language](page, text, line)  # cmake: tests/consumer
+             "make": self.makefile, "ninja": self.ninja,
+             # tests/consumer
+             "cmake": lambda *_: None, "makefile": lambda *_: None}[language](page, text, line)
 
 
 def main():
