@@ -94,6 +94,41 @@ PageConclusion told(const MeshTradeoff& mesh, std::size_t place, const std::stri
       cook_command(mesh, point)};
 }
 
+// What an encoding is best in, and among which.
+struct Role {
+  std::string best;
+  std::string among;
+  std::size_t place;  // in MeshTradeoff::points
+  bool is_exact = false;
+};
+
+// "Balanced, and also the fastest and smallest with every position bit for bit". Exact roles are
+// the last. What keeps every bit needs no limit of how far the surface moves but one that was
+// stated, and where it is the smallest of all, that says it.
+std::string name_of(std::vector<Role> roles, bool has_tolerance) {
+  const Role last = roles.back();
+  std::string as_well;
+  if (last.is_exact) {
+    const auto first_exact = std::find_if(roles.begin(), roles.end(), std::mem_fn(&Role::is_exact));
+    if (!has_tolerance) {
+      for (auto role = roles.begin(); role != first_exact; ++role) role->among.clear();
+    }
+    const bool is_best_of_all = std::any_of(
+        roles.begin(), first_exact, [&](const Role& role) { return role.best == last.best; });
+    if (is_best_of_all) roles.pop_back();
+    if (!roles.back().is_exact) as_well = "," + last.among;
+  }
+  std::string name;
+  for (std::size_t i = 0; i < roles.size(); ++i) {
+    if (i > 0) name += roles[i].among == roles[i - 1].among ? " and " : ", and also the ";
+    name += roles[i].best;
+    if (roles.size() == 1 && roles[i].best == "balanced") name += ", for most uses";
+    if (i + 1 == roles.size() || roles[i + 1].among != roles[i].among) name += roles[i].among;
+  }
+  name[0] = static_cast<char>(name[0] - 'a' + 'A');  // in any locale
+  return name + as_well;
+}
+
 }  // namespace
 
 double mean_time_of(const MeshTradeoff& mesh, const TradePoint& point, std::size_t kind) {
@@ -180,38 +215,33 @@ std::vector<PageConclusion> advice_in_words(const MeshTradeoff& mesh) {
   const std::optional<Advice> advice = advise(mesh);
   if (!advice) return {{"No encoding passed its gates.", "Use none, and report this as a defect."}};
   const std::vector<double> slower = slowdowns_of(mesh);
-  struct Role {
-    std::string name;
-    std::size_t place;
-  };
   const auto within = [&](const char* share) {
-    return mesh.tolerance ? fmt::format("the tolerance of {}", *mesh.tolerance)
-                          : fmt::format("{} of the diagonal", share);
+    return mesh.tolerance ? fmt::format(" (surface within the tolerance of {})", *mesh.tolerance)
+                          : fmt::format(" (surface within {} of the diagonal)", share);
   };
-  const char* const every_bit = mesh.moved_by_f32 > 0 ? "with every f32 position bit for bit"
-                                                      : "with every position bit for bit";
-  const std::array roles = {
-      Role{fmt::format("Balanced, for most uses (surface within {})", within("a millionth")),
-           advice->balanced},
-      Role{fmt::format("Smallest (surface within {})", within("a ten-thousandth")),
-           advice->smallest},
-      Role{fmt::format("Fastest {}", every_bit), advice->fastest_exact},
-      Role{fmt::format("Smallest {}", every_bit), advice->smallest_exact}};
+  const std::string every_bit = mesh.moved_by_f32 > 0 ? " with every f32 position bit for bit"
+                                                      : " with every position bit for bit";
+  const std::array roles = {Role{"balanced", within("a millionth"), advice->balanced},
+                            Role{"smallest", within("a ten-thousandth"), advice->smallest},
+                            Role{"fastest", every_bit, advice->fastest_exact, true},
+                            Role{"smallest", every_bit, advice->smallest_exact, true}};
   static_assert(kFine == 1e-6 && kCoarse == 1e-4, "as the words say");
   // An encoding that is best in several ways is listed once.
-  std::vector<Role> merged;
+  std::vector<std::vector<Role>> merged;
   for (const Role& role : roles) {
-    const auto same = std::find_if(merged.begin(), merged.end(),
-                                   [&](const Role& r) { return r.place == role.place; });
+    const auto same = std::find_if(merged.begin(), merged.end(), [&](const auto& group) {
+      return group.front().place == role.place;
+    });
     if (same == merged.end()) {
-      merged.push_back(role);
+      merged.push_back({role});
     } else {
-      same->name += "; also: " + role.name;
+      same->push_back(role);
     }
   }
   std::vector<PageConclusion> words;
-  for (const Role& role : merged) {
-    words.push_back(told(mesh, role.place, role.name, slower[role.place]));
+  for (const std::vector<Role>& group : merged) {
+    const std::size_t place = group.front().place;
+    words.push_back(told(mesh, place, name_of(group, mesh.tolerance.has_value()), slower[place]));
   }
   return words;
 }

@@ -13,6 +13,7 @@
 #include "cooker/choose/workload.h"
 #include "cooker/report/approximate_page.h"
 #include "cooker/report/tradeoff_advice.h"
+#include "cooker/text/counted.h"
 
 namespace boxtree::cooker {
 namespace {
@@ -197,9 +198,9 @@ PageSection kind_section(const TradeoffReport& report, const MeshTradeoff& mesh,
 PageSection advice_section(const MeshTradeoff& mesh) {
   PageSection section;
   section.title = mesh.name + ": what to use";
-  section.text =
-      fmt::format("{} triangles, {} vertices, a diagonal of {:.4g} units.{}", mesh.triangles,
-                  mesh.vertices, mesh.diagonal, mesh.is_f64 ? " Positions are f64." : "");
+  section.text = fmt::format("{}, {} vertices, a diagonal of {:.4g} units.{}",
+                             counted(mesh.triangles, "triangle"), mesh.vertices, mesh.diagonal,
+                             mesh.is_f64 ? " Positions are f64." : "");
   section.conclusions = advice_in_words(mesh);
   if (mesh.moved_by_f32 > 0) {
     section.conclusions.insert(

@@ -405,6 +405,46 @@ TEST(Advice, IsTheMinimumWithinEachLimit) {
   EXPECT_FALSE(advise(made));
 }
 
+// Found by a newcomer: "Balanced ...; also: Fastest ..." read as if another encoding followed.
+TEST(Advice, AnEncodingThatIsBestInSeveralWaysIsNamedOnce) {
+  const auto leads = [](const MeshTradeoff& made) {
+    std::vector<std::string> said;
+    for (const PageConclusion& words : advice_in_words(made)) said.push_back(words.lead);
+    return said;
+  };
+  using Leads = std::vector<std::string>;
+  MeshTradeoff made = three_points();
+  made.points[4].bytes = made.points[0].bytes;
+  EXPECT_EQ(leads(made),
+            (Leads{"Balanced, and also the fastest with every position bit for bit: wide8, arrays.",
+                   "Smallest (surface within a ten-thousandth of the diagonal): wide4, grid 14.",
+                   "Smallest with every position bit for bit: wide4, exact."}));
+  made.points[3].gates.missed = 1;
+  EXPECT_EQ(leads(made),
+            (Leads{"Balanced, and also the fastest with every position bit for bit: wide8, arrays.",
+                   "Smallest, with every position bit for bit: wide4, exact."}));
+  made.points[1].bytes = made.points[4].bytes = {2000};
+  EXPECT_EQ(leads(made), (Leads{"Balanced and smallest, and also the fastest with every position "
+                                "bit for bit: wide8, arrays."}));
+
+  made = three_points();
+  made.points[1].bytes = {1400};
+  made.points[3].gates.missed = 1;
+  EXPECT_EQ(leads(made),
+            (Leads{"Balanced (surface within a millionth of the diagonal), and also the smallest "
+                   "(surface within a ten-thousandth of the diagonal): wide8, grid 24.",
+                   "Fastest and smallest with every position bit for bit: wide8, arrays."}));
+  made.tolerance = 0.5;
+  made.tolerance_left = 1e-5;
+  EXPECT_EQ(leads(made)[0],
+            "Balanced and smallest (surface within the tolerance of 0.5): wide8, grid 24.");
+  made.points[4].gates.missed = 1;
+  made.points[1].bytes = {700};
+  EXPECT_EQ(leads(made), (Leads{"Balanced and smallest (surface within the tolerance of 0.5), with "
+                                "every position bit for bit: wide4, exact.",
+                                "Fastest with every position bit for bit: wide8, arrays."}));
+}
+
 // A coarse grid makes points of triangles, which are tested in no time.
 TEST(Advice, TheFastestHasTheSurfaceOfTheMesh) {
   MeshTradeoff made = three_points();
