@@ -21,6 +21,7 @@
 #include "cooker/import/import.h"
 #include "cooker/report/approximate.h"
 #include "cooker/report/pages_json.h"
+#include "cooker/text/counted.h"
 #include "runtime/tree/bound_tree.h"
 
 namespace boxtree::cooker {
@@ -132,31 +133,32 @@ void print_approximate(const Json& kinds) {
 }
 
 void print_row(const Json& row) {
-  fmt::print("{} ({}, {}, {} triangles)\n", shown(row["file"].get<std::string>()),
-             row["tree"].get<std::string>(), row["codec"].get<std::string>(),
-             row["triangles"].get<std::uint32_t>());
+  fmt::print("{} ({}, {}, {})\n", shown(row["file"].get<std::string>()),
+             shown(row["tree"].get<std::string>()), row["codec"].get<std::string>(),
+             counted(row["triangles"].get<std::uint32_t>(), "triangle"));
   if (row.contains("approximate")) return print_approximate(row["approximate"]);
   fmt::print(
       "  measured means; spheres with a radius of 1 % of the diagonal are cast along the rays;\n"
       "  boxes are {};\n  contacts are those with {};\n  view is {}\n",
       kBoxMeaning, kPoseMeaning, kCameraMeaning);
-  fmt::print("  ray   {:9.0f} ns  {} hits, in batches {:.0f} ns\n", row["ray_ns"].get<double>(),
-             row["ray_hits"].get<std::uint64_t>(), row["ray_batch_ns"].get<double>());
-  fmt::print("  view  {:9.0f} ns  {} hits, in batches {:.0f} ns\n", row["camera_ns"].get<double>(),
-             row["camera_hits"].get<std::uint64_t>(), row["camera_batch_ns"].get<double>());
-  fmt::print("  cast  {:9.0f} ns  {} hits of spheres\n", row["cast_sphere_ns"].get<double>(),
-             row["cast_sphere_hits"].get<std::uint64_t>());
-  fmt::print("  box   {:9.0f} ns  {} faces\n", row["box_ns"].get<double>(),
-             row["box_faces"].get<std::uint64_t>());
-  fmt::print("  point {:9.0f} ns  {:.6g} summed distance\n", row["point_ns"].get<double>(),
-             row["point_distance"].get<double>());
-  fmt::print("  first {:9.1f} us  {} contacts\n", row["pair_first_us"].get<double>(),
-             row["pair_hits"].get<std::uint64_t>());
-  fmt::print("  all   {:9.1f} us  {} pairs\n", row["pair_all_us"].get<double>(),
-             row["pair_pairs"].get<std::uint64_t>());
-  fmt::print("  open  {:9.1f} us  to the first answer, {} page faults; {:.1f} us before it\n",
-             row["open_us"].get<double>(), row["open_page_faults"].get<std::uint64_t>(),
-             row["open_alone_us"].get<double>());
+  const auto number = [&](const char* key) { return row[key].get<double>(); };
+  const auto of = [&](const char* key, const char* word) {
+    return counted(row[key].get<std::uint64_t>(), word);
+  };
+  fmt::print("  ray   {:9.0f} ns  {}, in batches {:.0f} ns\n", number("ray_ns"),
+             of("ray_hits", "hit"), number("ray_batch_ns"));
+  fmt::print("  view  {:9.0f} ns  {}, in batches {:.0f} ns\n", number("camera_ns"),
+             of("camera_hits", "hit"), number("camera_batch_ns"));
+  fmt::print("  cast  {:9.0f} ns  {} of spheres\n", number("cast_sphere_ns"),
+             of("cast_sphere_hits", "hit"));
+  fmt::print("  box   {:9.0f} ns  {}\n", number("box_ns"), of("box_faces", "face"));
+  fmt::print("  point {:9.0f} ns  {:.6g} summed distance\n", number("point_ns"),
+             number("point_distance"));
+  fmt::print("  first {:9.1f} us  {}\n", number("pair_first_us"), of("pair_hits", "contact"));
+  fmt::print("  all   {:9.1f} us  {}\n", number("pair_all_us"), of("pair_pairs", "pair"));
+  fmt::print(
+      "  open  {:9.1f} us  to the first answer, of which opening and binding take {:.1f} us; {}\n",
+      number("open_us"), number("open_alone_us"), of("open_page_faults", "page fault"));
 }
 
 // A row for each codec and store: nanoseconds of a query, a node and a leaf for each kind.
@@ -194,12 +196,12 @@ int run_calibration(const Arguments& arguments) {
 }
 
 void print_row(const char* kind, const PageCount& count) {
-  fmt::print("  {:<5} {:5} pages at the median, {:5} at worst, of {} queries\n", kind, count.median,
+  fmt::print("  {:<5} {:5} at the median, {:5} at worst, of {} queries\n", kind, count.median,
              count.worst, count.queries);
 }
 
 void print_row(const FirstRays& first) {
-  fmt::print("  {:>5} levels, {:6} nodes: {:5} pages read ahead, {:5} by the rays\n", first.levels,
+  fmt::print("  levels {:2}, nodes {:6}: {:5} read ahead, {:5} by the rays\n", first.levels,
              first.nodes, first.pages_before, first.pages_more);
 }
 
@@ -212,14 +214,15 @@ Result<Json> pages(const std::filesystem::path& path, std::uint32_t index, const
   const Result<std::vector<FirstRays>> first_rays = measure_first_rays(path, index, queries);
   if (!first_rays) return first_rays.error();
   if (!arguments.json) {
-    fmt::print("{} ({}, {}, {} triangles): {} pages of 4 KiB\n", shown(path.string()),
-               shown(tree.name()), codec_name(BoundTree::of(tree).codec()), tree.triangle_count(),
-               figures->file_pages);
-    fmt::print("  open  {:5} pages\n", figures->open);
+    fmt::print("{} ({}, {}, {}): {} of 4 KiB\n", shown(path.string()), shown(tree.name()),
+               codec_name(BoundTree::of(tree).codec()), counted(tree.triangle_count(), "triangle"),
+               counted(figures->file_pages, "page"));
+    fmt::print("  pages that are read of a cold file\n  open  {:5}\n", figures->open);
     print_row("ray", figures->ray);
     print_row("box", figures->box);
     print_row("point", figures->point);
-    fmt::print("  the first {} rays on one open file, after Tree::prefetch(levels)\n", queries);
+    fmt::print("  pages of the first {} rays on one open file, after Tree::prefetch(levels)\n",
+               queries);
     for (const FirstRays& first : *first_rays) print_row(first);
   }
   Json rays = Json::array();
