@@ -97,10 +97,12 @@ std::string costs_to_json(const Calibration& calibration) {
 
 Result<std::vector<CodecCost>> parse_costs(std::string_view text) {
   const ParsedJson parsed = parse_json(text);
-  if (parsed.fault != ParsedJson::Fault::kNone) return fault("no JSON");
+  if (parsed.fault != ParsedJson::Fault::kNone)
+    return fault("expected JSON, as `bench --calibrate --json` prints it");
   const Json* const rows = parsed.value.find("costs");
   if (rows == nullptr || !rows->is_array()) {
-    return fault("expected an object with an array \"costs\"");
+    return fault(
+        "expected an object with an array \"costs\", as `bench --calibrate --json` prints it");
   }
   std::vector<CodecCost> costs;
   for (std::size_t i = 0; i < rows->size(); ++i) {

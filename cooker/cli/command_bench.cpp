@@ -270,13 +270,14 @@ void add_bench_command(Command& program, int& status) {
   Command& command = program.add_command("bench", "Time queries on .bxt files");
   command
       .add_file("FILE", arguments->files, Values::kCookedFilesAndMeshes,
-                "Files with geometry inside; with --calibrate meshes")
+                "Files with geometry inside; with --calibrate meshes, three or more")
       ->required();
   Option* calibrate =
       command
           .add_flag(
               "--calibrate", arguments->calibrate,
-              "Measure the constants that auto chooses by; files are meshes, best three or more")
+              "Measure the constants by which `cook` chooses, with --json for its --costs; files "
+              "are meshes, three or more of different sizes")
           ->group(kRareOptions);
   command.add_option("--runs", arguments->runs, "Runs whose median counts; one more goes before")
       ->type_name("N")
@@ -293,6 +294,8 @@ void add_bench_command(Command& program, int& status) {
   calibrate->excludes(pages)->excludes(approximate);
   command.add_flag("--json", arguments->json, "Print one JSON document");
   command.example("A first impression", "boxtree bench bunny.bxt --quick --runs 1");
+  command.example("The constants of this machine, for cook --costs",
+                  "boxtree bench --calibrate bunny.obj horse.obj cat.obj --json > costs.json");
   command.callback([arguments, &status] { status = run(*arguments); });
 }
 

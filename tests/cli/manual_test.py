@@ -213,7 +213,8 @@ def check_completions(manual, folder):
 
 
 def check_examples(manual, source, folder):
-    shutil.copy(source / "samples/meshes/crate.obj", folder / "bunny.obj")
+    for mesh in ("bunny.obj", "horse.obj", "cat.obj"):
+        shutil.copy(source / "samples/meshes/crate.obj", folder / mesh)
     for name in ("level.gltf", "scene.toml"):
         shutil.copy(source / "samples/level" / name, folder)
     (folder / "bin").mkdir()

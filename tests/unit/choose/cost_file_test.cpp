@@ -51,10 +51,12 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
     return parsed.error().detail;
   };
   EXPECT_EQ(refusal([](Json&) {}), "accepted");
-  EXPECT_EQ(refusal([](Json& j) { j = Json::array(); }),
-            "costs: expected an object with an array \"costs\"");
-  EXPECT_EQ(refusal([](Json& j) { j.erase("costs"); }),
-            "costs: expected an object with an array \"costs\"");
+  EXPECT_EQ(
+      refusal([](Json& j) { j = Json::array(); }),
+      "costs: expected an object with an array \"costs\", as `bench --calibrate --json` prints it");
+  EXPECT_EQ(
+      refusal([](Json& j) { j.erase("costs"); }),
+      "costs: expected an object with an array \"costs\", as `bench --calibrate --json` prints it");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].erase(0); }),
             "costs: plain-f32, arrays, f32: expected one row, found 0");
   EXPECT_EQ(refusal([](Json& j) { j["costs"].push_back(j["costs"][0]); }),
@@ -83,7 +85,8 @@ TEST(CostFile, RefusesWhatIsNotOneSensibleRowForEach) {
               j["costs"][0]["ray"] = {{"query_ns", 0}, {"node_ns", 0}, {"leaf_ns", 0}};
             }),
             "costs: plain-f32, arrays, ray: all steps are 0, but no query is free");
-  EXPECT_EQ(parse_costs("{").error().detail, "costs: no JSON");
+  EXPECT_EQ(parse_costs("{").error().detail,
+            "costs: expected JSON, as `bench --calibrate --json` prints it");
   // Numbers that double cannot hold.
   EXPECT_FALSE(parse_costs(R"({"costs":[{"codec":"wide8","geometry":"exact","ray":)"
                            R"({"query_ns":1e999,"node_ns":1,"leaf_ns":1}}]})"));
