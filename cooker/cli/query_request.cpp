@@ -530,22 +530,30 @@ std::size_t parse_numbers(std::string_view text, std::span<double> numbers) {
   return 0;
 }
 
-// A shell gives what stands before a space alone, which then ends with a comma.
 std::string found_instead(std::string_view text) {
-  const std::string found = fmt::format("found \"{}\"", text);
+  return fmt::format("found \"{}\"{}", text, why_no_list(text));
+}
+
+// A shell gives what stands before a space alone: a number, or one and a comma.
+std::string why_no_list(std::string_view text) {
+  double number = 0;
+  const auto fault = [&](std::string_view word) {
+    return std::from_chars(word.data(), word.data() + word.size(), number).ec;
+  };
+  if (text.find(',') == std::string_view::npos && fault(text) == std::errc()) {
+    return "; write it with commas, without spaces";
+  }
   if (text.find(' ') != std::string_view::npos || text.ends_with(',')) {
-    return found + "; write it without spaces";
+    return "; write it without spaces";
   }
   for (std::size_t at = 0; at < text.size();) {
     const std::string_view word = text.substr(at, text.find(',', at) - at);
-    double number = 0;
-    const auto [next, error] = std::from_chars(word.data(), word.data() + word.size(), number);
-    if (error == std::errc::result_out_of_range) {
-      return found + fmt::format("; {} is beyond the range of double", word);
+    if (fault(word) == std::errc::result_out_of_range) {
+      return fmt::format("; {} is beyond the range of double", word);
     }
     at += word.size() + 1;
   }
-  return found;
+  return {};
 }
 
 std::optional<Eigen::Vector3d> parse_vector(std::string_view text) {

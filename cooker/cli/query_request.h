@@ -394,6 +394,9 @@ std::size_t parse_numbers(std::string_view text, std::span<double> numbers);
 /// What to say of a text that is no list of as many numbers, and why: `found "1, 2"; write it
 /// without spaces`.
 [[nodiscard]] std::string found_instead(std::string_view text);
+/// The second half of it: "; write it with commas, without spaces" of "1". Empty where nothing
+/// helps.
+[[nodiscard]] std::string why_no_list(std::string_view text);
 
 /// Of 16 numbers, row by row. Nothing for another count.
 [[nodiscard]] std::optional<Frustum::ViewProjection> matrix_of(std::span<const double> numbers);

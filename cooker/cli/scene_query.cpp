@@ -232,13 +232,14 @@ Error no_instance(const File& file, const Scene& scene, const std::string& name)
 
 Result<Move> parse_move(const File& file, const Scene& scene, const std::string& text) {
   const std::size_t at = text.rfind('=');
-  const std::optional<Pose> pose =
-      at == std::string::npos ? std::nullopt : parse_pose(std::string_view(text).substr(at + 1));
+  const std::string_view numbers =
+      at == std::string::npos ? std::string_view() : std::string_view(text).substr(at + 1);
+  const std::optional<Pose> pose = parse_pose(numbers);
   if (!pose) {
     return Error{Errc::kInvalidQuery,
                  fmt::format("--move: expected INSTANCE=X,Y,Z or INSTANCE= and 12 numbers, found "
-                             "\"{}\"",
-                             text)};
+                             "\"{}\"{}",
+                             text, why_no_list(numbers))};
   }
   const std::string name = text.substr(0, at);
   const Result<std::uint32_t> found = scene.find_instance(name);

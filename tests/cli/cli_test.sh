@@ -594,6 +594,14 @@ misvalued 'usage: query point: --at: expected X,Y,Z, found no value' query cube.
 misvalued 'usage: cook: --jobs: expected N, found no value' cook cube.obj -o x.bxt --jobs
 misvalued 'usage: query point: --at: expected once, found 3 times' query cube.bxt point --at 0,0,0 --at 1,1,1 --at 0,0,0
 misvalued 'usage: query cast: --capsule: expected X,Y,Z,R, found "0,0,1"' query cube.bxt cast --capsule 0,0,1
+misvalued 'usage: query ray: --origin: expected X,Y,Z, found "0"; write it with commas, without spaces' \
+  query cube.bxt ray --origin 0 0 1 --direction 0,0,-1
+misvalued 'usage: query point: --at: expected X,Y,Z, found "1 2 3"; write it with commas, without spaces' query cube.bxt point --at "1 2 3"
+misvalued 'usage: query frustum: --matrix: expected 16 numbers between commas, found "1"; write it with commas, without spaces' \
+  query cube.bxt frustum --matrix 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1
+misvalued 'usage: query pair: --pose: expected X,Y,Z or 12 numbers, found "1"; write it with commas, without spaces' \
+  query cube.bxt pair cube.bxt --pose 1 0 0
+misvalued 'usage: query point: --at: expected X,Y,Z, found "there"' query cube.bxt point --at there
 misvalued 'usage: query point: --at: expected X,Y,Z, found "1, 2, 3"; write it without spaces' query cube.bxt point --at "1, 2, 3"
 misvalued 'usage: query point: --at: expected X,Y,Z, found "1,"; write it without spaces' query cube.bxt point --at 1, 2, 3
 misvalued 'usage: query point: --at: expected X,Y,Z, found "0,1e400,0"; 1e400 is beyond the range of double' \
@@ -601,7 +609,7 @@ misvalued 'usage: query point: --at: expected X,Y,Z, found "0,1e400,0"; 1e400 is
 misvalued 'usage: query cast: --capsule: expected X,Y,Z,R, found "0,0,1,-1e999"; -1e999 is beyond the range of double' \
   query cube.bxt cast --capsule 0,0,1,-1e999
 misvalued 'usage: cook: --exact: expected no value, found "maybe"' cook cube.obj -o x.bxt --exact=maybe
-misvalued 'usage: query cast: --box: expected HX,HY,HZ, found "1"' query cube.bxt cast --box 1
+misvalued 'usage: query cast: --box: expected HX,HY,HZ, found "1"; write it with commas, without spaces' query cube.bxt cast --box 1
 misvalued 'usage: query cast: --rotation: expected X,Y,Z,W, found "0,0,0,1,2"' query cube.bxt cast --rotation 0,0,0,1,2
 misvalued 'usage: query ray: --t-max: expected a number, found "far"' query cube.bxt ray --origin 0,0,9 --direction 0,0,1 --t-max far
 for value in 1.5 -1 x; do
@@ -1109,14 +1117,6 @@ done
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
 same "$(jq -c '[.files[0] | .ray_ns,.cast_sphere_ns,.box_ns,.point_ns,.pair_first_us,.pair_all_us,.open_us] | all(. > 0)' out)" true
 same "$(jq -c '.files[0] | .ray_hits == 20000 and .cast_sphere_hits == 20000 and .pair_pairs >= .pair_hits' out)" true
-# The same figures in words: all but times are those of the document.
-counts=$(jq -c '.files[0] | [.ray_hits, .cast_sphere_hits, .box_faces, .pair_hits, .pair_pairs]' out)
-page_faults=$(jq '.files[0].open_page_faults' out)
-bench_says() {
-  grep -Eq -- "$1" out || { echo "bench does not say: $1"; cat out; exit 1; }
-}
-expect 0 "$boxtree" bench cube.bxt --quick --runs 1
-bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\)$'
 # One is one.
 printf 'v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n' >lone.obj
 expect 0 "$boxtree" cook lone.obj -o lone.bxt -q
@@ -1127,6 +1127,14 @@ expect 0 "$boxtree" bench lone.bxt --pages --quick
 grep -q '^lone\.bxt (lone, [a-z0-9-]*, 1 triangle): 1 page of 4 KiB$' out
 if grep -E ' 1 [a-z ]+s(,|:|$)' out; then exit 1; fi
 expect 0 "$boxtree" bench cube.bxt --quick --runs 1 --json
+# The same figures in words: all but times are those of the document.
+counts=$(jq -c '.files[0] | [.ray_hits, .cast_sphere_hits, .box_faces, .pair_hits, .pair_pairs]' out)
+page_faults=$(jq '.files[0].open_page_faults' out)
+bench_says() {
+  grep -Eq -- "$1" out || { echo "bench does not say: $1"; cat out; exit 1; }
+}
+expect 0 "$boxtree" bench cube.bxt --quick --runs 1
+bench_says '^cube\.bxt \(cube, [a-z0-9-]+, 12 triangles\)$'
 bench_says 'means; spheres with a radius of 1 % of the diagonal are cast along the rays;'
 bench_says 'boxes are cubes with an edge of 5 % of the diagonal'
 same "$(awk '$1 ~ /^(ray|cast|box|first|all)$/ { printf "%s%s", separator, $4; separator = "," }' out)" "$(tr -d '[]' <<<"$counts")"
