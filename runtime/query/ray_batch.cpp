@@ -21,7 +21,7 @@ namespace {
 Status answer_all(const Tree& tree, std::span<const Ray> rays, std::span<RayResult> results,
                   bool any, const QueryLimits& limits, RayWishes* wishes,
                   FunctionRef<RayResult(const Ray&)> alone) {
-  if (results.size() != rays.size()) return invalid_query("results");
+  if (results.size() != rays.size()) return invalid_query("results.size()");
   RayBatch batch{BoundTree::of(tree), rays, results, any, wishes, alone};
   // A packet reads nodes for several rays: what one of them may read cannot be told.
   const bool is_limited = limits.nodes != QueryLimits().nodes;

@@ -141,7 +141,7 @@ SceneRayResult plain_hit(const Scene& queried, const Ray& ray, bool stop_at_firs
 template <class Answer>
 Status answer_each(std::span<const Ray> rays, std::span<SceneRayResult> results,
                    const Answer& answer) {
-  if (results.size() != rays.size()) return invalid_query("results");
+  if (results.size() != rays.size()) return invalid_query("results.size()");
   for (std::size_t i = 0; i < rays.size(); ++i) results[i] = answer(rays[i]);
   return {};
 }

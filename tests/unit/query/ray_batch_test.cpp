@@ -265,7 +265,7 @@ TEST(RayBatch, RefusesResultsOfAnotherNumber) {
   for (const Status& refused :
        {closest_hits(cooked.tree, rays, results), any_hits(cooked.tree, rays, results)}) {
     EXPECT_EQ(refused.error().code, Errc::kInvalidQuery);
-    EXPECT_EQ(refused.error().detail, "results");
+    EXPECT_EQ(refused.error().detail, "results.size()");
   }
   EXPECT_EQ(results[0].code(), Errc::kInternal) << "nothing was written";
 }

@@ -120,8 +120,8 @@ TEST_P(SceneQueries, BatchesAnswerEachRayAsAlone) {
     }
   }
   const auto few = std::span(closest).first(3);
-  EXPECT_EQ(closest_hits(scene_, rays, few).error().detail, "results");
-  EXPECT_EQ(any_hits(scene_, rays, few).error().detail, "results");
+  EXPECT_EQ(closest_hits(scene_, rays, few).error().detail, "results.size()");
+  EXPECT_EQ(any_hits(scene_, rays, few).error().detail, "results.size()");
 }
 
 TEST_P(SceneQueries, BoxEqualsBruteForce) {
