@@ -8,6 +8,7 @@ compile, and the README's answers what the command above it answers.
 tests/bare_machine.sh and tests/bare_packages.sh run what builds or installs the project (BUILDS below) on
 a bare Debian.
 """
+import fnmatch
 import os
 import pathlib
 import re
@@ -20,6 +21,9 @@ import tempfile
 from blocks import blocks_of
 
 BUILDS = re.compile(r"^(samples/quickstart\.sh|tests/run\.sh|samples/packages\.sh|cmake -S \. -B build-deb )")
+
+# What this test itself writes.
+WRITTEN_HERE = {"make/", "ninja/", "program", "program.cpp", "program.out", "query.out"}
 
 # What programs of the pages use of the application around them.
 AROUND = """
@@ -182,6 +186,16 @@ boxtree info out/crate.bxt out/levels/yard.bxt | grep -c ', geometry arrays' | g
         if listed != wanted:
             fail("docs/GUIDE.md", 0, f"what may pass: listed {listed}, expected {wanted}")
 
+    def check_ignored(self):
+        """What commands write into the folder of the sources is nothing that git would add."""
+        ignored = [line.removeprefix("/") for line in (self.source / ".gitignore").read_text(encoding="utf-8").splitlines()
+                   if not line.startswith("#")]
+        written = {entry.name + "/" * entry.is_dir() for entry in self.work.iterdir()
+                   if not entry.is_symlink()} - WRITTEN_HERE
+        left = sorted(name for name in written if not any(fnmatch.fnmatch(name, pattern) for pattern in ignored))
+        if left or not written:
+            fail(".gitignore", 0, f"does not name {left} of {sorted(written)}")
+
     def check(self, page):
         for language, text, line in blocks_of(self.source / page):
             if language == "sh" and BUILDS.match(text):
@@ -203,6 +217,7 @@ def main():
                   "cmp program.out query.out\n", 0)
         pages.check("docs/GUIDE.md")
         pages.check_retries()
+        pages.check_ignored()
         assert pages.ran > 30, f"only {pages.ran} commands were found"
     print(f"{pages.ran} commands run as printed")
 
